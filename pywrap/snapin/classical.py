@@ -1,0 +1,109 @@
+"""Hertz, JKR, DMT and Maugis-Dugdale: src/classical.f90 and src/maugis.f90.
+
+`theory` is "hertz", "jkr", "dmt" or "maugis". `radius` is R [m], `stiffness` E/(1-nu^2) of two
+identical bodies [Pa], `surface_energy` gamma [J/m^2], `strength` the cohesive tension of
+Maugis-Dugdale [Pa]; those a theory does not use need not be given. NaN marks values for which
+the theory has no equilibrium.
+"""
+
+import _snapin
+
+from .arguments import accept, positive, positive_vector, vector
+
+_flat = _snapin.snapin_flat
+
+# The material constants each theory needs, besides radius and stiffness.
+_NEEDS = {
+    "hertz": (),
+    "jkr": ("surface_energy",),
+    "dmt": ("surface_energy",),
+    "maugis": ("surface_energy", "strength"),
+}
+
+
+def _material(theory, radius, stiffness, surface_energy, strength=0.0):
+    """Return radius, stiffness, surface energy and strength, each checked if `theory` uses it."""
+    if theory not in _NEEDS:
+        raise ValueError(f"theory: must be one of {', '.join(_NEEDS)}, not {theory!r}")
+    needed = {"surface_energy": surface_energy, "strength": strength}
+    used = {name: positive(name, needed[name]) for name in _NEEDS[theory]}
+    return (
+        positive("radius", radius),
+        positive("stiffness", stiffness),
+        used.get("surface_energy", 0.0),
+        used.get("strength", 0.0),
+    )
+
+
+def contact_radius(
+    theory, control, values, *, radius, stiffness, surface_energy=0.0, strength=0.0
+):
+    """Return the contact radii at given values of `control`.
+
+    `control` is "load" [N] or "displacement" [m], on the branch that is stable under it; for
+    Maugis-Dugdale it is "edge_ratio", the outer radius of the cohesive zone over the contact
+    radius.
+    """
+    material = _material(theory, radius, stiffness, surface_energy, strength)
+    values = vector("values", values)
+    if control == "edge_ratio" and not (values > 1).all():
+        raise ValueError("values: every edge_ratio must be above 1")
+    a, stat, message = _flat.classical_states(theory, control, values, *material)
+    accept(stat, message)
+    return a
+
+
+def contact_curve(
+    theory, contact_radius, *, radius, stiffness, surface_energy=0.0, strength=0.0
+):
+    """Return load [N] and displacement [m] at contact radii [m], all above zero."""
+    material = _material(theory, radius, stiffness, surface_energy, strength)
+    a = positive_vector("contact_radius", contact_radius)
+    load, displacement, stat, message = _flat.classical_curve(theory, a, *material)
+    accept(stat, message)
+    return load, displacement
+
+
+def profile(theory, r, contact_radius, *, radius, stiffness, surface_energy=0.0):
+    """Return pressure [Pa] and gap [m] at distances `r` [m] from the axis (Hertz and JKR)."""
+    material = _material(theory, radius, stiffness, surface_energy, strength=1.0)
+    r = vector("r", r)
+    if (r < 0).any():
+        raise ValueError("r: must not be negative")
+    a = positive("contact_radius", contact_radius)
+    pressure, gap, stat, message = _flat.classical_profile(theory, r, a, *material[:3])
+    accept(stat, message)
+    return pressure, gap
+
+
+def load_at_displacement(theory, displacement, *, radius, stiffness, surface_energy=0.0):
+    """Return loads [N] at displacements [m], on the branch stable at fixed displacement."""
+    material = _material(theory, radius, stiffness, surface_energy, strength=1.0)
+    displacement = vector("displacement", displacement)
+    load, stat, message = _flat.classical_loads(theory, displacement, *material[:3])
+    accept(stat, message)
+    return load
+
+
+def pull_off(
+    theory, *, radius, stiffness, surface_energy=0.0, strength=0.0, control="load"
+):
+    """Return the load [N], negative, at which the bodies part at a fixed `control`."""
+    material = _material(theory, radius, stiffness, surface_energy, strength)
+    load, stat, message = _flat.classical_pull_off(theory, control, *material)
+    accept(stat, message)
+    return load
+
+
+def cohesive_zone(contact_radius, *, radius, stiffness, surface_energy, z0):
+    """Return strength [Pa], lambda and edge ratios of Maugis-Dugdale for a Lennard-Jones law.
+
+    `z0` [m] is the law's equilibrium separation; the strength is its largest tension.
+    """
+    return _flat.maugis_numbers(
+        positive_vector("contact_radius", contact_radius),
+        positive("radius", radius),
+        positive("stiffness", stiffness),
+        positive("surface_energy", surface_energy),
+        positive("z0", z0),
+    )

@@ -1,0 +1,348 @@
+"""Kernel, quadrature, force laws, meshes, and one state of equilibrium.
+
+Kernel, quadrature and meshes have no units. Force laws are in SI. A state of equilibrium is in the
+units of src/problem.f90: gaps in the law's length, lateral positions in sqrt(R length), pressures
+in the law's unit, loads in that unit times R length.
+"""
+
+import operator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import _snapin
+import numpy as np
+
+from .arguments import accept, positive, positive_vector, scalar, vector
+
+_flat = _snapin.flat_numerics
+
+# The parameters that each law reads, and the parts that it has.
+LAWS = {
+    "lennard_jones": (("hamaker", "z0"), ("full", "repulsive", "attractive")),
+    "exponential": (("p0", "decay_length"), ("full",)),
+}
+METHODS = ("mixing", "anderson", "newton")
+
+_LARGEST_ORDER = 64
+
+
+def _one_of(name, value, choices):
+    """Return `value` if it is one of `choices`."""
+    if value not in choices:
+        raise ValueError(f"{name}: must be one of {', '.join(choices)}, not {value!r}")
+    return value
+
+
+def _count(name, value, least, most=2**31 - 1):
+    """Return `value` as an int within the limits."""
+    try:
+        if isinstance(value, (bool, np.bool_)):
+            raise TypeError
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name}: a whole number is needed, not {value!r}") from None
+    if not least <= number <= most:
+        raise ValueError(f"{name}: must be from {least} to {most}, not {number}")
+    return number
+
+
+def _not_negative(name, value):
+    """Return `value` as a finite float that is zero or more."""
+    number = scalar(name, value)
+    if number < 0:
+        raise ValueError(f"{name}: must not be negative, not {number}")
+    return number
+
+
+def _ascending(name, values, least_size):
+    """Return `values` as a vector of at least `least_size` numbers, each above the one before."""
+    array = vector(name, values)
+    if array.size < least_size:
+        raise ValueError(f"{name}: at least {least_size} values are needed, not {array.size}")
+    if not (np.diff(array) > 0).all():
+        raise ValueError(f"{name}: each value must be above the one before")
+    return array
+
+
+def _as_long_as(name, values, size):
+    """Return `values` as a vector of `size` numbers."""
+    array = vector(name, values)
+    if array.size != size:
+        raise ValueError(f"{name}: {size} values are needed, not {array.size}")
+    return array
+
+
+# --- Kernel and quadrature
+
+
+def _sum_and_distance(total, distance):
+    total = positive_vector("total", total)
+    distance = positive_vector("distance", _as_long_as("distance", distance, total.size))
+    if not (distance <= total).all():
+        raise ValueError("distance: |r - t| cannot be above the total r + t")
+    return total, distance
+
+
+def kernel(total, distance):
+    """Return k(r, t) for arrays of r + t and |r - t|, both positive (src/elastic_kernel.f90)."""
+    return _flat.kernel_values(*_sum_and_distance(total, distance))[0]
+
+
+def kernel_log_coefficient(total, distance):
+    """Return a in k(r, t) = -a ln|r - t| + smooth, for arrays of r + t and |r - t|."""
+    return _flat.kernel_values(*_sum_and_distance(total, distance))[1]
+
+
+class GaussRule(NamedTuple):
+    """Nodes on [0, 1]; weights of f and of f(s) ln(s); barycentric weights of the nodes."""
+
+    x: np.ndarray
+    weight: np.ndarray
+    log_weight: np.ndarray
+    barycentric: np.ndarray
+
+
+def gauss_rule(points):
+    """Return the Gauss-Legendre rule of so many points (src/quadrature.f90)."""
+    return GaussRule(*_flat.gauss_rule(_count("points", points, 1, _LARGEST_ORDER)))
+
+
+def panel_weights(node, target, left, right, *, centre=0.0):
+    """Return the integrals of k(r, t) L_j(t) t dt over the panel of offsets [left, right].
+
+    L_j are the Lagrange polynomials on the nodes `node` of [0, 1]; r = centre + target for every
+    offset in `target`. The result has shape (targets, nodes).
+    """
+    node = _ascending("node", node, 2)
+    if node[0] < 0 or node[-1] > 1 or node.size > _LARGEST_ORDER:
+        raise ValueError(f"node: at most {_LARGEST_ORDER} values within [0, 1] are needed")
+    centre = _not_negative("centre", centre)
+    target = vector("target", target)
+    left, right = scalar("left", left), scalar("right", right)
+    if not left < right:
+        raise ValueError("right: must be above left")
+    if centre + left < 0:
+        raise ValueError("left: lies beyond the axis")
+    if (centre + target < 0).any():
+        raise ValueError("target: lies beyond the axis")
+    return _flat.panel_integrals(node, centre, target, left, right).T
+
+
+# --- Force laws
+
+
+class LawValues(NamedTuple):
+    """Pressure [Pa], its derivative by the gap [Pa/m], its integral from there on [J/m^2]."""
+
+    pressure: np.ndarray
+    slope: np.ndarray
+    energy: np.ndarray
+
+
+class LawNumbers(NamedTuple):
+    """SI: units of gap and pressure, surface energy, and gaps; 0 where a law has no such gap."""
+
+    length: float
+    pressure_unit: float
+    surface_energy: float
+    edge_gap: float
+    rest_gap: float
+    range: float
+
+
+def _law_arguments(law, part, parameters):
+    needed, parts = LAWS[_one_of("law", law, LAWS)]
+    _one_of("part", part, parts)
+    for name in needed:
+        if name not in parameters:
+            raise TypeError(f"{name}: needed by law {law!r}")
+    for name in parameters:
+        if name not in needed:
+            raise TypeError(f"{name}: not a parameter of law {law!r}")
+    known = {name: positive(name, value) for name, value in parameters.items()}
+    return law, part, *(known.get(name, 0.0) for name in ("hamaker", "z0", "p0", "decay_length"))
+
+
+def force_law(law, gap, *, part="full", **parameters):
+    """Return pressure, slope and energy of a law at gaps [m].
+
+    "lennard_jones" needs `hamaker` [J] and `z0` [m], "exponential" `p0` [Pa] and `decay_length`
+    [m]. A gap of exactly zero is refused for the former.
+    """
+    arguments = _law_arguments(law, part, parameters)
+    gap = vector("gap", gap)
+    if law == "lennard_jones" and not gap.all():
+        raise ValueError("gap: must not be zero")
+    *values, stat, message = _flat.law_values(*arguments, gap)
+    accept(stat, message)
+    return LawValues(*values)
+
+
+def law_numbers(law, *, part="full", **parameters):
+    """Return the numbers that characterise a law, SI; `parameters` as in `force_law`."""
+    *values, stat, message = _flat.law_numbers(*_law_arguments(law, part, parameters))
+    accept(stat, message)
+    return LawNumbers(*values)
+
+
+# --- Meshes
+
+
+class KernelMatrix(NamedTuple):
+    """Integrals of k(r, t) p(t) t dt as products with nodal values of p.
+
+    `axis` and `centre` (nodes,) are for r on the axis and at the mesh's centre, `nodes` (nodes,
+    nodes) for r at the nodes.
+    """
+
+    axis: np.ndarray
+    centre: np.ndarray
+    nodes: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Nodes `x`, weights of the integral of f x dx, and the distance between nodes.
+
+    From `uniform_mesh` or `panel_mesh`; `kind`, `centre`, `ends`, `order` describe it.
+    """
+
+    kind: str
+    centre: float
+    ends: np.ndarray
+    order: int
+    x: np.ndarray = field(init=False)
+    weight: np.ndarray = field(init=False)
+    spacing: float = field(init=False)
+
+    def __post_init__(self):
+        *values, stat, message = _flat.mesh_nodes(*self._description)
+        accept(stat, message)
+        for name, value in zip(("x", "weight", "spacing"), values):
+            object.__setattr__(self, name, value)
+
+    @property
+    def _description(self):
+        return self.kind, self.centre, self.ends, self.order
+
+    def matrix(self):
+        """Return the `KernelMatrix`; computed anew at every call."""
+        rows, stat, message = _flat.mesh_matrix(*self._description)
+        accept(stat, message)
+        return KernelMatrix(rows[0], rows[1], rows[2:])
+
+    def interpolate(self, values, at):
+        """Return at positions `at` on the mesh the function with the given nodal values."""
+        values = _as_long_as("values", values, self.x.size)
+        at = vector("at", at)
+        if (at < self.centre + self.ends[0]).any() or (at > self.centre + self.ends[-1]).any():
+            raise ValueError("at: lies outside the mesh")
+        found, stat, message = _flat.mesh_interpolation(*self._description, values, at)
+        accept(stat, message)
+        return found
+
+
+def uniform_mesh(nodes, extent):
+    """Return a mesh of equally spaced nodes on [0, extent], pressure linear between them."""
+    return Mesh(
+        "uniform",
+        0.0,
+        np.array([0.0, positive("extent", extent)]),
+        _count("nodes", nodes, 2, 20000),
+    )
+
+
+def panel_mesh(ends, order, *, centre=0.0):
+    """Return a mesh of Gauss-Legendre panels of `order` nodes each.
+
+    `ends` are the panels' ends as offsets from `centre`, ascending, none beyond the axis.
+    """
+    ends = _ascending("ends", ends, 2)
+    centre = _not_negative("centre", centre)
+    if centre + ends[0] < 0:
+        raise ValueError("ends: the first lies beyond the axis")
+    return Mesh("panels", centre, ends, _count("order", order, 3, _LARGEST_ORDER))
+
+
+# --- Equilibrium
+
+
+class State(NamedTuple):
+    """A state of the bodies, dimensionless, and what it cost.
+
+    `converged` says that the stopping rule was met; `residual` is the largest error in the
+    equations of equilibrium either way.
+    """
+
+    gap: np.ndarray
+    pressure: np.ndarray
+    axis_gap: float
+    load: float
+    residual: float
+    converged: bool
+    operator_products: int
+    factorisations: int
+    rejected_steps: int
+
+
+def equilibrium(
+    law,
+    mesh,
+    h0,
+    coupling,
+    *,
+    part="full",
+    method="anderson",
+    start=None,
+    scale=1.0,
+    tolerance=1e-8,
+    most_iterations=60,
+    depth=5,
+    patience=8,
+    mixing_limit=0.2,
+    displacement_tolerance=None,
+):
+    """Return the state at a prescribed h0, iterated from the gaps `start`.
+
+    `coupling` is sigma (Lennard-Jones) or Lambda at h0 = 0 (exponential); 0 is rigid bodies. The
+    mesh is enlarged `scale` times. Without `start` the iteration begins from the undeformed gaps,
+    for Lennard-Jones none below 1. `depth` and `patience` are Anderson's, `mixing_limit` is
+    mixing's, and so is `displacement_tolerance`: with it mixing stops as the paper does, on a
+    small change of the gap on the axis.
+    """
+    _, parts = LAWS[_one_of("law", law, LAWS)]
+    _one_of("part", part, parts)
+    _one_of("method", method, METHODS)
+    if not isinstance(mesh, Mesh):
+        raise TypeError(f"mesh: a Mesh is needed, not {mesh!r}")
+    h0, scale = scalar("h0", h0), positive("scale", scale)
+    if start is None:
+        start = h0 + (scale * mesh.x) ** 2 / 2
+        if law == "lennard_jones":
+            start = np.maximum(start, 1.0)
+    start = _as_long_as("start", start, mesh.x.size)
+    if law == "lennard_jones" and not (start > 0).all():
+        raise ValueError("start: all gaps must be positive")
+    on_change = displacement_tolerance is not None
+    if on_change and method != "mixing":
+        raise ValueError("displacement_tolerance: only mixing has this stopping rule")
+    *values, stat, message = _flat.equilibrium_state(
+        law,
+        part,
+        _not_negative("coupling", coupling),
+        *mesh._description,
+        scale,
+        h0,
+        start,
+        method,
+        positive("tolerance", tolerance),
+        _count("most_iterations", most_iterations, 1),
+        _count("depth", depth, 0, 1000),
+        _count("patience", patience, 1),
+        positive("mixing_limit", mixing_limit),
+        int(on_change),
+        _not_negative("displacement_tolerance", displacement_tolerance) if on_change else 0.0,
+    )
+    accept(stat, message)
+    state = State(*values)
+    return state._replace(converged=bool(state.converged))

@@ -1,0 +1,160 @@
+!> Mixing with Anderson acceleration, the mixing ratio replaced by a matrix: the step is
+!> -B^{-1} G with B one LAPACK factorisation of the Jacobian, frozen, which serves many states, and
+!> the least-squares combination of the last few steps on top of it.
+!>
+!> Where B no longer fits (the residual grows, or convergence is slow), it is renewed at the best
+!> state so far and the history dropped. Newton's method is the same iteration with B renewed at
+!> every step and no history.
+module anderson
+  use kinds, only: wp
+  use problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: control_t, state_t, cost_t, residual, factorise_jacobian, largest_step, &
+    state_from, unknowns_of, residual_floor
+  use linear_algebra, only: factorisation_t, solve
+  use solver_options, only: solver_options_t
+  implicit none
+  private
+  public :: frozen_t, solve_anderson
+
+  !> A factorisation kept from state to state, and the kind of control that it belongs to.
+  type :: frozen_t
+    type(factorisation_t) :: factors
+    integer :: control_kind = 0
+  end type frozen_t
+
+  !> Differences of unknowns and of steps, newest last.
+  type :: history_t
+    integer :: held = 0
+    real(wp), allocatable :: dz(:, :), df(:, :)
+    real(wp), allocatable :: z_before(:), f_before(:)
+  end type history_t
+
+contains
+
+  !> From `state` (gaps, and H0 or c where the control leaves it open) to the equilibrium at
+  !> `control`. On return state%residual says how well the equations hold; converged is
+  !> state%residual <= tolerance (or the floor that rounding sets).
+  subroutine solve_anderson(this, grid, control, options, frozen, state, converged, cost)
+    type(problem_t), intent(in) :: this
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    type(solver_options_t), intent(in) :: options
+    type(frozen_t), intent(inout) :: frozen
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: converged
+    type(cost_t), intent(inout) :: cost
+    real(wp), allocatable :: z(:), g(:), f(:), step(:), z_best(:)
+    type(state_t) :: best
+    type(history_t) :: history
+    real(wp) :: before, fraction
+    integer :: iteration, since_renewal
+    logical :: renew
+
+    z = unknowns_of(control, state)
+    allocate (g(size(z)))
+    if (frozen%control_kind /= control%kind) frozen%factors%valid = .false.
+    if (frozen%factors%valid) frozen%factors%valid = size(frozen%factors%lu, 1) == size(z)
+    best = state_from(size(state%gap))
+    z_best = z
+    converged = .false.
+    before = huge(1.0_wp)
+    since_renewal = 0
+    do iteration = 1, options%most_iterations
+      call residual(this, grid, control, z, g, state, cost)
+      cost%iterations = cost%iterations + 1
+      state%iterations = iteration
+      if (state%residual < best%residual) then
+        best = state
+        z_best = z
+      end if
+      converged = state%residual <= max(options%tolerance, residual_floor(this, state))
+      if (converged) exit
+
+      renew = .not. frozen%factors%valid .or. since_renewal >= options%patience
+      ! Growth beyond a few times is not the transient of an accelerated step.
+      if (state%residual > 10*before .and. since_renewal > 0) then
+        cost%rejected_steps = cost%rejected_steps + 1
+        renew = .true.
+        if (best%residual < huge(1.0_wp)) then
+          z = z_best
+          call residual(this, grid, control, z, g, state, cost)
+        end if
+      end if
+      if (.not. state%residual < huge(1.0_wp)) exit
+      if (renew) then
+        call factorise_jacobian(this, grid, control, state, frozen%factors, cost)
+        frozen%control_kind = control%kind
+        if (.not. frozen%factors%valid) exit
+        history%held = 0
+        since_renewal = 0
+        if (allocated(history%f_before)) deallocate (history%f_before)
+      end if
+      f = g
+      call solve(frozen%factors, f)
+      step = accelerated_step(history, options%depth, z, f)
+      fraction = largest_step(this, control, z, step)
+      z = z + fraction*step
+      before = state%residual
+      since_renewal = since_renewal + 1
+    end do
+    if (.not. converged .and. best%residual < state%residual) then
+      best%iterations = state%iterations
+      state = best
+    end if
+  end subroutine solve_anderson
+
+  !> The step of Anderson acceleration from z, where the plain step is -f: the combination of
+  !> the last `depth` steps with the least |f|, by modified Gram-Schmidt, newest first; a
+  !> column that is nearly a combination of newer ones is dropped. Keeps z and f for the next call.
+  function accelerated_step(history, depth, z, f) result(step)
+    type(history_t), intent(inout) :: history
+    integer, intent(in) :: depth
+    real(wp), intent(in) :: z(:), f(:)
+    real(wp) :: step(size(z))
+    real(wp) :: q(size(z), depth), p(size(z), depth), r(size(z)), norm, norm_before, along
+    integer :: j, k, used
+
+    step = -f
+    if (depth == 0) return
+    if (.not. allocated(history%dz)) allocate (history%dz(size(z), depth), history%df(size(z), depth))
+    if (allocated(history%f_before)) then
+      if (history%held == depth) then
+        history%dz(:, :depth - 1) = history%dz(:, 2:)
+        history%df(:, :depth - 1) = history%df(:, 2:)
+      else
+        history%held = history%held + 1
+      end if
+      history%dz(:, history%held) = z - history%z_before
+      history%df(:, history%held) = f - history%f_before
+    end if
+    history%z_before = z
+    history%f_before = f
+
+    ! q: orthonormal directions of df; p: the combinations of dz that belong to them.
+    used = 0
+    r = f
+    do k = history%held, 1, -1
+      used = used + 1
+      q(:, used) = history%df(:, k)
+      p(:, used) = history%dz(:, k)
+      norm_before = norm2(q(:, used))
+      do j = 1, used - 1
+        along = dot_product(q(:, j), q(:, used))
+        q(:, used) = q(:, used) - along*q(:, j)
+        p(:, used) = p(:, used) - along*p(:, j)
+      end do
+      norm = norm2(q(:, used))
+      if (.not. norm > 1.0e-6_wp*norm_before) then
+        used = used - 1
+        cycle
+      end if
+      q(:, used) = q(:, used)/norm
+      p(:, used) = p(:, used)/norm
+      along = dot_product(q(:, used), r)
+      r = r - along*q(:, used)
+      step = step - along*(p(:, used) - q(:, used))
+    end do
+  end function accelerated_step
+
+end module anderson

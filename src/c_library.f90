@@ -1,0 +1,149 @@
+!> The few procedures of the C library that files and the terminal need, and its error messages.
+module c_library
+  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_ptr, c_size_t
+  use failure, only: failure_t, fail, file_trouble
+  implicit none
+  private
+  public :: c_mkdir, c_rename, c_unlink, c_isatty, c_write, c_fopen, c_fwrite, c_fflush, c_fclose
+  public :: errno, system_failure
+
+  !> Numbers of errors, the same on every Linux.
+  integer(c_int), parameter :: file_exists_already = 17, not_a_folder = 20, is_a_folder = 21, &
+    file_too_large = 27, disk_full = 28, quota_used_up = 122
+
+  interface
+    function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
+      import :: c_char, c_int
+      implicit none
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: mode
+      integer(c_int) :: status
+    end function c_mkdir
+
+    function c_rename(from, to) bind(c, name='rename') result(status)
+      import :: c_char, c_int
+      implicit none
+      character(kind=c_char), intent(in) :: from(*), to(*)
+      integer(c_int) :: status
+    end function c_rename
+
+    function c_unlink(path) bind(c, name='unlink') result(status)
+      import :: c_char, c_int
+      implicit none
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int) :: status
+    end function c_unlink
+
+    function c_isatty(descriptor) bind(c, name='isatty') result(yes)
+      import :: c_int
+      implicit none
+      integer(c_int), value :: descriptor
+      integer(c_int) :: yes
+    end function c_isatty
+
+    function c_write(descriptor, text, length) bind(c, name='write') result(written)
+      import :: c_char, c_int, c_size_t
+      implicit none
+      integer(c_int), value :: descriptor
+      character(kind=c_char), intent(in) :: text(*)
+      integer(c_size_t), value :: length
+      integer(c_size_t) :: written
+    end function c_write
+
+    function c_fopen(path, mode) bind(c, name='fopen') result(stream)
+      import :: c_char, c_ptr
+      implicit none
+      character(kind=c_char), intent(in) :: path(*), mode(*)
+      type(c_ptr) :: stream
+    end function c_fopen
+
+    function c_fwrite(text, size, count, stream) bind(c, name='fwrite') result(written)
+      import :: c_char, c_ptr, c_size_t
+      implicit none
+      character(kind=c_char), intent(in) :: text(*)
+      integer(c_size_t), value :: size, count
+      type(c_ptr), value :: stream
+      integer(c_size_t) :: written
+    end function c_fwrite
+
+    function c_fflush(stream) bind(c, name='fflush') result(status)
+      import :: c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: stream
+      integer(c_int) :: status
+    end function c_fflush
+
+    function c_fclose(stream) bind(c, name='fclose') result(status)
+      import :: c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: stream
+      integer(c_int) :: status
+    end function c_fclose
+
+    ! errno itself is a macro; this is what it stands for in glibc and musl.
+    function c_errno_location() bind(c, name='__errno_location') result(place)
+      import :: c_ptr
+      implicit none
+      type(c_ptr) :: place
+    end function c_errno_location
+
+    function c_strerror(code) bind(c, name='strerror') result(text)
+      import :: c_int, c_ptr
+      implicit none
+      integer(c_int), value :: code
+      type(c_ptr) :: text
+    end function c_strerror
+
+    function c_strlen(text) bind(c, name='strlen') result(length)
+      import :: c_ptr, c_size_t
+      implicit none
+      type(c_ptr), value :: text
+      integer(c_size_t) :: length
+    end function c_strlen
+  end interface
+
+contains
+
+  !> What could not be done, the system's reason, and what to do about it.
+  subroutine system_failure(what, code, error)
+    character(len=*), intent(in) :: what
+    integer(c_int), intent(in) :: code
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: advice
+
+    select case (code)
+    case (disk_full, quota_used_up, file_too_large)
+      advice = 'make room there, or choose another folder with --out'
+    case (file_exists_already, not_a_folder, is_a_folder)
+      advice = 'move away what is in the way, or choose another folder with --out'
+    case default
+      advice = 'choose a folder with --out that you may write to'
+    end select
+    call fail(error, file_trouble, what // ': ' // reason(code) // '; ' // advice)
+  end subroutine system_failure
+
+  !> The C library's number of what went wrong last.
+  integer(c_int) function errno()
+    integer(c_int), pointer :: code
+
+    call c_f_pointer(c_errno_location(), code)
+    errno = code
+  end function errno
+
+  !> The C library's words for an error.
+  function reason(code) result(text)
+    integer(c_int), intent(in) :: code
+    character(len=:), allocatable :: text
+    character(kind=c_char), pointer :: letters(:)
+    type(c_ptr) :: place
+    integer :: i
+
+    place = c_strerror(code)
+    call c_f_pointer(place, letters, [c_strlen(place)])
+    allocate (character(len=size(letters)) :: text)
+    do i = 1, size(letters)
+      text(i:i) = letters(i)
+    end do
+  end function reason
+
+end module c_library

@@ -1,0 +1,265 @@
+!> The classical theories of elastic contact: Hertz, JKR, DMT and Maugis-Dugdale.
+!>
+!> SI units and the paper's conventions: `radius` is R of h0(r) = h0 + r^2/(2R), `stiffness` is
+!> E/(1-nu^2) of two identical bodies (twice the composite modulus E*), `surface_energy` is gamma,
+!> the work of separating unit area. Loads are positive in compression; `displacement` is
+!> delta = h(0) - h0. The contact radius orders the states of each theory one to one, so curves
+!> are best drawn with it; load and displacement may have none or two states for one value.
+!> Arguments are taken as positive and finite. Where no equilibrium exists the result is NaN.
+module classical
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: wp, pi
+  implicit none
+  private
+  public :: hertz_load, hertz_displacement, hertz_load_at_displacement
+  public :: hertz_radius_at_load, hertz_radius_at_displacement, hertz_pressure, hertz_gap
+  public :: jkr_load, jkr_displacement, jkr_radius_at_load, jkr_radius_at_displacement
+  public :: jkr_load_at_displacement, jkr_pull_off, jkr_pull_off_fixed_displacement
+  public :: jkr_pressure, jkr_gap
+  public :: dmt_load, dmt_load_at_displacement, dmt_pull_off, dmt_radius_at_load
+
+contains
+
+  !> Hertz load [N] at a contact radius [m], (5).
+  elemental function hertz_load(contact_radius, radius, stiffness) result(load)
+    real(wp), intent(in) :: contact_radius, radius, stiffness
+    real(wp) :: load
+
+    load = 2*stiffness*contact_radius**3/(3*radius)
+  end function hertz_load
+
+  !> Hertz displacement [m] at a contact radius [m], (4).
+  elemental function hertz_displacement(contact_radius, radius) result(displacement)
+    real(wp), intent(in) :: contact_radius, radius
+    real(wp) :: displacement
+
+    displacement = contact_radius**2/radius
+  end function hertz_displacement
+
+  !> Hertz contact radius [m] at a load [N], (5); NaN under tension.
+  elemental function hertz_radius_at_load(load, radius, stiffness) result(contact_radius)
+    real(wp), intent(in) :: load, radius, stiffness
+    real(wp) :: contact_radius
+
+    contact_radius = cube_root(1.5_wp*radius*load/stiffness)
+    if (load < 0) contact_radius = nan()
+  end function hertz_radius_at_load
+
+  !> Hertz contact radius [m] at a displacement [m], (4); NaN where the bodies do not touch.
+  elemental function hertz_radius_at_displacement(displacement, radius) result(contact_radius)
+    real(wp), intent(in) :: displacement, radius
+    real(wp) :: contact_radius
+
+    if (displacement < 0) then
+      contact_radius = nan()
+    else
+      contact_radius = sqrt(radius*displacement)
+    end if
+  end function hertz_radius_at_displacement
+
+  !> Hertz load [N] at a displacement [m], (6); zero where the bodies do not touch.
+  elemental function hertz_load_at_displacement(displacement, radius, stiffness) result(load)
+    real(wp), intent(in) :: displacement, radius, stiffness
+    real(wp) :: load, overlap
+
+    overlap = max(displacement, 0.0_wp)
+    load = 2*stiffness*overlap*sqrt(radius*overlap)/3
+  end function hertz_load_at_displacement
+
+  !> Hertz pressure [Pa] at distance `r` [m] from the axis, (3).
+  elemental function hertz_pressure(r, contact_radius, radius, stiffness) result(pressure)
+    real(wp), intent(in) :: r, contact_radius, radius, stiffness
+    real(wp) :: pressure
+
+    pressure = 0
+    if (r < contact_radius) then
+      pressure = stiffness*sqrt((contact_radius - r)*(contact_radius + r))/(pi*radius)
+    end if
+  end function hertz_pressure
+
+  !> Hertz gap [m] at distance `r` [m] from the axis: (14), (17) under the pressure (3). Far out it
+  !> is r^2/(2R) - a^2/R, the undeformed gap at h0 = -delta.
+  elemental function hertz_gap(r, contact_radius, radius) result(gap)
+    real(wp), intent(in) :: r, contact_radius, radius
+    real(wp) :: gap, outside
+
+    gap = 0
+    if (r > contact_radius) then
+      outside = sqrt((r - contact_radius)*(r + contact_radius))
+      gap = (contact_radius*outside &
+        + (r**2 - 2*contact_radius**2)*atan2(outside, contact_radius))/(pi*radius)
+    end if
+  end function hertz_gap
+
+  !> JKR load [N] at a contact radius [m], the inverse of (10) with both of its branches.
+  elemental function jkr_load(contact_radius, radius, stiffness, surface_energy) result(load)
+    real(wp), intent(in) :: contact_radius, radius, stiffness, surface_energy
+    real(wp) :: load
+
+    load = hertz_load(contact_radius, radius, stiffness) &
+      - sqrt(4*pi*surface_energy*stiffness*contact_radius)*contact_radius
+  end function jkr_load
+
+  !> JKR displacement [m] at a contact radius [m], (11).
+  elemental function jkr_displacement(contact_radius, radius, stiffness, surface_energy) &
+    result(displacement)
+    real(wp), intent(in) :: contact_radius, radius, stiffness, surface_energy
+    real(wp) :: displacement
+
+    displacement = hertz_displacement(contact_radius, radius) &
+      - sqrt(4*pi*surface_energy*contact_radius/stiffness)
+  end function jkr_displacement
+
+  !> JKR contact radius [m] at a fixed load [N], (10): the state that is stable under that load.
+  !> NaN beyond the pull-off.
+  elemental function jkr_radius_at_load(load, radius, stiffness, surface_energy) &
+    result(contact_radius)
+    real(wp), intent(in) :: load, radius, stiffness, surface_energy
+    real(wp) :: contact_radius, adhesion, inner
+
+    adhesion = 3*pi*surface_energy*radius
+    inner = adhesion*(2*load + adhesion)
+    if (inner < -4*epsilon(inner)*adhesion**2) then
+      contact_radius = nan()
+    else
+      ! At the pull-off itself rounding may leave a negative zero.
+      contact_radius = cube_root(1.5_wp*radius/stiffness &
+        *(load + adhesion + sqrt(max(inner, 0.0_wp))))
+    end if
+  end function jkr_radius_at_load
+
+  !> JKR contact radius [m] at a fixed displacement [m]: the state that is stable under it, which
+  !> is the larger root of (11). NaN beyond the pull-off.
+  elemental function jkr_radius_at_displacement(displacement, radius, stiffness, surface_energy) &
+    result(contact_radius)
+    real(wp), intent(in) :: displacement, radius, stiffness, surface_energy
+    real(wp) :: contact_radius, fold, d, q, u, z, s
+
+    ! In x = sqrt(a/fold) and d = R delta/fold^2, (11) is x^4 - 4x - d = 0. Its fold is x = 1,
+    ! d = -3. Ferrari: x = (s + sqrt(8/s - s^2))/2, where z = s^2 is the one positive root of
+    ! z^3 + 4dz - 16 = 0, here in the form of Cardano's solution that does not cancel for large d.
+    fold = cube_root(pi*surface_energy*radius**2/(4*stiffness))
+    if (.not. fold > 0) then
+      contact_radius = hertz_radius_at_displacement(displacement, radius)
+      return
+    end if
+    d = displacement*radius/fold**2
+    if (d < -3*(1 + 4*epsilon(d))) then
+      contact_radius = nan()
+      return
+    end if
+    q = 4*d/3
+    u = cube_root(8 + sqrt(max(64 + q**3, 0.0_wp)))
+    z = 16/(u**2 + q + (q/u)**2)
+    s = sqrt(z)
+    contact_radius = fold*((s + sqrt(max(8/s - z, 0.0_wp)))/2)**2
+  end function jkr_radius_at_displacement
+
+  !> JKR load [N] at a fixed displacement [m], the stable branch; NaN beyond the pull-off.
+  elemental function jkr_load_at_displacement(displacement, radius, stiffness, surface_energy) &
+    result(load)
+    real(wp), intent(in) :: displacement, radius, stiffness, surface_energy
+    real(wp) :: load
+
+    load = jkr_load(jkr_radius_at_displacement(displacement, radius, stiffness, &
+      surface_energy), radius, stiffness, surface_energy)
+  end function jkr_load_at_displacement
+
+  !> JKR load [N] at the pull-off under a fixed load, negative, (1).
+  elemental function jkr_pull_off(radius, surface_energy) result(load)
+    real(wp), intent(in) :: radius, surface_energy
+    real(wp) :: load
+
+    load = -1.5_wp*pi*surface_energy*radius
+  end function jkr_pull_off
+
+  !> JKR load [N] at the pull-off under a fixed displacement, negative, (12).
+  elemental function jkr_pull_off_fixed_displacement(radius, surface_energy) result(load)
+    real(wp), intent(in) :: radius, surface_energy
+    real(wp) :: load
+
+    load = 5*jkr_pull_off(radius, surface_energy)/9
+  end function jkr_pull_off_fixed_displacement
+
+  !> JKR pressure [Pa] at distance `r` [m] from the axis, (3) + (7) with (9). It tends to minus
+  !> infinity at the contact edge, where zero is returned as everywhere outside.
+  elemental function jkr_pressure(r, contact_radius, radius, stiffness, surface_energy) &
+    result(pressure)
+    real(wp), intent(in) :: r, contact_radius, radius, stiffness, surface_energy
+    real(wp) :: pressure, inside
+
+    pressure = 0
+    if (r < contact_radius) then
+      inside = sqrt((contact_radius - r)*(contact_radius + r))
+      pressure = hertz_pressure(r, contact_radius, radius, stiffness) &
+        - sqrt(stiffness*surface_energy*contact_radius/pi)/inside
+    end if
+  end function jkr_pressure
+
+  !> JKR gap [m] at distance `r` [m] from the axis. Far out it is r^2/(2R) - delta, delta of (11).
+  elemental function jkr_gap(r, contact_radius, radius, stiffness, surface_energy) result(gap)
+    real(wp), intent(in) :: r, contact_radius, radius, stiffness, surface_energy
+    real(wp) :: gap, outside
+
+    gap = 0
+    if (r > contact_radius) then
+      outside = sqrt((r - contact_radius)*(r + contact_radius))
+      gap = hertz_gap(r, contact_radius, radius) &
+        + sqrt(4*pi*surface_energy*contact_radius/stiffness) &
+        *2/pi*atan2(outside, contact_radius)
+    end if
+  end function jkr_gap
+
+  !> DMT load [N] at a contact radius [m]: Hertz less the attraction 2 pi gamma R, (2). The
+  !> displacement is Hertz's.
+  elemental function dmt_load(contact_radius, radius, stiffness, surface_energy) result(load)
+    real(wp), intent(in) :: contact_radius, radius, stiffness, surface_energy
+    real(wp) :: load
+
+    load = hertz_load(contact_radius, radius, stiffness) + dmt_pull_off(radius, surface_energy)
+  end function dmt_load
+
+  !> DMT contact radius [m] at a load [N]; NaN beyond the pull-off.
+  elemental function dmt_radius_at_load(load, radius, stiffness, surface_energy) &
+    result(contact_radius)
+    real(wp), intent(in) :: load, radius, stiffness, surface_energy
+    real(wp) :: contact_radius
+
+    contact_radius = hertz_radius_at_load(load - dmt_pull_off(radius, surface_energy), &
+      radius, stiffness)
+  end function dmt_radius_at_load
+
+  !> DMT load [N] at a displacement [m]; NaN where the bodies do not touch: the theory has no
+  !> attraction across a gap.
+  elemental function dmt_load_at_displacement(displacement, radius, stiffness, surface_energy) &
+    result(load)
+    real(wp), intent(in) :: displacement, radius, stiffness, surface_energy
+    real(wp) :: load
+
+    load = dmt_load(hertz_radius_at_displacement(displacement, radius), radius, stiffness, &
+      surface_energy)
+  end function dmt_load_at_displacement
+
+  !> DMT load [N] at the pull-off, negative, (2).
+  elemental function dmt_pull_off(radius, surface_energy) result(load)
+    real(wp), intent(in) :: radius, surface_energy
+    real(wp) :: load
+
+    load = -2*pi*surface_energy*radius
+  end function dmt_pull_off
+
+  !> Real cube root of a number that is not negative; zero for one that is.
+  elemental function cube_root(x) result(root)
+    real(wp), intent(in) :: x
+    real(wp) :: root
+
+    root = max(x, 0.0_wp)**(1.0_wp/3.0_wp)
+  end function cube_root
+
+  elemental function nan()
+    real(wp) :: nan
+
+    nan = ieee_value(nan, ieee_quiet_nan)
+  end function nan
+
+end module classical

@@ -1,0 +1,59 @@
+!> The classical theories over the range of a scene, as rows of a table.
+module comparison
+  use kinds, only: wp
+  use problem, only: problem_t, surface_energy
+  use classical, only: hertz_load_at_displacement, hertz_radius_at_displacement, &
+    jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
+  use scene_groups, only: range_t
+  use records, only: theory_row_t
+  implicit none
+  private
+  public :: classical_rows
+
+contains
+
+  !> Hertz and, for a law that attracts, JKR and DMT, at range%count values of h0 [m]. The theories
+  !> put touching bodies at no separation, so the displacement is -h0; where a theory has no state
+  !> there is no row. `from` [m] stands in for a range without a start. None for rigid bodies, which
+  !> have no displacement.
+  function classical_rows(problem, range, from) result(rows)
+    type(problem_t), intent(in) :: problem
+    type(range_t), intent(in) :: range
+    real(wp), intent(in) :: from
+    type(theory_row_t), allocatable :: rows(:)
+    real(wp) :: start, h0, delta, gamma
+    integer :: i
+
+    allocate (rows(0))
+    if (problem%rigid) return
+    start = from
+    if (allocated(range%h0_start)) start = range%h0_start
+    gamma = surface_energy(problem)
+    associate (r => problem%radius, y => problem%stiffness)
+      do i = 1, range%count
+        h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
+        delta = -h0
+        call add('hertz', hertz_load_at_displacement(delta, r, y), &
+          hertz_radius_at_displacement(delta, r))
+        if (.not. gamma > 0) cycle
+        call add('jkr', jkr_load_at_displacement(delta, r, y, gamma), &
+          jkr_radius_at_displacement(delta, r, y, gamma))
+        call add('dmt', dmt_load_at_displacement(delta, r, y, gamma), &
+          hertz_radius_at_displacement(delta, r))
+      end do
+    end associate
+
+  contains
+
+    subroutine add(theory, load, contact_radius)
+      character(len=*), intent(in) :: theory
+      real(wp), intent(in) :: load, contact_radius
+
+      ! A theory without a state here says NaN.
+      if (load /= load .or. contact_radius /= contact_radius) return
+      rows = [rows, theory_row_t(theory, h0, delta, load, contact_radius)]
+    end subroutine add
+
+  end function classical_rows
+
+end module comparison

@@ -1,0 +1,348 @@
+!> A deck in memory: what each key holds, where it stands in the file, and the deck written out.
+module deck_store
+  use kinds, only: wp
+  use failure, only: failure_t, fail, bad_input
+  use deck_text, only: lower, quoted, brief, guess, listing, clip
+  use deck_source, only: source_t
+  use deck_keys, only: key_spec, group_row, real_value, integer_value, allowed, numbers_of
+  use deck_values, only: value_t, unset, assumed, given, outside, write_value
+  implicit none
+  private
+  public :: deck_t
+
+  !> A deck that has been read. The components are `read_deck`'s to fill; use the procedures.
+  type :: deck_t
+    type(source_t) :: source
+    type(key_spec), allocatable :: specs(:)
+    type(value_t), allocatable :: values(:)
+  contains
+    procedure :: file
+    procedure :: has_group
+    procedure :: is_set
+    procedure :: line_of
+    procedure, private :: get_real, get_reals, get_integer, get_logical, get_text
+    !> `call deck%get(group, key, value)`: the value the deck gives, or the default. Without either
+    !> a scalar keeps what it had, a list is empty and a text ''. `value` is a real, an allocatable
+    !> list of reals, an integer, a logical or an allocatable text, as the table has it.
+    generic :: get => get_real, get_reals, get_integer, get_logical, get_text
+    procedure, private :: assume_real, assume_reals, assume_integer, assume_text
+    !> `call deck%assume(group, key, value)`: the default of a key, where it follows from other
+    !> keys; it is written by `write_resolved` and gives way to what the deck says.
+    generic :: assume => assume_real, assume_reals, assume_integer, assume_text
+    procedure, private :: get_optional_real, get_optional_integer
+    !> The same for a scalar that is allocated only where the key has a value.
+    generic :: get_optional => get_optional_real, get_optional_integer
+    procedure :: find_number
+    procedure :: set_real
+    procedure :: drop_group
+    procedure :: mistake
+    procedure :: write_resolved
+    procedure :: row_of
+    procedure, private :: held, silent
+    procedure, private :: place
+  end type deck_t
+
+contains
+
+  !> Name of the file the deck was read from.
+  pure function file(self) result(name)
+    class(deck_t), intent(in) :: self
+    character(len=:), allocatable :: name
+
+    name = self%source%file
+  end function file
+
+  !> Whether the deck holds `&group`.
+  pure logical function has_group(self, group)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group
+    integer :: row
+
+    has_group = .false.
+    row = self%row_of(group, '')
+    if (row > 0) has_group = self%values(row)%status == given
+  end function has_group
+
+  !> Whether the deck itself, not a default, gives the key a value.
+  pure logical function is_set(self, group, key)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    integer :: row
+
+    is_set = .false.
+    row = self%row_of(group, key)
+    if (row > 0) is_set = self%values(row)%status == given
+  end function is_set
+
+  !> Line of the key, or of the group where the deck does not give the key or `key` is '', or 1.
+  pure integer function line_of(self, group, key)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+
+    line_of = self%source%line_at(self%place(group, key))
+  end function line_of
+
+  !> Position in the text that `line_of` tells the line of.
+  pure integer function place(self, group, key)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    integer :: row
+
+    place = 0
+    row = self%row_of(group, key)
+    if (row > 0) place = self%values(row)%at
+    if (place > 0) return
+    row = self%row_of(group, '')
+    if (row > 0) place = self%values(row)%at
+  end function place
+
+  !> Adds a mistake of `group` and `key` (both may be '') to `error`.
+  pure subroutine mistake(self, group, key, what, error)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key, what
+    type(failure_t), allocatable, intent(inout) :: error
+
+    call self%source%complain(self%place(group, key), group, key, what, error)
+  end subroutine mistake
+
+  pure subroutine get_real(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    real(wp), intent(inout) :: value
+    integer :: row
+
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%reals(1)
+  end subroutine get_real
+
+  pure subroutine get_reals(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    real(wp), allocatable, intent(inout) :: value(:)
+    integer :: row
+
+    value = [real(wp) ::]
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%reals
+  end subroutine get_reals
+
+  pure subroutine get_integer(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    integer, intent(inout) :: value
+    integer :: row
+
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%whole
+  end subroutine get_integer
+
+  pure subroutine get_logical(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    logical, intent(inout) :: value
+    integer :: row
+
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%flag
+  end subroutine get_logical
+
+  pure subroutine get_text(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    character(len=:), allocatable, intent(inout) :: value
+    integer :: row
+
+    value = ''
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%text
+  end subroutine get_text
+
+  pure subroutine get_optional_real(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    real(wp), allocatable, intent(inout) :: value
+    integer :: row
+
+    if (allocated(value)) deallocate (value)
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%reals(1)
+  end subroutine get_optional_real
+
+  pure subroutine get_optional_integer(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    integer, allocatable, intent(inout) :: value
+    integer :: row
+
+    if (allocated(value)) deallocate (value)
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%whole
+  end subroutine get_optional_integer
+
+  pure subroutine assume_real(self, group, key, value)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, key
+    real(wp), intent(in) :: value
+
+    call self%assume(group, key, [value])
+  end subroutine assume_real
+
+  pure subroutine assume_reals(self, group, key, value)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, key
+    real(wp), intent(in) :: value(:)
+    integer :: row
+
+    row = self%silent(group, key)
+    if (row == 0) return
+    self%values(row)%reals = value
+    self%values(row)%status = assumed
+  end subroutine assume_reals
+
+  pure subroutine assume_integer(self, group, key, value)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, key
+    integer, intent(in) :: value
+    integer :: row
+
+    row = self%silent(group, key)
+    if (row == 0) return
+    self%values(row)%whole = value
+    self%values(row)%status = assumed
+  end subroutine assume_integer
+
+  pure subroutine assume_text(self, group, key, value)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, key, value
+    integer :: row
+
+    row = self%silent(group, key)
+    if (row == 0) return
+    self%values(row)%text = value
+    self%values(row)%status = assumed
+  end subroutine assume_text
+
+  !> Row of the key `path` ("force.hamaker"). Fails where the table has no such key, the key is not
+  !> one number or the deck lacks its group; `error` then says so without a place in the file, which
+  !> is the caller's to add.
+  subroutine find_number(self, path, row, error)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: row
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: name, group
+    integer :: dot, group_at
+
+    name = trim(lower(path))
+    dot = index(name // '.', '.')
+    group = name(:dot - 1)
+    row = 0
+    if (dot < len(name)) row = self%row_of(group, name(dot + 1:))
+    if (row > 0) then
+      if (all(self%specs(row)%kind /= [real_value, integer_value])) row = 0
+    end if
+    if (row == 0) then
+      call fail(error, bad_input, quoted(clip(path)) // ' is not a key that holds one number' // &
+                guess(name, numbers_of(self%specs), '') // '; allowed: ' // &
+                listing(numbers_of(self%specs), '', ''))
+      return
+    end if
+    group_at = self%row_of(group, '')
+    if (.not. (self%has_group(group) .or. self%specs(group_at)%always)) &
+      call fail(error, bad_input, 'the deck has no &' // group // ' for ' // quoted(name))
+  end subroutine find_number
+
+  !> Gives the key `path` another value, as if the deck said so. Fails as `find_number` does and
+  !> where the value is out of range.
+  subroutine set_real(self, path, value, error)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    real(wp), intent(in) :: value
+    type(failure_t), allocatable, intent(out) :: error
+    integer :: row
+    logical :: refused
+
+    call self%find_number(path, row, error)
+    if (allocated(error)) return
+    associate (spec => self%specs(row), stored => self%values(row))
+      refused = outside(spec, value)
+      ! Steps of a range make whole numbers only up to rounding.
+      if (spec%kind == integer_value .and. .not. refused) &
+        refused = abs(value - anint(value)) > 1e-9_wp*abs(value)
+      if (refused) then
+        call fail(error, bad_input, brief(value) // ' is out of range for ' // quoted(path) // &
+                  '; allowed: ' // allowed(spec))
+        return
+      end if
+      if (spec%kind == integer_value) stored%whole = nint(value)
+      if (spec%kind == real_value) stored%reals = [value]
+      stored%status = given
+    end associate
+  end subroutine set_real
+
+  !> Forgets `&group` and everything in it.
+  subroutine drop_group(self, group)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: group
+    integer :: i
+
+    do i = 1, size(self%specs)
+      if (self%specs(i)%group == group) self%values(i) = value_t()
+    end do
+  end subroutine drop_group
+
+  !> Writes the deck as read, defaults included, so that it can be read again. Groups appear that
+  !> the deck names or whose defaults always hold. `status` is the `iostat` of the last write.
+  subroutine write_resolved(self, unit, status)
+    class(deck_t), intent(in) :: self
+    integer, intent(in) :: unit
+    integer, intent(out), optional :: status
+    integer :: i, j, trouble
+
+    trouble = 0
+    do i = 1, size(self%specs)
+      if (self%specs(i)%kind /= group_row) cycle
+      if (.not. (self%specs(i)%always .or. self%values(i)%status == given)) cycle
+      write (unit, '(2a)', iostat=trouble) '&', trim(self%specs(i)%group)
+      do j = i + 1, size(self%specs)
+        if (self%specs(j)%group /= self%specs(i)%group) exit
+        if (self%values(j)%status /= unset) &
+          call write_value(self%specs(j), self%values(j), unit, trouble)
+      end do
+      write (unit, '(a)', iostat=trouble) '/'
+    end do
+    if (present(status)) status = trouble
+  end subroutine write_resolved
+
+  !> Row of a key that has a value, or 0.
+  pure integer function held(self, group, key) result(row)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+
+    row = self%row_of(group, key)
+    if (row == 0) return
+    if (self%values(row)%status == unset) row = 0
+  end function held
+
+  !> Row of a key to which the deck itself gives no value, or 0.
+  pure integer function silent(self, group, key) result(row)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+
+    row = self%row_of(group, key)
+    if (row == 0) return
+    if (self%values(row)%status == given) row = 0
+  end function silent
+
+  !> Row of `group` and `key` in the table, of the group itself for an empty `key`; 0 without one.
+  pure integer function row_of(self, group, key)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+
+    do row_of = 1, size(self%specs)
+      if (self%specs(row_of)%group == group .and. self%specs(row_of)%key == key) return
+    end do
+    row_of = 0
+  end function row_of
+
+end module deck_store

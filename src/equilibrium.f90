@@ -1,0 +1,341 @@
+!> The equations of equilibrium on a discretisation, in the units of `problem`:
+!>
+!>     G_i = H_i - H0 - c^2 x_i^2/2 - 2 coupling c (W P(H))_i = 0
+!>
+!> for the gaps H at the nodes rho = c x. The kernel is homogeneous, so one matrix W serves every
+!> scale c. A control says what is prescribed; where that is not H0 at a fixed scale, one more
+!> unknown (H0 or c) and one more equation (the gap on the axis or at the contact edge) join.
+module equilibrium
+  use kinds, only: wp, pi, long
+  use problem, only: problem_t
+  use discretisation, only: discretisation_t, axis_row, centre_row, first_node
+  use linear_algebra, only: multiply, factorisation_t, factorise
+  implicit none
+  private
+  public :: control_t, state_t, cost_t, residual, factorise_jacobian, largest_step, state_from, &
+    unknowns_of, control_derivative, residual_floor, load_reach, &
+    radius_of_gap
+  public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
+
+  !> H0 prescribed at a fixed scale; no further unknown.
+  integer, parameter :: at_h0 = 1
+  !> The gap on the axis prescribed, H0 unknown.
+  integer, parameter :: at_axis_gap = 2
+  !> The contact radius c prescribed, H0 unknown; the edge has the gap of maximum tension.
+  integer, parameter :: at_edge_radius = 3
+  !> H0 prescribed, the contact radius c unknown.
+  integer, parameter :: at_h0_with_edge = 4
+
+  type :: control_t
+    integer :: kind = at_h0
+    !> What is prescribed: H0, the gap on the axis, or the contact radius.
+    real(wp) :: value = 0
+    !> The scale c of the mesh, where it is not an unknown.
+    real(wp) :: scale = 1
+  end type control_t
+
+  !> One state of the two bodies, dimensionless.
+  type :: state_t
+    real(wp), allocatable :: gap(:), pressure(:)
+    real(wp) :: h0 = 0, scale = 1
+    real(wp) :: axis_gap = 0, load = 0
+    !> Largest |G|, in units of the law's length.
+    real(wp) :: residual = huge(1.0_wp)
+    !> Operator products that this state took.
+    integer :: iterations = 0
+  end type state_t
+
+  !> What was spent; counted where it is spent.
+  type :: cost_t
+    integer(long) :: operator_products = 0, operator_columns = 0, pressure_evaluations = 0
+    integer(long) :: factorisations = 0, iterations = 0, kernel_entries = 0, states = 0
+    integer(long) :: rejected_steps = 0
+    real(wp) :: kernel_seconds = 0, solve_seconds = 0
+  end type cost_t
+
+contains
+
+  !> g(:nodes) = G and, where the control has one, g(nodes + 1) = its own equation, for the unknowns
+  !> z = (gaps [, H0 or c]). On return `state` is what z stands for, with its load and residual.
+  subroutine residual(this, grid, control, z, g, state, cost)
+    type(problem_t), intent(in) :: this
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    real(wp), intent(in) :: z(:)
+    real(wp), intent(out) :: g(:)
+    type(state_t), intent(inout) :: state
+    type(cost_t), intent(inout) :: cost
+    real(wp) :: raised(first_node - 1 + node_count(control, size(z)))
+    real(wp) :: axis_gap, edge_gap, reach
+    integer :: n, columns
+
+    n = node_count(control, size(z))
+    call unpack(control, z, state%h0, state%scale)
+    state%gap = z(:n)
+    state%pressure = this%law%pressure(state%gap)
+    cost%pressure_evaluations = cost%pressure_evaluations + n
+    raised = 0
+    if (this%coupling > 0) then
+      columns = acting_columns(state%pressure)
+      call multiply(grid%kernel, columns, state%pressure, raised)
+      raised = 2*this%coupling*state%scale*raised
+      cost%operator_products = cost%operator_products + 1
+      cost%operator_columns = cost%operator_columns + columns
+    end if
+    g(:n) = state%gap - state%h0 - 0.5_wp*(state%scale*grid%x(:n))**2 - raised(first_node:)
+    axis_gap = state%h0 + raised(axis_row)
+    select case (control%kind)
+    case (at_axis_gap)
+      g(n + 1) = axis_gap - control%value
+    case (at_edge_radius, at_h0_with_edge)
+      edge_gap = state%h0 + 0.5_wp*state%scale**2 + raised(centre_row)
+      g(n + 1) = edge_gap - this%law%edge_gap
+    end select
+    state%axis_gap = axis_gap
+    ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
+    reach = load_reach(grid, state)
+    state%load = 2*pi*(state%scale**2*dot_product(grid%weight(:n), state%pressure) + &
+      sum(this%law%energy([state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)])))
+    state%residual = maxval(abs(g))
+    ! maxval passes over NaN, and a NaN must never look converged.
+    if (any(g /= g)) state%residual = huge(1.0_wp)
+  end subroutine residual
+
+  !> Factors of the Jacobian of `residual` at a state, bordered where the control has an unknown of
+  !> its own: I - 2 coupling c W diag(P'), and the derivatives by H0 or c. `shift` is added to the
+  !> diagonal of the nodes' block.
+  subroutine factorise_jacobian(this, grid, control, state, factors, cost, shift)
+    type(problem_t), intent(in) :: this
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    type(factorisation_t), intent(inout) :: factors
+    type(cost_t), intent(inout) :: cost
+    real(wp), intent(in), optional :: shift
+    real(wp) :: factor(size(state%gap)), diagonal
+    integer :: n, m, j, row
+
+    n = size(state%gap)
+    m = n
+    if (control%kind /= at_h0) m = n + 1
+    if (allocated(factors%lu)) then
+      if (size(factors%lu, 1) /= m) deallocate (factors%lu)
+    end if
+    if (.not. allocated(factors%lu)) allocate (factors%lu(m, m))
+    factor = -2*this%coupling*state%scale*this%law%slope(state%gap)
+    cost%pressure_evaluations = cost%pressure_evaluations + n
+    diagonal = 1
+    if (present(shift)) diagonal = 1 + shift
+    row = merge(axis_row, centre_row, control%kind == at_axis_gap)
+    do j = 1, n
+      if (this%coupling > 0) then
+        factors%lu(:n, j) = factor(j)*grid%kernel(first_node:first_node - 1 + n, j)
+        if (m > n) factors%lu(m, j) = -factor(j)*grid%kernel(row, j)
+      else
+        factors%lu(:, j) = 0
+      end if
+      factors%lu(j, j) = factors%lu(j, j) + diagonal
+    end do
+    if (m > n) call border(this, grid, control, state, factors%lu(:, m))
+    call factorise(factors)
+    cost%factorisations = cost%factorisations + 1
+  end subroutine factorise_jacobian
+
+  !> The column of derivatives of `residual` by the control's unknown.
+  pure subroutine border(this, grid, control, state, column)
+    type(problem_t), intent(in) :: this
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: column(:)
+
+    if (control%kind == at_h0_with_edge) then
+      column = scale_derivative(this, grid, state)
+    else
+      column = -1
+      column(size(column)) = 1
+    end if
+  end subroutine border
+
+  !> Derivative of `residual` by the scale c: -c x^2 - 2 coupling W P at the nodes, and the opposite
+  !> sign, with x = 1, in the equation for the edge. The deformation is read off the gaps, which is
+  !> exact where the residual vanishes and costs no operator product.
+  pure function scale_derivative(this, grid, state) result(column)
+    type(problem_t), intent(in) :: this
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp) :: column(size(state%gap) + 1)
+
+    associate (c => state%scale, n => size(state%gap))
+      column(:n) = -0.5_wp*c*grid%x(:n)**2 - (state%gap - state%h0)/c
+      column(n + 1) = 0.5_wp*c + (this%law%edge_gap - state%h0)/c
+    end associate
+  end function scale_derivative
+
+  !> Derivative of `residual` by the control's value, at a state: with the factors of the same control
+  !> the tangent of the path is minus their solution for it.
+  pure function control_derivative(this, grid, control, state) result(derivative)
+    type(problem_t), intent(in) :: this
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    real(wp), allocatable :: derivative(:)
+    integer :: n
+
+    n = size(state%gap)
+    select case (control%kind)
+    case (at_h0)
+      allocate (derivative(n), source=-1.0_wp)
+    case (at_h0_with_edge)
+      allocate (derivative(n + 1), source=-1.0_wp)
+      derivative(n + 1) = 1
+    case (at_axis_gap)
+      allocate (derivative(n + 1), source=0.0_wp)
+      derivative(n + 1) = -1
+    case (at_edge_radius)
+      derivative = scale_derivative(this, grid, state)
+    end select
+  end function control_derivative
+
+  !> The fraction (at most 1) of a step dz from z that keeps every gap within the law's closure limit
+  !> and the contact radius within a third.
+  pure real(wp) function largest_step(this, control, z, dz) result(fraction)
+    type(problem_t), intent(in) :: this
+    type(control_t), intent(in) :: control
+    real(wp), intent(in) :: z(:), dz(:)
+    integer :: n
+
+    n = size(z)
+    if (control%kind == at_h0) then
+      fraction = limit(z, dz)
+    else
+      fraction = limit(z(:n - 1), dz(:n - 1))
+    end if
+    if (control%kind == at_h0_with_edge) &
+      fraction = min(fraction, 0.3_wp*z(n)/max(abs(dz(n)), tiny(1.0_wp)))
+
+  contains
+
+    pure real(wp) function limit(gap, step)
+      real(wp), intent(in) :: gap(:), step(:)
+
+      limit = min(1.0_wp, minval((this%law%closure_fraction*gap + this%law%closure_length)/ &
+        max(-step, tiny(1.0_wp)*max(1.0_wp, abs(gap)))))
+    end function limit
+
+  end function largest_step
+
+  !> The unknowns of a state under a control: its gaps and, where the control has one, H0 or c.
+  pure function unknowns_of(control, state) result(z)
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    real(wp), allocatable :: z(:)
+
+    select case (control%kind)
+    case (at_h0)
+      z = state%gap
+    case (at_h0_with_edge)
+      z = [state%gap, state%scale]
+    case default
+      z = [state%gap, state%h0]
+    end select
+  end function unknowns_of
+
+  !> Where the part of the mesh that a state uses ends, lateral units.
+  pure real(wp) function load_reach(grid, state)
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+
+    load_reach = state%scale*grid%end_of(size(state%gap))
+  end function load_reach
+
+  !> An empty state on the leading `nodes` nodes of a mesh.
+  pure function state_from(nodes) result(state)
+    integer, intent(in) :: nodes
+    type(state_t) :: state
+
+    allocate (state%gap(nodes), state%pressure(nodes), source=0.0_wp)
+  end function state_from
+
+  !> Position, in lateral units, of the outermost point with the given gap; 0 if all gaps are larger.
+  pure real(wp) function radius_of_gap(level, grid, state) result(c)
+    real(wp), intent(in) :: level
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp) :: low, high, middle
+    integer :: j, step
+
+    do j = size(state%gap) - 1, 1, -1
+      if (state%gap(j) < level) exit
+    end do
+    c = 0
+    if (j == 0) then
+      if (.not. state%axis_gap < level) return
+      low = 0
+      high = grid%x(1)
+    else
+      low = grid%x(j)
+      high = grid%x(j + 1)
+    end if
+    do step = 1, 60
+      middle = 0.5_wp*(low + high)
+      if (grid%interpolate(state%gap, middle) < level) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
+    c = state%scale*low
+  end function radius_of_gap
+
+  !> The residual that rounding alone leaves: a few units in the last place of the gaps and of the
+  !> deformation's parts, which are of opposite signs in an adhesive contact (the operator on a
+  !> uniform pressure gives at most 2).
+  pure real(wp) function residual_floor(this, state)
+    type(problem_t), intent(in) :: this
+    type(state_t), intent(in) :: state
+
+    residual_floor = 8*epsilon(1.0_wp)*(abs(state%h0) + maxval(abs(state%gap)) + &
+      4*this%coupling*state%scale*maxval(abs(state%pressure)))
+  end function residual_floor
+
+  !> Number of gaps among `size` unknowns.
+  pure integer function node_count(control, size)
+    type(control_t), intent(in) :: control
+    integer, intent(in) :: size
+
+    node_count = size
+    if (control%kind /= at_h0) node_count = size - 1
+  end function node_count
+
+  !> H0 and c behind a control and its unknowns.
+  pure subroutine unpack(control, z, h0, scale)
+    type(control_t), intent(in) :: control
+    real(wp), intent(in) :: z(:)
+    real(wp), intent(out) :: h0, scale
+
+    h0 = z(size(z))
+    scale = control%scale
+    select case (control%kind)
+    case (at_h0)
+      h0 = control%value
+    case (at_edge_radius)
+      scale = control%value
+    case (at_h0_with_edge)
+      scale = h0
+      h0 = control%value
+    end select
+  end subroutine unpack
+
+  !> Number of leading columns beyond which no pressure reaches the rounding of the largest one.
+  pure integer function acting_columns(pressure) result(columns)
+    real(wp), intent(in) :: pressure(:)
+    real(wp) :: least
+
+    least = 1.0e-3_wp*epsilon(1.0_wp)*maxval(abs(pressure))
+    do columns = size(pressure), 1, -1
+      if (abs(pressure(columns)) > least) exit
+    end do
+  end function acting_columns
+
+end module equilibrium

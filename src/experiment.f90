@@ -1,0 +1,266 @@
+!> Carries out what a scene asks of the elastic problem: the equilibrium path, the h0-stepped cycle.
+!> Effects that the scene leaves out are not set up.
+module experiment
+  use kinds, only: wp, long
+  use problem, only: problem_t, new_problem
+  use force_law, only: force_law_t
+  use laws, only: law_parameters_t, new_law
+  use scene_groups, only: scene_t
+  use choice, only: choice_t, choose, fixed_mesh
+  use edge_locked, only: new_mesh_pair
+  use quasi_static, only: quasi_static_t, position_t
+  use locked_steps, only: locked_steps_t
+  use fixed_steps, only: fixed_steps_t
+  use cycle, only: plan_t, branch_t, run_branch
+  use path, only: path_t, trace_path
+  use records, only: observer_t
+  use equilibrium, only: cost_t
+  use clock, only: seconds
+  implicit none
+  private
+  public :: outcome_t, run_experiment, problem_of, states_planned
+
+  !> Everything in the units of `problem`.
+  type :: outcome_t
+    type(choice_t) :: chosen
+    type(path_t), allocatable :: path
+    type(branch_t), allocatable :: loading, unloading(:)
+    type(cost_t) :: cost
+    integer :: nodes = 0
+  end type outcome_t
+
+contains
+
+  !> The problem that a scene poses.
+  function problem_of(scene) result(problem)
+    type(scene_t), intent(in) :: scene
+    type(problem_t) :: problem
+    class(force_law_t), allocatable :: law
+    type(law_parameters_t) :: parameters
+
+    associate (f => scene%force)
+      parameters%law = f%law
+      parameters%part = f%part
+      parameters%hamaker = f%hamaker
+      parameters%z0 = f%z0
+      parameters%p0 = f%p0
+      parameters%decay_length = f%decay_length
+    end associate
+    call new_law(parameters, law)
+    problem = new_problem(law, scene%bodies%radius, scene%bodies%stiffness, scene%bodies%rigid)
+  end function problem_of
+
+  !> Runs the path and the cycle of a scene; neither may be asked for, and then nothing is done.
+  subroutine run_experiment(scene, problem, observer, outcome)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    class(observer_t), intent(inout) :: observer
+    type(outcome_t), intent(out) :: outcome
+    type(locked_steps_t) :: locked
+    type(fixed_steps_t) :: fixed
+    real(wp) :: low, high
+
+    if (.not. (allocated(scene%path) .or. allocated(scene%loading))) return
+    call range_of(scene, problem, low, high)
+    outcome%chosen = choose(scene%numerics, problem, low)
+    if (outcome%chosen%grid == 'edge_locked' .or. allocated(scene%path)) then
+      call prepare(locked, problem, outcome%chosen, scene%numerics%accuracy)
+      locked%cost%kernel_seconds = -seconds()
+      locked%pair = new_mesh_pair(problem, high, low, outcome%chosen%resolution)
+      locked%cost%kernel_seconds = locked%cost%kernel_seconds + seconds()
+      locked%cost%kernel_entries = sum(locked%pair%grid%kernel_entries())
+      outcome%nodes = sum(locked%pair%grid%nodes)
+      ! The path has no use for mixing.
+      if (locked%options%method == 'mixing') locked%options%method = 'anderson'
+    end if
+    if (allocated(scene%path)) call run_path(scene, locked, observer, outcome)
+    if (allocated(scene%loading)) then
+      if (outcome%chosen%grid == 'edge_locked') then
+        call run_cycle(scene, locked, observer, outcome)
+      else
+        call prepare(fixed, problem, outcome%chosen, scene%numerics%accuracy)
+        fixed%cost = locked%cost
+        fixed%cost%kernel_seconds = fixed%cost%kernel_seconds - seconds()
+        fixed%mesh = fixed_mesh(outcome%chosen, problem, low)
+        fixed%cost%kernel_seconds = fixed%cost%kernel_seconds + seconds()
+        fixed%cost%kernel_entries = fixed%cost%kernel_entries + fixed%mesh%kernel_entries()
+        outcome%nodes = outcome%nodes + fixed%mesh%nodes
+        call run_cycle(scene, fixed, observer, outcome)
+        locked%cost = fixed%cost
+      end if
+    end if
+    outcome%cost = locked%cost
+  end subroutine run_experiment
+
+  !> What both kinds of steps are told.
+  subroutine prepare(steps, problem, chosen, accuracy)
+    class(quasi_static_t), intent(inout) :: steps
+    type(problem_t), intent(in) :: problem
+    type(choice_t), intent(in) :: chosen
+    real(wp), intent(in) :: accuracy
+
+    steps%problem = problem
+    steps%options = chosen%options
+    ! Each halving is a state; a jump is not known better than this on a fixed grid anyway.
+    steps%jump_tolerance = max(accuracy, 1.0e-4_wp)
+  end subroutine prepare
+
+  subroutine run_path(scene, steps, observer, outcome)
+    type(scene_t), intent(in) :: scene
+    type(locked_steps_t), intent(inout) :: steps
+    class(observer_t), intent(inout) :: observer
+    type(outcome_t), intent(inout) :: outcome
+    real(wp), allocatable :: profiles(:)
+    real(wp) :: start, began
+
+    associate (length => steps%problem%length)
+      start = -huge(1.0_wp)
+      if (allocated(scene%path%h0_start)) start = scene%path%h0_start/length
+      allocate (profiles(0))
+      if (allocated(scene%profiles)) profiles = scene%profiles%h0/length
+      allocate (outcome%path)
+      began = seconds()
+      call trace_path(steps, start, scene%path%h0_end/length, profiles, observer, outcome%path)
+      steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
+    end associate
+  end subroutine run_path
+
+  !> Loading, then an unloading from each turning point.
+  subroutine run_cycle(scene, steps, observer, outcome)
+    type(scene_t), intent(in) :: scene
+    class(quasi_static_t), intent(inout) :: steps
+    class(observer_t), intent(inout) :: observer
+    type(outcome_t), intent(inout) :: outcome
+    type(position_t) :: position
+    type(position_t), allocatable :: turning(:), none(:)
+    real(wp), allocatable :: from(:), nowhere(:)
+    real(wp) :: began
+    integer :: k
+
+    began = seconds()
+    allocate (from(0), nowhere(0), none(0))
+    if (allocated(scene%unloading)) from = scene%unloading%from/steps%problem%length
+    allocate (turning(size(from)))
+    allocate (outcome%loading)
+    call run_branch(steps, plan_of('loading', scene%loading%h0_start, scene%loading%h0_end, &
+      scene%loading%h0_step, scene, steps%problem%length, from), .true., position, observer, from, &
+      turning, outcome%loading)
+    if (allocated(scene%unloading)) then
+      allocate (outcome%unloading(size(from)))
+      do k = 1, size(from)
+        if (.not. allocated(turning(k)%state%gap)) then
+          outcome%unloading(k)%reason = 'loading did not reach the turning point'
+          cycle
+        end if
+        position = turning(k)
+        call run_branch(steps, plan_of('unloading_'//number(k), scene%unloading%from(k), &
+          scene%unloading%h0_end, scene%unloading%h0_step, scene, steps%problem%length, &
+          nowhere), .false., position, observer, nowhere, none, outcome%unloading(k))
+      end do
+    end if
+    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
+  end subroutine run_cycle
+
+  !> Values of h0 [m] from start to finish by step, whichever way that is, both ends included, with the
+  !> scene's profiles and the values `also` (law's lengths) in their places.
+  function plan_of(name, start, finish, step, scene, length, also) result(plan)
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: start, finish, step, length, also(:)
+    type(scene_t), intent(in) :: scene
+    type(plan_t) :: plan
+    real(wp), allocatable :: h0(:), profiles(:)
+    real(wp) :: sense, same
+    integer :: count, i
+
+    sense = sign(1.0_wp, finish - start)
+    ! A last step that rounding leaves a hair short is not a step.
+    same = 1.0e-6_wp*step
+    count = floor(abs(finish - start)/step + 1.0e-6_wp)
+    h0 = [(start + sense*step*i, i=0, count)]
+    if (abs(h0(count + 1) - finish) <= same) then
+      h0(count + 1) = finish
+    else
+      h0 = [h0, finish]
+    end if
+    allocate (profiles(0))
+    if (allocated(scene%profiles)) profiles = scene%profiles%h0
+    do i = 1, size(also)
+      call include(h0, also(i)*length)
+    end do
+    do i = 1, size(profiles)
+      if ((profiles(i) - start)*(profiles(i) - finish) <= 0) call include(h0, profiles(i))
+    end do
+    plan%name = name
+    plan%h0 = h0/length
+    plan%profile = [(any(abs(profiles - h0(i)) <= same), i=1, size(h0))]
+
+  contains
+
+    subroutine include(values, value)
+      real(wp), allocatable, intent(inout) :: values(:)
+      real(wp), intent(in) :: value
+      integer :: place
+
+      if (any(abs(values - value) <= same)) return
+      place = count_before(values, value)
+      values = [values(:place), value, values(place + 1:)]
+    end subroutine include
+
+    pure integer function count_before(values, value)
+      real(wp), intent(in) :: values(:), value
+
+      count_before = int(sum(merge(1, 0, sense*(values - value) < 0)))
+    end function count_before
+
+  end function plan_of
+
+  !> Number of equilibria that the scene's cycle will take.
+  integer function states_planned(scene)
+    type(scene_t), intent(in) :: scene
+    integer :: k
+
+    states_planned = 0
+    if (.not. allocated(scene%loading)) return
+    associate (l => scene%loading)
+      states_planned = nint(min((l%h0_start - l%h0_end)/l%h0_step, 1.0e9_wp)) + 1
+    end associate
+    if (.not. allocated(scene%unloading)) return
+    associate (u => scene%unloading)
+      do k = 1, size(u%from)
+        states_planned = states_planned + nint(min((u%h0_end - u%from(k))/u%h0_step, 1.0e7_wp)) + 1
+      end do
+    end associate
+  end function states_planned
+
+  !> The range of H0, in the law's lengths, that the scene covers.
+  subroutine range_of(scene, problem, low, high)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(out) :: low, high
+
+    low = huge(1.0_wp)
+    high = -huge(1.0_wp)
+    if (allocated(scene%loading)) then
+      low = scene%loading%h0_end
+      high = scene%loading%h0_start
+    end if
+    if (allocated(scene%unloading)) high = max(high, scene%unloading%h0_end)
+    if (allocated(scene%path)) then
+      low = min(low, scene%path%h0_end)
+      high = max(high, scene%path%h0_end)
+      if (allocated(scene%path%h0_start)) high = max(high, scene%path%h0_start)
+    end if
+    low = low/problem%length
+    high = high/problem%length
+  end subroutine range_of
+
+  pure function number(k) result(text)
+    integer, intent(in) :: k
+    character(len=:), allocatable :: text
+    character(len=12) :: buffer
+
+    write (buffer, '(i0)') k
+    text = trim(buffer)
+  end function number
+
+end module experiment

@@ -1,0 +1,74 @@
+!> Lennard-Jones pressure between half-spaces, (33) of the paper,
+!> p = A/(6 pi h^3) [(z0/h)^6 - 1], whole or either of its parts alone.
+!> In units of z0 and gamma/z0, with gamma = A/(16 pi z0^2) (34), it is (8/3) (H^-9 - H^-3).
+module lennard_jones
+  use kinds, only: wp, pi
+  use force_law, only: force_law_t
+  implicit none
+  private
+  public :: lennard_jones_t, new_lennard_jones
+
+  type, extends(force_law_t) :: lennard_jones_t
+    !> Weights of the repulsive and of the attractive part: 0 or 1.
+    real(wp) :: repulsive = 1, attractive = 1
+  contains
+    procedure :: pressure
+    procedure :: slope
+    procedure :: energy
+  end type lennard_jones_t
+
+contains
+
+  !> hamaker [J] and z0 [m] positive; part is 'full', 'repulsive' or 'attractive'.
+  pure function new_lennard_jones(hamaker, z0, part) result(law)
+    real(wp), intent(in) :: hamaker, z0
+    character(len=*), intent(in) :: part
+    type(lennard_jones_t) :: law
+
+    law%length = z0
+    law%pressure_unit = hamaker/(16*pi*z0**2)/z0
+    law%range = 60
+    ! A ninth of the gap, which in contact is below 1.
+    law%repulsion_length = 0.1_wp
+    law%repulsive = merge(0, 1, part == 'attractive')
+    law%attractive = merge(0, 1, part == 'repulsive')
+    ! The repulsion may grow 25-fold in an iteration, and a gap never reaches zero.
+    law%closure_fraction = 0.3_wp
+    if (part /= 'repulsive') law%adhesion = 1
+    if (part == 'full') then
+      law%edge_gap = 3.0_wp**(1.0_wp/6)
+      law%rest_gap = 1
+    end if
+  end function new_lennard_jones
+
+  pure function pressure(self, gap) result(value)
+    class(lennard_jones_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+    real(wp) :: cube(size(gap))
+
+    cube = 1/gap**3
+    value = 8*cube/3*(self%repulsive*cube*cube - self%attractive)
+  end function pressure
+
+  pure function slope(self, gap) result(value)
+    class(lennard_jones_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+    real(wp) :: cube(size(gap))
+
+    cube = 1/gap**3
+    value = 8*cube/gap*(self%attractive - 3*self%repulsive*cube*cube)
+  end function slope
+
+  pure function energy(self, gap) result(value)
+    class(lennard_jones_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+    real(wp) :: square(size(gap))
+
+    square = 1/gap**2
+    value = square/3*(self%repulsive*square**3 - 4*self%attractive)
+  end function energy
+
+end module lennard_jones

@@ -1,0 +1,90 @@
+!> Thin wrappers over BLAS and LAPACK.
+module linear_algebra
+  use kinds, only: wp
+  implicit none
+  private
+  public :: multiply, factorisation_t, factorise, solve, determinant_sign
+
+  !> LU factors of a square matrix, from `factorise`.
+  type :: factorisation_t
+    real(wp), allocatable :: lu(:, :)
+    integer, allocatable :: pivot(:)
+    !> .false. where no factors are held or the matrix was singular.
+    logical :: valid = .false.
+  end type factorisation_t
+
+  interface
+    subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: wp
+      character, intent(in) :: trans
+      integer, intent(in) :: m, n, lda, incx, incy
+      real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
+      real(wp), intent(inout) :: y(*)
+    end subroutine dgemv
+    subroutine dgetrf(m, n, a, lda, ipiv, info)
+      import :: wp
+      integer, intent(in) :: m, n, lda
+      real(wp), intent(inout) :: a(lda, *)
+      integer, intent(out) :: ipiv(*), info
+    end subroutine dgetrf
+    subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+      import :: wp
+      character, intent(in) :: trans
+      integer, intent(in) :: n, nrhs, lda, ldb, ipiv(*)
+      real(wp), intent(in) :: a(lda, *)
+      real(wp), intent(inout) :: b(ldb, *)
+      integer, intent(out) :: info
+    end subroutine dgetrs
+  end interface
+
+contains
+
+  !> y = a(:size(y), :columns) x(:columns).
+  subroutine multiply(a, columns, x, y)
+    real(wp), intent(in), contiguous :: a(:, :)
+    integer, intent(in) :: columns
+    real(wp), intent(in) :: x(:)
+    real(wp), intent(out) :: y(:)
+
+    y = 0
+    if (columns > 0) &
+      call dgemv('n', size(y), columns, 1.0_wp, a, size(a, 1), x, 1, 0.0_wp, y, 1)
+  end subroutine multiply
+
+  !> Factorises the matrix held in factors%lu in place.
+  subroutine factorise(factors)
+    type(factorisation_t), intent(inout) :: factors
+    integer :: n, info
+
+    n = size(factors%lu, 1)
+    if (allocated(factors%pivot)) then
+      if (size(factors%pivot) /= n) deallocate (factors%pivot)
+    end if
+    if (.not. allocated(factors%pivot)) allocate (factors%pivot(n))
+    call dgetrf(n, n, factors%lu, n, factors%pivot, info)
+    factors%valid = info == 0
+  end subroutine factorise
+
+  !> Overwrites b with the solution; factors must be valid.
+  subroutine solve(factors, b)
+    type(factorisation_t), intent(in) :: factors
+    real(wp), intent(inout) :: b(:)
+    integer :: info, n
+
+    n = size(b)
+    call dgetrs('n', n, 1, factors%lu, n, factors%pivot, b, n, info)
+  end subroutine solve
+
+  !> Sign of the determinant, +1 or -1.
+  pure integer function determinant_sign(factors)
+    type(factorisation_t), intent(in) :: factors
+    integer :: i
+
+    determinant_sign = 1
+    do i = 1, size(factors%pivot)
+      if (factors%pivot(i) /= i) determinant_sign = -determinant_sign
+      if (factors%lu(i, i) < 0) determinant_sign = -determinant_sign
+    end do
+  end function determinant_sign
+
+end module linear_algebra

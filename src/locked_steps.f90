@@ -1,0 +1,349 @@
+!> A quasi-static experiment in edge-locked coordinates: nothing is pinned between nodes and nothing is
+!> stiff, at any adhesion strength.
+!>
+!> Usually a step is a few accelerated iterations from the extrapolated state, with one factorisation
+!> for many steps. Where that does not arrive on the branch it came from, the equilibrium path is
+!> traced from the last state to the next stable state at the wanted h0; a fold on the way is a
+!> jump, and known exactly.
+module locked_steps
+  use kinds, only: wp
+  use problem, only: problem_t, neck_width
+  use discretisation, only: discretisation_t
+  use equilibrium, only: control_t, state_t, state_from, radius_of_gap, at_h0_with_edge
+  use solver, only: solve_state
+  use edge_locked, only: mesh_pair_t, hertz_scale, approach, contact
+  use tracer, only: tracer_t, new_tracer, inward, outward, coordinate_of, move_to_mesh, state_at, &
+    between, node_count
+  use trail, only: trail_t, extend
+  use quasi_static, only: quasi_static_t, position_t, event_t, remember
+  implicit none
+  private
+  public :: locked_steps_t
+
+  type, extends(quasi_static_t) :: locked_steps_t
+    type(mesh_pair_t) :: pair
+  contains
+    procedure :: begin
+    procedure :: go
+    procedure :: grid
+    procedure :: spacing_over_neck
+    procedure :: begin_afar
+    procedure :: land
+    procedure, private :: attempt
+    procedure, private :: trace
+    procedure, private :: creep
+  end type locked_steps_t
+
+  !> Most states that a trace may take before it is given up as going nowhere.
+  integer, parameter :: longest_trace = 2000
+  !> Largest relative change of the path's coordinate in a step of a trace.
+  real(wp), parameter :: path_step = 0.15_wp
+  !> A gap of this many of the law's lengths (over the closure fraction) is a collapse: a law without
+  !> repulsion has no state after the jump.
+  real(wp), parameter :: collapsed = 0.1_wp
+  !> Smallest step in h0, in the law's lengths, that is tried.
+  real(wp), parameter :: smallest_creep = 1.0e-6_wp
+
+contains
+
+  subroutine begin(self, h0, position, event)
+    class(locked_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(position_t), intent(out) :: position
+    type(event_t), intent(out) :: event
+
+    call self%begin_afar(h0, position, event)
+    if (event%reason == '' .and. position%state%h0 > h0) call self%go(h0, position, event)
+    ! What the approach passed before the experiment began is not part of it.
+    event%jumped = .false.
+  end subroutine begin
+
+  !> A state at h0 or, if the bodies would be near each other there, so far apart that they hardly
+  !> deform (rigid bodies: at h0).
+  subroutine begin_afar(self, h0, position, event)
+    class(locked_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(position_t), intent(out) :: position
+    type(event_t), intent(out) :: event
+    type(state_t) :: state
+    real(wp) :: far
+    integer :: mesh
+
+    mesh = merge(approach, contact, self%pair%traceable)
+    ! Twice the gap (37) of the jump into contact, in these units, or where repulsion hardly acts.
+    far = max(h0, 5.0_wp, 2*(27*self%problem%coupling*self%problem%law%adhesion)**(2.0_wp/7), &
+      self%pair%level + 3)
+    if (self%problem%rigid) far = h0
+    associate (grid => self%pair%grid(mesh))
+      state = state_from(node_count(self%pair, mesh, scale_at(self, far)))
+      state%h0 = far
+      state%axis_gap = far
+      state%scale = scale_at(self, far)
+      state%gap = far + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2
+    end associate
+    call self%attempt(far, state, mesh, position, event)
+    if (.not. event%converged) event%reason = 'no equilibrium was found far from contact'
+    call remember(position, state, mesh, .false.)
+  end subroutine begin_afar
+
+  subroutine go(self, h0, position, event)
+    class(locked_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(position_t), intent(inout) :: position
+    type(event_t), intent(out) :: event
+    type(state_t) :: state
+
+    state = between(self%pair%grid(position%mesh), position%h0(:position%held), &
+      position%past(:position%held), h0, nodes_to_use(self, h0, position))
+    call self%attempt(h0, state, position%mesh, position, event)
+    if (event%converged) then
+      call remember(position, state, position%mesh, .false.)
+      if (self%pair%traceable) call change_mesh(self, position)
+    else if (self%pair%traceable) then
+      call self%trace(h0, position, event)
+    else
+      call self%creep(h0, position, event)
+    end if
+  end subroutine go
+
+  !> Solves from the guess `state` at h0; converged only if the result continues the branch that the
+  !> position is on.
+  subroutine attempt(self, h0, state, mesh, position, event)
+    class(locked_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(state_t), intent(inout) :: state
+    integer, intent(in) :: mesh
+    type(position_t), intent(in) :: position
+    type(event_t), intent(out) :: event
+    real(wp) :: expected, moved, before
+    logical :: check
+
+    check = self%pair%traceable .and. position%held > 0 .and. .not. self%problem%rigid
+    before = 0
+    expected = 0
+    if (check) then
+      before = coordinate_of(self%problem, mesh, position%state)
+      state%axis_gap = position%state%axis_gap + state%gap(1) - position%state%gap(1)
+      expected = coordinate_of(self%problem, mesh, state) - before
+    end if
+    call solve_state(self%problem, self%pair%grid(mesh), h0_control(self, mesh, h0), self%options, &
+      self%frozen, state, event%converged, self%cost)
+    event%certain = event%converged
+    if (.not. (check .and. event%converged)) return
+    moved = coordinate_of(self%problem, mesh, state) - before
+    ! Along a stable branch the gap on the axis grows and the contact shrinks with h0.
+    event%converged = moved*(h0 - position%state%h0)*merge(1, -1, mesh == approach) >= 0 .and. &
+      abs(moved - expected) <= 0.5_wp*abs(expected) + 0.02_wp
+  end subroutine attempt
+
+  !> Follows the path from the position to the next stable state at h0, noting the first fold that is
+  !> passed: that is where the bodies jump.
+  subroutine trace(self, h0, position, event)
+    class(locked_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(position_t), intent(inout) :: position
+    type(event_t), intent(out) :: event
+    type(tracer_t) :: walker
+    type(trail_t) :: trail
+    type(state_t) :: state
+    logical :: lost, found
+    integer :: seen, direction
+
+    self%frozen%factors%valid = .false.
+    direction = merge(inward, outward, h0 < position%state%h0)
+    walker = new_tracer(self%problem, position%state, position%mesh, direction, path_step)
+    seen = 1
+    found = .false.
+    do while (.not. found)
+      call extend(trail, walker, self%problem, self%pair, self%options, lost, self%cost)
+      if (lost .or. trail%held > longest_trace .or. &
+        minval(trail%state(trail%held)%gap) < collapsed*self%problem%law%closure_fraction) then
+        event%reason = 'no stable equilibrium exists beyond this h0'
+        if (lost .and. self%problem%law%edge_gap > 0) event%reason = 'the equilibrium path was lost'
+        return
+      end if
+      ! The last piece of the trail may still turn out to hold a fold.
+      do while (seen < trail%held - 1 .and. .not. found)
+        if (trail%fold(seen + 1) .and. .not. event%jumped) then
+          event%jumped = .true.
+          event%jump_h0 = trail%state(seen + 1)%h0
+          event%jump_load = trail%state(seen + 1)%load
+        end if
+        associate (a => trail%state(seen)%h0, b => trail%state(seen + 1)%h0)
+          found = trail%unstable(seen + 1) == 0 .or. trail%unstable(seen) == 0
+          if (trail%fold(seen + 1)) found = trail%unstable(seen) == 0
+          if (trail%fold(seen)) found = trail%unstable(seen + 1) == 0
+          found = found .and. (h0 - a)*(h0 - b) <= 0
+        end associate
+        seen = seen + 1
+      end do
+    end do
+    ! Between states seen - 1 and seen.
+    call self%land(h0, trail, seen, state, event%converged)
+    if (.not. event%converged) then
+      event%reason = 'the state after a jump did not converge'
+      position%state = state
+      return
+    end if
+    event%certain = .true.
+    call remember(position, state, trail%mesh(seen), event%jumped)
+    call change_mesh(self, position)
+  end subroutine trace
+
+  !> The state at h0 between two neighbours of the trail: by bisection along the path, on which every
+  !> state converges, then at h0 itself.
+  subroutine land(self, h0, trail, upper, state, converged)
+    class(locked_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(trail_t), intent(in) :: trail
+    integer, intent(in) :: upper
+    type(state_t), intent(out) :: state
+    logical, intent(out) :: converged
+    type(state_t) :: ends(2)
+    real(wp) :: s(2), at, fraction
+    integer :: mesh, side, round
+
+    mesh = trail%mesh(upper)
+    ends = trail%state(upper - 1:upper)
+    s = trail%coordinate(upper - 1:upper)
+    if (trail%mesh(upper - 1) /= mesh) then
+      call move_to_mesh(self%problem, self%pair, trail%mesh(upper - 1), mesh, self%options, &
+        self%frozen, ends(1), converged, self%cost)
+      s(1) = coordinate_of(self%problem, mesh, ends(1))
+      if (.not. converged) ends(1) = ends(2)
+    end if
+    do round = 1, 6
+      if (abs(ends(2)%h0 - ends(1)%h0) < 1.0e-3_wp) exit
+      fraction = (h0 - ends(1)%h0)/(ends(2)%h0 - ends(1)%h0)
+      at = s(1) + min(max(fraction, 0.05_wp), 0.95_wp)*(s(2) - s(1))
+      call state_at(self%problem, self%pair, mesh, at, s, ends, self%options, self%frozen, state, &
+        converged, self%cost)
+      if (.not. converged) exit
+      side = merge(1, 2, (state%h0 - h0)*(ends(1)%h0 - h0) > 0)
+      ends(side) = state
+      s(side) = at
+      if (abs(state%h0 - h0) < 1.0e-3_wp) exit
+    end do
+    side = merge(1, 2, abs(ends(1)%h0 - h0) < abs(ends(2)%h0 - h0))
+    state = ends(side)
+    self%frozen%factors%valid = .false.
+    call solve_state(self%problem, self%pair%grid(mesh), h0_control(self, mesh, h0), self%options, &
+      self%frozen, state, converged, self%cost)
+  end subroutine land
+
+  !> Reaches h0 in shorter steps: for laws without a contact edge, whose states are unique, a step is
+  !> only ever too long.
+  subroutine creep(self, h0, position, event)
+    class(locked_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(position_t), intent(inout) :: position
+    type(event_t), intent(out) :: event
+    type(state_t) :: state
+    real(wp) :: next, step
+
+    step = 0.25_wp*(h0 - position%state%h0)
+    do
+      next = position%state%h0 + step
+      if (abs(h0 - position%state%h0) <= 1.5_wp*abs(step)) next = h0
+      state = between(self%pair%grid(contact), position%h0(:position%held), &
+        position%past(:position%held), next, nodes_to_use(self, next, position))
+      self%frozen%factors%valid = .false.
+      call self%attempt(next, state, contact, position, event)
+      if (event%converged) then
+        call remember(position, state, contact, .false.)
+        if (next == h0) return
+        step = 2*step
+      else
+        step = 0.3_wp*step
+        if (abs(step) < smallest_creep) then
+          event%reason = 'no step, however small, converged'
+          position%state = state
+          return
+        end if
+      end if
+    end do
+  end subroutine creep
+
+  !> Passes to the other mesh when the contact radius has crossed the passage; a band of a fifth on either
+  !> side keeps a state near it from going back and forth.
+  subroutine change_mesh(self, position)
+    class(locked_steps_t), intent(inout) :: self
+    type(position_t), intent(inout) :: position
+    type(state_t) :: state
+    logical :: done
+    integer :: to
+
+    if (.not. self%problem%law%edge_gap > 0 .or. self%problem%rigid) return
+    if (position%mesh == approach) then
+      if (radius_of_gap(self%problem%law%edge_gap, self%pair%grid(approach), position%state) &
+        < 1.2_wp*self%pair%passage) return
+      to = contact
+    else
+      if (position%state%scale > 0.8_wp*self%pair%passage) return
+      to = approach
+    end if
+    state = position%state
+    self%frozen%factors%valid = .false.
+    call move_to_mesh(self%problem, self%pair, position%mesh, to, self%options, self%frozen, state, &
+      done, self%cost)
+    if (.not. done) return
+    ! The same contact on the other mesh is at an h0 that differs by the meshes' errors.
+    call solve_state(self%problem, self%pair%grid(to), h0_control(self, to, position%state%h0), &
+      self%options, self%frozen, state, done, self%cost)
+    if (done) call remember(position, state, to, .false.)
+  end subroutine change_mesh
+
+  !> Nodes for the next state of a position: as many as now while they reach far enough and not four times
+  !> too far, so that factorisations keep their size.
+  pure integer function nodes_to_use(self, h0, position) result(n)
+    type(locked_steps_t), intent(in) :: self
+    real(wp), intent(in) :: h0
+    type(position_t), intent(in) :: position
+    real(wp) :: c
+
+    c = position%state%scale
+    if (.not. self%pair%traceable) c = scale_at(self, h0)
+    n = size(position%state%gap)
+    if (n < node_count(self%pair, position%mesh, c) .or. &
+      n > node_count(self%pair, position%mesh, 0.25_wp*c)) &
+      n = node_count(self%pair, position%mesh, 0.5_wp*c)
+  end function nodes_to_use
+
+  !> The control that prescribes h0 on a mesh.
+  pure function h0_control(self, mesh, h0) result(control)
+    class(locked_steps_t), intent(in) :: self
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: h0
+    type(control_t) :: control
+
+    control%value = h0
+    control%scale = scale_at(self, h0)
+    if (mesh == contact .and. self%pair%traceable) control%kind = at_h0_with_edge
+  end function h0_control
+
+  !> The scale of the mesh at h0 where it is not an unknown.
+  pure real(wp) function scale_at(self, h0)
+    class(locked_steps_t), intent(in) :: self
+    real(wp), intent(in) :: h0
+
+    scale_at = 1
+    if (.not. self%pair%traceable) scale_at = hertz_scale(self%pair%level, h0)
+  end function scale_at
+
+  function grid(self, position)
+    class(locked_steps_t), intent(in), target :: self
+    type(position_t), intent(in) :: position
+    type(discretisation_t), pointer :: grid
+
+    grid => self%pair%grid(position%mesh)
+  end function grid
+
+  pure real(wp) function spacing_over_neck(self, position)
+    class(locked_steps_t), intent(in) :: self
+    type(position_t), intent(in) :: position
+
+    spacing_over_neck = position%state%scale*self%pair%grid(position%mesh)%spacing/ &
+      neck_width(self%problem)
+  end function spacing_over_neck
+
+end module locked_steps

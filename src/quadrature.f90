@@ -1,0 +1,150 @@
+!> Gauss-Legendre rules, the companion rule for a logarithm at the left end, and
+!> barycentric Lagrange interpolation.
+module quadrature
+  use kinds, only: wp, pi
+  implicit none
+  private
+  public :: gauss_legendre, logarithm_weights, barycentric_weights, lagrange_basis, &
+    interpolated_maximum
+
+contains
+
+  !> Nodes (ascending) and weights of the rule of size(x) points on [0, 1];
+  !> exact for polynomials of degree 2 size(x) - 1.
+  pure subroutine gauss_legendre(x, w)
+    real(wp), intent(out) :: x(:), w(:)
+    real(wp) :: z, step, value, slope
+    integer :: i, n, iteration
+
+    n = size(x)
+    do i = 1, (n + 1)/2
+      z = cos(pi*(i - 0.25_wp)/(n + 0.5_wp))
+      do iteration = 1, 20
+        call legendre(n, z, value, slope)
+        step = value/slope
+        z = z - step
+        if (abs(step) <= 2*epsilon(z)) exit
+      end do
+      call legendre(n, z, value, slope)
+      x(i) = 0.5_wp*(1 - z)
+      x(n + 1 - i) = 0.5_wp*(1 + z)
+      w(i) = 1/((1 - z**2)*slope**2)
+      w(n + 1 - i) = w(i)
+    end do
+  end subroutine gauss_legendre
+
+  !> Weights v on the Gauss-Legendre nodes x (of [0, 1], weights w) such that
+  !> sum(v*f(x)) is the integral of f(s) ln(s) over [0, 1] for every polynomial f of
+  !> degree below size(x): f is expanded in shifted Legendre polynomials, whose moments
+  !> against ln(s) are -1 for degree 0 and (-1)**(m+1)/(m(m+1)) for degree m.
+  pure function logarithm_weights(x, w) result(v)
+    real(wp), intent(in) :: x(:), w(:)
+    real(wp) :: v(size(x))
+    real(wp) :: before(size(x)), now(size(x)), next(size(x)), z(size(x))
+    integer :: m
+
+    z = 2*x - 1
+    before = 0
+    now = 1
+    v = -w
+    do m = 1, size(x) - 1
+      next = ((2*m - 1)*z*now - (m - 1)*before)/m
+      before = now
+      now = next
+      v = v + w*(2*m + 1)*now*real((-1)**(m + 1), wp)/(real(m, wp)*(m + 1))
+    end do
+  end function logarithm_weights
+
+  !> Barycentric weights of the nodes x, scaled to a largest magnitude of 1.
+  pure function barycentric_weights(x) result(b)
+    real(wp), intent(in) :: x(:)
+    real(wp) :: b(size(x))
+    real(wp) :: width
+    integer :: j, k
+
+    ! Differences are measured in quarters of the width (the interval's capacity), which
+    ! keeps the products near 1 for any order in use.
+    width = max(maxval(x) - minval(x), tiny(1.0_wp))/4
+    do j = 1, size(x)
+      b(j) = 1
+      do k = 1, size(x)
+        if (k /= j) b(j) = b(j)*width/(x(j) - x(k))
+      end do
+    end do
+    b = b/maxval(abs(b))
+  end function barycentric_weights
+
+  !> Values at t of the Lagrange polynomials through the nodes x with barycentric weights b.
+  pure function lagrange_basis(x, b, t) result(l)
+    real(wp), intent(in) :: x(:), b(:), t
+    real(wp) :: l(size(x))
+    integer :: j
+
+    do j = 1, size(x)
+      if (abs(t - x(j)) <= tiny(t)) then
+        l = 0
+        l(j) = 1
+        return
+      end if
+    end do
+    l = b/(t - x)
+    l = l/sum(l)
+  end function lagrange_basis
+
+  !> Where the polynomial through (at, value) is largest within [low, high], by golden section.
+  pure real(wp) function interpolated_maximum(at, value, low, high) result(s)
+    real(wp), intent(in) :: at(:), value(:), low, high
+    real(wp), parameter :: golden = 0.618033988749894848_wp
+    real(wp) :: a, b, c, d
+    integer :: step
+
+    a = low
+    b = high
+    do step = 1, 60
+      c = b - golden*(b - a)
+      d = a + golden*(b - a)
+      if (polynomial(c) > polynomial(d)) then
+        b = d
+      else
+        a = c
+      end if
+    end do
+    s = 0.5_wp*(a + b)
+
+  contains
+
+    pure real(wp) function polynomial(x)
+      real(wp), intent(in) :: x
+      real(wp) :: weight
+      integer :: j, k
+
+      polynomial = 0
+      do j = 1, size(at)
+        weight = 1
+        do k = 1, size(at)
+          if (k /= j) weight = weight*(x - at(k))/(at(j) - at(k))
+        end do
+        polynomial = polynomial + weight*value(j)
+      end do
+    end function polynomial
+
+  end function interpolated_maximum
+
+  pure subroutine legendre(n, z, value, slope)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: z
+    real(wp), intent(out) :: value, slope
+    real(wp) :: before, next
+    integer :: m
+
+    before = 0
+    value = 1
+    do m = 1, n
+      next = ((2*m - 1)*z*value - (m - 1)*before)/m
+      before = value
+      value = next
+    end do
+    slope = n*(z*value - before)/(z**2 - 1)
+  end subroutine legendre
+
+end module quadrature

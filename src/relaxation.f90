@@ -1,0 +1,74 @@
+!> The state that bodies out of equilibrium come to rest in: dh/dtau = -G at fixed h0, by implicit
+!> steps that lengthen as the residual falls, and so end in Newton's. Follows a jump to where a
+!> quasi-static experiment would land, and leaves unstable equilibria.
+module relaxation
+  use kinds, only: wp
+  use problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: control_t, state_t, cost_t, residual, factorise_jacobian, largest_step, &
+    residual_floor, at_h0
+  use linear_algebra, only: factorisation_t, solve, determinant_sign
+  use solver_options, only: solver_options_t
+  implicit none
+  private
+  public :: relax
+
+  integer, parameter :: most_steps = 400
+  !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth, and the
+  !> step from which one is as good as Newton's.
+  real(wp), parameter :: first_step = 1, growth = 3, newton_like = 1.0e6_wp
+
+contains
+
+  !> From `state` to a stable equilibrium at the prescribed H0 (control kind at_h0), in place.
+  subroutine relax(this, grid, control, options, state, converged, cost)
+    type(problem_t), intent(in) :: this
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    type(solver_options_t), intent(in) :: options
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: converged
+    type(cost_t), intent(inout) :: cost
+    type(factorisation_t) :: factors
+    real(wp), allocatable :: z(:), g(:), dz(:)
+    real(wp) :: dtau, before
+    integer :: step
+    logical :: stable
+
+    converged = .false.
+    if (control%kind /= at_h0) return
+    z = state%gap
+    allocate (g(size(z)))
+    dtau = first_step
+    before = huge(1.0_wp)
+    do step = 1, most_steps
+      call residual(this, grid, control, z, g, state, cost)
+      cost%iterations = cost%iterations + 1
+      state%iterations = step
+      if (.not. state%residual < huge(1.0_wp)) return
+      dtau = min(dtau*min(growth, max(0.1_wp, before/max(state%residual, tiny(1.0_wp)))), &
+        1.0e12_wp)
+      before = state%residual
+      call factorise_jacobian(this, grid, control, state, factors, cost, 1/dtau)
+      if (.not. factors%valid) return
+      stable = determinant_sign(factors) > 0
+      converged = state%residual <= max(options%tolerance, residual_floor(this, state)) .and. &
+        dtau > newton_like .and. stable
+      if (converged) return
+      ! At long steps a negative mode would be climbed, not left.
+      if (.not. stable) then
+        dtau = first_step
+        call factorise_jacobian(this, grid, control, state, factors, cost, 1/dtau)
+        if (state%residual < options%tolerance) then
+          ! On the unstable equilibrium itself nothing drives the bodies away: a nudge does.
+          z = z - 1.0e-4_wp
+          cycle
+        end if
+      end if
+      dz = -g
+      call solve(factors, dz)
+      z = z + largest_step(this, control, z, dz)*dz
+    end do
+  end subroutine relax
+
+end module relaxation

@@ -1,0 +1,301 @@
+!> The results of one run: a folder with the curve, the profiles, the tables and the summary.
+!>
+!> All of them are written to `.partial` files, the curve and the profiles row by row; `finish`
+!> gives the whole set its names. Until then the results of an earlier run stay as they are, and
+!> what an interrupted run leaves is partial by name.
+module results
+  use kinds, only: wp
+  use failure, only: failure_t
+  use problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: state_t, cost_t
+  use records, only: record_t, observer_t, theory_row_t
+  use deck, only: deck_t
+  use files, only: make_folder, rename_file, remove_file
+  use text_file, only: output_t, partial
+  use tables, only: table_t, cells
+  use summary, only: summary_t, summary_text, resolved_text, number_columns, numbers_of
+  use progress, only: progress_t
+  implicit none
+  private
+  public :: results_t
+
+  !> The files of a folder of results; the summary comes last, so that where it is all the rest is.
+  character(len=*), parameter :: names(*) = [character(len=18) :: 'curve.csv', 'profiles.csv', &
+    'approximations.csv', 'classical.csv', 'sweep.csv', 'summary.nml']
+
+  !> Takes what a run has to show, between `open` and `finish`. The first thing that goes wrong is
+  !> kept in `trouble`; after it nothing more is written. Not to be copied while files are open.
+  type, extends(observer_t) :: results_t
+    !> Unallocated while all is well.
+    type(failure_t), allocatable :: trouble
+    !> Once started, it counts a step with every record of a cycle. The states of a path come all at
+    !> once, when the work is done, and are not counted.
+    type(progress_t) :: progress
+    character(len=:), allocatable, private :: folder, title, version
+    type(table_t), private :: curve, profiles, cases
+    !> Which of `names` this run has made.
+    logical, private :: made(size(names)) = .false.
+  contains
+    procedure :: open => open_results
+    procedure :: take
+    procedure :: take_case
+    procedure :: write_theory
+    procedure :: write_summary
+    procedure :: finish
+    procedure, private :: path_of
+    procedure, private :: mark
+  end type results_t
+
+  character(len=*), parameter :: curve_columns(*) = [character(len=96) :: &
+    'branch [] loading, unloading_1, unloading_2, ..., or path', &
+    'h0 [m] separation that undeformed bodies would have on the axis', &
+    'h_centre [m] separation on the axis', &
+    'displacement [m] h_centre - h0', &
+    'load [N] negative: tension', &
+    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
+    'stable [] 1, 0, or -1 where not asked for', &
+    'residual [] largest error of the equations, in units of the length of the force law', &
+    'iterations [] products with the elastic operator']
+  !> Added by &stability.
+  character(len=*), parameter :: stability_columns(*) = [character(len=96) :: &
+    'smallest_eigenvalue [] of the operator at fixed h0; negative: unstable', &
+    'criterion_28 [] largest |2 u p''/p|; above 1: unstable by (28)', &
+    'criterion_29 [] 2 p'' u/p on the axis; below -1: unstable by (29)']
+  character(len=*), parameter :: profile_columns(*) = [character(len=96) :: &
+    'branch [] as in curve.csv', &
+    'h0 [m] separation that undeformed bodies would have on the axis', &
+    'r [m] distance from the axis', &
+    'separation [m]', &
+    'deformation [m] of each surface, outward positive', &
+    'pressure [Pa] negative: attraction', &
+    'energy [J/m^2] of the surface force']
+  character(len=*), parameter :: theory_columns(*) = [character(len=96) :: &
+    'theory [] where the row comes from', &
+    'h0 [m] separation that undeformed bodies would have on the axis', &
+    'displacement [m] separation on the axis less h0', &
+    'load [N] negative: tension', &
+    'contact_radius [m]']
+
+contains
+
+  !> Makes the folder and, as asked, begins its curve and its profiles, so that a place where
+  !> nothing can be written shows before anything is computed.
+  subroutine open_results(self, folder, title, version, curve, profiles, stability, error)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: folder, title, version
+    logical, intent(in) :: curve, profiles, stability
+    type(failure_t), allocatable, intent(out) :: error
+
+    if (allocated(self%trouble)) deallocate (self%trouble)
+    self%folder = folder
+    self%title = title
+    self%version = version
+    self%made = .false.
+    call make_folder(folder, error)
+    if (curve .and. .not. allocated(error)) then
+      call self%mark('curve.csv')
+      if (stability) then
+        call self%curve%begin(self%path_of('curve.csv'), title, version, &
+          [curve_columns, stability_columns], error)
+      else
+        call self%curve%begin(self%path_of('curve.csv'), title, version, curve_columns, error)
+      end if
+    end if
+    if (profiles .and. .not. allocated(error)) then
+      call self%mark('profiles.csv')
+      call self%profiles%begin(self%path_of('profiles.csv'), title, version, profile_columns, error)
+    end if
+    if (allocated(error)) self%trouble = error
+  end subroutine open_results
+
+  !> Adds a record to the curve and, if `profile`, the state to the profiles.
+  subroutine take(self, record, problem, grid, state, profile)
+    class(results_t), intent(inout) :: self
+    type(record_t), intent(in) :: record
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    logical, intent(in) :: profile
+    character(len=24) :: stable, iterations
+
+    if (record%branch == 'path') then
+      call self%progress%note(record%branch)
+    else
+      call self%progress%step(record%branch)
+    end if
+    if (allocated(self%trouble)) return
+    write (stable, '(i0)') record%stable
+    write (iterations, '(i0)') record%iterations
+    call self%curve%row(record%branch // ',' // cells([record%h0, record%h_centre, &
+      record%displacement, record%load, record%contact_radius]) // ',' // trim(stable) // ',' // &
+      cells([record%residual]) // ',' // trim(iterations) // stability_cells(record), self%trouble)
+    if (.not. allocated(self%trouble)) call self%curve%flush(self%trouble)
+    if (profile .and. .not. allocated(self%trouble)) call write_profile(self%profiles, &
+      record%branch, record%h0, problem, grid, state, self%trouble)
+  end subroutine take
+
+  !> The cells of `stability_columns`; empty for a record without them.
+  pure function stability_cells(record) result(text)
+    type(record_t), intent(in) :: record
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (allocated(record%eigenvalue)) text = ',' // cells([record%eigenvalue, &
+      record%local_criterion, record%axis_criterion])
+  end function stability_cells
+
+  !> Adds the nodes of a state, and the axis before them.
+  subroutine write_profile(table, branch, h0, problem, grid, state, error)
+    type(table_t), intent(inout) :: table
+    character(len=*), intent(in) :: branch
+    real(wp), intent(in) :: h0
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), dimension(size(state%gap) + 1) :: r, gap, deformation, pressure, energy
+    integer :: j
+
+    if (.not. table%has_begun()) return
+    associate (n => size(state%gap), law => problem%law)
+      r = [0.0_wp, state%scale*grid%x(:n)]
+      gap = [state%axis_gap, state%gap]
+      pressure = [law%pressure([state%axis_gap]), state%pressure]
+      energy = law%energy(gap)
+      ! h = h0 + r^2/(2R) - 2u.
+      deformation = -0.5_wp*(gap - state%h0 - 0.5_wp*r**2)
+    end associate
+    do j = 1, size(r)
+      ! A mesh may have a node on the axis.
+      if (j == 2 .and. .not. r(j) > 0) cycle
+      call table%row(branch // ',' // cells([h0, r(j)*problem%lateral, gap(j)*problem%length, &
+        deformation(j)*problem%length, pressure(j)*problem%pressure, &
+        energy(j)*problem%pressure*problem%length]), error)
+      if (allocated(error)) return
+    end do
+    call table%flush(error)
+  end subroutine write_profile
+
+  !> Adds a case of a sweep, the value of its key and what its summary has to say, to `sweep.csv`.
+  !> `key` is 'group.key'.
+  subroutine take_case(self, key, value, summary)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: key
+    real(wp), intent(in) :: value
+    type(summary_t), intent(in) :: summary
+
+    if (allocated(self%trouble)) return
+    if (.not. self%cases%has_begun()) then
+      call self%mark('sweep.csv')
+      call self%cases%begin(self%path_of('sweep.csv'), self%title, self%version, &
+        [character(len=len(number_columns)) :: key // ' as in the deck', number_columns], &
+        self%trouble)
+    end if
+    if (.not. allocated(self%trouble)) &
+      call self%cases%row(cells([value, numbers_of(summary)]), self%trouble)
+    if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
+  end subroutine take_case
+
+  !> Writes the table `name` ('classical' or 'approximations').
+  subroutine write_theory(self, name, rows)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    type(theory_row_t), intent(in) :: rows(:)
+    type(table_t) :: table
+    integer :: i
+
+    if (allocated(self%trouble)) return
+    call self%mark(name // '.csv')
+    call table%begin(self%path_of(name // '.csv'), self%title, self%version, theory_columns, &
+      self%trouble)
+    do i = 1, size(rows)
+      if (allocated(self%trouble)) return
+      call table%row(rows(i)%theory // ',' // cells([rows(i)%h0, rows(i)%displacement, &
+        rows(i)%load, rows(i)%contact_radius]), self%trouble)
+    end do
+    if (.not. allocated(self%trouble)) call table%close(self%trouble)
+  end subroutine write_theory
+
+  !> Writes the summary. Its title and version, where not allocated, are those of `open`.
+  subroutine write_summary(self, summary, cost, deck)
+    class(results_t), intent(inout) :: self
+    type(summary_t), intent(in) :: summary
+    type(cost_t), intent(in) :: cost
+    type(deck_t), intent(in) :: deck
+    type(summary_t) :: complete
+    type(output_t) :: file
+    character(len=:), allocatable :: path, text
+
+    if (allocated(self%trouble)) return
+    complete = summary
+    if (.not. allocated(complete%title)) complete%title = self%title
+    if (.not. allocated(complete%version)) complete%version = self%version
+    call self%mark('summary.nml')
+    path = self%path_of('summary.nml') // partial
+    call resolved_text(deck, path, text, self%trouble)
+    if (.not. allocated(self%trouble)) call file%open(path, self%trouble)
+    if (.not. allocated(self%trouble)) &
+      call file%put(summary_text(complete, cost) // text, self%trouble)
+    if (.not. allocated(self%trouble)) call file%close(self%trouble)
+  end subroutine write_summary
+
+  !> Ends the progress and gives the files of this run their names; those of an earlier run which
+  !> this one has not made disappear. With `trouble` the partial files stay and `error` tells why.
+  subroutine finish(self, error)
+    class(results_t), intent(inout) :: self
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: path
+    integer :: i
+
+    call self%progress%finish()
+    call end_table(self%curve, self%trouble)
+    call end_table(self%profiles, self%trouble)
+    call end_table(self%cases, self%trouble)
+    if (allocated(self%trouble)) then
+      error = self%trouble
+      return
+    end if
+    if (.not. any(self%made)) return
+    ! No summary may stand beside results that are not its own.
+    call remove_file(self%path_of('summary.nml'), error)
+    do i = 1, size(names)
+      if (allocated(error)) return
+      path = self%path_of(trim(names(i)))
+      if (self%made(i)) then
+        call rename_file(path // partial, path, error)
+      else
+        call remove_file(path, error)
+        if (.not. allocated(error)) call remove_file(path // partial, error)
+      end if
+    end do
+  end subroutine finish
+
+  !> Closes a table; the first error stays.
+  subroutine end_table(table, error)
+    type(table_t), intent(inout) :: table
+    type(failure_t), allocatable, intent(inout) :: error
+    type(failure_t), allocatable :: another
+
+    call table%close(another)
+    if (allocated(another) .and. .not. allocated(error)) call move_alloc(another, error)
+  end subroutine end_table
+
+  !> Notes that this run makes the file `name`.
+  pure subroutine mark(self, name)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+
+    where (names == name) self%made = .true.
+  end subroutine mark
+
+  !> Path of a file of the folder.
+  pure function path_of(self, name) result(path)
+    class(results_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: path
+
+    path = self%folder // '/' // name
+  end function path_of
+
+end module results

@@ -1,0 +1,133 @@
+!> One deck from scene to results: the effects that the scene calls for, and no others.
+module simulation
+  !$ use omp_lib, only: omp_get_max_threads
+  use kinds, only: wp
+  use failure, only: failure_t
+  use build_info, only: version, compiler, blas, options
+  use problem, only: problem_t
+  use scene_groups, only: scene_t
+  use experiment, only: outcome_t, run_experiment, problem_of, states_planned
+  use comparison, only: classical_rows
+  use records, only: observer_t
+  use stability_records, only: stability_recorder_t
+  use summarise, only: summary_of
+  use summary, only: summary_t
+  use results, only: results_t
+  use files, only: write_stderr
+  use clock, only: seconds
+  implicit none
+  private
+  public :: run_scene
+
+contains
+
+  !> Computes a scene and writes its results into the folder `out_dir`. exit_code: 0 done, 1 something
+  !> failed; what was computed is kept and the summary says what failed.
+  subroutine run_scene(scene, out_dir, quiet, resume, exit_code)
+    type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: out_dir
+    logical, intent(in) :: quiet, resume
+    integer, intent(out) :: exit_code
+    type(results_t), target :: results
+    type(stability_recorder_t), target :: recorder
+    class(observer_t), pointer :: observer
+    type(problem_t) :: problem
+    type(outcome_t) :: outcome
+    type(summary_t) :: summary
+    type(failure_t), allocatable :: error
+    real(wp) :: began
+    integer :: i
+
+    began = seconds()
+    exit_code = 1
+    if (resume .or. allocated(scene%sweep) .or. allocated(scene%approximations)) then
+      call say(out_dir//': --resume, &sweep and &approximations are not part of this version', &
+        .false.)
+      return
+    end if
+    problem = problem_of(scene)
+    call results%open(out_dir, scene%title, version, &
+      allocated(scene%loading) .or. allocated(scene%path), allocated(scene%profiles), &
+      allocated(scene%stability), error)
+    if (allocated(error)) then
+      call say(out_dir//': '//error%message, .false.)
+      return
+    end if
+    observer => results
+    if (allocated(scene%stability)) then
+      recorder%next => results
+      observer => recorder
+    end if
+    call results%progress%start(states_planned(scene), out_dir(index(out_dir, '/', .true.) + 1:), &
+      quiet)
+    call run_experiment(scene, problem, observer, outcome)
+    call results%progress%finish()
+    outcome%cost%factorisations = outcome%cost%factorisations + recorder%cost%factorisations
+
+    if (allocated(scene%classical)) call results%write_theory('classical.csv', &
+      classical_rows(problem, scene%classical, start_of(scene)))
+    summary = summary_of(scene, problem, outcome)
+    summary%version = version
+    summary%compiler = compiler
+    summary%blas = blas
+    summary%build_options = options
+    summary%threads = thread_count()
+    summary%wall_seconds = seconds() - began
+    call results%write_summary(summary, outcome%cost, scene%deck)
+    call results%finish(error)
+    if (allocated(error)) then
+      call say(out_dir//': '//error%message, .false.)
+      return
+    end if
+    if (allocated(summary%warnings)) then
+      do i = 1, size(summary%warnings)
+        call say(out_dir//': warning: '//summary%warnings(i)%text, quiet)
+      end do
+    end if
+    call say(report(out_dir, summary, outcome), quiet)
+    if (summary%converged) exit_code = 0
+  end subroutine run_scene
+
+  !> Where the classical table begins if the deck does not say: where the loading begins, or the path.
+  real(wp) function start_of(scene)
+    type(scene_t), intent(in) :: scene
+
+    start_of = 0
+    if (allocated(scene%loading)) start_of = scene%loading%h0_start
+  end function start_of
+
+  !> Threads in use.
+  integer function thread_count()
+    thread_count = 1
+    !$ thread_count = omp_get_max_threads()
+  end function thread_count
+
+  !> What was found, in a line.
+  function report(out_dir, summary, outcome) result(text)
+    character(len=*), intent(in) :: out_dir
+    type(summary_t), intent(in) :: summary
+    type(outcome_t), intent(in) :: outcome
+    character(len=:), allocatable :: text
+    character(len=160) :: buffer
+
+    write (buffer, '(i0, a, f0.2, a)') outcome%cost%states, ' states in ', summary%wall_seconds, ' s'
+    if (summary%wall_seconds < 1) write (buffer, '(i0, a, f5.3, a)') outcome%cost%states, &
+      ' states in ', summary%wall_seconds, ' s'
+    text = trim(buffer)
+    if (allocated(summary%max_tension)) then
+      write (buffer, '(a, es11.4, a, es12.4, a)') ', largest tension', summary%max_tension, &
+        ' N at h0 =', summary%max_tension_h0, ' m'
+      text = text//trim(buffer)
+    end if
+    text = out_dir//': '//text
+  end function report
+
+  !> A line to standard error.
+  subroutine say(text, quiet)
+    character(len=*), intent(in) :: text
+    logical, intent(in) :: quiet
+
+    if (.not. quiet) call write_stderr(text//new_line('a'))
+  end subroutine say
+
+end module simulation

@@ -1,0 +1,44 @@
+!> An observer that adds the stability of each state to its record and passes it on. Only scenes with
+!> &stability have one.
+module stability_records
+  use kinds, only: wp
+  use problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: state_t, cost_t
+  use records, only: observer_t, record_t, stable_yes, stable_no
+  use stability, only: smallest_eigenvalue, local_criterion, axis_criterion
+  implicit none
+  private
+  public :: stability_recorder_t
+
+  type, extends(observer_t) :: stability_recorder_t
+    !> Whom the completed records go to.
+    class(observer_t), pointer :: next => null()
+    !> What the eigenvalues took.
+    type(cost_t) :: cost
+  contains
+    procedure :: take
+  end type stability_recorder_t
+
+contains
+
+  subroutine take(self, record, problem, grid, state, profile)
+    class(stability_recorder_t), intent(inout) :: self
+    type(record_t), intent(in) :: record
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    logical, intent(in) :: profile
+    type(record_t) :: completed
+    real(wp) :: eigenvalue
+
+    completed = record
+    call smallest_eigenvalue(problem, grid, state, eigenvalue, self%cost)
+    completed%eigenvalue = eigenvalue
+    completed%local_criterion = local_criterion(problem, grid, state)
+    completed%axis_criterion = axis_criterion(problem, state)
+    completed%stable = merge(stable_yes, stable_no, eigenvalue > 0)
+    call self%next%take(completed, problem, grid, state, profile)
+  end subroutine take
+
+end module stability_records

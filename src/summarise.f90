@@ -1,0 +1,217 @@
+!> From what the experiments found to what the user is told: SI units, and a warning for all that
+!> is not as it should be.
+module summarise
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: wp
+  use problem, only: problem_t, tabor_parameter, surface_energy
+  use classical, only: jkr_pull_off, dmt_pull_off
+  use scene_groups, only: scene_t
+  use deck_text, only: brief
+  use experiment, only: outcome_t
+  use cycle, only: branch_t
+  use summary, only: summary_t
+  implicit none
+  private
+  public :: summary_of
+
+  !> Nodes may lie this many necks apart at the contact edge: beyond it the edge is pinned between them.
+  real(wp), parameter :: resolved_spacing = 0.2_wp
+
+contains
+
+  !> The summary of a run.
+  function summary_of(scene, problem, outcome) result(summary)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(outcome_t), intent(in) :: outcome
+    type(summary_t) :: summary
+    integer :: k
+
+    summary%title = scene%title
+    summary%converged = .true.
+    call describe(scene, problem, summary)
+    if (allocated(outcome%chosen%grid)) then
+      summary%grid = outcome%chosen%grid
+      summary%method = trim(outcome%chosen%options%method)
+      summary%chosen_because = outcome%chosen%because
+      summary%nodes = outcome%nodes
+      summary%worst_residual = 0
+    end if
+    if (allocated(outcome%loading)) then
+      call take_branch(problem, 'loading', outcome%loading, summary)
+      call take_jump(problem, outcome%loading, summary%jump_in_h0, summary%jump_in_load, &
+        summary%jump_in_uncertainty)
+    end if
+    if (allocated(outcome%unloading)) then
+      do k = 1, size(outcome%unloading)
+        call take_branch(problem, 'unloading_'//brief(real(k, wp)), outcome%unloading(k), summary)
+      end do
+      call take_unloading(scene, problem, outcome%unloading, summary)
+    end if
+    ! The path knows the same folds exactly.
+    if (allocated(outcome%path)) call take_path(problem, outcome, summary)
+    if (.not. problem%rigid) call judge_resolution(summary)
+    if (outcome%chosen%options%stop_on_change .and. outcome%chosen%options%method == 'mixing') &
+      call summary%warn('the iteration was stopped on a small change of the displacement; the '// &
+      'largest residual left is '//about(summary%worst_residual)//' lengths of the force law')
+  end function summary_of
+
+  !> What follows from the deck alone.
+  subroutine describe(scene, problem, summary)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(summary_t), intent(inout) :: summary
+
+    if (problem%law%adhesion > 0) then
+      summary%surface_energy = surface_energy(problem)
+      summary%jkr_pull_off = -jkr_pull_off(problem%radius, summary%surface_energy)
+      summary%dmt_pull_off = -dmt_pull_off(problem%radius, summary%surface_energy)
+      if (.not. problem%rigid) then
+        summary%sigma = problem%coupling*problem%law%adhesion
+        summary%tabor = tabor_parameter(problem)
+      end if
+    else if (scene%force%law == 'exponential' .and. .not. problem%rigid) then
+      summary%big_lambda = problem%coupling
+    end if
+  end subroutine describe
+
+  !> Largest tension, residual and trouble of a branch of the cycle.
+  subroutine take_branch(problem, name, branch, summary)
+    type(problem_t), intent(in) :: problem
+    character(len=*), intent(in) :: name
+    type(branch_t), intent(in) :: branch
+    type(summary_t), intent(inout) :: summary
+
+    if (allocated(branch%load)) call raise_tension(problem, branch%load, branch%load_h0, summary)
+    summary%worst_residual = max(summary%worst_residual, branch%worst_residual)
+    call widen_spacing(summary, branch%worst_spacing)
+    if (branch%unconverged > 0) then
+      summary%converged = .false.
+      call summary%warn(name//': '//brief(real(branch%unconverged, wp))//' of '// &
+        brief(real(branch%states, wp))//' states did not converge, the first at h0 = '// &
+        about(branch%first_unconverged*problem%length)//' m; the largest residual is '// &
+        about(branch%worst_residual)//' lengths of the force law')
+    end if
+    if (branch%reason /= '') then
+      summary%converged = .false.
+      call summary%warn(name//' ended early: '//trim(branch%reason))
+    end if
+  end subroutine take_branch
+
+  subroutine take_unloading(scene, problem, branches, summary)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(branch_t), intent(in) :: branches(:)
+    type(summary_t), intent(inout) :: summary
+    real(wp) :: nothing
+    integer :: k
+
+    nothing = ieee_value(nothing, ieee_quiet_nan)
+    summary%unload_from = scene%unloading%from
+    allocate (summary%unload_max_tension(size(branches)), source=nothing)
+    allocate (summary%unload_max_tension_h0(size(branches)), source=nothing)
+    allocate (summary%unload_jump_out_h0(size(branches)), source=nothing)
+    do k = 1, size(branches)
+      if (allocated(branches(k)%load)) then
+        summary%unload_max_tension(k) = -branches(k)%load*problem%load
+        summary%unload_max_tension_h0(k) = branches(k)%load_h0*problem%length
+      end if
+      if (.not. allocated(branches(k)%jump_h0)) cycle
+      summary%unload_jump_out_h0(k) = branches(k)%jump_h0*problem%length
+      if (.not. allocated(summary%jump_out_h0)) call take_jump(problem, branches(k), &
+        summary%jump_out_h0, summary%jump_out_load, summary%jump_out_uncertainty)
+    end do
+  end subroutine take_unloading
+
+  !> The jump of a branch, if it has one.
+  subroutine take_jump(problem, branch, h0, load, uncertainty)
+    type(problem_t), intent(in) :: problem
+    type(branch_t), intent(in) :: branch
+    real(wp), allocatable, intent(inout) :: h0, load, uncertainty
+
+    if (.not. allocated(branch%jump_h0)) return
+    h0 = branch%jump_h0*problem%length
+    load = branch%jump_load*problem%load
+    if (branch%jump_uncertainty > 0) uncertainty = branch%jump_uncertainty*problem%length
+  end subroutine take_jump
+
+  subroutine take_path(problem, outcome, summary)
+    type(problem_t), intent(in) :: problem
+    type(outcome_t), intent(in) :: outcome
+    type(summary_t), intent(inout) :: summary
+
+    associate (path => outcome%path)
+      summary%worst_residual = max(summary%worst_residual, path%worst_residual)
+      call widen_spacing(summary, path%worst_spacing)
+      if (path%reason /= '') then
+        summary%converged = .false.
+        call summary%warn('path: '//trim(path%reason))
+      end if
+      if (allocated(path%load)) then
+        if (path%load < 0) call raise_tension(problem, path%load, path%load_h0, summary)
+      end if
+      if (.not. allocated(path%fold_h0)) return
+      summary%folds_h0 = path%fold_h0*problem%length
+      summary%folds_load = path%fold_load*problem%load
+      summary%folds_stable = merge(1, 0, path%unstable_after == 0)
+      summary%load_folds_h0 = path%extremum_h0*problem%length
+      summary%load_folds_load = path%extremum_load*problem%load
+      if (allocated(path%jump_in_h0)) then
+        summary%jump_in_h0 = path%jump_in_h0*problem%length
+        summary%jump_in_load = path%jump_in_load*problem%load
+        if (allocated(summary%jump_in_uncertainty)) deallocate (summary%jump_in_uncertainty)
+      end if
+      if (allocated(path%jump_out_h0)) then
+        summary%jump_out_h0 = path%jump_out_h0*problem%length
+        summary%jump_out_load = path%jump_out_load*problem%load
+        if (allocated(summary%jump_out_uncertainty)) deallocate (summary%jump_out_uncertainty)
+      end if
+    end associate
+  end subroutine take_path
+
+  !> Keeps the largest tension, positive.
+  subroutine raise_tension(problem, load, h0, summary)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: load, h0
+    type(summary_t), intent(inout) :: summary
+
+    if (allocated(summary%max_tension)) then
+      if (-load*problem%load <= summary%max_tension) return
+    end if
+    summary%max_tension = -load*problem%load
+    summary%max_tension_h0 = h0*problem%length
+  end subroutine raise_tension
+
+  subroutine widen_spacing(summary, spacing)
+    type(summary_t), intent(inout) :: summary
+    real(wp), intent(in) :: spacing
+
+    if (.not. spacing > 0) return
+    if (.not. allocated(summary%spacing_over_neck)) summary%spacing_over_neck = 0
+    summary%spacing_over_neck = max(summary%spacing_over_neck, spacing)
+  end subroutine widen_spacing
+
+  !> Whether the neck is resolved, and what to do if not.
+  subroutine judge_resolution(summary)
+    type(summary_t), intent(inout) :: summary
+
+    if (.not. allocated(summary%spacing_over_neck)) return
+    summary%resolved = summary%spacing_over_neck <= resolved_spacing
+    if (summary%resolved) return
+    call summary%warn('under-resolved: nodes are '//about(summary%spacing_over_neck)// &
+      ' neck widths apart at the contact edge, which is then pinned between them; use '// &
+      about(summary%spacing_over_neck/resolved_spacing)//' times as many nodes (&numerics nodes) '// &
+      'or grid = ''panels''')
+  end subroutine judge_resolution
+
+  !> A number for a message, to three digits.
+  pure function about(x) result(text)
+    real(wp), intent(in) :: x
+    character(len=:), allocatable :: text
+    character(len=24) :: buffer
+
+    write (buffer, '(g12.3)') x
+    text = trim(adjustl(buffer))
+  end function about
+
+end module summarise

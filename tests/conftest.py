@@ -1,0 +1,37 @@
+"""Fixtures shared by all tests that go through the program."""
+
+import os
+import pathlib
+import subprocess
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="session")
+def snapin_path():
+    """The executable under test: $SNAPIN, else build/snapin of this checkout."""
+    path = pathlib.Path(os.environ.get("SNAPIN", ROOT / "build" / "snapin")).resolve()
+    if not path.is_file():
+        pytest.fail(f"no executable at {path}; build it first or set SNAPIN")
+    return path
+
+
+@pytest.fixture(scope="session")
+def snapin(snapin_path):
+    """Runs the program: snapin(arg, ..., cwd=DIR) -> CompletedProcess with text output."""
+
+    def run(*args, cwd=None, timeout=300, **kwargs):
+        return subprocess.run(
+            [str(snapin_path), *map(str, args)],
+            cwd=cwd,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=timeout,
+            check=False,
+            **kwargs,
+        )
+
+    return run

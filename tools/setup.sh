@@ -1,0 +1,150 @@
+# Sourced by the commands at the top of the checkout, with `top` set to that folder: `prepare`
+# brings compilers, virtual environment and build up to date, or ends the shell: with status 2 and
+# one line that says what is missing, or with status 1 and the end of the log. What is up to date
+# costs some tens of milliseconds. Nothing is written to standard output.
+
+: "${top:?}"
+venv=$top/.venv
+build=$top/build
+log=$build/setup.log
+requirements=$top/tools/requirements.txt
+
+say() { printf 'snapin: %s\n' "$*" >&2; }
+
+give_up() { say "$*"; exit 2; }
+
+# logged WHAT COMMAND...: one line on the terminal, everything else in the log.
+logged() {
+  what=$1
+  shift
+  say "$what"
+  [ -n "${log_begun-}" ] || : > "$log"
+  log_begun=yes
+  printf '\n== %s\n' "$what" >> "$log"
+  "$@" >> "$log" 2>&1 && return
+  tail -n 25 "$log" >&2
+  say "$what failed; the whole log: $log"
+  exit 1
+}
+
+has() { command -v "$1" > /dev/null 2>&1; }
+
+# links SUFFIX SOURCE COMPILER [LIBRARY...]: whether a program can be made of it.
+links() {
+  suffix=$1 source=$2 compiler=$3
+  shift 3
+  has "$compiler" && scratch=$(mktemp -d) || return
+  printf '%b' "$source" > "$scratch/probe.$suffix"
+  "$compiler" -o "$scratch/probe" "$scratch/probe.$suffix" "$@" > /dev/null 2>&1
+  linked=$?
+  rm -rf "$scratch"
+  return $linked
+}
+
+# The libraries that meson.build looks for. Without a compiler the package data base answers.
+has_lapack() {
+  if has "${FC:-gfortran}"; then
+    for libraries in -lopenblas '-llapack -lblas'; do
+      # shellcheck disable=SC2086 # two words are meant
+      links f90 'call dgetrf\ncall dgemv\nend\n' "${FC:-gfortran}" $libraries && return
+    done
+    return 1
+  fi
+  has dpkg && dpkg -s libopenblas-dev > /dev/null 2>&1
+}
+
+python_can() { python3 -c "$1" > /dev/null 2>&1; }
+
+# The Debian packages still needed, on one line. The compilers only recommend libc6-dev.
+missing_packages() {
+  links c '#include <stdio.h>\nint main(void) { return 0; }\n' "${CC:-cc}" ||
+    printf 'gcc libc6-dev '
+  has "${FC:-gfortran}" || printf 'gfortran '
+  has_lapack || printf 'libopenblas-dev '
+  python_can 'import venv, ensurepip' || printf 'python3-venv '
+  python_can 'import os, sysconfig as s
+os.stat(os.path.join(s.get_path("include"), "Python.h"))' || printf 'python3-dev '
+}
+
+install_packages() {
+  has python3 || give_up "python3 (3.9 or later) is missing"
+  python_can 'import sys; assert sys.version_info >= (3, 9)' ||
+    give_up "python3 is older than 3.9: $(python3 --version 2>&1)"
+  packages=$(missing_packages)
+  packages=${packages% }
+  [ -n "$packages" ] || return 0
+  has apt-get ||
+    give_up "missing: $packages (Debian's names); install these with this system's tools"
+  [ "$(id -u)" = 0 ] ||
+    give_up "missing: $packages; install with: sudo apt-get install -y $packages"
+  export DEBIAN_FRONTEND=noninteractive
+  logged 'updating the package lists' apt-get update
+  # shellcheck disable=SC2086 # a list of words is meant
+  logged "installing $packages" \
+    apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 $packages
+  packages=$(missing_packages)
+  [ -z "$packages" ] ||
+    give_up "still missing for $(command -v python3) and ${FC:-gfortran}: $packages"
+}
+
+make_environment() {
+  rm -rf "$venv"
+  logged 'making the virtual environment' python3 -m venv "$venv"
+  logged 'installing meson, numpy, pytest and the like' \
+    "$venv/bin/python" -m pip install --disable-pip-version-check -r "$requirements"
+}
+
+configure() {
+  # A folder configured elsewhere, or half, cannot be mended by Meson; the log is ours to keep.
+  find "$build" -mindepth 1 -maxdepth 1 ! -name "${log##*/}" -exec rm -rf {} +
+  logged 'configuring' env NINJA="$venv/bin/ninja" \
+    "$venv/bin/meson" setup -Dpython=enabled "$build" "$top"
+}
+
+compile() {
+  case $("$venv/bin/ninja" -C "$build" -n 2>&1) in
+    *'no work to do'*) ;;
+    *) logged 'compiling' "$venv/bin/ninja" -C "$build" ;;
+  esac
+}
+
+# What environment and build depend on: their place, since both contain absolute paths, the Python
+# they were made with, and the versions asked for.
+foundation() {
+  printf '%s\n' "$top" "$(readlink -f "$venv/bin/python")"
+  cat "$requirements"
+}
+
+# Stamps are written last, so that what was interrupted is done again.
+is_complete() { [ -f "$1/complete" ] && [ "$(cat "$1/complete")" = "$(foundation)" ]; }
+
+bring_up_to_date() {
+  if ! { mkdir -p "$build" 2> /dev/null && [ -w "$build" ]; }; then
+    # Someone else's checkout: use it as it stands.
+    [ -x "$build/snapin" ] && [ -x "$venv/bin/python" ] && return
+    give_up "this checkout is not built, and this user may not write to it: $top"
+  fi
+  # These would lead the new environment's Python and pip elsewhere.
+  unset PYTHONHOME PYTHONPATH PIP_TARGET PIP_PREFIX PIP_USER
+  if ! { [ -x "$venv/bin/python" ] && is_complete "$venv" && is_complete "$build"; }; then
+    install_packages
+    if ! { [ -x "$venv/bin/python" ] && is_complete "$venv"; }; then
+      make_environment
+      foundation > "$venv/complete"
+    fi
+    configure
+    foundation > "$build/complete"
+  fi
+  compile
+}
+
+# One at a time in a checkout; in a subshell, so that the lock and the environment end with it.
+prepare() {
+  (
+    if has flock && ! flock -n 9; then
+      say 'waiting for another set-up of this checkout'
+      flock 9
+    fi
+    bring_up_to_date
+  ) 9< "$top/tools/setup.sh" || exit
+}
