@@ -1,12 +1,12 @@
-!> The numerics as f2py can see them: kernel, quadrature, product integration, force laws, meshes and
-!> one state of equilibrium. Conventions as in `snapin_flat`.
+!> The numerics as f2py can see them: kernel, quadrature, product integration, force laws, meshes
+!> and one state of equilibrium. Conventions as in `snapin_flat`.
 !>
-!> A mesh is described by its kind, its centre, the ends of its panels as offsets from the centre, and
-!> its order: 'panels' has `order` nodes on each; 'uniform' has one panel [0, extent] with `order`
-!> nodes in all. Either way there are order*(m - 1) nodes, m being the number of ends.
+!> A mesh is described by its kind, its centre, the ends of its panels as offsets from the centre,
+!> and its order: 'panels' has `order` nodes on each; 'uniform' has one panel [0, extent] with
+!> `order` nodes in all. Either way there are order*(m - 1) nodes, m being the number of ends.
 !>
-!> A force law is described by its name, its part and its four possible parameters, SI, of which each
-!> law reads its own.
+!> A force law is described by its name, its part and its four possible parameters, SI, of which
+!> each law reads its own.
 module flat_numerics
   use iso_c_binding, only: c_double, c_int
   implicit none
@@ -57,8 +57,8 @@ contains
     end do
   end subroutine panel_integrals
 
-  !> Pressure [Pa], its derivative by the gap [Pa/m] and its integral from the gap to infinity [J/m^2],
-  !> at gaps [m].
+  !> Pressure [Pa], its derivative by the gap [Pa/m] and its integral from the gap to infinity
+  !> [J/m^2], at gaps [m].
   subroutine law_values(name, part, hamaker, z0, p0, decay_length, gap, pressure, slope, energy, &
     stat, message, n)
     use force_law, only: force_law_t

@@ -73,7 +73,7 @@ contains
 
       renew = .not. frozen%factors%valid .or. since_renewal >= options%patience
       ! Growth beyond a few times is not the transient of an accelerated step.
-      if (state%residual > 10*before .and. since_renewal > 0) then
+      if (0.1_wp*state%residual > before .and. since_renewal > 0) then
         cost%rejected_steps = cost%rejected_steps + 1
         renew = .true.
         if (best%residual < huge(1.0_wp)) then

@@ -22,9 +22,9 @@ module choice
     real(wp) :: extent = 0
   end type choice_t
 
-  !> Spacing over the neck at which a uniform grid resolves it with a margin of two, and the paper's
-  !> range of nodes, which bounds what is chosen unasked.
-  real(wp), parameter :: comfortable = 0.1_wp
+  !> Spacing over the smallest feature at which a uniform grid resolves it, and the paper's range of
+  !> nodes, which bounds what is chosen unasked.
+  real(wp), parameter :: comfortable = 0.2_wp
   integer, parameter :: fewest = 200, most = 1500
 
 contains
@@ -87,7 +87,7 @@ contains
     real(wp), intent(in) :: accuracy
     type(resolution_t) :: resolution
 
-    resolution%order = min(18, max(6, nint(4 - log10(accuracy))))
+    resolution%order = min(12, max(6, nint(5 - 0.6_wp*log10(accuracy))))
     resolution%accuracy = 0.1_wp*accuracy
   end function resolution_for
 

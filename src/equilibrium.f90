@@ -97,8 +97,8 @@ contains
     state%load = 2*pi*(state%scale**2*dot_product(grid%weight(:n), state%pressure) + &
       sum(this%law%energy([state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)])))
     state%residual = maxval(abs(g))
-    ! maxval passes over NaN, and a NaN must never look converged.
-    if (any(g /= g)) state%residual = huge(1.0_wp)
+    ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
+    if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
   end subroutine residual
 
   !> Factors of the Jacobian of `residual` at a state, bordered where the control has an unknown of
@@ -297,6 +297,7 @@ contains
 
     residual_floor = 8*epsilon(1.0_wp)*(abs(state%h0) + maxval(abs(state%gap)) + &
       4*this%coupling*state%scale*maxval(abs(state%pressure)))
+    if (.not. residual_floor <= huge(1.0_wp)) residual_floor = 0
   end function residual_floor
 
   !> Number of gaps among `size` unknowns.
@@ -332,6 +333,9 @@ contains
     real(wp), intent(in) :: pressure(:)
     real(wp) :: least
 
+    ! An infinite pressure or NaN must reach the residual.
+    columns = size(pressure)
+    if (.not. all(abs(pressure) <= huge(1.0_wp))) return
     least = 1.0e-3_wp*epsilon(1.0_wp)*maxval(abs(pressure))
     do columns = size(pressure), 1, -1
       if (abs(pressure(columns)) > least) exit

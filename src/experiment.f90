@@ -16,6 +16,7 @@ module experiment
   use records, only: observer_t
   use equilibrium, only: cost_t
   use clock, only: seconds
+  use blas_threads, only: use_threads_for
   implicit none
   private
   public :: outcome_t, run_experiment, problem_of, states_planned
@@ -70,6 +71,7 @@ contains
       locked%cost%kernel_seconds = locked%cost%kernel_seconds + seconds()
       locked%cost%kernel_entries = sum(locked%pair%grid%kernel_entries())
       outcome%nodes = sum(locked%pair%grid%nodes)
+      call use_threads_for(maxval(locked%pair%grid%nodes))
       ! The path has no use for mixing.
       if (locked%options%method == 'mixing') locked%options%method = 'anderson'
     end if
@@ -85,6 +87,7 @@ contains
         fixed%cost%kernel_seconds = fixed%cost%kernel_seconds + seconds()
         fixed%cost%kernel_entries = fixed%cost%kernel_entries + fixed%mesh%kernel_entries()
         outcome%nodes = outcome%nodes + fixed%mesh%nodes
+        call use_threads_for(fixed%mesh%nodes)
         call run_cycle(scene, fixed, observer, outcome)
         locked%cost = fixed%cost
       end if

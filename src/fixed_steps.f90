@@ -20,16 +20,17 @@ module fixed_steps
     procedure :: go
     procedure :: grid
     procedure :: spacing_over_neck
-    procedure, private :: settle
-    procedure, private :: locate_jump
+    procedure, private :: continue_to
+    procedure, private :: land
+    procedure, private :: solve_at
   end type fixed_steps_t
 
   !> Steps of the approach from afar, in the law's lengths.
   real(wp), parameter :: approach_step = 0.5_wp
-  !> In a smooth step the deformation changes by little more than h0 does; beyond this many times it is
-  !> looked at more closely, and what is left after bisection beyond this many law's lengths is a
-  !> jump.
-  real(wp), parameter :: suspicious = 1.5_wp, jump = 0.02_wp
+  !> A state continues the branch that was extrapolated to it if it lies no farther from the
+  !> extrapolation than half the extrapolated change plus this many of the law's lengths. Where even
+  !> the smallest step leads farther the bodies jump.
+  real(wp), parameter :: jump = 0.05_wp
 
 contains
 
@@ -50,10 +51,11 @@ contains
     state%h0 = far
     state%axis_gap = far
     state%gap = far + 0.5_wp*self%mesh%x**2
-    position%state = state
+    call self%solve_at(far, state, event)
+    call remember(position, state, 1, .false.)
     steps = ceiling((far - h0)/approach_step)
-    do i = 0, steps
-      call self%go(far - (far - h0)*i/max(steps, 1), position, event)
+    do i = 1, steps
+      call self%go(far - (far - h0)*i/steps, position, event)
     end do
     event%jumped = .false.
   end subroutine begin
@@ -63,74 +65,97 @@ contains
     real(wp), intent(in) :: h0
     type(position_t), intent(inout) :: position
     type(event_t), intent(out) :: event
-    type(state_t) :: state, from
+    type(state_t) :: state, before, landed
+    real(wp) :: step, next
+    logical :: continues
 
-    from = position%state
-    if (position%held > 1 .and. self%options%method /= 'mixing') then
-      state = between(self%mesh, position%h0(:position%held), position%past(:position%held), h0, &
-        self%mesh%nodes)
-    else
-      ! As in the paper, h0 changes at constant separation.
-      state = from
+    call self%continue_to(h0, position, state, event, continues)
+    if (continues) then
+      call remember(position, state, 1, .false.)
+      return
     end if
-    call self%settle(h0, from, state, event)
-    if (position%held > 0 .and. change(from, state) > suspicious*abs(h0 - from%h0)) &
-      call self%locate_jump(from, state, event)
-    call remember(position, state, 1, event%jumped)
+
+    ! The branch ends, or turns sharply, on the way: how far does it go?
+    landed = state
+    step = 0.5_wp*(h0 - position%state%h0)
+    do while (abs(step) > self%jump_tolerance)
+      next = position%state%h0 + step
+      if (abs(h0 - position%state%h0) <= 1.1_wp*abs(step)) next = h0
+      call self%continue_to(next, position, state, event, continues)
+      if (continues) then
+        call remember(position, state, 1, .false.)
+        if (abs(next - h0) <= 0.0_wp) return
+        step = 1.5_wp*step
+      else
+        step = step/3
+      end if
+    end do
+    before = position%state
+    call self%land(h0, before, landed, event)
+    event%jumped = event%converged .and. change(before, landed) > jump
+    event%jump_h0 = before%h0 + 1.5_wp*step
+    event%jump_load = before%load
+    event%jump_uncertainty = abs(1.5_wp*step)
+    call remember(position, landed, 1, event%jumped)
   end subroutine go
 
-  !> The equilibrium at h0 from the guess `state`; where that fails or leads far from `from`, the
-  !> one to which the bodies relax from there.
-  subroutine settle(self, h0, from, state, event)
+  !> The state at h0 from the extrapolated past (for mixing, as in the paper, from the last state at
+  !> constant separation), and whether it continues the branch of the position.
+  subroutine continue_to(self, h0, position, state, event, continues)
     class(fixed_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(state_t), intent(in) :: from
+    type(position_t), intent(in) :: position
+    type(state_t), intent(out) :: state
+    type(event_t), intent(inout) :: event
+    logical, intent(out) :: continues
+    type(state_t) :: expected
+
+    expected = between(self%mesh, position%h0(:position%held), position%past(:position%held), h0, &
+      self%mesh%nodes)
+    if (position%held == 1) expected%gap = expected%gap + (h0 - position%state%h0)
+    expected%h0 = h0
+    state = expected
+    ! A single state says too little about where the next is, and mixing starts as in the paper.
+    if (self%options%method == 'mixing' .or. position%held == 1) state = position%state
+    call self%solve_at(h0, state, event)
+    continues = event%converged .and. change(expected, state) <= &
+      0.5_wp*change(position%state, expected) + jump + merge(abs(h0 - position%state%h0), 0.0_wp, &
+      position%held == 1)
+    if (self%problem%rigid) continues = .true.
+  end subroutine continue_to
+
+  !> Where the bodies go from the state `before` when h0 is changed to a value at which its branch has
+  !> ended. Mixing relaxes by itself.
+  subroutine land(self, h0, before, state, event)
+    class(fixed_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(state_t), intent(in) :: before
     type(state_t), intent(inout) :: state
     type(event_t), intent(inout) :: event
-    type(state_t) :: relaxed
     type(control_t) :: control
-    logical :: converged
+
+    state = before
+    if (self%options%method == 'mixing') then
+      call self%solve_at(h0, state, event)
+      return
+    end if
+    control%value = h0
+    call relax(self%problem, self%mesh, control, self%options, state, event%converged, self%cost)
+    self%frozen%factors%valid = .false.
+  end subroutine land
+
+  !> Solves at h0 from the guess `state`.
+  subroutine solve_at(self, h0, state, event)
+    class(fixed_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(state_t), intent(inout) :: state
+    type(event_t), intent(inout) :: event
+    type(control_t) :: control
 
     control%value = h0
     call solve_state(self%problem, self%mesh, control, self%options, self%frozen, state, &
       event%converged, self%cost)
-    if (self%options%method == 'mixing' .or. self%problem%rigid) return
-    if (event%converged .and. change(from, state) <= suspicious*abs(h0 - from%h0)) return
-    relaxed = from
-    call relax(self%problem, self%mesh, control, self%options, relaxed, converged, self%cost)
-    if (.not. converged .and. event%converged) return
-    if (converged .or. relaxed%residual < state%residual) state = relaxed
-    event%converged = converged
-    self%frozen%factors%valid = .false.
-  end subroutine settle
-
-  !> Bisects h0 between two states that seem to lie on either side of a jump, in the order of the
-  !> experiment.
-  subroutine locate_jump(self, before, after, event)
-    class(fixed_steps_t), intent(inout) :: self
-    type(state_t), intent(in) :: before, after
-    type(event_t), intent(inout) :: event
-    type(state_t) :: near, far, middle
-    type(event_t) :: ignored
-    real(wp) :: h0
-
-    near = before
-    far = after
-    do while (abs(far%h0 - near%h0) > self%jump_tolerance)
-      h0 = 0.5_wp*(near%h0 + far%h0)
-      middle = near
-      call self%settle(h0, near, middle, ignored)
-      if (change(near, middle) < change(middle, far)) then
-        near = middle
-      else
-        far = middle
-      end if
-    end do
-    event%jumped = change(near, far) > jump + suspicious*abs(far%h0 - near%h0)
-    event%jump_h0 = 0.5_wp*(near%h0 + far%h0)
-    event%jump_load = near%load
-    event%jump_uncertainty = 0.5_wp*abs(far%h0 - near%h0)
-  end subroutine locate_jump
+  end subroutine solve_at
 
   !> Largest difference between the deformations of two states.
   pure real(wp) function change(a, b)

@@ -18,6 +18,11 @@ module mixing
   !> Factors by which the ratio falls and rises, and the smallest ratio: below it a million iterations
   !> would not relax the softest mode.
   real(wp), parameter :: fall = 0.5_wp, rise = 1.05_wp, smallest_ratio = 1.0e-6_wp
+  !> Factor by which the change of the central displacement must grow for the ratio to fall. On its
+  !> way to equilibrium the change may grow a little for many iterations, and for the more of them
+  !> the lower the ratio is: lowering it for any growth ends at the smallest ratio, far from
+  !> equilibrium.
+  real(wp), parameter :: growth = 2
 
 contains
 
@@ -32,7 +37,7 @@ contains
     logical, intent(out) :: converged
     type(cost_t), intent(inout) :: cost
     real(wp), allocatable :: z(:), g(:)
-    real(wp) :: ratio, change, change_before, residual_before, fraction
+    real(wp) :: ratio, change, change_before, fraction
     integer :: iteration
 
     converged = .false.
@@ -41,7 +46,6 @@ contains
     allocate (g(size(z)))
     ratio = options%mixing_limit
     change = 0
-    residual_before = huge(1.0_wp)
     do iteration = 1, options%most_iterations
       call residual(this, grid, control, z, g, state, cost)
       cost%iterations = cost%iterations + 1
@@ -58,8 +62,7 @@ contains
       change_before = change
       change = -ratio*g(1)
       if (iteration > 1) then
-        if (change*change_before < 0 .or. abs(change) > abs(change_before) .or. &
-          state%residual > residual_before) then
+        if (change*change_before < 0 .or. abs(change) > growth*abs(change_before)) then
           ratio = max(fall*ratio, smallest_ratio)
           cost%rejected_steps = cost%rejected_steps + 1
         else
@@ -67,7 +70,6 @@ contains
         end if
       end if
       change = -ratio*g(1)
-      residual_before = state%residual
       fraction = largest_step(this, control, z, -ratio*g)
       z = z - fraction*ratio*g
     end do

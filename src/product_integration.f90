@@ -11,10 +11,10 @@ module product_integration
   private
   public :: panel_rule_t, new_panel_rule, panel_weights
 
-  !> Points of the inner rule, which is exact for a logarithm times a polynomial of degree 39: of up to
-  !> 23 for the Lagrange polynomial (order 24), and 16 for the logarithm's coefficient, whose nearest
-  !> singularity lies as far from the piece as the piece is long (rho = 5.8, and 5.8**(-16) is 6e-13,
-  !> times a small factor). 24 points were exact enough up to order 14 only.
+  !> Points of the inner rule, which is exact for a logarithm times a polynomial of degree 39: up to
+  !> 23 for the Lagrange polynomial (order 24), and 16 for the logarithm's coefficient, whose
+  !> nearest singularity lies as far from the piece as the piece is long (rho = 5.8, and 5.8**(-16)
+  !> is 6e-13, times a small factor). 24 points were exact enough up to order 14 only.
   integer, parameter :: inner_points = 40
   !> Points of the rules for panels at a distance, cheapest first; the first is replaced by the
   !> panel's own nodes where those are a Gauss rule.

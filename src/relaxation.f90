@@ -14,9 +14,10 @@ module relaxation
   public :: relax
 
   integer, parameter :: most_steps = 400
-  !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth, and the
-  !> step from which one is as good as Newton's.
-  real(wp), parameter :: first_step = 1, growth = 3, newton_like = 1.0e6_wp
+  !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth and its
+  !> limits, and the nudge off an unstable equilibrium, in the law's lengths.
+  real(wp), parameter :: first_step = 1, growth = 3, shortest_step = 1.0e-3_wp, &
+    longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
 
 contains
 
@@ -33,7 +34,6 @@ contains
     real(wp), allocatable :: z(:), g(:), dz(:)
     real(wp) :: dtau, before
     integer :: step
-    logical :: stable
 
     converged = .false.
     if (control%kind /= at_h0) return
@@ -46,25 +46,26 @@ contains
       cost%iterations = cost%iterations + 1
       state%iterations = step
       if (.not. state%residual < huge(1.0_wp)) return
-      dtau = min(dtau*min(growth, max(0.1_wp, before/max(state%residual, tiny(1.0_wp)))), &
-        1.0e12_wp)
-      before = state%residual
-      call factorise_jacobian(this, grid, control, state, factors, cost, 1/dtau)
-      if (.not. factors%valid) return
-      stable = determinant_sign(factors) > 0
-      converged = state%residual <= max(options%tolerance, residual_floor(this, state)) .and. &
-        dtau > newton_like .and. stable
-      if (converged) return
-      ! At long steps a negative mode would be climbed, not left.
-      if (.not. stable) then
+      if (state%residual <= max(options%tolerance, residual_floor(this, state))) then
+        call factorise_jacobian(this, grid, control, state, factors, cost)
+        if (.not. factors%valid) return
+        converged = determinant_sign(factors) > 0
+        if (converged) return
+        ! On an unstable equilibrium nothing drives the bodies away: a nudge towards each other does.
+        z = z - nudge
         dtau = first_step
-        call factorise_jacobian(this, grid, control, state, factors, cost, 1/dtau)
-        if (state%residual < options%tolerance) then
-          ! On the unstable equilibrium itself nothing drives the bodies away: a nudge does.
-          z = z - 1.0e-4_wp
-          cycle
-        end if
+        before = huge(1.0_wp)
+        cycle
       end if
+      dtau = min(dtau*min(growth, max(0.1_wp, before/state%residual)), longest_step)
+      before = state%residual
+      do
+        call factorise_jacobian(this, grid, control, state, factors, cost, 1/dtau)
+        if (.not. factors%valid) return
+        ! A step so long that an unstable mode would be climbed instead of left is too long.
+        if (determinant_sign(factors) > 0 .or. dtau <= shortest_step) exit
+        dtau = 0.1_wp*dtau
+      end do
       dz = -g
       call solve(factors, dz)
       z = z + largest_step(this, control, z, dz)*dz

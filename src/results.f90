@@ -14,6 +14,7 @@ module results
   use files, only: make_folder, rename_file, remove_file
   use text_file, only: output_t, partial
   use tables, only: table_t, cells
+  use profiles, only: profile_columns, write_profile
   use summary, only: summary_t, summary_text, resolved_text, number_columns, numbers_of
   use progress, only: progress_t
   implicit none
@@ -33,7 +34,7 @@ module results
     !> once, when the work is done, and are not counted.
     type(progress_t) :: progress
     character(len=:), allocatable, private :: folder, title, version
-    type(table_t), private :: curve, profiles, cases
+    type(table_t), private :: curve, shapes, cases
     !> Which of `names` this run has made.
     logical, private :: made(size(names)) = .false.
   contains
@@ -62,14 +63,6 @@ module results
     'smallest_eigenvalue [] of the operator at fixed h0; negative: unstable', &
     'criterion_28 [] largest |2 u p''/p|; above 1: unstable by (28)', &
     'criterion_29 [] 2 p'' u/p on the axis; below -1: unstable by (29)']
-  character(len=*), parameter :: profile_columns(*) = [character(len=96) :: &
-    'branch [] as in curve.csv', &
-    'h0 [m] separation that undeformed bodies would have on the axis', &
-    'r [m] distance from the axis', &
-    'separation [m]', &
-    'deformation [m] of each surface, outward positive', &
-    'pressure [Pa] negative: attraction', &
-    'energy [J/m^2] of the surface force']
   character(len=*), parameter :: theory_columns(*) = [character(len=96) :: &
     'theory [] where the row comes from', &
     'h0 [m] separation that undeformed bodies would have on the axis', &
@@ -79,20 +72,22 @@ module results
 
 contains
 
-  !> Makes the folder and, as asked, begins its curve and its profiles, so that a place where
-  !> nothing can be written shows before anything is computed.
-  subroutine open_results(self, folder, title, version, curve, profiles, stability, error)
+  !> Makes the folder and, as asked, begins its curve (with columns for stability or without) and
+  !> its profiles (`shapes`), so that a place where nothing can be written shows before anything is
+  !> computed.
+  subroutine open_results(self, folder, title, version, curve, shapes, stability, error)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: folder, title, version
-    logical, intent(in) :: curve, profiles, stability
+    logical, intent(in) :: curve, shapes, stability
     type(failure_t), allocatable, intent(out) :: error
 
     if (allocated(self%trouble)) deallocate (self%trouble)
     self%folder = folder
+    if (len(folder) == 0) self%folder = '.'
     self%title = title
     self%version = version
     self%made = .false.
-    call make_folder(folder, error)
+    call make_folder(self%folder, error)
     if (curve .and. .not. allocated(error)) then
       call self%mark('curve.csv')
       if (stability) then
@@ -102,9 +97,9 @@ contains
         call self%curve%begin(self%path_of('curve.csv'), title, version, curve_columns, error)
       end if
     end if
-    if (profiles .and. .not. allocated(error)) then
+    if (shapes .and. .not. allocated(error)) then
       call self%mark('profiles.csv')
-      call self%profiles%begin(self%path_of('profiles.csv'), title, version, profile_columns, error)
+      call self%shapes%begin(self%path_of('profiles.csv'), title, version, profile_columns, error)
     end if
     if (allocated(error)) self%trouble = error
   end subroutine open_results
@@ -131,7 +126,7 @@ contains
       record%displacement, record%load, record%contact_radius]) // ',' // trim(stable) // ',' // &
       cells([record%residual]) // ',' // trim(iterations) // stability_cells(record), self%trouble)
     if (.not. allocated(self%trouble)) call self%curve%flush(self%trouble)
-    if (profile .and. .not. allocated(self%trouble)) call write_profile(self%profiles, &
+    if (profile .and. .not. allocated(self%trouble)) call write_profile(self%shapes, &
       record%branch, record%h0, problem, grid, state, self%trouble)
   end subroutine take
 
@@ -145,38 +140,6 @@ contains
       record%local_criterion, record%axis_criterion])
   end function stability_cells
 
-  !> Adds the nodes of a state, and the axis before them.
-  subroutine write_profile(table, branch, h0, problem, grid, state, error)
-    type(table_t), intent(inout) :: table
-    character(len=*), intent(in) :: branch
-    real(wp), intent(in) :: h0
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    type(state_t), intent(in) :: state
-    type(failure_t), allocatable, intent(inout) :: error
-    real(wp), dimension(size(state%gap) + 1) :: r, gap, deformation, pressure, energy
-    integer :: j
-
-    if (.not. table%has_begun()) return
-    associate (n => size(state%gap), law => problem%law)
-      r = [0.0_wp, state%scale*grid%x(:n)]
-      gap = [state%axis_gap, state%gap]
-      pressure = [law%pressure([state%axis_gap]), state%pressure]
-      energy = law%energy(gap)
-      ! h = h0 + r^2/(2R) - 2u.
-      deformation = -0.5_wp*(gap - state%h0 - 0.5_wp*r**2)
-    end associate
-    do j = 1, size(r)
-      ! A mesh may have a node on the axis.
-      if (j == 2 .and. .not. r(j) > 0) cycle
-      call table%row(branch // ',' // cells([h0, r(j)*problem%lateral, gap(j)*problem%length, &
-        deformation(j)*problem%length, pressure(j)*problem%pressure, &
-        energy(j)*problem%pressure*problem%length]), error)
-      if (allocated(error)) return
-    end do
-    call table%flush(error)
-  end subroutine write_profile
-
   !> Adds a case of a sweep, the value of its key and what its summary has to say, to `sweep.csv`.
   !> `key` is 'group.key'.
   subroutine take_case(self, key, value, summary)
@@ -184,12 +147,14 @@ contains
     character(len=*), intent(in) :: key
     real(wp), intent(in) :: value
     type(summary_t), intent(in) :: summary
+    character(len=len(number_columns)) :: columns(1 + size(number_columns))
 
     if (allocated(self%trouble)) return
     if (.not. self%cases%has_begun()) then
       call self%mark('sweep.csv')
-      call self%cases%begin(self%path_of('sweep.csv'), self%title, self%version, &
-        [character(len=len(number_columns)) :: key // ' as in the deck', number_columns], &
+      columns(1) = key // ' in the unit of the key'
+      columns(2:) = number_columns
+      call self%cases%begin(self%path_of('sweep.csv'), self%title, self%version, columns, &
         self%trouble)
     end if
     if (.not. allocated(self%trouble)) &
@@ -197,7 +162,7 @@ contains
     if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
   end subroutine take_case
 
-  !> Writes the table `name` ('classical' or 'approximations').
+  !> Writes the table `name` ('classical.csv' or 'approximations.csv').
   subroutine write_theory(self, name, rows)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: name
@@ -206,9 +171,8 @@ contains
     integer :: i
 
     if (allocated(self%trouble)) return
-    call self%mark(name // '.csv')
-    call table%begin(self%path_of(name // '.csv'), self%title, self%version, theory_columns, &
-      self%trouble)
+    call self%mark(name)
+    call table%begin(self%path_of(name), self%title, self%version, theory_columns, self%trouble)
     do i = 1, size(rows)
       if (allocated(self%trouble)) return
       call table%row(rows(i)%theory // ',' // cells([rows(i)%h0, rows(i)%displacement, &
@@ -250,7 +214,7 @@ contains
 
     call self%progress%finish()
     call end_table(self%curve, self%trouble)
-    call end_table(self%profiles, self%trouble)
+    call end_table(self%shapes, self%trouble)
     call end_table(self%cases, self%trouble)
     if (allocated(self%trouble)) then
       error = self%trouble

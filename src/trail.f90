@@ -118,7 +118,7 @@ contains
     logical, intent(out) :: lost
     type(cost_t), intent(inout) :: cost
     type(frozen_t) :: frozen
-    real(wp) :: slopes(2), slope, slope_before, s_before, s_next, low, high
+    real(wp) :: slopes(2), slope, slope_size, slope_before, s_before, s_next, low, high
     integer :: round, sense, n
     logical :: converged
 
@@ -129,6 +129,7 @@ contains
       high = maxval(coordinate(n - 2:))
       s = interpolated_maximum(coordinate, sense*value, low, high)
     end associate
+    slope_size = huge(1.0_wp)
     do round = 1, most_rounds
       call state_at(this, pair, mesh, s, coordinate, states, options, frozen, state, converged, cost)
       lost = .not. converged
@@ -136,7 +137,9 @@ contains
       call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), state, frozen, slopes(1), &
         slopes(2), cost)
       slope = slopes(quantity)
-      if (round > 1 .and. abs(slope) >= abs(slope_before)) exit
+      ! Rounding rules once the derivative no longer falls.
+      if (abs(slope) >= slope_size) exit
+      slope_size = abs(slope)
       ! A maximum has its rising side before it.
       if ((slope > 0) .eqv. (sense > 0)) then
         low = s

@@ -1,0 +1,253 @@
+#!/usr/bin/env python3
+"""Load against displacement and against h0, from a folder of results.
+
+    .venv/bin/python pywrap/plots/force_curve.py results/first
+"""
+
+import itertools
+
+import numpy as np
+from matplotlib.figure import Figure
+from read_results import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    ResultsError,
+    dress,
+    read_summary,
+    read_table,
+    run,
+    scale,
+    smooth,
+    title_of,
+)
+
+# Unloadings often lie on each other and on the loading: the later, the thinner.
+_LOADING = {"color": BLUE, "linewidth": 1.5, "zorder": 5}
+_UNLOADING = (ORANGE, SKY, PURPLE, GREEN, VERMILION)
+_WIDEST, _THINNEST = 5.0, 2.2
+_PATH = {"color": BLACK, "linewidth": 1.1, "zorder": 6}
+_THEORIES = {
+    "hertz": ("Hertz", {"color": GREY, "linestyle": (0, (1, 1.5))}),
+    "jkr": ("JKR", {"color": VERMILION, "linestyle": (0, (6, 2))}),
+    "dmt": ("DMT", {"color": GREEN, "linestyle": (0, (6, 2, 1, 2))}),
+}
+# In points: a piece of curve shorter than this gets no arrow for its direction.
+_LONG_ENOUGH = 45
+_MOST_COLUMNS = 6
+
+
+def draw_force_curve(folder):
+    """Return a figure of the curve in `folder`."""
+    summary, curve = read_summary(folder), read_table(folder, "curve.csv")
+    if curve["h0"].size == 0:
+        raise ResultsError(f"{folder}/curve.csv has no rows")
+    try:
+        theories = read_table(folder, "classical.csv")
+    except ResultsError:
+        theories = None
+    lengths = scale(np.concatenate([curve["h0"], curve["displacement"]]), "m")
+    loads = scale(curve["load"], "N")
+    branches = [_Branch(name, curve, summary) for name in dict.fromkeys(curve["branch"])]
+
+    figure = Figure(figsize=(9, 4.6), layout="constrained")
+    panels = figure.subplots(1, 2, sharey=True)
+    for panel, x, name in zip(panels, ("displacement", "h0"), ("displacement $h(0) - h_0$", "$h_0$")):
+        dress(panel, f"{name} [{lengths[1]}]", f"load [{loads[1]}]" if x != "h0" else "")
+        for branch in branches:
+            branch.draw(panel, x, lengths[0], loads[0])
+        if theories:
+            _draw_theories(panel, theories, x, lengths[0], loads[0])
+        _frame(panel, curve, theories, x, lengths[0], loads[0])
+    figure.suptitle(title_of(folder, summary))
+    handles, labels = panels[0].get_legend_handles_labels()
+    columns = -(-len(labels) // -(-len(labels) // _MOST_COLUMNS))
+    figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False)
+    # Arrows are placed by distances on the page, known once everything else is.
+    figure.draw_without_rendering()
+    for panel, x in zip(panels, ("displacement", "h0")):
+        for branch in branches:
+            branch.draw_arrows(panel, x, lengths[0], loads[0])
+    return figure
+
+
+class _Branch:
+    """One branch of the curve: its smooth pieces, in order, and the jumps between them."""
+
+    def __init__(self, name, curve, summary):
+        rows = curve["branch"] == name
+        self.name = name
+        self.rows = {x: curve[x][rows] for x in ("displacement", "h0", "load", "stable")}
+        self.number = int(name.split("_")[1]) if name.startswith("unloading_") else 0
+        self.jumps = []
+        self.pieces = [self.rows]
+        if name != "path":
+            self._split(*self._jump_of(summary))
+            count = np.size(summary.get("unload_from", []))
+            self.style, self.label = _style_of(name, self.number, count)
+
+    def _jump_of(self, summary):
+        """Return h0 before the branch's jump and the load there, or NaN."""
+        if self.name == "loading":
+            return summary.get("jump_in_h0", np.nan), summary.get("jump_in_load", np.nan)
+        all_h0 = np.atleast_1d(summary.get("unload_jump_out_h0", np.nan))
+        h0 = all_h0[self.number - 1] if self.number <= all_h0.size else np.nan
+        # The summary has one load; every unloading that parts from the same fold has it.
+        same = abs(h0 - summary.get("jump_out_h0", np.nan)) <= 1e-6 * abs(h0)
+        return h0, summary.get("jump_out_load", np.nan) if same else np.nan
+
+    def _split(self, jump_h0, jump_load):
+        """Part the rows where the branch jumps, and carry both pieces to the jump itself."""
+        h0 = self.rows["h0"]
+        last = np.flatnonzero((h0 - jump_h0) * np.sign(h0[-1] - h0[0]) < 0)
+        if not np.isfinite(jump_h0) or last.size in (0, h0.size):
+            return
+        at = last[-1] + 1
+        before = {x: values[:at] for x, values in self.rows.items()}
+        after = {x: values[at:] for x, values in self.rows.items()}
+        start = _end_at_fold(before, jump_h0, jump_load)
+        finish = _start_at(after, jump_h0)
+        self.pieces = [_joined(before, start), _joined(finish, after)]
+        self.jumps = [(start, finish)]
+
+    def draw(self, panel, x, length, load):
+        if self.name == "path":
+            self._draw_path(panel, x, length, load)
+            return
+        for i, piece in enumerate(self.pieces):
+            points = smooth(np.column_stack([piece[x] / length, piece["load"] / load]))
+            panel.plot(*points.T, solid_capstyle="round",
+                       label=self.label if i == 0 else None, **self.style)
+        if self.number:
+            panel.plot(self.rows[x][0] / length, self.rows["load"][0] / load, "o",
+                       markersize=self.style["linewidth"] + 2, color=self.style["color"],
+                       zorder=4)
+
+    def _draw_path(self, panel, x, length, load):
+        labelled = set()
+        start = 0
+        # A stretch runs to the first row of the next, a fold, so that nothing is left open.
+        for stable, group in itertools.groupby(self.rows["stable"] != 0):
+            finish = start + len(list(group))
+            label = "path, stable" if stable else "path, unstable"
+            rows = slice(start, finish + 1)
+            points = smooth(np.column_stack([self.rows[x][rows] / length,
+                                             self.rows["load"][rows] / load]))
+            panel.plot(*points.T, linestyle="-" if stable else (0, (3, 1.5)),
+                       label=None if label in labelled else label, **_PATH)
+            labelled.add(label)
+            start = finish
+
+    def draw_arrows(self, panel, x, length, load):
+        if self.name == "path":
+            return
+        color = self.style["color"]
+        for start, finish in self.jumps:
+            _arrow(panel, *((end[x][0] / length, end["load"][0] / load)
+                            for end in (start, finish)), color, linewidth=1.0)
+        # Loading and unloading often coincide, and then their arrows should not.
+        if self.number:
+            fractions = (0.4 + 0.1 * min(self.number, 4), 0.4)
+        else:
+            fractions = (0.25 if self.jumps else 0.75, 0.75)
+        for piece, fraction in zip(self.pieces, fractions):
+            ends = _stretch(panel, piece[x] / length, piece["load"] / load, fraction)
+            if ends:
+                _arrow(panel, *ends, color, linewidth=0)
+
+
+def _style_of(name, number, count):
+    if name == "loading":
+        return _LOADING, name
+    width = _WIDEST - (_WIDEST - _THINNEST) * (number - 1) / max(count - 1, 1)
+    style = {"color": _UNLOADING[(number - 1) % len(_UNLOADING)], "linewidth": width, "zorder": 3}
+    return style, "unloading" if count == 1 else f"unloading {number}"
+
+
+def _joined(first, second):
+    return {x: np.concatenate([first[x], second[x]]) for x in first}
+
+
+def _end_at_fold(piece, h0, load):
+    """Return the state before a jump.
+
+    At a fold displacement and load both go with the root of the distance to it, so that one is a
+    smooth function of the other.
+    """
+    steps = np.diff(piece["load"][-3:])
+    smooth = steps.size == 2 and steps[0] * steps[1] > 0 and steps[1] * (load - piece["load"][-1]) > 0
+    displacement = piece["displacement"][-1]
+    if smooth:
+        displacement = _parabola(piece["load"][-3:], piece["displacement"][-3:], load)
+    elif not np.isfinite(load):
+        load = piece["load"][-1]
+    return {x: np.array([value]) for x, value in
+            (("displacement", displacement), ("h0", h0), ("load", load), ("stable", 1))}
+
+
+def _start_at(piece, h0):
+    """Return the state after a jump, from the three states that follow if these are smooth."""
+    first = {x: values[:1] for x, values in piece.items()}
+    if piece["h0"].size < 3:
+        return first
+    of = {x: _parabola(piece["h0"][:3], piece[x][:3], h0) for x in ("displacement", "load")}
+    if any(abs(of[x] - piece[x][0]) > 2 * abs(piece[x][1] - piece[x][0]) for x in of):
+        return first
+    return {x: np.array([value]) for x, value in dict(of, h0=h0, stable=1).items()}
+
+
+def _parabola(x, y, at):
+    return sum(
+        y[i] * np.prod([(at - x[j]) / (x[i] - x[j]) for j in range(3) if j != i]) for i in range(3)
+    )
+
+
+def _draw_theories(panel, theories, x, length, load):
+    for theory, (label, style) in _THEORIES.items():
+        rows = theories["theory"] == theory
+        if rows.any():
+            panel.plot(theories[x][rows] / length, theories["load"][rows] / load,
+                       linewidth=1.0, zorder=7, label=label, **style)
+
+
+def _frame(panel, curve, theories, x, length, load):
+    """Show the whole curve, and the theories no further than beside it."""
+    low, high = curve[x].min() / length, curve[x].max() / length
+    margin = 0.05 * (high - low) or 1.0
+    panel.set_xlim(low - margin, high + margin)
+    low, high = min(curve["load"].min(), 0) / load, max(curve["load"].max(), 0) / load
+    if theories and theories["load"].size:
+        low = min(low, max(theories["load"].min() / load, 2 * low))
+    margin = 0.05 * (high - low) or 1.0
+    panel.set_ylim(low - margin, high + margin)
+
+
+def _stretch(panel, x, y, fraction):
+    """Return two neighbouring points of a curve at a fraction of its length on the page."""
+    points = panel.transData.transform(np.column_stack([x, y]))
+    along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    if along[-1] * 72 / panel.figure.dpi < _LONG_ENOUGH:
+        return None
+    at = fraction * along[-1] + np.array([-1.0, 1.0])
+    return zip(np.interp(at, along, x), np.interp(at, along, y))
+
+
+def _arrow(panel, tail, head, color, linewidth):
+    """Draw an arrow; without width only its head."""
+    style = "-|>,head_length=0.5,head_width=0.28" if linewidth else "-|>,head_length=0.6,head_width=0.36"
+    arrow = panel.annotate(
+        "", head, tail, annotation_clip=False, zorder=8,
+        arrowprops={"arrowstyle": style, "color": color, "linewidth": linewidth or 0.1,
+                    "shrinkA": 0, "shrinkB": 0, "mutation_scale": 12,
+                    "linestyle": (0, (2, 1.5)) if linewidth else "-"})
+    arrow.set_in_layout(False)
+
+
+if __name__ == "__main__":
+    run(draw_force_curve, "force_curve.png",
+        "Draw load against displacement and against h0, from a folder of results.")

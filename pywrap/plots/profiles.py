@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Separation and pressure against r, one line an h0, from a folder of results.
+
+    .venv/bin/python pywrap/plots/profiles.py results/first
+"""
+
+import matplotlib
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.figure import Figure
+from read_results import ResultsError, dress, read_summary, read_table, run, scale, title_of
+
+# Beyond the last place with this share of the largest pressure there is nothing to see.
+_FAINT = 0.02
+# So many lines can be told apart one by one on the colour bar.
+_FEW = 12
+
+
+def draw_profiles(folder, branch=None):
+    """Return a figure of the profiles of one branch in `folder`; by default of the first."""
+    summary, table = read_summary(folder), read_table(folder, "profiles.csv")
+    names = list(dict.fromkeys(table["branch"]))
+    if not names:
+        raise ResultsError(f"{folder}/profiles.csv has no rows")
+    if branch is None:
+        branch = "loading" if "loading" in names else names[0]
+    if branch not in names:
+        raise ResultsError(f"no branch {branch!r} in {folder}/profiles.csv; there are "
+                           f"{', '.join(names)}")
+    states = _states_of({x: values[table["branch"] == branch] for x, values in table.items()})
+    unstable = _unstable(folder, branch)
+
+    seen = max(state["r"][abs(state["pressure"]) >= _FAINT * _largest(state)].max()
+               for state in states) * 1.15
+    for state in states:
+        state["seen"] = state["r"] <= seen
+    radii = scale(seen, "m")
+    gaps = scale(np.concatenate([state["separation"][state["seen"]] for state in states]), "m")
+    pressures = scale(table["pressure"], "Pa")
+    h0 = np.array([state["h0"][0] for state in states])
+    lengths = scale(h0, "m")
+    values = np.unique(h0 / lengths[0])
+    # Viridis without its palest end, which vanishes on white.
+    colors = ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0, 0.9, 256)))
+    span = max(values[-1] - values[0], 1e-9 * abs(values[0]), 1e-12)
+    norm = Normalize(values[0], values[0] + span)
+
+    figure = Figure(figsize=(9, 4.2), layout="constrained")
+    panels = figure.subplots(1, 2)
+    for panel, y, name, (factor, unit) in (
+        (panels[0], "separation", "separation $h$", gaps),
+        (panels[1], "pressure", "pressure $p$", pressures),
+    ):
+        dress(panel, f"$r$ [{radii[1]}]", f"{name} [{unit}]")
+        for state in states:
+            # One point more, so that lines end at the frame.
+            n = np.count_nonzero(state["seen"]) + 1
+            key = (_key(state["h0"][0]), _key(state["separation"][0]))
+            panel.plot(state["r"][:n] / radii[0], state[y][:n] / factor, linewidth=1.4,
+                       color=colors(norm(state["h0"][0] / lengths[0])),
+                       linestyle=(0, (3, 1.5)) if key in unstable else "-")
+        panel.set_xlim(0, seen / radii[0])
+    low = min(0, min(state["separation"].min() for state in states)) / gaps[0]
+    high = max(state["separation"][state["seen"]].max() for state in states) / gaps[0]
+    panels[0].set_ylim(low - 0.02 * (high - low), high)
+    bar = figure.colorbar(ScalarMappable(norm, colors), ax=panels, pad=0.02,
+                          label=f"$h_0$ [{lengths[1]}]")
+    if values.size <= _FEW:
+        bar.set_ticks(values, labels=[f"{value:.4g}".replace("-", "\N{MINUS SIGN}")
+                                      for value in values])
+    dashed = "; dashed: unstable" if unstable else ""
+    figure.suptitle(f"{title_of(folder, summary)} ({branch.replace('_', ' ')}{dashed})")
+    return figure
+
+
+def _states_of(rows):
+    """Return the rows state by state; each begins on the axis."""
+    starts = np.flatnonzero(rows["r"] == 0)
+    ends = np.append(starts[1:], rows["r"].size)
+    return [{x: values[i:j] for x, values in rows.items()} for i, j in zip(starts, ends)]
+
+
+def _largest(state):
+    return abs(state["pressure"]).max()
+
+
+def _key(number):
+    return f"{number:.8e}"
+
+
+def _unstable(folder, branch):
+    """Return h0 and separation on the axis of the branch's unstable states."""
+    try:
+        curve = read_table(folder, "curve.csv")
+    except ResultsError:
+        return set()
+    rows = (curve["branch"] == branch) & (curve["stable"] == 0)
+    return {(_key(h0), _key(h)) for h0, h in zip(curve["h0"][rows], curve["h_centre"][rows])}
+
+
+def _add_options(parser):
+    parser.add_argument("--branch", help="branch to draw, as in profiles.csv; default: loading, "
+                        "or the first there is")
+
+
+if __name__ == "__main__":
+    run(draw_profiles, "profiles.png",
+        "Draw separation and pressure against r, from a folder of results.", _add_options)

@@ -1,0 +1,151 @@
+"""Reading a folder of results, and what the figures made from one have in common."""
+
+import argparse
+import csv
+import pathlib
+import sys
+
+import f90nml
+import numpy as np
+
+# Okabe and Ito's colours, which stay apart for the colour-blind.
+BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
+
+_TEXT_COLUMNS = ("branch", "theory")
+_PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"),
+             (1e6, "M"), (1e9, "G"))
+
+# Cosine of the largest turn between two steps that is drawn as a bend and not as a corner.
+_GENTLE = 0.5
+
+
+class ResultsError(Exception):
+    """A file of results is missing or is not what it should be; the message says which."""
+
+
+def read_table(folder, name):
+    """Return the columns of a table as a dict of arrays, text for `branch` and `theory`."""
+    path = pathlib.Path(folder) / name
+    if not path.is_file():
+        raise ResultsError(f"no {name} in {folder}{_hint(path)}")
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(line for line in file if not line.startswith("#")))
+    if not rows:
+        raise ResultsError(f"{path}: no header line")
+    header, rows = rows[0], rows[1:]
+    for row in rows:
+        if len(row) != len(header):
+            raise ResultsError(f"{path}: {len(row)} cells in a row, {len(header)} in the header")
+    try:
+        return {
+            column: np.array([row[i] for row in rows], str if column in _TEXT_COLUMNS else float)
+            for i, column in enumerate(header)
+        }
+    except ValueError as problem:
+        raise ResultsError(f"{path}: {problem}") from problem
+
+
+def _hint(path):
+    if not path.parent.is_dir():
+        return ": there is no such folder; ./run DECK writes results/<name of the deck>"
+    if path.with_name(path.name + ".partial").is_file():
+        return ": the run has not finished"
+    if path.name == "profiles.csv":
+        return ": the deck has no &profiles group"
+    if path.name == "curve.csv":
+        return ": the deck has neither &loading nor &equilibrium_path, or was not run"
+    return ""
+
+
+def read_summary(folder):
+    """Return the group &summary of summary.nml as a dict."""
+    path = pathlib.Path(folder) / "summary.nml"
+    if not path.is_file():
+        raise ResultsError(f"no summary.nml in {folder}{_hint(path)}")
+    groups = f90nml.read(path)
+    if "summary" not in groups:
+        raise ResultsError(f"{path}: no group &summary")
+    return groups["summary"]
+
+
+def title_of(folder, summary):
+    """Return the deck's title, or the folder's name, and what is wrong with the results."""
+    title = summary.get("title") or pathlib.Path(folder).resolve().name
+    if not summary.get("converged", True):
+        title += " [not converged]"
+    if not summary.get("resolved", True):
+        title += " [under-resolved]"
+    return title
+
+
+def smooth(points):
+    """Return a curve through `points` (n, 2), in order, with more of them where it bends gently.
+
+    A cubic over the length of the polygon, its tangents those of parabolas through three
+    neighbours. Where the polygon turns sharply it stays as it is: there the states, not the
+    drawing, are coarse.
+    """
+    points = np.asarray(points, float)
+    points = points[np.append(True, np.diff(points, axis=0).any(axis=1))]
+    if len(points) < 3:
+        return points
+    extent = np.ptp(points, axis=0)
+    chord = np.diff(points / np.where(extent > 0, extent, 1), axis=0)
+    along = np.hypot(*chord.T)
+    unit = chord / along[:, None]
+    turn = np.append(np.append(1.0, (unit[1:] * unit[:-1]).sum(axis=1)), 1.0)
+    slope = np.diff(points, axis=0) / along[:, None]
+    weight = (along[1:] / (along[1:] + along[:-1]))[:, None]
+    inner = weight * slope[:-1] + (1 - weight) * slope[1:]
+    tangent = np.vstack([2 * slope[0] - inner[0], inner, 2 * slope[-1] - inner[-1]])
+    t = np.linspace(0, 1, 12, endpoint=False)[:, None]
+    curve = []
+    for i, step in enumerate(along):
+        if min(turn[i], turn[i + 1]) < _GENTLE:
+            curve.append(points[i : i + 1])
+            continue
+        curve.append(
+            (1 + 2 * t) * (1 - t) ** 2 * points[i]
+            + t * (1 - t) ** 2 * step * tangent[i]
+            + t**2 * (3 - 2 * t) * points[i + 1]
+            + t**2 * (t - 1) * step * tangent[i + 1]
+        )
+    return np.vstack([*curve, points[-1:]])
+
+
+def scale(values, unit):
+    """Return the factor and the name of the prefixed unit in which `values` [unit] are short."""
+    values = np.abs(np.asarray(values, float))
+    largest = values[np.isfinite(values)].max(initial=0.0)
+    factor, prefix = 1.0, ""
+    if largest > 0:
+        # Half a unit, such as 0.8 nm, still reads better than 800 pm.
+        below = [pair for pair in _PREFIXES if pair[0] <= 2 * largest]
+        factor, prefix = below[-1] if below else _PREFIXES[0]
+    return factor, prefix + unit
+
+
+def dress(axes, x_name, y_name):
+    """Give a panel its names, a line at zero, and no more frame than it needs."""
+    axes.set_xlabel(x_name)
+    axes.set_ylabel(y_name)
+    axes.axhline(0, color=GREY, linewidth=0.6, zorder=0)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def run(draw, default_name, description, add_options=lambda parser: None):
+    """Run a plotting script: arguments, `draw(folder, **options)`, the picture, the exit status."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("folder", help="folder of results, such as results/first")
+    parser.add_argument("-o", "--output", help=f"picture to write; default: FOLDER/{default_name}")
+    parser.add_argument("--dpi", type=float, default=150, help="dots per inch; default: 150")
+    add_options(parser)
+    options = vars(parser.parse_args())
+    folder, dpi = options.pop("folder"), options.pop("dpi")
+    output = pathlib.Path(options.pop("output") or pathlib.Path(folder) / default_name)
+    try:
+        draw(folder, **options).savefig(output, dpi=dpi)
+    except (ResultsError, OSError) as problem:
+        sys.exit(f"{parser.prog}: {problem}")
+    print(output)

@@ -1,0 +1,48 @@
+!> How many threads the linear algebra uses. Below some size threads cost more than they bring, and
+!> on a busy machine very much more; and with one, results do not depend on their number.
+module blas_threads
+  use, intrinsic :: iso_c_binding, only: c_char, c_funptr, c_int, c_null_char, c_ptr, c_null_ptr, &
+    c_associated, c_f_procpointer
+  !$ use omp_lib, only: omp_get_max_threads
+  implicit none
+  private
+  public :: use_threads_for
+
+  !> Order of the matrix from which threads pay.
+  integer, parameter :: worthwhile = 1000
+
+  interface
+    function dlsym(handle, name) bind(c, name='dlsym') result(address)
+      import :: c_ptr, c_funptr, c_char
+      type(c_ptr), value :: handle
+      character(kind=c_char), intent(in) :: name(*)
+      type(c_funptr) :: address
+    end function dlsym
+  end interface
+
+  abstract interface
+    subroutine set_threads(count) bind(c)
+      import :: c_int
+      integer(c_int), value :: count
+    end subroutine set_threads
+  end interface
+
+contains
+
+  !> Chooses the threads for matrices of the given order, where the library is OpenBLAS; any other
+  !> keeps to its own rules. OpenBLAS is asked at run time, so that nothing depends on it.
+  subroutine use_threads_for(order)
+    integer, intent(in) :: order
+    procedure(set_threads), pointer :: set
+    type(c_funptr) :: address
+    integer(c_int) :: count
+
+    address = dlsym(c_null_ptr, 'openblas_set_num_threads'//c_null_char)
+    if (.not. c_associated(address)) return
+    call c_f_procpointer(address, set)
+    count = 1
+    !$ if (order >= worthwhile) count = int(omp_get_max_threads(), c_int)
+    call set(count)
+  end subroutine use_threads_for
+
+end module blas_threads

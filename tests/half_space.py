@@ -1,0 +1,115 @@
+"""An independent solution of the elastic problem in NumPy, which shares no code with the program.
+
+H = H0 + r^2/2 + 2 s Int P(H(t)) k(r, t) t dt on fixed Gauss-Legendre panels, by Newton's method and
+continuation in H0. In units of the law's length; s is sigma or Lambda.
+"""
+
+import numpy as np
+
+
+def agm_k(complement):
+    """Complete elliptic integral K from sqrt(1 - m), by the arithmetic-geometric mean."""
+    a, b = np.ones_like(complement), complement
+    for _ in range(40):
+        a, b = (a + b) / 2, np.sqrt(a * b)
+        if np.all(abs(a - b) <= 1e-15 * a):
+            break
+    return np.pi / (2 * a)
+
+
+def kernel(r, t, distance):
+    """k(r, t), with |r - t| given so that it need not be computed by cancellation."""
+    large = np.maximum(r, t)
+    complement = np.sqrt(distance / large * (1 + np.minimum(r, t) / large))
+    return 4 / (np.pi * large) * agm_k(complement)
+
+
+def lagrange(nodes, at):
+    """Values at `at` of the Lagrange polynomials of `nodes`, (at, nodes)."""
+    weights = 1 / np.prod(nodes[:, None] - nodes + np.eye(len(nodes)), axis=1)
+    apart = at[:, None] - nodes
+    hit = apart == 0
+    apart[hit] = 1
+    ratio = weights / apart
+    values = ratio / ratio.sum(1, keepdims=True)
+    rows = hit.any(1)
+    values[rows] = hit[rows]
+    return values
+
+
+class HalfSpace:
+    """Panels and the matrix of the kernel on them; row 0 is the axis."""
+
+    def __init__(self, ends, order=12):
+        x, w = np.polynomial.legendre.leggauss(order)
+        local, weight = (x + 1) / 2, w / 2
+        ends = np.asarray(ends, float)
+        length = np.diff(ends)
+        self.r = (ends[:-1, None] + length[:, None] * local).ravel()
+        self.weight = (length[:, None] * weight).ravel() * self.r
+        targets = np.concatenate([[0.0], self.r])
+        self.matrix = np.empty((len(targets), len(self.r)))
+        s, v = np.polynomial.legendre.leggauss(40)
+        s, v = (s + 1) / 2, v / 2
+        for panel, (a, b) in enumerate(zip(ends[:-1], ends[1:])):
+            columns = slice(panel * order, (panel + 1) * order)
+            t = self.r[columns]
+            far = (targets < a - (b - a)) | (targets > b + (b - a))
+            r = targets[far, None]
+            self.matrix[far, columns] = kernel(r, t, abs(r - t)) * weight * (b - a) * t
+            for i in np.flatnonzero(~far):
+                # Towards the point nearest to the target as the sixth power: the logarithm is tamed.
+                near = min(max(targets[i], a), b)
+                row = np.zeros(order)
+                for side, reach in ((-1, near - a), (1, b - near)):
+                    if reach <= 0:
+                        continue
+                    offset = side * reach * s**6
+                    at = near + offset
+                    k = kernel(targets[i], at, abs((near - targets[i]) + offset))
+                    row += (k * 6 * s**5 * v * reach * at) @ lagrange(local, (at - a) / (b - a))
+                self.matrix[i, columns] = row
+
+    def solve(self, law, s, h0, start=None):
+        """The gaps (axis first) at the last of several H0, by continuation from gaps `start`."""
+        gap = start
+        values = np.atleast_1d(h0)
+        before = values[0]
+        for value in values:
+            r = np.concatenate([[0.0], self.r])
+            gap = value + r**2 / 2 if gap is None else gap + value - before
+            for _ in range(60):
+                pressure, slope, _ = law(gap[1:])
+                residual = gap - value - r**2 / 2 - 2 * s * self.matrix @ pressure
+                jacobian = np.eye(len(r))
+                jacobian[:, 1:] -= 2 * s * self.matrix * slope
+                step = np.linalg.solve(jacobian, -residual)
+                gap = gap + min(1, 0.8 / max(1e-300, *(-step))) * step
+                if abs(step).max() < 1e-12 * max(1, abs(gap[0])):
+                    break
+            else:
+                raise ArithmeticError(f"no solution at {value}")
+            before = value
+        return gap
+
+    def load(self, law, s, gap):
+        """The load; beyond the mesh the deformation is taken as constant."""
+        pressure, _, _ = law(gap[1:])
+        end_gap = gap[-1] + 0.0
+        _, _, energy = law(np.array([end_gap]))
+        return 2 * np.pi * s * (self.weight @ pressure + energy[0])
+
+
+def exponential(gap):
+    """Pressure, slope and energy of the exponential law."""
+    p = np.exp(-gap)
+    return p, -p, p
+
+
+def lennard_jones(gap):
+    """Pressure, slope and energy of the Lennard-Jones law."""
+    return (
+        8 / 3 * (gap**-9 - gap**-3),
+        8 * (gap**-4 - 3 * gap**-10),
+        gap**-8 / 3 - 4 / 3 * gap**-2,
+    )

@@ -1,0 +1,194 @@
+"""Claims about every force law: its functions fit together, in SI, at any gap."""
+
+import math
+
+import numpy as np
+import pytest
+import snapin
+from snapin.numerics import LAWS
+
+# Parameters in SI for every law there is; a law without an entry fails the first test.
+PARAMETERS = {
+    "lennard_jones": {"hamaker": 1e-19, "z0": 0.5e-9},
+    "exponential": {"p0": 2.5e8, "decay_length": 0.2e-9},
+}
+LENGTH = {"lennard_jones": 0.5e-9, "exponential": 0.2e-9}
+ALL = [(law, part) for law in PARAMETERS for part in LAWS[law][1]]
+every_law = pytest.mark.parametrize(("law", "part"), ALL, ids="-".join)
+
+Z0, HAMAKER = PARAMETERS["lennard_jones"]["z0"], PARAMETERS["lennard_jones"]["hamaker"]
+
+
+def gaps(law):
+    """Return gaps [m] from deep within the repulsion to far away."""
+    return LENGTH[law] * np.geomspace(0.5, 40, 60)
+
+
+def functions(law, part):
+    """Return the law as a function of gaps [m]."""
+    return lambda gap: snapin.force_law(law, gap, part=part, **PARAMETERS[law])
+
+
+def test_every_law_is_tested():
+    assert set(PARAMETERS) == set(LENGTH) == set(LAWS)
+
+
+@every_law
+def test_slope_is_the_derivative_of_the_pressure(law, part):
+    of, gap = functions(law, part), gaps(law)
+    # Central differences, extrapolated twice: the error is that of the sixth order in a step of
+    # 1 % of the gap or length, 1e-12 times the ninth power's coefficients.
+    step = 1e-2 * np.minimum(gap, LENGTH[law])
+    d = [
+        (of(gap + h).pressure - of(gap - h).pressure) / (2 * h)
+        for h in (step, step / 2, step / 4)
+    ]
+    d = [(4 * d[1] - d[0]) / 3, (4 * d[2] - d[1]) / 3]
+    derivative = (16 * d[1] - d[0]) / 15
+    # Where slope or pressure pass through zero their parts still set the rounding.
+    size = sum(
+        abs(functions(law, part)(gap).slope)
+        for part in (LAWS[law][1][1:] if part == "full" and len(LAWS[law][1]) > 1 else (part,))
+    )
+    assert (abs(of(gap).slope - derivative) <= 1e-8 * size).all()
+
+
+@every_law
+def test_energy_is_the_integral_of_the_pressure(law, part):
+    of, gap = functions(law, part), gaps(law)
+    x, w = np.polynomial.legendre.leggauss(30)
+    low, high = gap[:-1], gap[1:]
+    at = low[:, None] + (high - low)[:, None] * (x + 1) / 2
+    pressure = of(at.ravel()).pressure.reshape(at.shape)
+    integral = pressure @ (w / 2) * (high - low)
+    energy = of(gap).energy
+    size = abs(pressure) @ (w / 2) * (high - low) + np.abs(energy[:-1])
+    assert (abs(energy[:-1] - energy[1:] - integral) <= 1e-13 * size).all()
+    far = of([1e8 * LENGTH[law]]).energy
+    assert abs(far[0]) <= 1e-15 * abs(energy).max()
+
+
+@every_law
+def test_far_away_there_is_nothing(law, part):
+    for values in functions(law, part)(LENGTH[law] * np.array([1e12, 1e30, 1e90])):
+        assert np.isfinite(values).all()
+        assert (abs(values) <= 1e-9).all()
+
+
+@every_law
+def test_numbers_say_where_the_pressure_vanishes_and_is_least(law, part):
+    of = functions(law, part)
+    numbers = snapin.law_numbers(law, part=part, **PARAMETERS[law])
+    unit = numbers.pressure_unit
+    if numbers.rest_gap > 0:
+        assert abs(of([numbers.rest_gap]).pressure[0]) <= 1e-14 * unit
+        assert of([numbers.rest_gap]).energy[0] == pytest.approx(-numbers.surface_energy)
+    if numbers.edge_gap > 0:
+        assert abs(of([numbers.edge_gap]).slope[0]) <= 1e-14 * unit / numbers.length
+        near = numbers.edge_gap * np.array([0.99, 1, 1.01])
+        assert of(near).pressure.argmin() == 1
+    # Nothing is left of a repulsion beyond its range, compared with its unit.
+    if part == "repulsive" or law == "exponential":
+        assert of([numbers.range]).pressure[0] <= 1e-15 * unit
+        assert numbers.surface_energy == 0 == numbers.edge_gap == numbers.rest_gap
+
+
+# --- Lennard-Jones
+
+
+def test_lennard_jones_is_equation_33():
+    gap = gaps("lennard_jones")
+    exact = HAMAKER / (6 * math.pi * gap**3) * ((Z0 / gap) ** 6 - 1)
+    size = HAMAKER / (6 * math.pi * gap**3) * ((Z0 / gap) ** 6 + 1)
+    found = functions("lennard_jones", "full")(gap).pressure
+    assert (abs(found - exact) <= 1e-14 * size).all()
+
+
+def test_lennard_jones_has_no_pressure_at_z0_and_most_tension_at_a_sixth_root_of_3():
+    numbers = snapin.law_numbers("lennard_jones", **PARAMETERS["lennard_jones"])
+    assert numbers.rest_gap == Z0 == numbers.length
+    assert numbers.edge_gap == pytest.approx(3 ** (1 / 6) * Z0, rel=1e-15)
+    assert functions("lennard_jones", "full")([Z0]).pressure == 0
+    assert functions("lennard_jones", "full")([0.999 * Z0]).pressure > 0
+    assert functions("lennard_jones", "full")([1.001 * Z0]).pressure < 0
+
+
+def test_surface_energy_is_equation_34():
+    numbers = snapin.law_numbers("lennard_jones", **PARAMETERS["lennard_jones"])
+    gamma = HAMAKER / (16 * math.pi * Z0**2)
+    assert numbers.surface_energy == pytest.approx(gamma, rel=1e-15)
+    assert numbers.pressure_unit == pytest.approx(gamma / Z0, rel=1e-15)
+    energy = functions("lennard_jones", "full")(gaps("lennard_jones")).energy
+    assert energy.min() >= -gamma * (1 + 1e-15)
+
+
+def test_lennard_jones_parts_add_up_to_the_whole():
+    gap = gaps("lennard_jones")
+    whole, repulsive, attractive = (
+        np.array(functions("lennard_jones", part)(gap))
+        for part in ("full", "repulsive", "attractive")
+    )
+    size = abs(repulsive) + abs(attractive)
+    assert (abs(repulsive + attractive - whole) <= 1e-14 * size).all()
+    assert (repulsive[0] > 0).all() and (attractive[0] < 0).all()
+
+
+def test_attraction_alone_is_van_der_waals():
+    gap = gaps("lennard_jones")
+    values = functions("lennard_jones", "attractive")(gap)
+    np.testing.assert_allclose(values.pressure, -HAMAKER / (6 * math.pi * gap**3), rtol=1e-14)
+    np.testing.assert_allclose(values.energy, -HAMAKER / (12 * math.pi * gap**2), rtol=1e-14)
+
+
+# --- Exponential
+
+
+def test_exponential_is_equation_30():
+    p0, length = PARAMETERS["exponential"].values()
+    gap = length * np.linspace(-20, 40, 61)
+    values = functions("exponential", "full")(gap)
+    pressure = p0 * np.exp(-gap / length)
+    # The exponent, up to 40, carries its own rounding.
+    np.testing.assert_allclose(values.pressure, pressure, rtol=1e-14)
+    np.testing.assert_allclose(values.slope, -pressure / length, rtol=1e-14)
+    np.testing.assert_allclose(values.energy, pressure * length, rtol=1e-14)
+
+
+def test_exponential_is_finite_and_positive_at_a_thousand_decay_lengths_of_overlap():
+    values = snapin.force_law("exponential", [-1e3, -1e300], p0=1.0, decay_length=1.0)
+    assert np.isfinite(values).all()
+    assert values.pressure[0] > 1e300 and values.slope[0] < -1e300 and values.energy[0] > 1e300
+
+
+def test_exponential_vanishes_without_underflow():
+    values = snapin.force_law("exponential", [1e3, 1e300], p0=1.0, decay_length=1.0)
+    assert not np.any(values)
+
+
+# --- Arguments
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "name"),
+    [
+        (lambda: snapin.force_law("casimir", [1e-9]), ValueError, "law"),
+        (lambda: snapin.force_law("exponential", [1e-9], p0=1.0), TypeError, "decay_length"),
+        (
+            lambda: snapin.force_law("exponential", [1.0], p0=1.0, decay_length=1.0, z0=1.0),
+            TypeError,
+            "z0",
+        ),
+        (
+            lambda: snapin.force_law("exponential", [1.0], part="half", p0=1, decay_length=1),
+            ValueError,
+            "part",
+        ),
+        (lambda: snapin.force_law("lennard_jones", [1], hamaker=-1, z0=1), ValueError, "hamaker"),
+        (lambda: snapin.force_law("lennard_jones", [0.0], hamaker=1, z0=1), ValueError, "gap"),
+        (lambda: snapin.force_law("lennard_jones", [[1.0]], hamaker=1, z0=1), ValueError, "gap"),
+        (lambda: snapin.law_numbers("lennard_jones", hamaker=1, z0=math.nan), ValueError, "z0"),
+    ],
+)
+def test_a_bad_argument_is_named(call, error, name):
+    with pytest.raises(error, match=rf"\b{name}\b"):
+        call()

@@ -1,0 +1,385 @@
+"""Claims about the three iterations: one equilibrium, judged by its true residual.
+
+All dimensionless (src/problem.f90), on one mesh fine enough for the necks that occur here.
+"""
+
+import functools
+import math
+
+import _snapin
+import numpy as np
+import pytest
+import snapin
+from snapin.numerics import METHODS
+
+# Panels of half a unit where contact edges may lie, a ninth of the narrowest neck between nodes,
+# then growing to 27.
+MESH = snapin.panel_mesh(
+    np.concatenate([np.arange(0, 6, 0.5), 6 + 0.5 * np.cumsum(1.6 ** np.arange(7)) - 0.5]), 10
+)
+MATRIX = MESH.matrix()
+
+PRESSURE = {
+    "lennard_jones": lambda h: 8 / 3 * (h**-9 - h**-3),
+    "exponential": lambda h: np.exp(-h),
+}
+ENERGY = {
+    "lennard_jones": lambda h: (h**-8 - 4 * h**-2) / 3,
+    "exponential": lambda h: np.exp(-h),
+}
+
+# Before, around and after contact; sigma = 0.87 has two jumps between 3.1 and 3.5.
+STATES = [
+    *(("lennard_jones", 0.0087, h0) for h0 in (5.0, 2.0, 1.0, 0.0, -2.0)),
+    *(("lennard_jones", 0.17, h0) for h0 in (5.0, 2.0, 1.0, 0.0, -2.0)),
+    *(("lennard_jones", 0.87, h0) for h0 in (5.0, 3.6, 2.0, 1.0, 0.0, -2.0)),
+    *(("exponential", coupling, h0) for coupling in (0.01, 1.0, 100.0) for h0 in (1.0, -1.0)),
+]
+every_state = pytest.mark.parametrize(("law", "coupling", "h0"), STATES)
+every_method = pytest.mark.parametrize("method", METHODS)
+
+TOLERANCE = 1e-8
+
+
+@functools.lru_cache(maxsize=None)
+def neighbour(law, coupling, h0):
+    """Return the gaps a tenth of a length before h0 is reached, roughly: where a step begins."""
+    state = snapin.equilibrium(
+        law, MESH, h0 + 0.1, coupling, method="mixing", tolerance=1e-5, most_iterations=20000
+    )
+    assert state.converged
+    return state.gap
+
+
+@functools.lru_cache(maxsize=None)
+def solved(law, coupling, h0, method):
+    """Return the state at h0, by `method` from the neighbour."""
+    return snapin.equilibrium(
+        law,
+        MESH,
+        h0,
+        coupling,
+        method=method,
+        start=neighbour(law, coupling, h0),
+        tolerance=TOLERANCE,
+        most_iterations=20000 if method == "mixing" else 60,
+    )
+
+
+def equations(law, coupling, h0, state, mesh=MESH, matrix=MATRIX):
+    """Return residual, gap on the axis and load of a state's gaps, recomputed from scratch."""
+    pressure = PRESSURE[law](state.gap)
+    raised = 2 * coupling * matrix.nodes @ pressure
+    residual = abs(state.gap - h0 - mesh.x**2 / 2 - raised).max()
+    reach = mesh.centre + mesh.ends[-1]
+    last = state.gap[-1] + (reach**2 - mesh.x[-1] ** 2) / 2
+    load = 2 * math.pi * (mesh.weight @ pressure + ENERGY[law](last))
+    return residual, h0 + 2 * coupling * matrix.axis @ pressure, load
+
+
+def stiffest(law, coupling, state):
+    """Return the norm of the inverse of the Jacobian: gaps err by this times the residual."""
+    step = 1e-6
+    slope = (PRESSURE[law](state.gap + step) - PRESSURE[law](state.gap - step)) / (2 * step)
+    jacobian = np.eye(MESH.x.size) - 2 * coupling * MATRIX.nodes * slope
+    return np.linalg.norm(np.linalg.inv(jacobian), np.inf)
+
+
+# --- One equilibrium
+
+
+@every_method
+@every_state
+def test_converged_states_satisfy_the_equations(law, coupling, h0, method):
+    state = solved(law, coupling, h0, method)
+    residual, axis_gap, load = equations(law, coupling, h0, state)
+    assert state.converged
+    assert state.residual <= TOLERANCE
+    # Gaps of up to 400 and their rounding.
+    assert residual == pytest.approx(state.residual, abs=1e-12)
+    assert axis_gap == pytest.approx(state.axis_gap, abs=1e-12)
+    assert load == pytest.approx(state.load, rel=1e-12)
+    np.testing.assert_allclose(
+        state.pressure, PRESSURE[law](state.gap), rtol=1e-12, atol=1e-12 * abs(state.pressure).max()
+    )
+
+
+@pytest.mark.parametrize("method", ["mixing", "anderson"])
+@every_state
+def test_methods_agree(law, coupling, h0, method):
+    newton = solved(law, coupling, h0, "newton")
+    other = solved(law, coupling, h0, method)
+    error = 2 * stiffest(law, coupling, newton) * TOLERANCE
+    assert error < 1e-5
+    np.testing.assert_allclose(other.gap, newton.gap, atol=error, rtol=0)
+
+
+@pytest.mark.parametrize(
+    ("coupling", "h0"), [(c, h0) for law, c, h0 in STATES if law == "lennard_jones"]
+)
+def test_anderson_needs_a_fifth_of_the_operator_products_of_mixing(coupling, h0):
+    mixing = solved("lennard_jones", coupling, h0, "mixing")
+    anderson = solved("lennard_jones", coupling, h0, "anderson")
+    assert mixing.converged and anderson.converged
+    assert 5 * anderson.operator_products <= mixing.operator_products
+
+
+@every_state
+def test_newton_needs_few_factorisations_from_a_neighbouring_state(law, coupling, h0):
+    state = solved(law, coupling, h0, "newton")
+    # Quadratic convergence: 1e-1, 1e-2, 1e-4, 1e-8, with two to spare for stiff contacts.
+    assert state.factorisations <= 6
+    assert state.factorisations == state.operator_products - 1
+
+
+def test_anderson_factorises_less_often_than_newton():
+    def spent(method):
+        return sum(solved(*state, method).factorisations for state in STATES)
+
+    assert 2 * spent("anderson") < spent("newton")
+
+
+def test_acceleration_saves_operator_products_where_the_factorisation_is_kept():
+    def spent(depth):
+        products = 0
+        for law, coupling, h0 in STATES:
+            start = neighbour(law, coupling, h0)
+            state = snapin.equilibrium(
+                law, MESH, h0, coupling, start=start, depth=depth, patience=60
+            )
+            assert state.converged or depth == 0
+            products += state.operator_products
+        return products
+
+    assert 2 * spent(5) < spent(0)
+
+
+@every_method
+def test_an_equilibrium_is_recognised_at_once(method):
+    start = solved("lennard_jones", 0.17, 0.0, "newton").gap
+    state = snapin.equilibrium("lennard_jones", MESH, 0.0, 0.17, method=method, start=start)
+    assert state.converged and state.operator_products == 1 and state.factorisations == 0
+    np.testing.assert_array_equal(state.gap, start)
+
+
+# --- Known solutions
+
+# From an independent solution: Lambda, central displacement, load, and the Hertz load's error in
+# per cent.
+EXPONENTIAL = [
+    (0.01, 0.0481552209, 0.0607234529, -88.4),
+    (1.0, 1.4455536, 2.1260862, -45.5),
+    (1e4, 9.3371461, 22.0407985, -13.7),
+]
+
+
+@pytest.mark.parametrize("method", ["anderson", "newton"])
+@pytest.mark.parametrize(("coupling", "displacement", "load", "hertz"), EXPONENTIAL)
+def test_exponential_law_gives_the_known_loads(coupling, displacement, load, hertz, method):
+    mesh = snapin.panel_mesh(np.arange(0, 14.1, 0.5), 12)
+    state = snapin.equilibrium(
+        "exponential", mesh, 0.0, coupling, method=method, tolerance=1e-12, most_iterations=100
+    )
+    assert state.converged
+    # One unit in the last digit given.
+    last = 1e-10 if coupling < 1 else 1e-7
+    assert state.axis_gap == pytest.approx(displacement, abs=last)
+    assert coupling * state.load == pytest.approx(load, abs=last)
+    off = 2 / 3 * state.axis_gap**1.5 / (coupling * state.load) - 1
+    assert 100 * off == pytest.approx(hertz, abs=0.05)
+
+
+@every_method
+def test_exponential_law_depends_on_lambda_alone(method):
+    # A shift of h0 is a factor on the pressure: only coupling exp(-h0) counts, (39).
+    shifted = snapin.equilibrium(
+        "exponential", MESH, 1.5, 10.0, method=method, tolerance=1e-11, most_iterations=5000
+    )
+    plain = snapin.equilibrium(
+        "exponential",
+        MESH,
+        0.0,
+        10.0 * math.exp(-1.5),
+        method=method,
+        tolerance=1e-11,
+        most_iterations=5000,
+    )
+    np.testing.assert_allclose(shifted.gap - 1.5, plain.gap, atol=1e-9)
+    assert shifted.load == pytest.approx(plain.load * math.exp(-1.5), rel=1e-9)
+
+
+@every_method
+@pytest.mark.parametrize(("law", "h0"), [("lennard_jones", 1.2), ("exponential", -3.0)])
+def test_rigid_bodies_keep_their_shape_and_have_derjaguins_load(law, h0, method):
+    state = snapin.equilibrium(law, MESH, h0, 0.0, method=method, most_iterations=200)
+    assert state.converged and state.operator_products == 0
+    np.testing.assert_allclose(state.gap, h0 + MESH.x**2 / 2, atol=TOLERANCE)
+    # The load of any law between rigid bodies is 2 pi R times its energy, (23). The gap errs by no
+    # more than the tolerance, and the pressure by that times its slope, below 20.
+    assert state.load == pytest.approx(2 * math.pi * ENERGY[law](h0), rel=2e-7)
+    assert state.axis_gap == pytest.approx(h0, abs=1e-15)
+
+
+@pytest.mark.parametrize("law", PRESSURE)
+def test_soft_bodies_tend_to_rigid_ones_in_proportion_to_the_coupling(law):
+    def load(coupling):
+        return snapin.equilibrium(law, MESH, 1.5, coupling, tolerance=1e-12).load
+
+    differences = np.array([load(c) - load(0.0) for c in (1e-3, 1e-4, 1e-5)])
+    np.testing.assert_allclose(differences[:-1] / differences[1:], 10, rtol=0.05)
+
+
+def test_a_scaled_mesh_is_a_larger_mesh():
+    scale = 1.7
+    large = snapin.panel_mesh(scale * MESH.ends, MESH.order)
+    a = snapin.equilibrium("lennard_jones", MESH, 0.5, 0.17, scale=scale, tolerance=1e-11)
+    b = snapin.equilibrium("lennard_jones", large, 0.5, 0.17, tolerance=1e-11)
+    assert a.converged and b.converged
+    np.testing.assert_allclose(a.gap, b.gap, atol=1e-9)
+    assert a.load == pytest.approx(b.load, rel=1e-9)
+
+
+def test_the_uniform_mesh_tends_to_the_same_state_at_second_order():
+    exact = solved("lennard_jones", 0.17, 1.0, "newton")
+    start = neighbour("lennard_jones", 0.17, 1.0)
+    errors = []
+    for nodes in (201, 401, 801):
+        mesh = snapin.uniform_mesh(nodes, 20.0)
+        gap = MESH.interpolate(start, mesh.x)
+        state = snapin.equilibrium("lennard_jones", mesh, 1.0, 0.17, start=gap)
+        assert state.converged
+        errors.append(abs(state.load - exact.load))
+    assert (np.log2(np.divide(errors[:-1], errors[1:])) > 1.8).all()
+
+
+# --- What is not an equilibrium never passes as one
+
+
+@every_method
+def test_a_state_that_did_not_converge_says_so_and_how_far_it_is(method):
+    state = snapin.equilibrium(
+        "lennard_jones", MESH, -2.0, 0.87, method=method, most_iterations=3
+    )
+    residual, *_ = equations("lennard_jones", 0.87, -2.0, state)
+    assert not state.converged
+    assert state.residual > TOLERANCE
+    assert state.residual == pytest.approx(residual, rel=1e-9)
+
+
+def flat_state(start, method, stop_on_change, law, coupling=0.87):
+    """Return residual and converged from the flat layer, which takes any start."""
+    mesh = snapin.panel_mesh([0.0, 1.0, 3.0], 4)
+    physics = (law, "full", coupling, mesh.kind, mesh.centre, mesh.ends, mesh.order, 1.0, 0.0)
+    options = (method, 1e-8, 50, 5, 8, 0.2, stop_on_change, 1.0)
+    values = _snapin.flat_numerics.equilibrium_state(*physics, start, *options)
+    return values[4], values[5]
+
+
+@every_method
+@pytest.mark.parametrize("law", PRESSURE)
+@pytest.mark.parametrize("stop_on_change", [0, 1])
+@pytest.mark.parametrize("where", [0, 5, slice(None)])
+def test_nan_never_passes_as_converged(law, method, stop_on_change, where):
+    start = np.ones(8)
+    start[where] = math.nan
+    residual, converged = flat_state(start, method, stop_on_change, law)
+    assert not converged
+    assert not residual < 1e300
+
+
+@every_method
+@pytest.mark.parametrize("stop_on_change", [0, 1])
+@pytest.mark.parametrize(
+    ("law", "gap", "coupling"),
+    [
+        ("lennard_jones", 0.0, 0.87),
+        ("lennard_jones", 1e-200, 0.87),
+        ("exponential", -1e3, 1e8),
+        ("lennard_jones", math.inf, 0.87),
+        ("exponential", math.inf, 0.87),
+    ],
+)
+def test_infinity_never_passes_as_converged(law, gap, coupling, method, stop_on_change):
+    residual, converged = flat_state(np.full(8, gap), method, stop_on_change, law, coupling)
+    assert not converged
+    assert not residual < 1e300
+
+
+@every_method
+def test_infinite_pressure_is_not_taken_for_none(method):
+    # The undeformed gaps at h0 = 0 touch on the axis, where the pressure is then infinite; without
+    # it they would be an equilibrium.
+    mesh = snapin.uniform_mesh(5, 4.0)
+    start = np.maximum(mesh.x**2 / 2, 1e-40)
+    state = snapin.equilibrium("lennard_jones", mesh, 0.0, 0.87, method=method, start=start)
+    assert not state.converged
+
+
+def by_the_papers_rule(coupling, h0, displacement_tolerance):
+    """Return the state at which mixing stops on a small change of the displacement."""
+    return snapin.equilibrium(
+        "lennard_jones",
+        MESH,
+        h0,
+        coupling,
+        method="mixing",
+        displacement_tolerance=displacement_tolerance,
+        most_iterations=20000,
+    )
+
+
+@pytest.mark.parametrize("coupling", [0.87, 8.7])
+def test_the_papers_rule_stops_far_from_equilibrium_in_a_stiff_contact_and_says_so(coupling):
+    # 1e-4 nm where z0 is 0.5 nm.
+    state = by_the_papers_rule(coupling, -2.0, 2e-4)
+    residual, *_ = equations("lennard_jones", coupling, -2.0, state)
+    assert state.converged
+    assert state.residual == pytest.approx(residual, rel=1e-9)
+    # The change that was asked for says nothing: the equations are off by many times as much.
+    assert state.residual > 10 * 2e-4
+
+
+def test_the_papers_rule_is_harmless_before_contact():
+    state = by_the_papers_rule(0.17, 5.0, 1e-9)
+    exact = solved("lennard_jones", 0.17, 5.0, "newton")
+    assert state.converged
+    assert state.load == pytest.approx(exact.load, rel=1e-7)
+
+
+# --- Arguments
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        ({"law": "casimir"}, "law"),
+        ({"part": "half"}, "part"),
+        ({"method": "brent"}, "method"),
+        ({"h0": math.nan}, "h0"),
+        ({"coupling": -1.0}, "coupling"),
+        ({"scale": 0.0}, "scale"),
+        ({"start": np.ones(3)}, "start"),
+        ({"start": -np.ones(MESH.x.size)}, "start"),
+        ({"tolerance": 0.0}, "tolerance"),
+        ({"most_iterations": 0}, "most_iterations"),
+        ({"depth": -1}, "depth"),
+        ({"patience": 0}, "patience"),
+        ({"mixing_limit": math.inf}, "mixing_limit"),
+        ({"displacement_tolerance": 1e-4}, "displacement_tolerance"),
+        ({"method": "mixing", "displacement_tolerance": -1.0}, "displacement_tolerance"),
+    ],
+)
+def test_a_bad_argument_is_named(arguments, name):
+    good = {"law": "lennard_jones", "mesh": MESH, "h0": 2.0, "coupling": 0.1}
+    with pytest.raises(ValueError, match=rf"\b{name}\b"):
+        snapin.equilibrium(**{**good, **arguments})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [({"mesh": "uniform"}, "mesh"), ({"depth": 2.5}, "depth"), ({"h0": "near"}, "h0")],
+)
+def test_what_has_the_wrong_type_is_named(arguments, name):
+    good = {"law": "lennard_jones", "mesh": MESH, "h0": 2.0, "coupling": 0.1}
+    with pytest.raises(TypeError, match=rf"\b{name}\b"):
+        snapin.equilibrium(**{**good, **arguments})
