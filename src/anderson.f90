@@ -10,7 +10,7 @@ module anderson
   use problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, cost_t, residual, factorise_jacobian, largest_step, &
-    state_from, unknowns_of, residual_floor
+    state_from, unknowns_of, residual_floor, at_h0_with_edge
   use linear_algebra, only: factorisation_t, solve
   use solver_options, only: solver_options_t
   implicit none
@@ -47,7 +47,7 @@ contains
     real(wp), allocatable :: z(:), g(:), f(:), step(:), z_best(:)
     type(state_t) :: best
     type(history_t) :: history
-    real(wp) :: before, fraction
+    real(wp) :: before
     integer :: iteration, since_renewal
     logical :: renew
 
@@ -93,8 +93,12 @@ contains
       f = g
       call solve(frozen%factors, f)
       step = accelerated_step(history, options%depth, z, f)
-      fraction = largest_step(this, control, z, step)
-      z = z + fraction*step
+      step = largest_step(this, control, z, step)*step
+      z = z + step
+      ! The parabola between the bodies is quadratic in the scale: its second-order part is known, and far
+      ! out it is large.
+      if (control%kind == at_h0_with_edge) &
+        z(:size(z) - 1) = z(:size(z) - 1) + 0.5_wp*(step(size(z))*grid%x(:size(z) - 1))**2
       before = state%residual
       since_renewal = since_renewal + 1
     end do

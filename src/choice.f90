@@ -10,7 +10,7 @@ module choice
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: choice_t, choose, fixed_mesh, resolution_for
+  public :: choice_t, choose, fixed_mesh, finer, resolution_for
 
   type :: choice_t
     !> 'edge_locked' panels, or fixed 'uniform' or 'panels'.
@@ -116,5 +116,17 @@ contains
     mesh = new_panel_grid(0.0_wp, [[(finest*j, j=0, count - 1)], outer], chosen%resolution%order, &
       .not. problem%rigid)
   end function fixed_mesh
+
+  !> A finer choice of a fixed grid, to estimate its error with: twice the nodes on the same length and a
+  !> fifth farther out, or panels of two more nodes.
+  pure function finer(chosen)
+    type(choice_t), intent(in) :: chosen
+    type(choice_t) :: finer
+
+    finer = chosen
+    finer%extent = 1.2_wp*chosen%extent
+    finer%nodes = 12*chosen%nodes/5
+    finer%resolution%order = chosen%resolution%order + 2
+  end function finer
 
 end module choice

@@ -4,7 +4,7 @@ module cycle
   use kinds, only: wp
   use equilibrium, only: state_t
   use quadrature, only: interpolated_maximum
-  use quasi_static, only: quasi_static_t, position_t, event_t
+  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t
   use records, only: observer_t, record_of, stable_yes, stable_unasked
   implicit none
   private
@@ -25,6 +25,8 @@ module cycle
     real(wp), allocatable :: jump_h0, jump_load
     real(wp) :: jump_uncertainty = 0
     real(wp) :: worst_residual = 0, worst_spacing = 0
+    !> Where the reported numbers come from: the ends and the middle, the jump, the largest tension.
+    type(witness_t), allocatable :: witness(:)
     integer :: states = 0, unconverged = 0
     !> First h0 that did not converge, and why the branch ended early; empty if it did not.
     real(wp) :: first_unconverged = 0
@@ -54,6 +56,7 @@ contains
     integer :: i, k, smooth
 
     smooth = 0
+    allocate (branch%witness(0))
     do i = 1, size(plan%h0)
       if (fresh .and. i == 1) then
         call steps%begin(plan%h0(i), position, event)
@@ -66,6 +69,9 @@ contains
       call observer%take(record_of(plan%name, steps%problem, steps%grid(position), position%state, &
         merge(stable_yes, stable_unasked, event%certain), event%converged), steps%problem, &
         steps%grid(position), position%state, plan%profile(i))
+      if (any(i == [1, (1 + size(plan%h0))/2, size(plan%h0)])) &
+        branch%witness = [branch%witness, steps%witness(position)]
+      if (allocated(event%fold)) branch%witness = [branch%witness, event%fold]
       do k = 1, size(keep)
         if (abs(keep(k) - plan%h0(i)) <= 1.0e-9_wp*max(1.0_wp, abs(keep(k)))) kept(k) = position
       end do
@@ -89,8 +95,9 @@ contains
     type(event_t), intent(in) :: event
     real(wp), intent(in) :: h0
 
-    branch%states = branch%states + 1
     branch%reason = event%reason
+    if (event%reason /= '') return
+    branch%states = branch%states + 1
     if (event%jumped .and. .not. allocated(branch%jump_h0)) then
       branch%jump_h0 = event%jump_h0
       branch%jump_load = event%jump_load
@@ -136,8 +143,10 @@ contains
     type(event_t) :: event
     real(wp), allocatable :: h0(:), load(:)
     real(wp) :: next, before
+    type(witness_t) :: lowest
     integer :: round, best
 
+    lowest = steps%witness(last(2))
     h0 = last%state%h0
     load = last%state%load
     before = load(2)
@@ -150,6 +159,7 @@ contains
       if (event%jumped .or. .not. event%converged) exit
       h0 = [h0, next]
       load = [load, trial%state%load]
+      if (trial%state%load < minval(load(:size(load) - 1))) lowest = steps%witness(trial)
       call lower(branch, trial%state)
       if (abs(trial%state%load - before) <= load_tolerance*abs(before)) exit
       before = trial%state%load
@@ -158,6 +168,7 @@ contains
         load = [load(:3), load(5:)]
       end if
     end do
+    branch%witness = [branch%witness, lowest]
   end subroutine refine
 
 end module cycle

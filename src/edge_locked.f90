@@ -37,6 +37,8 @@ module edge_locked
     !> finite reach of the mesh may cause.
     integer :: order = 12
     real(wp) :: fineness = 0.5_wp, accuracy = 1.0e-8_wp
+    !> Raises the reach above what follows from all else.
+    real(wp) :: farther = 1
   end type resolution_t
 
 contains
@@ -58,6 +60,7 @@ contains
     pair%reach = max(sqrt(2*max(this%law%range - min(h0_low, 0.0_wp), 1.0_wp)), &
       (17*this%law%adhesion*this%coupling**(1.0_wp/3)/resolution%accuracy)**0.2_wp, &
       4*this%law%adhesion*widest, sqrt(100*this%law%adhesion*max(h0_high, 1.0_wp)))
+    pair%reach = resolution%farther*pair%reach
     associate (fineness => resolution%fineness, order => resolution%order)
       if (pair%traceable) pair%grid(approach) = new_panel_grid(0.0_wp, &
         graded_ends(0.0_wp, pair%reach, fineness*feature, 1.0_wp, pair%reach), order, &

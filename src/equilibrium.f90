@@ -50,7 +50,7 @@ module equilibrium
     integer(long) :: operator_products = 0, operator_columns = 0, pressure_evaluations = 0
     integer(long) :: factorisations = 0, iterations = 0, kernel_entries = 0, states = 0
     integer(long) :: rejected_steps = 0
-    real(wp) :: kernel_seconds = 0, solve_seconds = 0
+    real(wp) :: kernel_seconds = 0, solve_seconds = 0, estimate_seconds = 0
   end type cost_t
 
 contains

@@ -6,12 +6,13 @@ module experiment
   use force_law, only: force_law_t
   use laws, only: law_parameters_t, new_law
   use scene_groups, only: scene_t
-  use choice, only: choice_t, choose, fixed_mesh
+  use choice, only: choice_t, choose, fixed_mesh, finer
   use edge_locked, only: new_mesh_pair
-  use quasi_static, only: quasi_static_t, position_t
+  use quasi_static, only: quasi_static_t, position_t, witness_t
   use locked_steps, only: locked_steps_t
   use fixed_steps, only: fixed_steps_t
   use cycle, only: plan_t, branch_t, run_branch
+  use error_estimate, only: estimate_locked, estimate_fixed
   use path, only: path_t, trace_path
   use records, only: observer_t
   use equilibrium, only: cost_t
@@ -25,10 +26,15 @@ module experiment
   type :: outcome_t
     type(choice_t) :: chosen
     type(path_t), allocatable :: path
-    type(branch_t), allocatable :: loading, unloading(:)
+    type(branch_t), allocatable :: stepped_path, loading, unloading(:)
     type(cost_t) :: cost
     integer :: nodes = 0
+    !> Estimated relative error of loads and displacements.
+    real(wp), allocatable :: error_estimate
   end type outcome_t
+
+  !> States of a stepped path.
+  integer, parameter :: path_states = 100
 
 contains
 
@@ -57,43 +63,108 @@ contains
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(outcome_t), intent(out) :: outcome
-    type(locked_steps_t) :: locked
-    type(fixed_steps_t) :: fixed
     real(wp) :: low, high
+    logical :: fixed
 
     if (.not. (allocated(scene%path) .or. allocated(scene%loading))) return
     call range_of(scene, problem, low, high)
     outcome%chosen = choose(scene%numerics, problem, low)
-    if (outcome%chosen%grid == 'edge_locked' .or. allocated(scene%path)) then
-      call prepare(locked, problem, outcome%chosen, scene%numerics%accuracy)
-      locked%cost%kernel_seconds = -seconds()
-      locked%pair = new_mesh_pair(problem, high, low, outcome%chosen%resolution)
-      locked%cost%kernel_seconds = locked%cost%kernel_seconds + seconds()
-      locked%cost%kernel_entries = sum(locked%pair%grid%kernel_entries())
-      outcome%nodes = sum(locked%pair%grid%nodes)
-      call use_threads_for(maxval(locked%pair%grid%nodes))
-      ! The path has no use for mixing.
-      if (locked%options%method == 'mixing') locked%options%method = 'anderson'
-    end if
-    if (allocated(scene%path)) call run_path(scene, locked, observer, outcome)
-    if (allocated(scene%loading)) then
-      if (outcome%chosen%grid == 'edge_locked') then
-        call run_cycle(scene, locked, observer, outcome)
+    fixed = outcome%chosen%grid /= 'edge_locked'
+    if (allocated(scene%path) .or. .not. fixed) &
+      call run_locked(scene, problem, high, low, .not. fixed, observer, outcome)
+    if (allocated(scene%loading) .and. fixed) call run_fixed(scene, problem, low, observer, outcome)
+  end subroutine run_experiment
+
+  !> The path, and the cycle if `with_cycle` and the scene has one, in edge-locked coordinates, for H0 from
+  !> high to low (law's lengths).
+  subroutine run_locked(scene, problem, high, low, with_cycle, observer, outcome)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: high, low
+    logical, intent(in) :: with_cycle
+    class(observer_t), intent(inout) :: observer
+    type(outcome_t), intent(inout) :: outcome
+    type(locked_steps_t) :: steps
+    real(wp) :: began
+
+    call prepare(steps, problem, outcome%chosen, scene%numerics%accuracy)
+    ! The path has no use for mixing.
+    if (steps%options%method == 'mixing') steps%options%method = 'anderson'
+    began = seconds()
+    steps%pair = new_mesh_pair(problem, high, low, outcome%chosen%resolution)
+    steps%cost%kernel_seconds = seconds() - began
+    steps%cost%kernel_entries = sum(steps%pair%grid%kernel_entries())
+    outcome%nodes = sum(steps%pair%grid%nodes)
+    call use_threads_for(maxval(steps%pair%grid%nodes))
+    began = seconds()
+    if (allocated(scene%path)) then
+      if (problem%law%adhesion > 0 .and. .not. problem%rigid) then
+        call run_path(scene, steps, observer, outcome)
       else
-        call prepare(fixed, problem, outcome%chosen, scene%numerics%accuracy)
-        fixed%cost = locked%cost
-        fixed%cost%kernel_seconds = fixed%cost%kernel_seconds - seconds()
-        fixed%mesh = fixed_mesh(outcome%chosen, problem, low)
-        fixed%cost%kernel_seconds = fixed%cost%kernel_seconds + seconds()
-        fixed%cost%kernel_entries = fixed%cost%kernel_entries + fixed%mesh%kernel_entries()
-        outcome%nodes = outcome%nodes + fixed%mesh%nodes
-        call use_threads_for(fixed%mesh%nodes)
-        call run_cycle(scene, fixed, observer, outcome)
-        locked%cost = fixed%cost
+        call run_stepped_path(scene, steps, observer, outcome)
       end if
     end if
-    outcome%cost = locked%cost
-  end subroutine run_experiment
+    if (allocated(scene%loading) .and. with_cycle) call run_cycle(scene, steps, observer, outcome)
+    steps%cost%solve_seconds = seconds() - began
+    began = seconds()
+    outcome%error_estimate = estimate_locked(problem, steps%pair, high, low, &
+      outcome%chosen%resolution, witnesses_of(outcome), steps%cost)
+    steps%cost%estimate_seconds = seconds() - began
+    outcome%cost = steps%cost
+  end subroutine run_locked
+
+  !> The cycle on a mesh fixed in space, for H0 down to low.
+  subroutine run_fixed(scene, problem, low, observer, outcome)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: low
+    class(observer_t), intent(inout) :: observer
+    type(outcome_t), intent(inout) :: outcome
+    type(fixed_steps_t) :: steps
+    type(outcome_t) :: of_cycle
+    real(wp) :: began
+
+    call prepare(steps, problem, outcome%chosen, scene%numerics%accuracy)
+    steps%cost = outcome%cost
+    began = seconds()
+    steps%mesh = fixed_mesh(outcome%chosen, problem, low)
+    steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
+    steps%cost%kernel_entries = steps%cost%kernel_entries + steps%mesh%kernel_entries()
+    outcome%nodes = outcome%nodes + steps%mesh%nodes
+    call use_threads_for(steps%mesh%nodes)
+    began = seconds()
+    call run_cycle(scene, steps, observer, of_cycle)
+    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
+    began = seconds()
+    of_cycle%error_estimate = estimate_fixed(problem, steps%mesh, &
+      fixed_mesh(finer(outcome%chosen), problem, low), witnesses_of(of_cycle), steps%cost)
+    steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
+    if (.not. allocated(outcome%error_estimate)) outcome%error_estimate = 0
+    outcome%error_estimate = max(outcome%error_estimate, of_cycle%error_estimate)
+    outcome%cost = steps%cost
+    call move_alloc(of_cycle%loading, outcome%loading)
+    call move_alloc(of_cycle%unloading, outcome%unloading)
+  end subroutine run_fixed
+
+  !> The witnesses of all that an outcome holds.
+  function witnesses_of(outcome) result(witnesses)
+    type(outcome_t), intent(in) :: outcome
+    type(witness_t), allocatable :: witnesses(:)
+    integer :: k
+
+    allocate (witnesses(0))
+    if (allocated(outcome%path)) then
+      if (allocated(outcome%path%witness)) witnesses = [witnesses, outcome%path%witness]
+    end if
+    if (allocated(outcome%stepped_path)) witnesses = [witnesses, outcome%stepped_path%witness]
+    if (allocated(outcome%loading)) witnesses = [witnesses, outcome%loading%witness]
+    if (allocated(outcome%unloading)) then
+      do k = 1, size(outcome%unloading)
+        if (allocated(outcome%unloading(k)%witness)) &
+          witnesses = [witnesses, outcome%unloading(k)%witness]
+      end do
+    end if
+  end function witnesses_of
 
   !> What both kinds of steps are told.
   subroutine prepare(steps, problem, chosen, accuracy)
@@ -114,7 +185,7 @@ contains
     class(observer_t), intent(inout) :: observer
     type(outcome_t), intent(inout) :: outcome
     real(wp), allocatable :: profiles(:)
-    real(wp) :: start, began
+    real(wp) :: start
 
     associate (length => steps%problem%length)
       start = -huge(1.0_wp)
@@ -122,11 +193,34 @@ contains
       allocate (profiles(0))
       if (allocated(scene%profiles)) profiles = scene%profiles%h0/length
       allocate (outcome%path)
-      began = seconds()
       call trace_path(steps, start, scene%path%h0_end/length, profiles, observer, outcome%path)
-      steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     end associate
   end subroutine run_path
+
+  !> The path of a law that does not attract, or of rigid bodies: one state for every h0, so that stepping
+  !> h0 gives it.
+  subroutine run_stepped_path(scene, steps, observer, outcome)
+    type(scene_t), intent(in) :: scene
+    type(locked_steps_t), intent(inout) :: steps
+    class(observer_t), intent(inout) :: observer
+    type(outcome_t), intent(inout) :: outcome
+    type(position_t) :: position, none(0)
+    real(wp) :: start
+    real(wp), allocatable :: nowhere(:)
+
+    allocate (nowhere(0))
+    associate (length => steps%problem%length)
+      if (allocated(scene%path%h0_start)) then
+        start = scene%path%h0_start
+      else
+        start = max(steps%far_away()*length, scene%path%h0_end + length)
+      end if
+      allocate (outcome%stepped_path)
+      call run_branch(steps, plan_of('path', start, scene%path%h0_end, &
+        abs(start - scene%path%h0_end)/path_states, scene, length, nowhere), .true., position, &
+        observer, nowhere, none, outcome%stepped_path)
+    end associate
+  end subroutine run_stepped_path
 
   !> Loading, then an unloading from each turning point.
   subroutine run_cycle(scene, steps, observer, outcome)
@@ -137,10 +231,8 @@ contains
     type(position_t) :: position
     type(position_t), allocatable :: turning(:), none(:)
     real(wp), allocatable :: from(:), nowhere(:)
-    real(wp) :: began
     integer :: k
 
-    began = seconds()
     allocate (from(0), nowhere(0), none(0))
     if (allocated(scene%unloading)) from = scene%unloading%from/steps%problem%length
     allocate (turning(size(from)))
@@ -161,7 +253,6 @@ contains
           nowhere), .false., position, observer, nowhere, none, outcome%unloading(k))
       end do
     end if
-    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
   end subroutine run_cycle
 
   !> Values of h0 [m] from start to finish by step, whichever way that is, both ends included, with the

@@ -2,13 +2,13 @@
 !> across the nodes, and where they are not close against the neck it is pinned between them.
 module fixed_steps
   use kinds, only: wp
-  use problem, only: neck_width
+  use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, state_from
   use solver, only: solve_state
   use relaxation, only: relax
   use tracer, only: between
-  use quasi_static, only: quasi_static_t, position_t, event_t, remember
+  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember
   implicit none
   private
   public :: fixed_steps_t
@@ -20,6 +20,7 @@ module fixed_steps
     procedure :: go
     procedure :: grid
     procedure :: spacing_over_neck
+    procedure :: witness
     procedure, private :: continue_to
     procedure, private :: land
     procedure, private :: solve_at
@@ -178,7 +179,17 @@ contains
     class(fixed_steps_t), intent(in) :: self
     type(position_t), intent(in) :: position
 
-    spacing_over_neck = position%state%scale*self%mesh%spacing/neck_width(self%problem)
+    spacing_over_neck = over_neck(self%problem, position%state%scale*self%mesh%spacing)
   end function spacing_over_neck
+
+  pure function witness(self, position)
+    class(fixed_steps_t), intent(in) :: self
+    type(position_t), intent(in) :: position
+    type(witness_t) :: witness
+
+    witness%control%value = position%state%h0
+    witness%state = position%state
+    witness%displacement = .true.
+  end function witness
 
 end module fixed_steps

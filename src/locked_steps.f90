@@ -7,18 +7,19 @@
 !> jump, and known exactly.
 module locked_steps
   use kinds, only: wp
-  use problem, only: problem_t, neck_width
+  use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, state_from, radius_of_gap, at_h0_with_edge
+  use solver_options, only: solver_options_t
   use solver, only: solve_state
   use edge_locked, only: mesh_pair_t, hertz_scale, approach, contact
   use tracer, only: tracer_t, new_tracer, inward, outward, coordinate_of, move_to_mesh, state_at, &
-    between, node_count
-  use trail, only: trail_t, extend
-  use quasi_static, only: quasi_static_t, position_t, event_t, remember
+    between, node_count, path_control
+  use trail, only: trail_t, extend, collapsed
+  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember
   implicit none
   private
-  public :: locked_steps_t
+  public :: locked_steps_t, fold_witness
 
   type, extends(quasi_static_t) :: locked_steps_t
     type(mesh_pair_t) :: pair
@@ -27,7 +28,9 @@ module locked_steps
     procedure :: go
     procedure :: grid
     procedure :: spacing_over_neck
+    procedure :: witness
     procedure :: begin_afar
+    procedure :: far_away
     procedure :: land
     procedure, private :: attempt
     procedure, private :: trace
@@ -38,9 +41,10 @@ module locked_steps
   integer, parameter :: longest_trace = 2000
   !> Largest relative change of the path's coordinate in a step of a trace.
   real(wp), parameter :: path_step = 0.15_wp
-  !> A gap of this many of the law's lengths (over the closure fraction) is a collapse: a law without
-  !> repulsion has no state after the jump.
-  real(wp), parameter :: collapsed = 0.1_wp
+  character(len=*), parameter :: touching = &
+    'rigid bodies would touch: this law has no state at h0 <= 0'
+  !> Residual, in the law's lengths, of states that only lead the way and are not reported.
+  real(wp), parameter :: walking_tolerance = 1.0e-6_wp
   !> Smallest step in h0, in the law's lengths, that is tried.
   real(wp), parameter :: smallest_creep = 1.0e-6_wp
 
@@ -70,10 +74,14 @@ contains
     integer :: mesh
 
     mesh = merge(approach, contact, self%pair%traceable)
-    ! Twice the gap (37) of the jump into contact, in these units, or where repulsion hardly acts.
-    far = max(h0, 5.0_wp, 2*(27*self%problem%coupling*self%problem%law%adhesion)**(2.0_wp/7), &
-      self%pair%level + 3)
-    if (self%problem%rigid) far = h0
+    far = max(h0, self%far_away())
+    if (self%problem%rigid) then
+      far = h0
+      if (h0 <= 0 .and. self%problem%law%closure_fraction > 0) then
+        event%reason = touching
+        return
+      end if
+    end if
     associate (grid => self%pair%grid(mesh))
       state = state_from(node_count(self%pair, mesh, scale_at(self, far)))
       state%h0 = far
@@ -86,6 +94,15 @@ contains
     call remember(position, state, mesh, .false.)
   end subroutine begin_afar
 
+  !> An H0 at which the bodies hardly deform: twice the gap (37) of the jump into contact, in these units,
+  !> or where repulsion hardly acts.
+  pure real(wp) function far_away(self)
+    class(locked_steps_t), intent(in) :: self
+
+    far_away = max(5.0_wp, 2*(27*self%problem%coupling*self%problem%law%adhesion)**(2.0_wp/7), &
+      self%pair%level + 3)
+  end function far_away
+
   subroutine go(self, h0, position, event)
     class(locked_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -93,6 +110,10 @@ contains
     type(event_t), intent(out) :: event
     type(state_t) :: state
 
+    if (self%problem%rigid .and. h0 <= 0 .and. self%problem%law%closure_fraction > 0) then
+      event%reason = touching
+      return
+    end if
     state = between(self%pair%grid(position%mesh), position%h0(:position%held), &
       position%past(:position%held), h0, nodes_to_use(self, h0, position))
     call self%attempt(h0, state, position%mesh, position, event)
@@ -146,28 +167,30 @@ contains
     type(tracer_t) :: walker
     type(trail_t) :: trail
     type(state_t) :: state
+    type(solver_options_t) :: walking
     logical :: lost, found
     integer :: seen, direction
 
     self%frozen%factors%valid = .false.
     direction = merge(inward, outward, h0 < position%state%h0)
     walker = new_tracer(self%problem, position%state, position%mesh, direction, path_step)
+    walking = self%options
+    walking%tolerance = max(walking%tolerance, walking_tolerance)
     seen = 1
     found = .false.
     do while (.not. found)
-      call extend(trail, walker, self%problem, self%pair, self%options, lost, self%cost)
-      if (lost .or. trail%held > longest_trace .or. &
-        minval(trail%state(trail%held)%gap) < collapsed*self%problem%law%closure_fraction) then
+      call extend(trail, walker, self%problem, self%pair, walking, self%options, lost, self%cost)
+      if (lost) event%reason = 'the equilibrium path was lost'
+      if (trail%held > longest_trace .or. collapsed(trail)) &
         event%reason = 'no stable equilibrium exists beyond this h0'
-        if (lost .and. self%problem%law%edge_gap > 0) event%reason = 'the equilibrium path was lost'
-        return
-      end if
+      if (event%reason /= '') return
       ! The last piece of the trail may still turn out to hold a fold.
       do while (seen < trail%held - 1 .and. .not. found)
         if (trail%fold(seen + 1) .and. .not. event%jumped) then
           event%jumped = .true.
           event%jump_h0 = trail%state(seen + 1)%h0
           event%jump_load = trail%state(seen + 1)%load
+          event%fold = fold_witness(self, trail, seen + 1)
         end if
         associate (a => trail%state(seen)%h0, b => trail%state(seen + 1)%h0)
           found = trail%unstable(seen + 1) == 0 .or. trail%unstable(seen) == 0
@@ -251,7 +274,7 @@ contains
       call self%attempt(next, state, contact, position, event)
       if (event%converged) then
         call remember(position, state, contact, .false.)
-        if (next == h0) return
+        if (abs(next - h0) <= 0.0_wp) return
         step = 2*step
       else
         step = 0.3_wp*step
@@ -330,6 +353,32 @@ contains
     if (.not. self%pair%traceable) scale_at = hertz_scale(self%pair%level, h0)
   end function scale_at
 
+  !> The witness of a fold on a trail.
+  pure function fold_witness(self, trail, i) result(witness)
+    class(locked_steps_t), intent(in) :: self
+    type(trail_t), intent(in) :: trail
+    integer, intent(in) :: i
+    type(witness_t) :: witness
+
+    witness%mesh = trail%mesh(i)
+    witness%control = path_control(self%problem, trail%mesh(i), trail%coordinate(i))
+    witness%state = trail%state(i)
+    witness%h0 = .true.
+    ! Along the path the load goes through a fold at full slope, h0 does not.
+    witness%load = .false.
+  end function fold_witness
+
+  pure function witness(self, position)
+    class(locked_steps_t), intent(in) :: self
+    type(position_t), intent(in) :: position
+    type(witness_t) :: witness
+
+    witness%mesh = position%mesh
+    witness%control = h0_control(self, position%mesh, position%state%h0)
+    witness%state = position%state
+    witness%displacement = .true.
+  end function witness
+
   function grid(self, position)
     class(locked_steps_t), intent(in), target :: self
     type(position_t), intent(in) :: position
@@ -342,8 +391,8 @@ contains
     class(locked_steps_t), intent(in) :: self
     type(position_t), intent(in) :: position
 
-    spacing_over_neck = position%state%scale*self%pair%grid(position%mesh)%spacing/ &
-      neck_width(self%problem)
+    spacing_over_neck = over_neck(self%problem, &
+      position%state%scale*self%pair%grid(position%mesh)%spacing)
   end function spacing_over_neck
 
 end module locked_steps

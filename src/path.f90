@@ -2,13 +2,13 @@
 !> states, every fold in h0, every extremum of the load.
 module path
   use kinds, only: wp
-  use problem, only: neck_width
+  use problem, only: spacing_over_neck
   use equilibrium, only: state_t
   use edge_locked, only: contact
-  use tracer, only: tracer_t, new_tracer, inward
-  use trail, only: trail_t, extend, polish_extremum, of_load
-  use quasi_static, only: position_t, event_t
-  use locked_steps, only: locked_steps_t
+  use tracer, only: tracer_t, new_tracer, inward, path_control
+  use trail, only: trail_t, extend, collapsed, polish_extremum, of_load
+  use quasi_static, only: position_t, event_t, witness_t
+  use locked_steps, only: locked_steps_t, fold_witness
   use records, only: observer_t, record_of, stable_yes, stable_no
   implicit none
   private
@@ -25,6 +25,8 @@ module path
     real(wp), allocatable :: jump_in_h0, jump_in_load, jump_out_h0, jump_out_load
     !> Largest tension, the pull-off at controlled load.
     real(wp), allocatable :: load, load_h0
+    !> The folds, the largest tension and the end.
+    type(witness_t), allocatable :: witness(:)
     real(wp) :: worst_residual = 0, worst_spacing = 0
     !> Why the path ends before its end; empty where it does not.
     character(len=160) :: reason = ''
@@ -33,8 +35,6 @@ module path
   !> Relative change of the path's coordinate in a step; small enough for a smooth curve.
   real(wp), parameter :: path_step = 0.12_wp
   integer, parameter :: longest = 5000
-  !> See `locked_steps`: gaps below this are a collapse.
-  real(wp), parameter :: collapsed = 0.03_wp
 
 contains
 
@@ -58,11 +58,12 @@ contains
     end if
     walker = new_tracer(steps%problem, position%state, position%mesh, inward, path_step)
     do
-      call extend(trail, walker, steps%problem, steps%pair, steps%options, lost, steps%cost)
+      call extend(trail, walker, steps%problem, steps%pair, steps%options, steps%options, lost, &
+        steps%cost)
       if (lost) path%reason = 'the equilibrium path was lost: no step, however small, converged'
       if (lost .or. trail%held >= longest) exit
       ! Without repulsion the path ends in the bodies' collapse onto each other.
-      if (minval(trail%state(trail%held)%gap) < collapsed) exit
+      if (collapsed(trail)) exit
       associate (last => trail%held)
         if (trail%mesh(last) == contact .and. trail%unstable(last) == 0 .and. &
           trail%state(last)%h0 <= h0_end) exit
@@ -105,6 +106,7 @@ contains
     type(trail_t), intent(in) :: trail
     type(path_t), intent(inout) :: path
     type(state_t) :: state
+    type(witness_t) :: lowest
     integer, allocatable :: fold(:)
     real(wp) :: s
     integer :: i, j, first
@@ -113,6 +115,10 @@ contains
     fold = pack([(j, j=1, trail%held)], trail%fold(:trail%held))
     path%fold_h0 = trail%state(fold)%h0
     path%fold_load = trail%state(fold)%load
+    path%witness = [(fold_witness(steps, trail, fold(j)), j=1, size(fold)), &
+      fold_witness(steps, trail, trail%held)]
+    path%witness(size(path%witness))%load = .true.
+    path%witness(size(path%witness))%displacement = .true.
     path%unstable_after = trail%unstable(min(fold + 1, trail%held))
     if (size(fold) > 0) then
       path%jump_in_h0 = path%fold_h0(1)
@@ -138,6 +144,8 @@ contains
         steps%cost)
       if (lost) cycle
       path%extremum_h0 = [path%extremum_h0, state%h0]
+      if (all(state%load < path%extremum_load)) lowest = witness_t(mesh=trail%mesh(i), &
+        control=path_control(steps%problem, trail%mesh(i), s), state=state)
       path%extremum_load = [path%extremum_load, state%load]
     end do
     i = minloc(trail%state(:trail%held)%load, 1)
@@ -148,12 +156,13 @@ contains
       if (path%extremum_load(i) <= path%load) then
         path%load = path%extremum_load(i)
         path%load_h0 = path%extremum_h0(i)
+        path%witness = [path%witness, lowest]
       end if
     end if
     path%worst_residual = maxval(trail%state(:trail%held)%residual)
     do i = 1, trail%held
       if (trail%mesh(i) == contact) path%worst_spacing = max(path%worst_spacing, &
-        trail%state(i)%scale*steps%pair%grid(contact)%spacing/neck_width(steps%problem))
+        spacing_over_neck(steps%problem, trail%state(i)%scale*steps%pair%grid(contact)%spacing))
     end do
   end subroutine collect
 

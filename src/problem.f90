@@ -10,7 +10,7 @@ module problem
   use force_law, only: force_law_t
   implicit none
   private
-  public :: problem_t, new_problem, neck_width, tabor_parameter, surface_energy
+  public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, surface_energy
 
   type :: problem_t
     class(force_law_t), allocatable :: law
@@ -21,6 +21,9 @@ module problem
     real(wp) :: radius = 1, stiffness = 1
     logical :: rigid = .false.
   end type problem_t
+
+  !> Width of the neck times sigma, lateral units.
+  real(wp), parameter :: neck = 0.375_wp
 
 contains
 
@@ -49,8 +52,16 @@ contains
 
     neck_width = huge(1.0_wp)
     if (this%coupling*this%law%adhesion > 0) &
-      neck_width = 0.375_wp/(this%coupling*this%law%adhesion)
+      neck_width = neck/(this%coupling*this%law%adhesion)
   end function neck_width
+
+  !> A distance between nodes (lateral units) over the width of the neck; 0 where there is no neck.
+  pure real(wp) function spacing_over_neck(this, spacing)
+    type(problem_t), intent(in) :: this
+    real(wp), intent(in) :: spacing
+
+    spacing_over_neck = spacing*this%coupling*this%law%adhesion/neck
+  end function spacing_over_neck
 
   !> Tabor's parameter (R gamma^2/(E*^2 L^3))^(1/3) = (4 sigma^2)^(1/3); 0 without adhesion.
   pure real(wp) function tabor_parameter(this)

@@ -4,12 +4,12 @@ module quasi_static
   use kinds, only: wp
   use problem, only: problem_t
   use discretisation, only: discretisation_t
-  use equilibrium, only: state_t, cost_t
+  use equilibrium, only: control_t, state_t, cost_t
   use anderson, only: frozen_t
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: quasi_static_t, position_t, event_t, memory, remember
+  public :: quasi_static_t, position_t, event_t, witness_t, memory, remember
 
   !> States kept for extrapolation in h0.
   integer, parameter :: memory = 4
@@ -25,6 +25,16 @@ module quasi_static
     type(state_t) :: past(memory)
   end type position_t
 
+  !> A state that reported numbers come from, and what was prescribed there; solved again on a finer mesh,
+  !> it tells the error of these numbers.
+  type :: witness_t
+    integer :: mesh = 1
+    type(control_t) :: control
+    type(state_t) :: state
+    !> What to compare: the load, H0 (where the control leaves it open), the displacement.
+    logical :: load = .true., h0 = .false., displacement = .false.
+  end type witness_t
+
   !> What happened in a step.
   type :: event_t
     logical :: converged = .false.
@@ -33,6 +43,8 @@ module quasi_static
     !> The state jumped; from where (h0, and the load just before), and how well that is known.
     logical :: jumped = .false.
     real(wp) :: jump_h0 = 0, jump_load = 0, jump_uncertainty = 0
+    !> The fold that the jump starts from, where it is known.
+    type(witness_t), allocatable :: fold
     !> Why there is no state, for the user; empty otherwise.
     character(len=160) :: reason = ''
   end type event_t
@@ -51,6 +63,8 @@ module quasi_static
     procedure(grid_of), deferred :: grid
     !> Distance between nodes at the edge over the width of the neck, for a state; 0 without a neck.
     procedure(spacing_of), deferred :: spacing_over_neck
+    !> The witness of a position's state: what its h0 was prescribed as.
+    procedure(witness_of), deferred :: witness
   end type quasi_static_t
 
   abstract interface
@@ -85,6 +99,13 @@ module quasi_static
       class(quasi_static_t), intent(in) :: self
       type(position_t), intent(in) :: position
     end function spacing_of
+
+    pure function witness_of(self, position) result(witness)
+      import :: quasi_static_t, position_t, witness_t
+      class(quasi_static_t), intent(in) :: self
+      type(position_t), intent(in) :: position
+      type(witness_t) :: witness
+    end function witness_of
   end interface
 
 contains

@@ -36,7 +36,10 @@ contains
       summary%chosen_because = outcome%chosen%because
       summary%nodes = outcome%nodes
       summary%worst_residual = 0
+      if (allocated(outcome%error_estimate)) summary%error_estimate = outcome%error_estimate
     end if
+    if (allocated(outcome%stepped_path)) &
+      call take_branch(problem, 'path', outcome%stepped_path, summary)
     if (allocated(outcome%loading)) then
       call take_branch(problem, 'loading', outcome%loading, summary)
       call take_jump(problem, outcome%loading, summary%jump_in_h0, summary%jump_in_load, &

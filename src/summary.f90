@@ -96,10 +96,11 @@ contains
     type(cost_t), intent(in) :: cost
     character(len=:), allocatable :: text
     character(len=1), parameter :: nl = new_line('a')
-    real(wp), allocatable :: kernel_seconds, solve_seconds
+    real(wp), allocatable :: kernel_seconds, solve_seconds, estimate_seconds
 
     kernel_seconds = cost%kernel_seconds
     solve_seconds = cost%solve_seconds
+    estimate_seconds = cost%estimate_seconds
     text = '! Results of snapin, SI units. What does not exist is NaN or left out.' // nl // &
       '! The groups after the first two are the deck, defaults included: run it again.' // nl // &
       '&summary' // nl // &
@@ -146,6 +147,7 @@ contains
       assignment_of('wall_seconds', self%wall_seconds) // &
       assignment_of('kernel_seconds', kernel_seconds) // &
       assignment_of('solve_seconds', solve_seconds) // &
+      assignment_of('estimate_seconds', estimate_seconds) // &
       assignment_of('threads', self%threads) // &
       assignment_of('nodes', self%nodes) // &
       assignment_of('states', cost%states) // &

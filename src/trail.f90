@@ -18,7 +18,7 @@ module trail
   use tracer, only: tracer_t, state_at, path_control
   implicit none
   private
-  public :: trail_t, extend, polish_extremum, quantity_of, of_h0, of_load
+  public :: trail_t, extend, collapsed, polish_extremum, quantity_of, of_h0, of_load
 
   !> The quantities whose extrema are polished.
   integer, parameter :: of_h0 = 1, of_load = 2
@@ -35,24 +35,36 @@ module trail
     logical, allocatable :: fold(:)
   end type trail_t
 
+  !> A gap on the axis of this many of the law's lengths is a collapse: a law without repulsion pulls the
+  !> bodies together without end, and means nothing there.
+  real(wp), parameter :: collapse = 0.1_wp
+
 contains
+
+  !> Whether the newest state of a trail is one of collapse.
+  pure logical function collapsed(trail)
+    type(trail_t), intent(in) :: trail
+
+    collapsed = trail%state(trail%held)%axis_gap < collapse
+  end function collapsed
 
   !> Advances the tracer by a step and appends the new state, and the fold if one has been passed. A
   !> fold between the two newest states is seen only with the next state, so what lies before the
-  !> newest but one is final. A new trail begins with the tracer's own newest state.
-  subroutine extend(trail, walker, this, pair, options, lost, cost)
+  !> newest but one is final. A new trail begins with the tracer's own newest state. States are solved as
+  !> `walking` says, folds as `options` says.
+  subroutine extend(trail, walker, this, pair, walking, options, lost, cost)
     type(trail_t), intent(inout) :: trail
     type(tracer_t), intent(inout) :: walker
     type(problem_t), intent(in) :: this
     type(mesh_pair_t), intent(in) :: pair
-    type(solver_options_t), intent(in) :: options
+    type(solver_options_t), intent(in) :: walking, options
     logical, intent(out) :: lost
     type(cost_t), intent(inout) :: cost
     integer :: n, unstable
 
     if (trail%held == 0) call insert(trail, 1, walker%past(walker%held), walker%mesh, &
       walker%coordinate(walker%held), 0, .false.)
-    call walker%advance(this, pair, options, lost, cost)
+    call walker%advance(this, pair, walking, lost, cost)
     if (lost) return
     n = walker%held
     unstable = trail%unstable(trail%held)
@@ -62,7 +74,7 @@ contains
       if (surrounded(walker%past(n - 2:n)%h0)) &
         call insert_fold(trail, walker, this, pair, options, lost, cost)
     end if
-    if (.not. lost) call walker%change_mesh(this, pair, options, lost, cost)
+    if (.not. lost) call walker%change_mesh(this, pair, walking, lost, cost)
   end subroutine extend
 
   !> Whether the middle one of three values is an extremum.

@@ -47,6 +47,7 @@ class HalfSpace:
         length = np.diff(ends)
         self.r = (ends[:-1, None] + length[:, None] * local).ravel()
         self.weight = (length[:, None] * weight).ravel() * self.r
+        self.end = ends[-1]
         targets = np.concatenate([[0.0], self.r])
         self.matrix = np.empty((len(targets), len(self.r)))
         s, v = np.polynomial.legendre.leggauss(40)
@@ -70,9 +71,9 @@ class HalfSpace:
                     row += (k * 6 * s**5 * v * reach * at) @ lagrange(local, (at - a) / (b - a))
                 self.matrix[i, columns] = row
 
-    def solve(self, law, s, h0, start=None):
-        """The gaps (axis first) at the last of several H0, by continuation from gaps `start`."""
-        gap = start
+    def solve(self, law, s, h0, largest=0.8):
+        """The gaps (axis first) at the last of several H0; no gap falls by more than `largest` a step."""
+        gap = None
         values = np.atleast_1d(h0)
         before = values[0]
         for value in values:
@@ -84,7 +85,7 @@ class HalfSpace:
                 jacobian = np.eye(len(r))
                 jacobian[:, 1:] -= 2 * s * self.matrix * slope
                 step = np.linalg.solve(jacobian, -residual)
-                gap = gap + min(1, 0.8 / max(1e-300, *(-step))) * step
+                gap = gap + min(1, largest / max(1e-300, -step.min())) * step
                 if abs(step).max() < 1e-12 * max(1, abs(gap[0])):
                     break
             else:
@@ -95,8 +96,7 @@ class HalfSpace:
     def load(self, law, s, gap):
         """The load; beyond the mesh the deformation is taken as constant."""
         pressure, _, _ = law(gap[1:])
-        end_gap = gap[-1] + 0.0
-        _, _, energy = law(np.array([end_gap]))
+        _, _, energy = law(np.array([gap[-1] + (self.end**2 - self.r[-1] ** 2) / 2]))
         return 2 * np.pi * s * (self.weight @ pressure + energy[0])
 
 

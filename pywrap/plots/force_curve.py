@@ -57,7 +57,8 @@ def draw_force_curve(folder):
 
     figure = Figure(figsize=(9, 4.6), layout="constrained")
     panels = figure.subplots(1, 2, sharey=True)
-    for panel, x, name in zip(panels, ("displacement", "h0"), ("displacement $h(0) - h_0$", "$h_0$")):
+    names = {"displacement": "displacement $h(0) - h_0$", "h0": "$h_0$"}
+    for panel, (x, name) in zip(panels, names.items()):
         dress(panel, f"{name} [{lengths[1]}]", f"load [{loads[1]}]" if x != "h0" else "")
         for branch in branches:
             branch.draw(panel, x, lengths[0], loads[0])
@@ -70,7 +71,7 @@ def draw_force_curve(folder):
     figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False)
     # Arrows are placed by distances on the page, known once everything else is.
     figure.draw_without_rendering()
-    for panel, x in zip(panels, ("displacement", "h0")):
+    for panel, x in zip(panels, names):
         for branch in branches:
             branch.draw_arrows(panel, x, lengths[0], loads[0])
     return figure
@@ -179,10 +180,9 @@ def _end_at_fold(piece, h0, load):
     At a fold displacement and load both go with the root of the distance to it, so that one is a
     smooth function of the other.
     """
-    steps = np.diff(piece["load"][-3:])
-    smooth = steps.size == 2 and steps[0] * steps[1] > 0 and steps[1] * (load - piece["load"][-1]) > 0
+    steps = np.diff(np.append(piece["load"][-3:], load))
     displacement = piece["displacement"][-1]
-    if smooth:
+    if steps.size == 3 and ((steps > 0).all() or (steps < 0).all()):
         displacement = _parabola(piece["load"][-3:], piece["displacement"][-3:], load)
     elif not np.isfinite(load):
         load = piece["load"][-1]
@@ -238,8 +238,9 @@ def _stretch(panel, x, y, fraction):
 
 
 def _arrow(panel, tail, head, color, linewidth):
-    """Draw an arrow; without width only its head."""
-    style = "-|>,head_length=0.5,head_width=0.28" if linewidth else "-|>,head_length=0.6,head_width=0.36"
+    """Draw an arrow; without width only its head, somewhat larger."""
+    length, width = (0.5, 0.28) if linewidth else (0.6, 0.36)
+    style = f"-|>,head_length={length},head_width={width}"
     arrow = panel.annotate(
         "", head, tail, annotation_clip=False, zorder=8,
         arrowprops={"arrowstyle": style, "color": color, "linewidth": linewidth or 0.1,

@@ -1,0 +1,109 @@
+!> The error of what is reported: the states that it comes from are solved again on a finer mesh, to
+!> rounding, and compared. What is left out is the error of the finer mesh, smaller by a factor that
+!> the margin covers.
+module error_estimate
+  use kinds, only: wp
+  use problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use edge_locked, only: mesh_pair_t, new_mesh_pair, resolution_t, regrid
+  use tracer, only: node_count
+  use equilibrium, only: state_t, cost_t
+  use anderson, only: frozen_t, solve_anderson
+  use solver_options, only: solver_options_t
+  use quasi_static, only: witness_t
+  implicit none
+  private
+  public :: estimate_locked, estimate_fixed
+
+  !> Panels: nodes that the finer mesh has more in each, and its reach over the mesh's; the error of the
+  !> reach falls with its fifth power.
+  integer, parameter :: more_nodes = 2
+  real(wp), parameter :: farther = 1.6_wp
+  !> Differences are raised by this much for the error of the finer mesh: a tenth or less for panels, a
+  !> third for a uniform grid, which is of second order and of lower order in places; and because
+  !> other states may be somewhat worse than the witnesses.
+  real(wp), parameter :: margin = 2, margin_fixed = 2.5_wp
+  !> Rounding of a whole calculation, below which no error is claimed.
+  real(wp), parameter :: rounding = 1.0e-13_wp
+
+contains
+
+  !> Largest relative error over the witnesses of an edge-locked run; H0 range and resolution are those
+  !> of its meshes. Infinite where a witness does not converge on the finer mesh.
+  function estimate_locked(this, pair, h0_high, h0_low, resolution, witnesses, cost) result(error)
+    type(problem_t), intent(in) :: this
+    type(mesh_pair_t), intent(in) :: pair
+    real(wp), intent(in) :: h0_high, h0_low
+    type(resolution_t), intent(in) :: resolution
+    type(witness_t), intent(in) :: witnesses(:)
+    type(cost_t), intent(inout) :: cost
+    real(wp) :: error
+    type(mesh_pair_t) :: fine
+    type(resolution_t) :: finer
+    real(wp) :: c
+    integer :: i
+
+    finer = resolution
+    finer%order = resolution%order + more_nodes
+    finer%farther = farther
+    fine = new_mesh_pair(this, h0_high, h0_low, finer)
+    cost%kernel_entries = cost%kernel_entries + sum(fine%grid%kernel_entries())
+    error = rounding
+    do i = 1, size(witnesses)
+      associate (mesh => witnesses(i)%mesh)
+        c = witnesses(i)%state%scale
+        error = max(error, margin*difference(this, pair%grid(mesh), fine%grid(mesh), &
+          node_count(fine, mesh, c), witnesses(i), cost))
+      end associate
+    end do
+  end function estimate_locked
+
+  !> The same for a run on a fixed mesh, against the finer mesh given.
+  function estimate_fixed(this, mesh, fine, witnesses, cost) result(error)
+    type(problem_t), intent(in) :: this
+    type(discretisation_t), intent(in) :: mesh, fine
+    type(witness_t), intent(in) :: witnesses(:)
+    type(cost_t), intent(inout) :: cost
+    real(wp) :: error
+    integer :: i
+
+    cost%kernel_entries = cost%kernel_entries + fine%kernel_entries()
+    error = rounding
+    do i = 1, size(witnesses)
+      error = max(error, margin_fixed*difference(this, mesh, fine, fine%nodes, witnesses(i), cost))
+    end do
+  end function estimate_fixed
+
+  !> Relative difference between a witness and its solution on a finer mesh, in what it is compared by.
+  function difference(this, mesh, fine, nodes, witness, cost)
+    type(problem_t), intent(in) :: this
+    type(discretisation_t), intent(in) :: mesh, fine
+    integer, intent(in) :: nodes
+    type(witness_t), intent(in) :: witness
+    type(cost_t), intent(inout) :: cost
+    real(wp) :: difference
+    type(solver_options_t) :: options
+    type(frozen_t) :: frozen
+    type(state_t) :: state
+    logical :: converged
+
+    ! As well as rounding allows: the iteration stops at its own floor.
+    options%tolerance = 0
+    options%patience = 2
+    state = regrid(witness%state, mesh, fine, witness%state%scale, nodes)
+    call solve_anderson(this, fine, witness%control, options, frozen, state, converged, cost)
+    if (.not. state%residual < 1.0e-6_wp) then
+      difference = huge(1.0_wp)
+      return
+    end if
+    difference = 0
+    if (witness%load .and. abs(state%load) > 0) &
+      difference = abs(witness%state%load/state%load - 1)
+    if (witness%h0) difference = max(difference, &
+      abs(witness%state%h0 - state%h0)/max(abs(state%h0), 1.0_wp))
+    ! A displacement is known relative to the movement that made it, not to itself where it is small.
+    if (witness%displacement) difference = max(difference, &
+      abs(witness%state%axis_gap - state%axis_gap)/max(abs(state%axis_gap - state%h0), 1.0_wp))
+  end function difference
+
+end module error_estimate

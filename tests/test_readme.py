@@ -1,0 +1,58 @@
+"""README.md against the program: its table of keys is what `snapin --keys` says.
+
+Run as a script (`.venv/bin/python tests/test_readme.py`), it brings the table up to date.
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+README = ROOT / "README.md"
+TABLE = re.compile(r"(?<=<!-- keys -->\n).*?(?=<!-- /keys -->)", re.S)
+# Read and checked, but not computed yet.
+NOT_YET = {"approximations", "sweep"}
+# Written by the program, not by users.
+RESULTS = {"summary", "cost"}
+
+
+def table(keys):
+    """Return the output of `snapin --keys` as a Markdown table."""
+    rows = ["| key | value | meaning |", "|---|---|---|"]
+    group = None
+    lines = iter(keys.splitlines())
+    for line in lines:
+        if line.startswith("&"):
+            group, _, note = line[1:].partition(" ")
+            note = " " + note if note else ""
+            if group not in NOT_YET | RESULTS:
+                rows.append(f"| **`&{group}`**{note} | | {cell(next(lines))} |")
+        elif re.match(r"  \w", line) and group not in NOT_YET | RESULTS:
+            key, value = line.split(maxsplit=1)
+            rows.append(f"| `{key}` | {cell(value)} | {cell(next(lines))} |")
+    return "\n".join(rows) + "\n"
+
+
+def cell(text):
+    """Return text that Markdown leaves as it is."""
+    return re.sub(r"([|<>*_^])", r"\\\1", text.strip())
+
+
+def test_the_table_of_keys_is_what_the_program_says(snapin):
+    assert TABLE.search(README.read_text(encoding="utf-8"))[0] == table(snapin("--keys").stdout), (
+        "bring it up to date with: .venv/bin/python tests/test_readme.py"
+    )
+
+
+def test_every_file_it_points_to_exists():
+    text = README.read_text(encoding="utf-8") + (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    for link in re.findall(r"\]\(([^)#:]+)\)", text):
+        assert (ROOT / link).exists(), link
+
+
+if __name__ == "__main__":
+    program = os.environ.get("SNAPIN", ROOT / "build" / "snapin")
+    output = subprocess.run([program, "--keys"], check=True, capture_output=True, text=True).stdout
+    readme = README.read_text(encoding="utf-8")
+    README.write_text(TABLE.sub(lambda _: table(output), readme), encoding="utf-8")
