@@ -30,6 +30,9 @@ module anderson
     real(wp), allocatable :: z_before(:), f_before(:)
   end type history_t
 
+  !> Steps rejected before a solution is given up.
+  integer, parameter :: most_rejections = 4
+
 contains
 
   !> From `state` (gaps, and H0 or c where the control leaves it open) to the equilibrium at
@@ -47,9 +50,8 @@ contains
     real(wp), allocatable :: z(:), g(:), f(:), step(:), z_best(:)
     type(state_t) :: best
     type(history_t) :: history
-    real(wp) :: before
-    integer :: iteration, since_renewal
-    logical :: renew
+    real(wp) :: length, before, shortest
+    integer :: iteration, since_renewal, rejections
 
     z = unknowns_of(control, state)
     allocate (g(size(z)))
@@ -59,39 +61,41 @@ contains
     z_best = z
     converged = .false.
     before = huge(1.0_wp)
+    shortest = huge(1.0_wp)
     since_renewal = 0
+    rejections = 0
     do iteration = 1, options%most_iterations
       call residual(this, grid, control, z, g, state, cost)
       cost%iterations = cost%iterations + 1
       state%iterations = iteration
-      if (state%residual < best%residual) then
-        best = state
-        z_best = z
-      end if
+      if (state%residual < best%residual) best = state
       converged = state%residual <= max(options%tolerance, residual_floor(this, state))
-      if (converged) exit
+      if (converged .or. .not. state%residual < huge(1.0_wp)) exit
 
-      renew = .not. frozen%factors%valid .or. since_renewal >= options%patience
-      ! Growth beyond a few times is not the transient of an accelerated step.
-      if (0.1_wp*state%residual > before .and. since_renewal > 0) then
-        cost%rejected_steps = cost%rejected_steps + 1
-        renew = .true.
-        if (best%residual < huge(1.0_wp)) then
-          z = z_best
-          call residual(this, grid, control, z, g, state, cost)
-        end if
-      end if
-      if (.not. state%residual < huge(1.0_wp)) exit
-      if (renew) then
-        call factorise_jacobian(this, grid, control, state, frozen%factors, cost)
-        frozen%control_kind = control%kind
-        if (.not. frozen%factors%valid) exit
-        history%held = 0
-        since_renewal = 0
-        if (allocated(history%f_before)) deallocate (history%f_before)
-      end if
+      if (.not. frozen%factors%valid .or. since_renewal >= options%patience) call renew()
+      if (.not. frozen%factors%valid) exit
       f = g
       call solve(frozen%factors, f)
+      ! The length of the plain step measures the distance from equilibrium; the residual does not, for in
+      ! a stiff contact an error in the gap that no longer matters still moves the pressure much.
+      length = step_length(z, f)
+      if (0.1_wp*length > before .and. since_renewal > 0) then
+        cost%rejected_steps = cost%rejected_steps + 1
+        rejections = rejections + 1
+        if (rejections > most_rejections) exit
+        z = z_best
+        call residual(this, grid, control, z, g, state, cost)
+        call renew()
+        if (.not. frozen%factors%valid) exit
+        f = g
+        call solve(frozen%factors, f)
+        length = step_length(z, f)
+      end if
+      if (length < shortest) then
+        shortest = length
+        z_best = z
+      end if
+      before = length
       step = accelerated_step(history, options%depth, z, f)
       step = largest_step(this, control, z, step)*step
       z = z + step
@@ -99,14 +103,32 @@ contains
       ! out it is large.
       if (control%kind == at_h0_with_edge) &
         z(:size(z) - 1) = z(:size(z) - 1) + 0.5_wp*(step(size(z))*grid%x(:size(z) - 1))**2
-      before = state%residual
       since_renewal = since_renewal + 1
     end do
     if (.not. converged .and. best%residual < state%residual) then
       best%iterations = state%iterations
       state = best
     end if
+
+  contains
+
+    !> A factorisation at the present state; what was learnt with the old one is forgotten.
+    subroutine renew()
+      call factorise_jacobian(this, grid, control, state, frozen%factors, cost)
+      frozen%control_kind = control%kind
+      history%held = 0
+      if (allocated(history%f_before)) deallocate (history%f_before)
+      since_renewal = 0
+    end subroutine renew
+
   end subroutine solve_anderson
+
+  !> The largest relative change that the step -f makes.
+  pure real(wp) function step_length(z, f)
+    real(wp), intent(in) :: z(:), f(:)
+
+    step_length = maxval(abs(f)/(1 + abs(z)))
+  end function step_length
 
   !> The step of Anderson acceleration from z, where the plain step is -f: the combination of
   !> the last `depth` steps with the least |f|, by modified Gram-Schmidt, newest first; a

@@ -33,9 +33,18 @@ module cycle
     character(len=160) :: reason = ''
   end type branch_t
 
+  !> A stretch of a branch without a jump: its state of largest tension so far, and the values of h0
+  !> between which the largest tension of all lies (the neighbours of that state, or a jump).
+  type :: stretch_t
+    type(position_t) :: lowest
+    real(wp) :: before = 0, after = 0
+    logical :: open = .false.
+  end type stretch_t
+
   !> Rounds of refinement of the maximum tension, and the relative change of load that ends them.
-  integer, parameter :: most_rounds = 8
-  real(wp), parameter :: load_tolerance = 1.0e-10_wp
+  !> Without such a change it ends when the bracket is this fraction of the first.
+  integer, parameter :: most_rounds = 30
+  real(wp), parameter :: load_tolerance = 1.0e-10_wp, enough = 1.0e-6_wp
 
 contains
 
@@ -51,12 +60,14 @@ contains
     real(wp), intent(in) :: keep(:)
     type(position_t), intent(out) :: kept(:)
     type(branch_t), intent(out) :: branch
-    type(position_t) :: last(3)
+    type(stretch_t) :: stretch
     type(event_t) :: event
-    integer :: i, k, smooth
+    real(wp) :: last_h0
+    integer :: i, k
 
-    smooth = 0
     allocate (branch%witness(0))
+    last_h0 = plan%h0(1)
+    if (.not. fresh) last_h0 = position%state%h0
     do i = 1, size(plan%h0)
       if (fresh .and. i == 1) then
         call steps%begin(plan%h0(i), position, event)
@@ -76,15 +87,20 @@ contains
         if (abs(keep(k) - plan%h0(i)) <= 1.0e-9_wp*max(1.0_wp, abs(keep(k)))) kept(k) = position
       end do
 
-      last = [last(2:3), position]
-      smooth = smooth + 1
-      if (event%jumped .or. .not. event%converged) smooth = 1
-      if (position%state%load < 0) call lower(branch, position%state)
-      if (smooth >= 3) then
-        if (last(2)%state%load < min(last(1)%state%load, last(3)%state%load) .and. &
-          last(2)%state%load < 0) call refine(steps, last, branch)
+      if (.not. event%converged) then
+        call end_stretch(steps, stretch, last_h0, branch)
+      else if (event%jumped .or. .not. stretch%open) then
+        if (event%jumped) last_h0 = event%jump_h0
+        call end_stretch(steps, stretch, last_h0, branch)
+        stretch = stretch_t(position, last_h0, plan%h0(i), .true.)
+      else if (position%state%load < stretch%lowest%state%load) then
+        stretch = stretch_t(position, last_h0, plan%h0(i), .true.)
+      else if (abs(stretch%after - stretch%lowest%state%h0) <= 0.0_wp) then
+        stretch%after = plan%h0(i)
       end if
+      last_h0 = plan%h0(i)
     end do
+    call end_stretch(steps, stretch, last_h0, branch)
   end subroutine run_branch
 
   !> Keeps the worst and the first of what happened.
@@ -133,42 +149,86 @@ contains
     branch%load_h0 = state%h0
   end subroutine lower
 
-  !> The largest tension between three neighbouring states of which the middle one has the largest: the
-  !> polynomial through them is searched, the state there computed and added, and so on.
-  subroutine refine(steps, last, branch)
+  !> Refines the largest tension of a stretch that ends at `finish`.
+  subroutine end_stretch(steps, stretch, finish, branch)
     class(quasi_static_t), intent(inout) :: steps
-    type(position_t), intent(in) :: last(3)
+    type(stretch_t), intent(inout) :: stretch
+    real(wp), intent(in) :: finish
     type(branch_t), intent(inout) :: branch
-    type(position_t) :: trial
+
+    if (.not. stretch%open) return
+    stretch%open = .false.
+    if (stretch%lowest%state%load < 0) then
+      call lower(branch, stretch%lowest%state)
+    else if (.not. steps%problem%law%adhesion > 0) then
+      return
+    end if
+    if (abs(stretch%after - stretch%lowest%state%h0) <= 0.0_wp) stretch%after = finish
+    call refine(steps, stretch, branch)
+  end subroutine end_stretch
+
+  !> Searches the largest tension between stretch%before and stretch%after: the polynomial through the
+  !> states nearest to the lowest is searched, the state there computed and added, and so on; where that
+  !> leads nowhere the larger side is halved, for on a coarse path the extremum may lie on either.
+  subroutine refine(steps, stretch, branch)
+    class(quasi_static_t), intent(inout) :: steps
+    type(stretch_t), intent(in) :: stretch
+    type(branch_t), intent(inout) :: branch
+    type(position_t) :: best, trial
     type(event_t) :: event
     real(wp), allocatable :: h0(:), load(:)
-    real(wp) :: next, before
-    type(witness_t) :: lowest
-    integer :: round, best
+    real(wp) :: low, high, left, right, next, width, gained
+    integer :: round
 
-    lowest = steps%witness(last(2))
-    h0 = last%state%h0
-    load = last%state%load
-    before = load(2)
+    best = stretch%lowest
+    h0 = [best%state%h0]
+    load = [best%state%load]
+    low = min(stretch%before, stretch%after)
+    high = max(stretch%before, stretch%after)
+    width = high - low
+    if (.not. width > 0) return
     do round = 1, most_rounds
-      best = minloc(load, 1)
-      next = interpolated_maximum(h0, -load, minval(h0(:3)), maxval(h0(:3)))
-      if (minval(abs(h0 - next)) <= 1.0e-7_wp*abs(last(3)%state%h0 - last(1)%state%h0)) exit
-      trial = last(2)
+      left = max(low, maxval([low, pack(h0, h0 < best%state%h0)]))
+      right = min(high, minval([high, pack(h0, h0 > best%state%h0)]))
+      next = interpolated_maximum(h0, -load, left, right)
+      if (size(h0) < 3 .or. minval(abs(h0 - next)) <= 1.0e-3_wp*(right - left)) then
+        ! The polynomial has nothing to add: is the extremum there, or has one side not been looked at?
+        if (any(h0 < best%state%h0) .and. any(h0 > best%state%h0) .and. &
+          right - left < enough*width) exit
+        next = merge(0.5_wp*(left + best%state%h0), 0.5_wp*(right + best%state%h0), &
+          best%state%h0 - left > right - best%state%h0)
+      end if
+      trial = best
       call steps%go(next, trial, event)
-      if (event%jumped .or. .not. event%converged) exit
+      if (event%jumped .or. .not. event%converged) then
+        ! The stretch does not reach there.
+        if (next < best%state%h0) low = next
+        if (next > best%state%h0) high = next
+        cycle
+      end if
       h0 = [h0, next]
       load = [load, trial%state%load]
-      if (trial%state%load < minval(load(:size(load) - 1))) lowest = steps%witness(trial)
-      call lower(branch, trial%state)
-      if (abs(trial%state%load - before) <= load_tolerance*abs(before)) exit
-      before = trial%state%load
-      if (size(h0) > 5) then
-        h0 = [h0(:3), h0(5:)]
-        load = [load(:3), load(5:)]
-      end if
+      gained = best%state%load - trial%state%load
+      if (gained > 0) best = trial
+      if (size(h0) > 3 .and. abs(gained) <= load_tolerance*abs(best%state%load)) exit
+      call keep_nearest(h0, load)
     end do
-    branch%witness = [branch%witness, lowest]
+    if (best%state%load < 0) then
+      call lower(branch, best%state)
+      branch%witness = [branch%witness, steps%witness(best)]
+    end if
   end subroutine refine
+
+  !> Drops values until the five nearest to the lowest load are left.
+  pure subroutine keep_nearest(h0, load)
+    real(wp), allocatable, intent(inout) :: h0(:), load(:)
+    integer :: farthest
+
+    do while (size(h0) > 5)
+      farthest = maxloc(abs(h0 - h0(minloc(load, 1))), 1)
+      h0 = [h0(:farthest - 1), h0(farthest + 1:)]
+      load = [load(:farthest - 1), load(farthest + 1:)]
+    end do
+  end subroutine keep_nearest
 
 end module cycle

@@ -20,7 +20,7 @@ module experiment
   use blas_threads, only: use_threads_for
   implicit none
   private
-  public :: outcome_t, run_experiment, problem_of, states_planned
+  public :: outcome_t, run_experiment, problem_of, prepare, states_planned
 
   !> Everything in the units of `problem`.
   type :: outcome_t

@@ -43,6 +43,10 @@ module locked_steps
   real(wp), parameter :: path_step = 0.15_wp
   character(len=*), parameter :: touching = &
     'rigid bodies would touch: this law has no state at h0 <= 0'
+  !> How near to the wanted h0 (relative, or in the law's lengths) the path is followed before h0 itself is
+  !> prescribed, and in how many rounds at most.
+  real(wp), parameter :: near_enough = 1.0e-4_wp
+  integer, parameter :: most_halvings = 40
   !> Residual, in the law's lengths, of states that only lead the way and are not reported.
   real(wp), parameter :: walking_tolerance = 1.0e-6_wp
   !> Smallest step in h0, in the law's lengths, that is tried.
@@ -176,6 +180,7 @@ contains
     walker = new_tracer(self%problem, position%state, position%mesh, direction, path_step)
     walking = self%options
     walking%tolerance = max(walking%tolerance, walking_tolerance)
+    call walker%look_back(self%problem, self%pair, walking, self%cost)
     seen = 1
     found = .false.
     do while (.not. found)
@@ -235,9 +240,11 @@ contains
       s(1) = coordinate_of(self%problem, mesh, ends(1))
       if (.not. converged) ends(1) = ends(2)
     end if
-    do round = 1, 6
-      if (abs(ends(2)%h0 - ends(1)%h0) < 1.0e-3_wp) exit
+    do round = 1, most_halvings
+      if (minval(abs(ends%h0 - h0)) <= near_enough*max(1.0_wp, abs(h0))) exit
       fraction = (h0 - ends(1)%h0)/(ends(2)%h0 - ends(1)%h0)
+      ! Every third time halfway, for regula falsi may approach from one side only.
+      if (mod(round, 3) == 0) fraction = 0.5_wp
       at = s(1) + min(max(fraction, 0.05_wp), 0.95_wp)*(s(2) - s(1))
       call state_at(self%problem, self%pair, mesh, at, s, ends, self%options, self%frozen, state, &
         converged, self%cost)
@@ -245,7 +252,6 @@ contains
       side = merge(1, 2, (state%h0 - h0)*(ends(1)%h0 - h0) > 0)
       ends(side) = state
       s(side) = at
-      if (abs(state%h0 - h0) < 1.0e-3_wp) exit
     end do
     side = merge(1, 2, abs(ends(1)%h0 - h0) < abs(ends(2)%h0 - h0))
     state = ends(side)

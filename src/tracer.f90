@@ -35,6 +35,7 @@ module tracer
     procedure :: advance
     procedure, private :: remember
     procedure :: change_mesh
+    procedure :: look_back
   end type tracer_t
 
 contains
@@ -54,6 +55,34 @@ contains
     call tracer%remember(this, state)
   end function new_tracer
 
+  !> Gives a tracer that has just begun a state behind its first, so that a fold right ahead of the
+  !> first is surrounded by three states too.
+  subroutine look_back(self, this, pair, options, cost)
+    class(tracer_t), intent(inout) :: self
+    type(problem_t), intent(in) :: this
+    type(mesh_pair_t), intent(in) :: pair
+    type(solver_options_t), intent(in) :: options
+    type(cost_t), intent(inout) :: cost
+    type(state_t) :: first, behind
+    logical :: converged
+
+    first = self%past(1)
+    call state_at(this, pair, self%mesh, self%coordinate(1) - sense_of(self)*0.5_wp*self%step, &
+      self%coordinate(:1), self%past(:1), options, self%frozen, behind, converged, cost)
+    if (.not. converged) return
+    self%held = 0
+    call self%remember(this, behind)
+    call self%remember(this, first)
+  end subroutine look_back
+
+  !> Whether the coordinate grows along the way: inward the gap on the axis shrinks, the contact radius
+  !> grows.
+  pure integer function sense_of(self)
+    class(tracer_t), intent(in) :: self
+
+    sense_of = merge(-self%direction, self%direction, self%mesh == approach)
+  end function sense_of
+
   !> The next state of the path, on the same mesh. lost: no step, however small, converged.
   subroutine advance(self, this, pair, options, lost, cost)
     class(tracer_t), intent(inout) :: self
@@ -65,13 +94,10 @@ contains
     type(state_t) :: trial
     real(wp) :: s
     logical :: converged
-    integer :: sense
 
-    ! Inward the gap on the axis shrinks, the contact radius grows.
-    sense = merge(-self%direction, self%direction, self%mesh == approach)
     lost = .false.
     do
-      s = self%coordinate(self%held) + sense*self%step
+      s = self%coordinate(self%held) + sense_of(self)*self%step
       call state_at(this, pair, self%mesh, s, self%coordinate(:self%held), self%past(:self%held), &
         options, self%frozen, trial, converged, cost)
       if (converged) exit

@@ -109,6 +109,8 @@ contains
     place = trail%held
     if ((s - walker%coordinate(n - 1))*(walker%coordinate(n) - walker%coordinate(n - 1)) < 0) &
       place = trail%held - 1
+    ! Behind the first state of the trail: it was begun there because that side is known.
+    if (place < 2) return
     unstable = trail%unstable(place - 1) + max(change, 0)
     call insert(trail, place, state, walker%mesh, s, unstable, .true.)
     trail%unstable(place + 1:trail%held) = trail%unstable(place + 1:trail%held) + change

@@ -252,11 +252,11 @@ def test_branches_differ_between_the_jumps_and_nowhere_else(run):
 @pytest.mark.parametrize("sigma", [WEAK, STRONG])
 def test_jumps_and_pull_off_do_not_depend_on_the_step(run, sigma):
     found = []
-    for step in (0.05, 0.3, 1.0, 2.7):
+    for step in (0.05, 0.3, 1.0, 2.7, 9.0):
         summary = run(lennard_jones(sigma, loading=loading(14, -4, step), unloading={})).summary
         found.append([summary[key] for key in ("jump_in_h0", "jump_out_h0", "max_tension")])
     # Accuracy 1e-6 on displacement and load.
-    np.testing.assert_allclose(found, [found[0]] * 4, rtol=1e-6)
+    np.testing.assert_allclose(found, [found[0]] * len(found), rtol=1e-6)
 
 
 @pytest.mark.parametrize("step", [0.02, 0.13, 0.2, 0.5])
@@ -310,7 +310,10 @@ def test_loading_in_the_attractive_range_alone_is_tension_without_a_jump(run):
 def test_attraction_alone_ends_at_its_jump(run):
     """A law without repulsion has no state after the jump, and the summary says so."""
     result = run(lennard_jones(1.0, part="attractive", loading=loading(8, 0, 0.25)), status=1)
-    assert result.summary["jump_in_h0"] == pytest.approx(result.curve["h0"][-1], abs=0.25)
+    summary = result.summary
+    exact = run(lennard_jones(1.0, part="attractive", equilibrium_path={"h0_end": 0.0})).summary
+    assert summary["jump_in_h0"] == pytest.approx(exact["jump_in_h0"], rel=1e-6)
+    assert summary["max_tension"] == pytest.approx(-exact["jump_in_load"], rel=1e-6)
     assert result.curve["residual"].max() <= 1e-8
     assert any("no stable equilibrium" in warning for warning in result.warnings)
 
@@ -334,15 +337,29 @@ def coarse_scene(spacing, **numerics):
     )
 
 
-def test_a_coarse_grid_warns_and_its_pull_off_depends_on_penetration(run):
-    result = run(coarse_scene(1.7), timeout=120)
+def test_a_coarse_grid_warns_and_exaggerates_the_pull_off(run):
+    """The contact edge is pinned between nodes; 1.7 necks are the paper's 200 nm at sigma 8.7."""
+    result = run(coarse_scene(1.7), timeout=60)
     assert not result.summary["resolved"]
     assert result.summary["spacing_over_neck"] == pytest.approx(1.7, rel=0.05)
     assert any("under-resolved" in warning for warning in result.warnings)
     assert "under-resolved" in result.stderr
+    pull_off = np.array(result.summary["unload_max_tension"]) / (STRONG * JKR)
+    assert (pull_off > 1.2).all()
+    assert result.curve["residual"].max() <= 1e-8
+
+
+def test_the_paper_s_stopping_rule_on_a_coarse_grid_makes_pull_off_grow_with_penetration(run):
+    """As in Fig. 10: the rule (1e-4 nm in the central displacement) stops far from equilibrium."""
+    scene = coarse_scene(
+        1.7, method="mixing", convergence="displacement_change", displacement_tolerance=2e-4
+    )
+    result = run(scene, timeout=60)
     shallow, deep = np.array(result.summary["unload_max_tension"]) / (STRONG * JKR)
-    assert max(shallow, deep) > 1.05
-    assert abs(deep - shallow) > 1e-3
+    assert abs(deep - shallow) > 0.1
+    assert result.curve["residual"].max() > 1
+    assert any("under-resolved" in warning for warning in result.warnings)
+    assert any("small change" in warning for warning in result.warnings)
 
 
 def test_a_resolved_grid_does_not_warn(run):
@@ -373,6 +390,20 @@ def test_stopping_on_a_small_change_leaves_a_large_residual_and_says_so(run):
 
 
 # --- Profiles
+
+
+def integral(x, y):
+    """By the mean of the parabolas through each three neighbouring points (end pieces: one)."""
+    total = 0
+    for k in range(len(x) - 1):
+        pieces = []
+        for first in (k - 1, k):
+            if 0 <= first <= len(x) - 3:
+                near = slice(first, first + 3)
+                fit = np.polyint(np.polyfit(x[near] - x[k], y[near], 2))
+                pieces.append(np.polyval(fit, x[k + 1] - x[k]) - np.polyval(fit, 0))
+        total += np.mean(pieces)
+    return total
 
 
 PROFILES = [6.0, 4.3, 2.37, 0.0, -1.9]
@@ -409,12 +440,8 @@ def test_profiles_fit_together_and_to_the_curve(profiled, branch):
         np.testing.assert_allclose(energy, WEAK * energy_density, rtol=1e-10, atol=1e-12)
         row = curve["h0"] == h0
         assert h[0] == pytest.approx(curve["h_centre"][row][0], rel=1e-12)
-        # Int p r dr of the polynomial through each few nodes is as good as splines; here trapezoids.
-        load = 2 * np.pi * np.sum((p * r)[:-1] + (p * r)[1:]) / 2 if False else None
-        fine = np.linspace(0, r[-1], 200001)
-        load = 2 * np.pi * np.trapezoid(np.interp(fine, r, p) * fine, fine)
-        load += 2 * np.pi * energy[-1]
-        assert load == pytest.approx(curve["load"][row][0], abs=2e-2 * WEAK)
+        load = 2 * np.pi * (integral(r, p * r) + energy[-1])
+        assert load == pytest.approx(curve["load"][row][0], abs=1e-3 * WEAK)
         assert -2 * u[0] == pytest.approx(curve["displacement"][row][0], abs=1e-12)
 
 
@@ -425,10 +452,9 @@ def test_summary_runs_again_with_the_same_digits(run):
     first = run(fig1())
     again = run((first.folder / "summary.nml").read_text())
     assert (again.folder / "curve.csv").read_bytes() == (first.folder / "curve.csv").read_bytes()
-    ignored = {"wall_seconds", "kernel_seconds", "solve_seconds"}
     for group, values in first.groups.items():
         for key, value in values.items():
-            if key not in ignored:
+            if not key.endswith("_seconds"):
                 assert again.groups[group][key] == value, key
 
 

@@ -1,0 +1,354 @@
+!> Whole experiments as f2py can see them: a force curve through given values of h0, and the
+!> equilibrium path. Conventions as in `snapin_flat`, force laws as in `flat_numerics`.
+!>
+!> A state is a row of numbers: h0, h_centre, displacement, load, contact radius, stable,
+!> residual and converged, as in `record_t`. A number that does not exist is NaN. `warnings` is what the
+!> program would warn of, one a line; `reason`, why the experiment ended early, blank if it did not.
+!>
+!> Nothing is kept from call to call; f2py holds Python's global lock, so that calls do not overlap.
+module flat_experiment
+  use iso_c_binding, only: c_double, c_int
+  use records, only: observer_t
+  implicit none
+  private
+  public :: force_curve, equilibrium_path
+
+  integer, parameter :: columns = 8
+
+  !> Keeps the row of every record that it is given.
+  type, extends(observer_t) :: collector_t
+    integer :: held = 0
+    real(c_double), allocatable :: row(:, :)
+  contains
+    procedure :: take
+  end type collector_t
+
+contains
+
+  !> The states at h0(:) [m], in that order, after an approach from afar to the first; h0 may turn
+  !> round. rigid: 0 or 1. nodes, r_max [m]: 0 leaves them to the accuracy. jumps: h0 [m], load [N].
+  !> highest: the largest tension [N] and its h0 [m]. Rows of states that were not reached are NaN.
+  subroutine force_curve(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
+    method, grid, accuracy, nodes, r_max, h0, states, jumps, jump_count, highest, error_estimate, &
+    reached, reason, warnings, stat, message, n)
+    use choice, only: choose, finer, fixed_mesh
+    use cycle, only: branch_t
+    use edge_locked, only: new_mesh_pair
+    use error_estimate, only: estimate_fixed, estimate_locked
+    use experiment, only: outcome_t, prepare, problem_of
+    use failure, only: bad_input
+    use fixed_steps, only: fixed_steps_t
+    use locked_steps, only: locked_steps_t
+    use blas_threads, only: use_threads_for
+    use problem, only: problem_t
+    use quasi_static, only: witness_t
+    use scene_groups, only: scene_t
+    use summarise, only: summary_of
+    character(len=*), intent(in) :: law, part, method, grid
+    integer(c_int), intent(in) :: rigid, nodes, n
+    real(c_double), intent(in) :: hamaker, z0, p0, decay_length, radius, stiffness, accuracy, r_max
+    real(c_double), intent(in) :: h0(n)
+    real(c_double), intent(out) :: states(n, 8), jumps(n, 2), highest(2), error_estimate
+    integer(c_int), intent(out) :: jump_count, reached, stat
+    character(len=200), intent(out) :: reason, message
+    character(len=2000), intent(out) :: warnings
+    type(scene_t) :: scene
+    type(problem_t) :: problem
+    type(collector_t) :: collector
+    type(outcome_t) :: outcome
+    type(locked_steps_t) :: locked
+    type(fixed_steps_t) :: fixed
+    type(branch_t), allocatable :: stretch(:)
+    type(witness_t), allocatable :: witnesses(:)
+    real(c_double) :: low, high
+    integer :: k
+
+    stat = 0
+    message = ''
+    jump_count = 0
+    jumps = nothing()
+    call make_scene(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, method, &
+      grid, accuracy, nodes, r_max, scene)
+    problem = problem_of(scene)
+    low = minval(h0)/problem%length
+    high = maxval(h0)/problem%length
+    outcome%chosen = choose(scene%numerics, problem, low)
+    if (outcome%chosen%grid == 'edge_locked') then
+      if (nodes > 0 .or. r_max > 0) then
+        stat = bad_input
+        message = trim(merge('nodes', 'r_max', nodes > 0))//': only a grid that is fixed in '// &
+          'space takes it: grid = "uniform", or method = "mixing"'
+        call give(collector, states, reached)
+        return
+      end if
+      call prepare(locked, problem, outcome%chosen, accuracy)
+      locked%pair = new_mesh_pair(problem, high, low, outcome%chosen%resolution)
+      call use_threads_for(maxval(locked%pair%grid%nodes))
+      call run_stretches(locked, h0/problem%length, collector, stretch)
+      witnesses = [(stretch(k)%witness, k=1, size(stretch))]
+      if (collector%held > 0) outcome%error_estimate = estimate_locked(problem, locked%pair, &
+        high, low, outcome%chosen%resolution, witnesses, locked%cost)
+    else
+      call prepare(fixed, problem, outcome%chosen, accuracy)
+      fixed%mesh = fixed_mesh(outcome%chosen, problem, low)
+      call use_threads_for(fixed%mesh%nodes)
+      call run_stretches(fixed, h0/problem%length, collector, stretch)
+      witnesses = [(stretch(k)%witness, k=1, size(stretch))]
+      if (collector%held > 0) outcome%error_estimate = estimate_fixed(problem, fixed%mesh, &
+        fixed_mesh(finer(outcome%chosen), problem, low), witnesses, fixed%cost)
+    end if
+
+    do k = 1, size(stretch)
+      if (.not. allocated(stretch(k)%jump_h0)) cycle
+      jump_count = jump_count + 1_c_int
+      jumps(jump_count, :) = [stretch(k)%jump_h0*problem%length, stretch(k)%jump_load*problem%load]
+    end do
+    reason = stretch(size(stretch))%reason
+    call give(collector, states, reached)
+    outcome%loading = as_one(stretch)
+    call tell(summary_of(scene, problem, outcome), highest, error_estimate, warnings)
+  end subroutine force_curve
+
+  !> The whole path to the contact at h0_end [m], from h0_start [m] or, if that is not given (given: 0
+  !> or 1), from where the program lets it begin. Rows of `states` beyond `reached` are NaN, and so
+  !> are those of `folds` (h0 [m], load [N]) beyond fold_count.
+  subroutine equilibrium_path(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
+    accuracy, h0_start, given, h0_end, states, folds, fold_count, highest, error_estimate, &
+    reached, reason, warnings, stat, message, n)
+    use experiment, only: outcome_t, problem_of, run_experiment
+    use failure, only: no_convergence
+    use problem, only: problem_t
+    use scene_groups, only: scene_t
+    use summarise, only: summary_of
+    use summary, only: summary_t
+    character(len=*), intent(in) :: law, part
+    integer(c_int), intent(in) :: rigid, given, n
+    real(c_double), intent(in) :: hamaker, z0, p0, decay_length, radius, stiffness, accuracy
+    real(c_double), intent(in) :: h0_start, h0_end
+    real(c_double), intent(out) :: states(n, 8), folds(n, 2), highest(2), error_estimate
+    integer(c_int), intent(out) :: fold_count, reached, stat
+    character(len=200), intent(out) :: reason, message
+    character(len=2000), intent(out) :: warnings
+    type(scene_t) :: scene
+    type(problem_t) :: problem
+    type(collector_t) :: collector
+    type(outcome_t) :: outcome
+    type(summary_t) :: summary
+
+    stat = 0
+    message = ''
+    fold_count = 0
+    folds = nothing()
+    reason = ''
+    call make_scene(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, 'auto', &
+      'auto', accuracy, 0_c_int, 0.0_c_double, scene)
+    allocate (scene%path)
+    scene%path%h0_end = h0_end
+    if (given /= 0) scene%path%h0_start = h0_start
+    problem = problem_of(scene)
+    call run_experiment(scene, problem, collector, outcome)
+    if (collector%held > n) then
+      stat = no_convergence
+      message = 'the path has more states than there is room for'
+    end if
+    call give(collector, states, reached)
+    if (allocated(outcome%path)) reason = outcome%path%reason
+    if (allocated(outcome%stepped_path)) reason = outcome%stepped_path%reason
+    summary = summary_of(scene, problem, outcome)
+    call tell(summary, highest, error_estimate, warnings)
+    if (.not. allocated(summary%folds_h0)) return
+    fold_count = int(min(int(n), size(summary%folds_h0)), c_int)
+    folds(:fold_count, 1) = summary%folds_h0(:fold_count)
+    folds(:fold_count, 2) = summary%folds_load(:fold_count)
+  end subroutine equilibrium_path
+
+  !> Goes through h0 (law's lengths) as through loadings and unloadings of a deck: a stretch goes one
+  !> way, and a value that repeats the one before begins another. After one that ends early there
+  !> is none.
+  subroutine run_stretches(steps, h0, observer, stretch)
+    use cycle, only: branch_t, plan_t, run_branch
+    use quasi_static, only: position_t, quasi_static_t
+    class(quasi_static_t), intent(inout) :: steps
+    real(c_double), intent(in) :: h0(:)
+    class(observer_t), intent(inout) :: observer
+    type(branch_t), allocatable, intent(out) :: stretch(:)
+    type(branch_t) :: this
+    type(position_t) :: position, none(0)
+    type(plan_t) :: plan
+    real(c_double) :: nowhere(0)
+    integer :: first, last
+
+    plan%name = 'curve'
+    allocate (stretch(0))
+    first = 1
+    do while (first <= size(h0))
+      last = end_of_stretch(h0, first)
+      plan%h0 = h0(first:last)
+      plan%profile = spread(.false., 1, last - first + 1)
+      call run_branch(steps, plan, first == 1, position, observer, nowhere, none, this)
+      stretch = [stretch, this]
+      if (this%reason /= '') exit
+      first = last + 1
+    end do
+  end subroutine run_stretches
+
+  !> Where the stretch that begins at `first` ends. The step into `first` tells its direction, unless
+  !> there is none or it is zero.
+  pure integer function end_of_stretch(h0, first) result(last)
+    real(c_double), intent(in) :: h0(:)
+    integer, intent(in) :: first
+    real(c_double) :: direction, step
+
+    direction = 0
+    if (first > 1) direction = h0(first) - h0(first - 1)
+    last = first
+    do while (last < size(h0))
+      step = h0(last + 1) - h0(last)
+      if (abs(step) <= 0 .or. step < 0 .and. direction > 0 .or. step > 0 .and. direction < 0) exit
+      direction = step
+      last = last + 1
+    end do
+  end function end_of_stretch
+
+  !> What stretches showed, for the summary. States that did not converge, and an early end, are told
+  !> from the rows.
+  pure function as_one(stretch) result(branch)
+    use cycle, only: branch_t
+    type(branch_t), intent(in) :: stretch(:)
+    type(branch_t) :: branch
+    integer :: k
+
+    branch%states = sum(stretch%states)
+    branch%worst_residual = maxval(stretch%worst_residual)
+    branch%worst_spacing = maxval(stretch%worst_spacing)
+    do k = 1, size(stretch)
+      if (.not. allocated(stretch(k)%load)) cycle
+      if (allocated(branch%load)) then
+        if (stretch(k)%load >= branch%load) cycle
+      end if
+      branch%load = stretch(k)%load
+      branch%load_h0 = stretch(k)%load_h0
+    end do
+  end function as_one
+
+  !> The scene with these bodies, force and numerics; numerics that have no argument have the defaults of
+  !> a deck.
+  subroutine make_scene(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
+    method, grid, accuracy, nodes, r_max, scene)
+    use scene_groups, only: bodies_t, scene_t
+    character(len=*), intent(in) :: law, part, method, grid
+    integer(c_int), intent(in) :: rigid, nodes
+    real(c_double), intent(in) :: hamaker, z0, p0, decay_length, radius, stiffness, accuracy, r_max
+    type(scene_t), intent(out) :: scene
+
+    scene%title = ''
+    scene%bodies = bodies_t(radius=radius, stiffness=stiffness, rigid=rigid /= 0)
+    scene%force%law = trim(law)
+    scene%force%part = trim(part)
+    scene%force%hamaker = hamaker
+    scene%force%z0 = z0
+    scene%force%p0 = p0
+    scene%force%decay_length = decay_length
+    associate (numerics => scene%numerics)
+      numerics%method = trim(method)
+      numerics%grid = trim(grid)
+      numerics%accuracy = accuracy
+      if (nodes > 0) numerics%nodes = nodes
+      if (r_max > 0) numerics%r_max = r_max
+      numerics%convergence = trim(default_of('convergence'))
+      numerics%displacement_tolerance = default_number('displacement_tolerance')
+      numerics%mixing_limit = default_number('mixing_limit')
+      numerics%max_iterations = int(default_number('max_iterations'))
+      numerics%anderson_depth = int(default_number('anderson_depth'))
+    end associate
+  end subroutine make_scene
+
+  !> The default of a key of &numerics.
+  pure function default_of(key) result(text)
+    use deck_keys, only: key_spec
+    use scene_keys, only: keys_of_scene
+    character(len=*), intent(in) :: key
+    character(len=32) :: text
+    type(key_spec), allocatable :: keys(:)
+    integer :: i
+
+    text = ''
+    keys = keys_of_scene()
+    do i = 1, size(keys)
+      if (keys(i)%group == 'numerics' .and. keys(i)%key == key) text = keys(i)%default
+    end do
+  end function default_of
+
+  !> The same for a key that is a number.
+  real(c_double) function default_number(key)
+    character(len=*), intent(in) :: key
+    character(len=32) :: text
+
+    text = default_of(key)
+    read (text, *) default_number
+  end function default_number
+
+  !> Copies the rows to `states`, which may have more of them, or fewer.
+  subroutine give(collector, states, reached)
+    type(collector_t), intent(in) :: collector
+    real(c_double), intent(out) :: states(:, :)
+    integer(c_int), intent(out) :: reached
+
+    states = nothing()
+    reached = int(min(collector%held, size(states, 1)), c_int)
+    if (reached > 0) states(:reached, :) = transpose(collector%row(:, :reached))
+  end subroutine give
+
+  !> The numbers and warnings of a summary.
+  subroutine tell(summary, highest, error_estimate, warnings)
+    use summary, only: summary_t
+    type(summary_t), intent(in) :: summary
+    real(c_double), intent(out) :: highest(2), error_estimate
+    character(len=*), intent(out) :: warnings
+    integer :: i
+
+    highest = nothing()
+    error_estimate = nothing()
+    warnings = ''
+    if (allocated(summary%max_tension)) highest = [summary%max_tension, summary%max_tension_h0]
+    if (allocated(summary%error_estimate)) error_estimate = summary%error_estimate
+    if (.not. allocated(summary%warnings)) return
+    do i = 1, size(summary%warnings)
+      if (i > 1) warnings = trim(warnings)//new_line('a')
+      warnings = trim(warnings)//summary%warnings(i)%text
+    end do
+  end subroutine tell
+
+  !> Not a number.
+  pure real(c_double) function nothing()
+    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+
+    nothing = ieee_value(nothing, ieee_quiet_nan)
+  end function nothing
+
+  subroutine take(self, record, problem, grid, state, profile)
+    use discretisation, only: discretisation_t
+    use equilibrium, only: state_t
+    use problem, only: problem_t
+    use records, only: record_t
+    class(collector_t), intent(inout) :: self
+    type(record_t), intent(in) :: record
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    logical, intent(in) :: profile
+    real(c_double), allocatable :: longer(:, :)
+
+    if (.not. allocated(self%row)) allocate (self%row(columns, 100))
+    if (self%held == size(self%row, 2)) then
+      allocate (longer(columns, 2*self%held))
+      longer(:, :self%held) = self%row
+      call move_alloc(longer, self%row)
+    end if
+    self%held = self%held + 1
+    self%row(:, self%held) = [record%h0, record%h_centre, record%displacement, record%load, &
+      record%contact_radius, real(record%stable, c_double), record%residual, &
+      merge(1.0_c_double, 0.0_c_double, record%converged)]
+  end subroutine take
+
+end module flat_experiment
