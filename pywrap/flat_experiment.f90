@@ -2,26 +2,15 @@
 !> equilibrium path. Conventions as in `snapin_flat`, force laws as in `flat_numerics`.
 !>
 !> A state is a row of numbers: h0, h_centre, displacement, load, contact radius, stable,
-!> residual and converged, as in `record_t`. A number that does not exist is NaN. `warnings` is what the
+!> residual and converged (`collector`). A number that does not exist is NaN. `warnings` is what the
 !> program would warn of, one a line; `reason`, why the experiment ended early, blank if it did not.
 !>
 !> Nothing is kept from call to call; f2py holds Python's global lock, so that calls do not overlap.
 module flat_experiment
   use iso_c_binding, only: c_double, c_int
-  use records, only: observer_t
   implicit none
   private
   public :: force_curve, equilibrium_path
-
-  integer, parameter :: columns = 8
-
-  !> Keeps the row of every record that it is given.
-  type, extends(observer_t) :: collector_t
-    integer :: held = 0
-    real(c_double), allocatable :: row(:, :)
-  contains
-    procedure :: take
-  end type collector_t
 
 contains
 
@@ -32,6 +21,7 @@ contains
     method, grid, accuracy, nodes, r_max, h0, states, jumps, jump_count, highest, error_estimate, &
     reached, reason, warnings, stat, message, n)
     use choice, only: choose, finer, fixed_mesh
+    use collector, only: collector_t
     use cycle, only: branch_t
     use edge_locked, only: new_mesh_pair
     use error_estimate, only: estimate_fixed, estimate_locked
@@ -54,7 +44,7 @@ contains
     character(len=2000), intent(out) :: warnings
     type(scene_t) :: scene
     type(problem_t) :: problem
-    type(collector_t) :: collector
+    type(collector_t) :: rows
     type(outcome_t) :: outcome
     type(locked_steps_t) :: locked
     type(fixed_steps_t) :: fixed
@@ -65,8 +55,12 @@ contains
 
     stat = 0
     message = ''
+    reason = ''
+    warnings = ''
     jump_count = 0
     jumps = nothing()
+    highest = nothing()
+    error_estimate = nothing()
     call make_scene(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, method, &
       grid, accuracy, nodes, r_max, scene)
     problem = problem_of(scene)
@@ -78,23 +72,23 @@ contains
         stat = bad_input
         message = trim(merge('nodes', 'r_max', nodes > 0))//': only a grid that is fixed in '// &
           'space takes it: grid = "uniform", or method = "mixing"'
-        call give(collector, states, reached)
+        call rows%give(states, reached)
         return
       end if
       call prepare(locked, problem, outcome%chosen, accuracy)
       locked%pair = new_mesh_pair(problem, high, low, outcome%chosen%resolution)
       call use_threads_for(maxval(locked%pair%grid%nodes))
-      call run_stretches(locked, h0/problem%length, collector, stretch)
+      call run_stretches(locked, h0/problem%length, rows, stretch)
       witnesses = [(stretch(k)%witness, k=1, size(stretch))]
-      if (collector%held > 0) outcome%error_estimate = estimate_locked(problem, locked%pair, &
+      if (rows%held > 0) outcome%error_estimate = estimate_locked(problem, locked%pair, &
         high, low, outcome%chosen%resolution, witnesses, locked%cost)
     else
       call prepare(fixed, problem, outcome%chosen, accuracy)
       fixed%mesh = fixed_mesh(outcome%chosen, problem, low)
       call use_threads_for(fixed%mesh%nodes)
-      call run_stretches(fixed, h0/problem%length, collector, stretch)
+      call run_stretches(fixed, h0/problem%length, rows, stretch)
       witnesses = [(stretch(k)%witness, k=1, size(stretch))]
-      if (collector%held > 0) outcome%error_estimate = estimate_fixed(problem, fixed%mesh, &
+      if (rows%held > 0) outcome%error_estimate = estimate_fixed(problem, fixed%mesh, &
         fixed_mesh(finer(outcome%chosen), problem, low), witnesses, fixed%cost)
     end if
 
@@ -104,17 +98,18 @@ contains
       jumps(jump_count, :) = [stretch(k)%jump_h0*problem%length, stretch(k)%jump_load*problem%load]
     end do
     reason = stretch(size(stretch))%reason
-    call give(collector, states, reached)
+    call rows%give(states, reached)
     outcome%loading = as_one(stretch)
     call tell(summary_of(scene, problem, outcome), highest, error_estimate, warnings)
   end subroutine force_curve
 
-  !> The whole path to the contact at h0_end [m], from h0_start [m] or, if that is not given (given: 0
-  !> or 1), from where the program lets it begin. Rows of `states` beyond `reached` are NaN, and so
+  !> The whole path to the contact at h0_end [m], from h0_start [m] or, if that is not given (given: 0 or
+  !> 1), from where the program lets it begin. Rows of `states` beyond `reached` are NaN, and so
   !> are those of `folds` (h0 [m], load [N]) beyond fold_count.
   subroutine equilibrium_path(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
     accuracy, h0_start, given, h0_end, states, folds, fold_count, highest, error_estimate, &
     reached, reason, warnings, stat, message, n)
+    use collector, only: collector_t
     use experiment, only: outcome_t, problem_of, run_experiment
     use failure, only: no_convergence
     use problem, only: problem_t
@@ -131,7 +126,7 @@ contains
     character(len=2000), intent(out) :: warnings
     type(scene_t) :: scene
     type(problem_t) :: problem
-    type(collector_t) :: collector
+    type(collector_t) :: rows
     type(outcome_t) :: outcome
     type(summary_t) :: summary
 
@@ -146,12 +141,12 @@ contains
     scene%path%h0_end = h0_end
     if (given /= 0) scene%path%h0_start = h0_start
     problem = problem_of(scene)
-    call run_experiment(scene, problem, collector, outcome)
-    if (collector%held > n) then
+    call run_experiment(scene, problem, rows, outcome)
+    if (rows%held > n) then
       stat = no_convergence
       message = 'the path has more states than there is room for'
     end if
-    call give(collector, states, reached)
+    call rows%give(states, reached)
     if (allocated(outcome%path)) reason = outcome%path%reason
     if (allocated(outcome%stepped_path)) reason = outcome%stepped_path%reason
     summary = summary_of(scene, problem, outcome)
@@ -168,6 +163,7 @@ contains
   subroutine run_stretches(steps, h0, observer, stretch)
     use cycle, only: branch_t, plan_t, run_branch
     use quasi_static, only: position_t, quasi_static_t
+    use records, only: observer_t
     class(quasi_static_t), intent(inout) :: steps
     real(c_double), intent(in) :: h0(:)
     class(observer_t), intent(inout) :: observer
@@ -288,17 +284,6 @@ contains
     read (text, *) default_number
   end function default_number
 
-  !> Copies the rows to `states`, which may have more of them, or fewer.
-  subroutine give(collector, states, reached)
-    type(collector_t), intent(in) :: collector
-    real(c_double), intent(out) :: states(:, :)
-    integer(c_int), intent(out) :: reached
-
-    states = nothing()
-    reached = int(min(collector%held, size(states, 1)), c_int)
-    if (reached > 0) states(:reached, :) = transpose(collector%row(:, :reached))
-  end subroutine give
-
   !> The numbers and warnings of a summary.
   subroutine tell(summary, highest, error_estimate, warnings)
     use summary, only: summary_t
@@ -321,34 +306,9 @@ contains
 
   !> Not a number.
   pure real(c_double) function nothing()
-    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+    use ieee_arithmetic, only: ieee_quiet_nan, ieee_value
 
     nothing = ieee_value(nothing, ieee_quiet_nan)
   end function nothing
-
-  subroutine take(self, record, problem, grid, state, profile)
-    use discretisation, only: discretisation_t
-    use equilibrium, only: state_t
-    use problem, only: problem_t
-    use records, only: record_t
-    class(collector_t), intent(inout) :: self
-    type(record_t), intent(in) :: record
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    type(state_t), intent(in) :: state
-    logical, intent(in) :: profile
-    real(c_double), allocatable :: longer(:, :)
-
-    if (.not. allocated(self%row)) allocate (self%row(columns, 100))
-    if (self%held == size(self%row, 2)) then
-      allocate (longer(columns, 2*self%held))
-      longer(:, :self%held) = self%row
-      call move_alloc(longer, self%row)
-    end if
-    self%held = self%held + 1
-    self%row(:, self%held) = [record%h0, record%h_centre, record%displacement, record%load, &
-      record%contact_radius, real(record%stable, c_double), record%residual, &
-      merge(1.0_c_double, 0.0_c_double, record%converged)]
-  end subroutine take
 
 end module flat_experiment

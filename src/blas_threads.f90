@@ -3,7 +3,7 @@
 module blas_threads
   use, intrinsic :: iso_c_binding, only: c_char, c_funptr, c_int, c_null_char, c_ptr, c_null_ptr, &
     c_associated, c_f_procpointer
-  !$ use omp_lib, only: omp_get_max_threads
+  !$ use omp_lib, only: omp_get_max_threads, omp_in_parallel
   implicit none
   private
   public :: use_threads_for
@@ -30,7 +30,7 @@ module blas_threads
 contains
 
   !> Chooses the threads for matrices of the given order, where the library is OpenBLAS; any other
-  !> keeps to its own rules. OpenBLAS is asked at run time, so that nothing depends on it.
+  !> keeps to its own rules. Where several cases are computed at once each has one. OpenBLAS is asked at run time, so that nothing depends on it.
   subroutine use_threads_for(order)
     integer, intent(in) :: order
     procedure(set_threads), pointer :: set
@@ -41,7 +41,7 @@ contains
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, set)
     count = 1
-    !$ if (order >= worthwhile) count = int(omp_get_max_threads(), c_int)
+    !$ if (order >= worthwhile .and. .not. omp_in_parallel()) count = int(omp_get_max_threads(), c_int)
     call set(count)
   end subroutine use_threads_for
 

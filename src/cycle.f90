@@ -3,7 +3,7 @@
 module cycle
   use kinds, only: wp
   use equilibrium, only: state_t
-  use quadrature, only: interpolated_maximum
+  use interpolation, only: interpolated_maximum
   use quasi_static, only: quasi_static_t, position_t, event_t, witness_t
   use records, only: observer_t, record_of, stable_yes, stable_unasked
   implicit none

@@ -13,7 +13,7 @@ module edge_locked
   implicit none
   private
   public :: mesh_pair_t, new_mesh_pair, regrid, hertz_scale, largest_radius, contact_level, &
-    smallest_feature
+    smallest_feature, beyond_contact
   public :: approach, contact
 
   !> The two stretches of the path.
@@ -99,6 +99,14 @@ contains
     end do
     c = max(1.0_wp, 1.2_wp*c)
   end function largest_radius
+
+  !> An H0 beyond which no contact reaches: the jump out of contact at fixed displacement of JKR theory,
+  !> the extremum of (11), with a margin of a fifth.
+  pure real(wp) function beyond_contact(this)
+    type(problem_t), intent(in) :: this
+
+    beyond_contact = 1.2_wp*(1 + 3*(pi*this%coupling*this%law%adhesion/4)**(2.0_wp/3))
+  end function beyond_contact
 
   !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins at
   !> the given level, never less than 1.

@@ -7,7 +7,7 @@ module experiment
   use laws, only: law_parameters_t, new_law
   use scene_groups, only: scene_t
   use choice, only: choice_t, choose, fixed_mesh, finer
-  use edge_locked, only: new_mesh_pair
+  use edge_locked, only: new_mesh_pair, beyond_contact
   use quasi_static, only: quasi_static_t, position_t, witness_t
   use locked_steps, only: locked_steps_t
   use fixed_steps, only: fixed_steps_t
@@ -188,8 +188,8 @@ contains
     real(wp) :: start
 
     associate (length => steps%problem%length)
-      start = -huge(1.0_wp)
-      if (allocated(scene%path%h0_start)) start = scene%path%h0_start/length
+      start = beyond_contact(steps%problem)
+      if (allocated(scene%path%h0_start)) start = max(start, scene%path%h0_start/length)
       allocate (profiles(0))
       if (allocated(scene%profiles)) profiles = scene%profiles%h0/length
       allocate (outcome%path)
@@ -346,6 +346,7 @@ contains
     end if
     low = low/problem%length
     high = high/problem%length
+    if (allocated(scene%path)) high = max(high, beyond_contact(problem))
   end subroutine range_of
 
   pure function number(k) result(text)

@@ -7,6 +7,7 @@ module path
   use edge_locked, only: contact
   use tracer, only: tracer_t, new_tracer, inward, path_control
   use trail, only: trail_t, extend, collapsed, polish_extremum, of_load
+  use hysteresis, only: energy_lost
   use quasi_static, only: position_t, event_t, witness_t
   use locked_steps, only: locked_steps_t, fold_witness
   use records, only: observer_t, record_of, stable_yes, stable_no
@@ -23,6 +24,8 @@ module path
     real(wp), allocatable :: extremum_h0(:), extremum_load(:)
     !> Where the bodies jump at controlled h0; unallocated where they do not.
     real(wp), allocatable :: jump_in_h0, jump_in_load, jump_out_h0, jump_out_load
+    !> Lost in a cycle of approach and separation at controlled h0; unallocated without jumps.
+    real(wp), allocatable :: energy_lost
     !> Largest tension, the pull-off at controlled load.
     real(wp), allocatable :: load, load_h0
     !> The folds, the largest tension and the end.
@@ -126,6 +129,7 @@ contains
       if (path%unstable_after(size(fold)) == 0) then
         path%jump_out_h0 = path%fold_h0(size(fold))
         path%jump_out_load = path%fold_load(size(fold))
+        path%energy_lost = energy_lost(trail)
       end if
     end if
     allocate (path%extremum_h0(0), path%extremum_load(0))

@@ -4,8 +4,7 @@ module quadrature
   use kinds, only: wp, pi
   implicit none
   private
-  public :: gauss_legendre, logarithm_weights, barycentric_weights, lagrange_basis, &
-    interpolated_maximum
+  public :: gauss_legendre, logarithm_weights, barycentric_weights, lagrange_basis
 
 contains
 
@@ -90,45 +89,6 @@ contains
     l = b/(t - x)
     l = l/sum(l)
   end function lagrange_basis
-
-  !> Where the polynomial through (at, value) is largest within [low, high], by golden section.
-  pure real(wp) function interpolated_maximum(at, value, low, high) result(s)
-    real(wp), intent(in) :: at(:), value(:), low, high
-    real(wp), parameter :: golden = 0.618033988749894848_wp
-    real(wp) :: a, b, c, d
-    integer :: step
-
-    a = low
-    b = high
-    do step = 1, 60
-      c = b - golden*(b - a)
-      d = a + golden*(b - a)
-      if (polynomial(c) > polynomial(d)) then
-        b = d
-      else
-        a = c
-      end if
-    end do
-    s = 0.5_wp*(a + b)
-
-  contains
-
-    pure real(wp) function polynomial(x)
-      real(wp), intent(in) :: x
-      real(wp) :: weight
-      integer :: j, k
-
-      polynomial = 0
-      do j = 1, size(at)
-        weight = 1
-        do k = 1, size(at)
-          if (k /= j) weight = weight*(x - at(k))/(at(j) - at(k))
-        end do
-        polynomial = polynomial + weight*value(j)
-      end do
-    end function polynomial
-
-  end function interpolated_maximum
 
   pure subroutine legendre(n, z, value, slope)
     integer, intent(in) :: n

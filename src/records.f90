@@ -6,7 +6,7 @@ module records
   use equilibrium, only: state_t, radius_of_gap
   implicit none
   private
-  public :: record_t, observer_t, theory_row_t, record_of, stable_yes, stable_no, stable_unasked
+  public :: record_t, observer_t, silent_observer_t, theory_row_t, record_of, stable_yes, stable_no, stable_unasked
 
   !> The column `stable`.
   integer, parameter :: stable_yes = 1, stable_no = 0, stable_unasked = -1
@@ -38,6 +38,12 @@ module records
     procedure(take_record), deferred :: take
   end type observer_t
 
+  !> Takes nothing, for runs of which only the summary counts.
+  type, extends(observer_t) :: silent_observer_t
+  contains
+    procedure :: take => take_nothing
+  end type silent_observer_t
+
   abstract interface
     !> state and grid are given for whoever wants the profile; profile says that the scene asks for it.
     subroutine take_record(self, record, problem, grid, state, profile)
@@ -52,6 +58,15 @@ module records
   end interface
 
 contains
+
+  subroutine take_nothing(self, record, problem, grid, state, profile)
+    class(silent_observer_t), intent(inout) :: self
+    type(record_t), intent(in) :: record
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    logical, intent(in) :: profile
+  end subroutine take_nothing
 
   !> The record of a state.
   pure function record_of(branch, problem, grid, state, stable, converged) result(record)

@@ -6,7 +6,9 @@ module simulation
   use build_info, only: version, compiler, blas, options
   use problem, only: problem_t
   use scene_groups, only: scene_t
+  use deck_text, only: brief
   use experiment, only: outcome_t, run_experiment, problem_of, states_planned
+  use sweeps, only: run_sweep
   use comparison, only: classical_rows
   use records, only: observer_t
   use stability_records, only: stability_recorder_t
@@ -35,20 +37,23 @@ contains
     type(outcome_t) :: outcome
     type(summary_t) :: summary
     type(failure_t), allocatable :: error
+    character(len=:), allocatable :: name
     real(wp) :: began
-    integer :: i
+    integer :: i, failed
+    logical :: curve
 
     began = seconds()
     exit_code = 1
-    if (resume .or. allocated(scene%sweep) .or. allocated(scene%approximations)) then
-      call say(out_dir//': --resume, &sweep and &approximations are not part of this version', &
-        .false.)
+    name = out_dir(index(out_dir, '/', .true.) + 1:)
+    if (resume .or. allocated(scene%approximations)) then
+      call say(out_dir//': --resume and &approximations are not part of this version', .false.)
       return
     end if
     problem = problem_of(scene)
-    call results%open(out_dir, scene%title, version, &
-      allocated(scene%loading) .or. allocated(scene%path), allocated(scene%profiles), &
-      allocated(scene%stability), error)
+    ! The cases of a sweep leave their summaries, not their curves.
+    curve = .not. allocated(scene%sweep) .and. (allocated(scene%loading) .or. allocated(scene%path))
+    call results%open(out_dir, scene%title, version, curve, curve .and. allocated(scene%profiles), &
+      curve .and. allocated(scene%stability), error)
     if (allocated(error)) then
       call say(out_dir//': '//error%message, .false.)
       return
@@ -58,15 +63,25 @@ contains
       recorder%next => results
       observer => recorder
     end if
-    call results%progress%start(states_planned(scene), out_dir(index(out_dir, '/', .true.) + 1:), &
-      quiet)
-    call run_experiment(scene, problem, observer, outcome)
+    failed = 0
+    if (allocated(scene%sweep)) then
+      call results%progress%start(size(scene%sweep%values), name, quiet)
+      call run_sweep(scene, results, failed, outcome%cost)
+    else
+      call results%progress%start(states_planned(scene), name, quiet)
+      call run_experiment(scene, problem, observer, outcome)
+    end if
     call results%progress%finish()
     outcome%cost%factorisations = outcome%cost%factorisations + recorder%cost%factorisations
 
     if (allocated(scene%classical)) call results%write_theory('classical.csv', &
       classical_rows(problem, scene%classical, start_of(scene)))
     summary = summary_of(scene, problem, outcome)
+    if (failed > 0) then
+      summary%converged = .false.
+      call summary%warn(number(failed)//' of '//number(size(scene%sweep%values))// &
+        ' cases failed: their rows in sweep.csv say converged = 0')
+    end if
     summary%version = version
     summary%compiler = compiler
     summary%blas = blas
@@ -95,6 +110,14 @@ contains
     start_of = 0
     if (allocated(scene%loading)) start_of = scene%loading%h0_start
   end function start_of
+
+  !> A count for a message.
+  pure function number(k) result(text)
+    integer, intent(in) :: k
+    character(len=:), allocatable :: text
+
+    text = brief(real(k, wp))
+  end function number
 
   !> Threads in use.
   integer function thread_count()

@@ -4,6 +4,7 @@
 module tracer
   use kinds, only: wp
   use problem, only: problem_t
+  use interpolation, only: polynomial_weights
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, cost_t, at_axis_gap, at_edge_radius, &
     radius_of_gap
@@ -203,23 +204,20 @@ contains
     type(state_t), intent(in) :: states(:)
     integer, intent(in) :: nodes
     type(state_t) :: guess, term
-    real(wp) :: weight, h0, scale
+    real(wp) :: weight(size(states)), h0, scale
     real(wp) :: gap(nodes)
-    integer :: j, k, nearest
+    integer :: j, nearest
 
     gap = 0
     h0 = 0
     scale = 0
+    weight = polynomial_weights(coordinate, s)
     do j = 1, size(states)
-      weight = 1
-      do k = 1, size(states)
-        if (k /= j) weight = weight*(s - coordinate(k))/(coordinate(j) - coordinate(k))
-      end do
       term = states(j)
       if (size(term%gap) /= nodes) term = regrid(states(j), grid, grid, states(j)%scale, nodes)
-      gap = gap + weight*term%gap
-      h0 = h0 + weight*term%h0
-      scale = scale + weight*term%scale
+      gap = gap + weight(j)*term%gap
+      h0 = h0 + weight(j)*term%h0
+      scale = scale + weight(j)*term%scale
     end do
     ! An extrapolation that leaves the law's domain is worth less than the nearest state.
     nearest = minloc(abs(coordinate - s), 1)

@@ -14,7 +14,7 @@ module trail
   use anderson, only: frozen_t
   use edge_locked, only: mesh_pair_t
   use tangent, only: path_slopes
-  use quadrature, only: interpolated_maximum
+  use interpolation, only: interpolated_maximum
   use tracer, only: tracer_t, state_at, path_control
   implicit none
   private

@@ -72,13 +72,15 @@ class HalfSpace:
                 self.matrix[i, columns] = row
 
     def solve(self, law, s, h0, largest=0.8):
-        """The gaps (axis first) at the last of several H0; no gap falls by more than `largest` a step."""
-        gap = None
-        values = np.atleast_1d(h0)
-        before = values[0]
-        for value in values:
-            r = np.concatenate([[0.0], self.r])
-            gap = value + r**2 / 2 if gap is None else gap + value - before
+        """The gaps (axis first) at each of several H0; none falls by more than `largest` a step."""
+        r = np.concatenate([[0.0], self.r])
+        gap = h0[0] + r**2 / 2
+        found = []
+        for value in h0:
+            # As far as the last step went; in contact that is hardly at all.
+            gap = 2 * found[-1] - found[-2] if len(found) > 1 else gap
+            if found and gap.min() < 0.3:
+                gap = found[-1]
             for _ in range(60):
                 pressure, slope, _ = law(gap[1:])
                 residual = gap - value - r**2 / 2 - 2 * s * self.matrix @ pressure
@@ -86,12 +88,12 @@ class HalfSpace:
                 jacobian[:, 1:] -= 2 * s * self.matrix * slope
                 step = np.linalg.solve(jacobian, -residual)
                 gap = gap + min(1, largest / max(1e-300, -step.min())) * step
-                if abs(step).max() < 1e-12 * max(1, abs(gap[0])):
+                if abs(step).max() < 1e-11 * max(1, abs(gap).max()):
                     break
             else:
                 raise ArithmeticError(f"no solution at {value}")
-            before = value
-        return gap
+            found.append(gap)
+        return found
 
     def load(self, law, s, gap):
         """The load; beyond the mesh the deformation is taken as constant."""

@@ -25,7 +25,7 @@ def value_text(value):
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
-        return repr(value)
+        return repr(float(value))
     return ", ".join(value_text(item.item() if hasattr(item, "item") else item) for item in value)
 
 

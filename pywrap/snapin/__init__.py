@@ -1,9 +1,11 @@
-"""The snapin library as NumPy sees it: arrays in, arrays out, SI units.
+"""The snapin library as NumPy sees it: arrays in, arrays out, SI units, errors as exceptions.
 
-Meant for tests and for looking at pieces by hand; calculations are run by the program on decks.
-Each module here wraps one part of the library; this file gathers the names that users call.
+`force_curve` and `equilibrium_path` run whole calculations, as the program does on decks; the rest
+is the pieces, for looking at by hand and for tests. Each module here wraps one part of the library;
+this file gathers the names that users call.
 """
 
+from .arguments import SnapinError, SnapinWarning
 from .classical import (
     cohesive_zone,
     contact_curve,
@@ -11,6 +13,15 @@ from .classical import (
     load_at_displacement,
     profile,
     pull_off,
+)
+from .experiment import (
+    EquilibriumPath,
+    ForceCurve,
+    ForceLaw,
+    equilibrium_path,
+    exponential,
+    force_curve,
+    lennard_jones,
 )
 from .numerics import (
     equilibrium,
@@ -25,15 +36,24 @@ from .numerics import (
 )
 
 __all__ = [
+    "EquilibriumPath",
+    "ForceCurve",
+    "ForceLaw",
+    "SnapinError",
+    "SnapinWarning",
     "cohesive_zone",
     "contact_curve",
     "contact_radius",
     "equilibrium",
+    "equilibrium_path",
+    "exponential",
+    "force_curve",
     "force_law",
     "gauss_rule",
     "kernel",
     "kernel_log_coefficient",
     "law_numbers",
+    "lennard_jones",
     "load_at_displacement",
     "panel_mesh",
     "panel_weights",

@@ -13,6 +13,10 @@ class SnapinError(RuntimeError):
     """The library was asked for something sensible and could not do it."""
 
 
+class SnapinWarning(UserWarning):
+    """A result is not all that was asked for: something did not converge, or is not resolved."""
+
+
 def vector(name, values):
     """Return `values` as a one-dimensional, contiguous array of finite float64."""
     try:

@@ -1,0 +1,133 @@
+!> The energy lost in a cycle of approach and separation at controlled h0: the work between the two
+!> stable branches from the jump into contact to the jump out of it.
+module hysteresis
+  use kinds, only: wp
+  use quadrature, only: gauss_legendre
+  use interpolation, only: polynomial_value, polynomial_slope
+  use trail, only: trail_t
+  implicit none
+  private
+  public :: energy_lost
+
+  !> States in the polynomial that stands for the curve near a piece, and points of the rule on it.
+  integer, parameter :: stencil = 6, points = 5
+
+contains
+
+  !> Integral of (load of the approach - load of the contact) dh0 between the first and the last fold of
+  !> a trail that runs from afar into contact, in units of load times length; positive. 0 without
+  !> folds.
+  function energy_lost(trail) result(energy)
+    type(trail_t), intent(in) :: trail
+    real(wp) :: energy
+    integer :: first, last
+
+    energy = 0
+    first = findloc(trail%fold(:trail%held), .true., 1)
+    last = findloc(trail%fold(:trail%held), .true., 1, back=.true.)
+    if (first == 0 .or. last == first) return
+    ! Both parts are run through inward, with falling h0.
+    energy = work(trail, 1, first, trail%state(last)%h0) - &
+      work_to(trail, last, trail%held, trail%state(first)%h0)
+    energy = abs(energy)
+  end function energy_lost
+
+  !> Integral of load dh0 along the trail from where h0 falls below `start` to the state `finish`.
+  function work(trail, begin, finish, start)
+    type(trail_t), intent(in) :: trail
+    integer, intent(in) :: begin, finish
+    real(wp), intent(in) :: start
+    real(wp) :: work
+    integer :: i
+
+    work = 0
+    do i = begin, finish - 1
+      if (trail%state(i + 1)%h0 >= start) cycle
+      if (trail%state(i)%h0 > start) then
+        work = work + piece(trail, i, start, trail%state(i + 1)%h0)
+      else
+        work = work + piece(trail, i, trail%state(i)%h0, trail%state(i + 1)%h0)
+      end if
+    end do
+  end function work
+
+  !> Integral of load dh0 along the trail from the state `begin` to where h0 falls below `stop`.
+  function work_to(trail, begin, finish, stop) result(work)
+    type(trail_t), intent(in) :: trail
+    integer, intent(in) :: begin, finish
+    real(wp), intent(in) :: stop
+    real(wp) :: work
+    integer :: i
+
+    work = 0
+    do i = begin, finish - 1
+      if (trail%state(i)%h0 <= stop) exit
+      work = work + piece(trail, i, trail%state(i)%h0, max(stop, trail%state(i + 1)%h0))
+    end do
+  end function work_to
+
+  !> Integral of load dh0 over the part of the piece from state i to state i + 1 between two values of h0,
+  !> both functions of the path's coordinate being the polynomials through the nearest states.
+  function piece(trail, i, h0_from, h0_to) result(work)
+    type(trail_t), intent(in) :: trail
+    integer, intent(in) :: i
+    real(wp), intent(in) :: h0_from, h0_to
+    real(wp) :: work
+    real(wp) :: node(points), weight(points), a, b, s
+    integer :: first, last, k
+
+    first = i
+    last = i + 1
+    if (trail%mesh(first) /= trail%mesh(last)) then
+      ! Coordinates do not go on across a change of mesh.
+      work = 0.5_wp*(trail%state(i)%load + trail%state(i + 1)%load)*(h0_to - h0_from)
+      return
+    end if
+    do while (last - first + 1 < stencil)
+      k = last - first
+      if (extends(first - 1)) first = first - 1
+      if (last - first + 1 < stencil .and. extends(last + 1)) last = last + 1
+      if (last - first == k) exit
+    end do
+    associate (at => trail%coordinate(first:last), states => trail%state(first:last))
+      a = place(at, states%h0, trail%coordinate(i), trail%coordinate(i + 1), h0_from)
+      b = place(at, states%h0, trail%coordinate(i), trail%coordinate(i + 1), h0_to)
+      call gauss_legendre(node, weight)
+      work = 0
+      do k = 1, points
+        s = a + (b - a)*node(k)
+        work = work + (b - a)*weight(k)*polynomial_value(at, states%load, s)* &
+          polynomial_slope(at, states%h0, s)
+      end do
+    end associate
+
+  contains
+
+    logical function extends(j)
+      integer, intent(in) :: j
+
+      extends = .false.
+      if (j >= 1 .and. j <= trail%held) extends = trail%mesh(j) == trail%mesh(i)
+    end function extends
+
+  end function piece
+
+  !> Where in [a, b] the polynomial through (at, f) has the value wanted, f being monotone there.
+  pure real(wp) function place(at, f, a, b, wanted)
+    real(wp), intent(in) :: at(:), f(:), a, b, wanted
+    real(wp) :: low, high
+    integer :: step
+
+    low = a
+    high = b
+    do step = 1, 60
+      place = 0.5_wp*(low + high)
+      if ((polynomial_value(at, f, place) - wanted)*(polynomial_value(at, f, b) - wanted) > 0) then
+        high = place
+      else
+        low = place
+      end if
+    end do
+  end function place
+
+end module hysteresis

@@ -1,0 +1,71 @@
+!> The polynomial through a few scattered values: weights, value, slope, maximum.
+module interpolation
+  use kinds, only: wp
+  implicit none
+  private
+  public :: polynomial_weights, polynomial_value, polynomial_slope, interpolated_maximum
+
+contains
+
+  !> Weights of the values at `at` (all different) in their polynomial's value at x.
+  pure function polynomial_weights(at, x) result(weight)
+    real(wp), intent(in) :: at(:), x
+    real(wp) :: weight(size(at))
+    integer :: j, k
+
+    weight = 1
+    do j = 1, size(at)
+      do k = 1, size(at)
+        if (k /= j) weight(j) = weight(j)*(x - at(k))/(at(j) - at(k))
+      end do
+    end do
+  end function polynomial_weights
+
+  !> The polynomial through (at, value) at x.
+  pure real(wp) function polynomial_value(at, value, x)
+    real(wp), intent(in) :: at(:), value(:), x
+
+    polynomial_value = dot_product(polynomial_weights(at, x), value)
+  end function polynomial_value
+
+  !> Its derivative at x.
+  pure real(wp) function polynomial_slope(at, value, x) result(slope)
+    real(wp), intent(in) :: at(:), value(:), x
+    real(wp) :: term
+    integer :: j, k, m
+
+    slope = 0
+    do j = 1, size(at)
+      do m = 1, size(at)
+        if (m == j) cycle
+        term = value(j)/(at(j) - at(m))
+        do k = 1, size(at)
+          if (k /= j .and. k /= m) term = term*(x - at(k))/(at(j) - at(k))
+        end do
+        slope = slope + term
+      end do
+    end do
+  end function polynomial_slope
+
+  !> Where in [low, high] the polynomial through (at, value) is largest, by golden section.
+  pure real(wp) function interpolated_maximum(at, value, low, high) result(x)
+    real(wp), intent(in) :: at(:), value(:), low, high
+    real(wp), parameter :: golden = 0.618033988749894848_wp
+    real(wp) :: a, b, c, d
+    integer :: step
+
+    a = low
+    b = high
+    do step = 1, 60
+      c = b - golden*(b - a)
+      d = a + golden*(b - a)
+      if (polynomial_value(at, value, c) > polynomial_value(at, value, d)) then
+        b = d
+      else
+        a = c
+      end if
+    end do
+    x = 0.5_wp*(a + b)
+  end function interpolated_maximum
+
+end module interpolation

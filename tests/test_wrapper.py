@@ -1,0 +1,361 @@
+"""Claims about whole experiments run from Python: the program's numbers, and errors that say what."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+import snapin
+from scenes import deck, exponential, lennard_jones, loading, runner, several
+
+# Fig. 1 of the paper.
+BODIES = {"radius": 1.5e-2, "stiffness": 1e10}
+FORCE = {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9}
+LAW = snapin.lennard_jones(hamaker=1e-20, z0=0.5e-9)
+DOWN = np.linspace(4e-9, -2e-9, 61)
+
+# Scenes posed in the law's own lengths.
+UNIT = {"radius": 1.0, "stiffness": 1.0}
+# The program steps h0 by repeated multiplication, here by linspace: the last digit may differ.
+SAME = 1e-12
+
+COLUMNS = ("h0", "h_centre", "displacement", "load", "contact_radius")
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("wrapper"))
+
+
+def law_of(sigma, part="full"):
+    """The Lennard-Jones law of a given sigma in bodies of UNIT."""
+    return snapin.lennard_jones(hamaker=16 * math.pi * sigma, z0=1.0, part=part)
+
+
+def assert_same(result, table, columns=COLUMNS):
+    """Every column is that of the program's table."""
+    for name in columns:
+        mine, theirs = getattr(result, name), table[name]
+        np.testing.assert_allclose(
+            mine, theirs, rtol=SAME, atol=SAME * abs(theirs).max(), err_msg=name
+        )
+
+
+@pytest.fixture(scope="module")
+def there_and_back():
+    """Fig. 1 down to -2 nm and up again."""
+    return snapin.force_curve(np.r_[DOWN, DOWN[::-1]], **BODIES, law=LAW)
+
+
+# --- The program's numbers
+
+
+def test_three_lines_give_the_program_s_curve(run):
+    law = snapin.lennard_jones(hamaker=1e-20, z0=0.5e-9)
+    h0 = np.linspace(4e-9, -2e-9, 61)
+    curve = snapin.force_curve(h0, radius=1.5e-2, stiffness=1e10, law=law)
+
+    step = {"h0_start": 4e-9, "h0_end": -2e-9, "h0_step": 1e-10}
+    result = run(deck(bodies=BODIES, force=FORCE, loading=step))
+    assert len(result.curve) == h0.size
+    assert_same(curve, result.curve)
+    assert curve.residual.max() == pytest.approx(result.summary["worst_residual"], rel=1e-3)
+    (jump,) = curve.jumps
+    assert jump.h0 == pytest.approx(result.summary["jump_in_h0"], rel=SAME)
+    assert jump.load == pytest.approx(result.summary["jump_in_load"], rel=SAME)
+    assert curve.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
+    # At a smooth maximum the place is known to half the digits.
+    assert curve.max_tension_h0 == pytest.approx(result.summary["max_tension_h0"], rel=1e-6)
+    assert curve.error_estimate == pytest.approx(result.summary["error_estimate"], rel=1e-3)
+    assert curve.converged
+
+
+def test_h0_that_turns_round_gives_the_program_s_cycle(run, there_and_back):
+    step = {"h0_start": 4e-9, "h0_end": -2e-9, "h0_step": 1e-10}
+    result = run(deck(bodies=BODIES, force=FORCE, loading=step, unloading={}))
+    assert len(result.curve) == there_and_back.h0.size
+    assert_same(there_and_back, result.curve)
+    jumps = [(result.summary[f"jump_{way}_h0"], result.summary[f"jump_{way}_load"]) for way in
+             ("in", "out")]
+    np.testing.assert_allclose(there_and_back.jumps, jumps, rtol=SAME)
+    assert there_and_back.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
+
+
+def test_exponential_law_gives_the_program_s_curve(run):
+    result = run(exponential(3.0, loading=loading(6, -4, 0.5)))
+    law = snapin.exponential(p0=3.0, decay_length=1.0)
+    curve = snapin.force_curve(np.linspace(6, -4, 21), **UNIT, law=law)
+    assert_same(curve, result.curve)
+    assert curve.jumps == []
+    assert math.isnan(curve.max_tension)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"method": "newton"},
+        {"grid": "uniform", "nodes": 250, "r_max": 12.0},
+        {"method": "mixing", "grid": "panels"},
+        {"accuracy": 1e-9},
+    ],
+)
+def test_options_are_those_of_the_deck(run, options):
+    result = run(lennard_jones(0.2, loading=loading(6, 1, 0.5), numerics=options))
+    curve = snapin.force_curve(np.linspace(6, 1, 11), **UNIT, law=law_of(0.2), **options)
+    assert_same(curve, result.curve)
+    assert curve.error_estimate == pytest.approx(result.summary["error_estimate"], rel=1e-3)
+
+
+def test_rigid_bodies_give_the_program_s_curve(run):
+    scene = deck(
+        bodies={"radius": 1.0, "rigid": True},
+        force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
+        loading=loading(6, 0.5, 0.25),
+    )
+    curve = snapin.force_curve(np.linspace(6, 0.5, 23), radius=1.0, rigid=True, law=law_of(1.0))
+    assert_same(curve, run(scene).curve)
+    assert curve.max_tension == pytest.approx(2 * math.pi, rel=1e-8)
+
+
+def test_path_is_that_of_the_program(run):
+    scene = deck(bodies=BODIES, force=FORCE, equilibrium_path={"h0_end": -2e-9})
+    result = run(scene)
+    path = snapin.equilibrium_path(h0_end=-2e-9, **BODIES, law=LAW)
+    assert_same(path, result.curve)
+    assert (path.stable == (result.curve["stable"] == 1)).all()
+    assert path.stable.dtype == bool
+    folds = np.transpose([several(result.summary[f"folds_{name}"]) for name in ("h0", "load")])
+    np.testing.assert_allclose(path.folds, folds, rtol=SAME)
+    assert path.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
+    assert path.error_estimate == pytest.approx(result.summary["error_estimate"], rel=1e-3)
+    assert path.converged
+
+
+def test_path_begins_where_it_is_told_to():
+    path = snapin.equilibrium_path(-2.0, **UNIT, law=law_of(0.5), h0_start=40.0)
+    assert path.h0[0] == pytest.approx(40.0)
+    assert path.h0[-1] == pytest.approx(-2.0)
+
+
+def test_path_without_attraction_has_no_folds():
+    law = snapin.exponential(p0=1.0, decay_length=1.0)
+    path = snapin.equilibrium_path(-2.0, **UNIT, law=law)
+    assert path.folds == []
+    assert path.stable.all()
+    assert math.isnan(path.max_tension)
+
+
+# --- What Python adds
+
+
+def test_curve_has_the_jumps_of_the_path(there_and_back):
+    path = snapin.equilibrium_path(-2e-9, **BODIES, law=LAW)
+    np.testing.assert_allclose(there_and_back.jumps, path.folds, rtol=1e-6)
+    assert there_and_back.max_tension == pytest.approx(path.max_tension, rel=1e-6)
+
+
+def test_hysteresis_is_between_the_jumps_and_nowhere_else(there_and_back):
+    down, up = there_and_back.h_centre[:61], there_and_back.h_centre[:60:-1]
+    (jump_in, _), (jump_out, _) = there_and_back.jumps
+    between = (jump_in < DOWN) & (DOWN < jump_out)
+    assert between.any()
+    assert (abs(up - down)[between] > 0.2e-9).all()
+    assert (abs(up - down)[~between] < 1e-6 * 0.5e-9).all()
+
+
+def test_turning_value_may_be_repeated_or_not(there_and_back):
+    once = snapin.force_curve(np.r_[DOWN, DOWN[-2::-1]], **BODIES, law=LAW)
+    scale = abs(there_and_back.load).max()
+    np.testing.assert_allclose(
+        once.load, np.delete(there_and_back.load, 61), atol=1e-7 * scale, rtol=0
+    )
+    np.testing.assert_allclose(once.jumps, there_and_back.jumps, rtol=1e-6)
+
+
+def test_an_experiment_may_begin_with_the_retreat():
+    """The bodies have approached before; that jump is not part of the experiment."""
+    up = np.linspace(-2, 6, 33)
+    curve = snapin.force_curve(up, **UNIT, law=law_of(0.87))
+    (jump,) = curve.jumps
+    assert jump.h0 == pytest.approx(3.4834324, rel=1e-6)
+
+
+def test_every_jump_of_a_long_experiment_is_told_in_order():
+    down = np.linspace(6, -2, 33)
+    curve = snapin.force_curve(np.r_[down, down[::-1], down, down[::-1]], **UNIT, law=law_of(0.87))
+    h0 = [jump.h0 for jump in curve.jumps]
+    np.testing.assert_allclose(h0, [3.0886872, 3.4834324] * 2, rtol=1e-6)
+
+
+def test_the_second_of_two_calls_does_not_know_of_the_first(there_and_back):
+    snapin.force_curve([3.0, -1.0], **UNIT, law=law_of(3.0), method="newton")
+    again = snapin.force_curve(np.r_[DOWN, DOWN[::-1]], **BODIES, law=LAW)
+    np.testing.assert_array_equal(again.load, there_and_back.load)
+
+
+@pytest.mark.parametrize(
+    "of",
+    [
+        list,
+        tuple,
+        lambda h0: np.repeat(h0, 2)[::2],
+        lambda h0: np.array([h0, h0]).T[:, 0],
+        lambda h0: h0[::-1].copy()[::-1],
+        lambda h0: h0.astype(">f8"),
+    ],
+)
+def test_h0_may_be_any_sequence_of_numbers(of):
+    h0 = np.array([4.0, 3.5, 2.0, 1.0])
+    plain = snapin.force_curve(h0, **UNIT, law=law_of(0.1))
+    other = snapin.force_curve(of(h0), **UNIT, law=law_of(0.1))
+    np.testing.assert_array_equal(plain.load, other.load)
+
+
+def test_h0_of_whole_numbers_is_taken():
+    curve = snapin.force_curve([4, 3, 2], **UNIT, law=law_of(0.1))
+    assert curve.load.shape == (3,)
+
+
+def test_the_result_does_not_share_memory_with_the_argument():
+    h0 = np.array([4.0, 3.0])
+    curve = snapin.force_curve(h0, **UNIT, law=law_of(0.1))
+    h0[:] = 0
+    assert curve.h0.tolist() == [4.0, 3.0]
+
+
+# --- What did not converge
+
+
+def test_states_that_do_not_converge_are_returned_and_warned_of():
+    """Mixing stalls in a stiff contact."""
+    h0 = [9.0, 4.0, 0.0]
+    with pytest.warns(snapin.SnapinWarning, match="first at h0 = 4 m") as caught:
+        curve = snapin.force_curve(
+            h0, **UNIT, law=law_of(8.7), method="mixing", nodes=60, r_max=9.0
+        )
+    assert not curve.converged
+    assert np.isfinite(curve.load).all()
+    assert curve.residual[0] < 1e-8 < curve.residual[1]
+    assert all(warning.filename == __file__ for warning in caught)
+
+
+def test_an_early_end_leaves_nan_and_is_warned_of():
+    """A law without repulsion has no state after the jump."""
+    h0 = np.r_[np.linspace(8, 0, 33), 8.0]
+    with pytest.warns(snapin.SnapinWarning, match="h0 = 3 m: no stable equilibrium"):
+        curve = snapin.force_curve(h0, **UNIT, law=law_of(1.0, "attractive"))
+    reached = h0[:-1] > 3.0
+    assert not curve.converged
+    assert np.isfinite(curve.load[:-1][reached]).all()
+    assert np.isnan(curve.load[:-1][~reached]).all()
+    assert math.isnan(curve.load[-1])
+    np.testing.assert_array_equal(curve.h0, h0)
+
+
+def test_rigid_bodies_that_would_touch_have_no_state():
+    with pytest.warns(snapin.SnapinWarning, match="rigid bodies would touch"):
+        curve = snapin.force_curve([-1.0, -2.0], radius=1.0, rigid=True, law=law_of(1.0))
+    assert np.isnan(curve.load).all()
+    assert math.isnan(curve.error_estimate)
+
+
+def test_an_under_resolved_grid_is_warned_of():
+    with pytest.warns(snapin.SnapinWarning, match="under-resolved"):
+        snapin.force_curve([9.0, 2.0], **UNIT, law=law_of(8.7), grid="uniform", nodes=150)
+
+
+def test_nothing_is_warned_of_where_all_is_well():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        snapin.force_curve([4.0, 0.0, 4.0], **UNIT, law=law_of(0.87))
+        snapin.equilibrium_path(-2.0, **UNIT, law=law_of(0.87))
+
+
+# --- Arguments
+
+
+def curve_with(**changes):
+    """A call of force_curve that is right but for these arguments."""
+    arguments = {"h0": [4.0, 2.0], **UNIT, "law": law_of(0.1), **changes}
+    return lambda: snapin.force_curve(arguments.pop("h0"), **arguments)
+
+
+def path_with(**changes):
+    """The same for equilibrium_path."""
+    arguments = {"h0_end": -2.0, **UNIT, "law": law_of(0.1), **changes}
+    return lambda: snapin.equilibrium_path(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("call", "name"),
+    [
+        (curve_with(h0=[1.0]), "h0"),
+        (curve_with(h0=[]), "h0"),
+        (curve_with(h0=3.0), "h0"),
+        (curve_with(h0=[[1.0, 2.0]]), "h0"),
+        (curve_with(h0=[1.0, math.nan]), "h0"),
+        (curve_with(h0=[1.0, -math.inf]), "h0"),
+        (curve_with(radius=0), "radius"),
+        (curve_with(radius=math.inf), "radius"),
+        (curve_with(stiffness=-1e10), "stiffness"),
+        (curve_with(stiffness=math.nan), "stiffness"),
+        (curve_with(rigid=True), "stiffness"),
+        (curve_with(accuracy=0), "accuracy"),
+        (curve_with(accuracy=0.5), "accuracy"),
+        (curve_with(accuracy=1e-12), "accuracy"),
+        (curve_with(nodes=1, grid="uniform"), "nodes"),
+        (curve_with(nodes=10**9, grid="uniform"), "nodes"),
+        (curve_with(nodes=300), "nodes"),
+        (curve_with(r_max=10.0), "r_max"),
+        (curve_with(r_max=-10.0, grid="uniform"), "r_max"),
+        (path_with(h0_end=math.nan), "h0_end"),
+        (path_with(h0_start=-3.0), "h0_start"),
+        (path_with(h0_start=math.inf), "h0_start"),
+        (path_with(radius=-1), "radius"),
+        (path_with(accuracy=2), "accuracy"),
+        (lambda: snapin.lennard_jones(hamaker=-1, z0=1), "hamaker"),
+        (lambda: snapin.lennard_jones(hamaker=1, z0=0), "z0"),
+        (lambda: snapin.exponential(p0=math.nan, decay_length=1), "p0"),
+        (lambda: snapin.exponential(p0=1, decay_length=math.inf), "decay_length"),
+    ],
+)
+def test_a_bad_value_is_a_value_error_that_begins_with_its_name(call, name):
+    with pytest.raises(ValueError, match=rf"^{name}: "):
+        call()
+
+
+@pytest.mark.parametrize(
+    ("call", "name", "known"),
+    [
+        (curve_with(method="bisection"), "method", "auto, mixing, anderson, newton"),
+        (curve_with(grid="hexagonal"), "grid", "auto, uniform, panels"),
+        (
+            lambda: snapin.lennard_jones(hamaker=1, z0=1, part="half"),
+            "part",
+            "full, repulsive, attractive",
+        ),
+    ],
+)
+def test_an_unknown_name_is_answered_with_those_there_are(call, name, known):
+    with pytest.raises(ValueError, match=rf"^{name}: must be one of {known}, not"):
+        call()
+
+
+@pytest.mark.parametrize(
+    ("call", "name"),
+    [
+        (curve_with(h0=["near", "far"]), "h0"),
+        (curve_with(h0=None), "h0"),
+        (curve_with(radius="wide"), "radius"),
+        (curve_with(stiffness=None), "stiffness"),
+        (curve_with(law="lennard_jones"), "law"),
+        (curve_with(rigid=1), "rigid"),
+        (curve_with(nodes=30.5, grid="uniform"), "nodes"),
+        (curve_with(method=["newton"]), "method"),
+        (path_with(h0_end="deep"), "h0_end"),
+        (path_with(law=None), "law"),
+    ],
+)
+def test_what_is_of_another_kind_is_an_error_that_begins_with_its_name(call, name):
+    with pytest.raises((TypeError, ValueError), match=rf"^{name}: "):
+        call()

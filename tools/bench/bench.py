@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Measure what accuracy costs: tables and pictures in docs/bench/, tables in docs/accuracy.md.
+
+    ./bench                          everything, 20 minutes or so
+    ./bench --quick                  everything, coarser, in a few minutes, into results/bench/
+    ./bench --only work_precision    one part
+    ./bench --resume                 what an interrupted run left undone
+    ./bench --draw                   pictures and tables once more, from the measurements at hand
+"""
+
+import argparse
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import accuracy
+import hot_spots
+import program
+import ratios
+import scaling
+import tables
+import work_precision
+
+_GUIDE = program.ROOT / "docs" / "accuracy.md"
+
+# What measures, what draws, what makes the guide's tables.
+_PARTS = {
+    "accuracy": (accuracy.measure, accuracy.draw, accuracy.tables),
+    "error_law": (accuracy.measure_law, accuracy.draw_law, None),
+    "ratios": (ratios.measure, None, ratios.tables),
+    "sigma": (scaling.measure_sigma, scaling.draw_sigma, None),
+    "nodes": (scaling.measure_nodes, scaling.draw_nodes, None),
+    "threads": (scaling.measure_threads, scaling.draw_threads, scaling.tables_threads),
+    "hot_spots": (hot_spots.measure, None, hot_spots.tables),
+    "work_precision": (work_precision.measure, work_precision.draw, work_precision.tables),
+}
+
+
+def main():
+    """Run the parts that are asked for."""
+    options = _options()
+    build = options.build.resolve()
+    quick = options.quick
+    folder = (options.out or program.ROOT / ("results/bench" if quick else "docs/bench")).resolve()
+    with tempfile.TemporaryDirectory() as scratch:
+        runner = program.Program(build, scratch)
+        version = subprocess.run([str(runner.snapin), "--version"], check=True,
+                                 capture_output=True, text=True).stdout.split("\n")[0]
+        for name in options.only or _PARTS:
+            path = folder / f"{name}.csv"
+            fresh = path.is_file() and path.stat().st_mtime > runner.snapin.stat().st_mtime
+            if options.draw or options.resume and fresh:
+                continue
+            began = time.perf_counter()
+            _say(name)
+            rows = _PARTS[name][0](runner, quick, lambda text: _say(f"  {text}"))
+            tables.write(path, rows, [f"./bench --only {name}{' --quick' if quick else ''}",
+                                      version, tables.machine()])
+            _say(f"  {time.perf_counter() - began:.0f} s; {path}")
+    _present(folder, not quick and options.out is None)
+
+
+def _present(folder, in_guide):
+    """Draw what there are measurements for; with `in_guide`, renew the guide's tables."""
+    found = {}
+    for name, (_, draw, make_tables) in _PARTS.items():
+        rows = tables.read(folder / f"{name}.csv")
+        if rows and draw:
+            draw(rows, folder)
+        if rows and make_tables:
+            found.update(make_tables(rows))
+    if (folder / "accuracy.csv").is_file():
+        found.update(accuracy.honesty(folder))
+    for name, (header, lines) in found.items():
+        if in_guide:
+            tables.insert(_GUIDE, name, tables.markdown(header, lines))
+        else:
+            print(f"\n{name}\n\n{tables.markdown(header, lines)}")
+
+
+def _options():
+    parser = argparse.ArgumentParser(
+        prog="./bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="coarser, in a few minutes")
+    parser.add_argument("--only", action="append", choices=_PARTS, metavar="PART",
+                        help=f"one part (may be repeated): {', '.join(_PARTS)}")
+    parser.add_argument("--resume", action="store_true",
+                        help="leave out parts measured since the program was built")
+    parser.add_argument("--draw", action="store_true", help="measure nothing, only draw")
+    parser.add_argument("--out", type=pathlib.Path, help="folder for tables and pictures")
+    parser.add_argument("--build", type=pathlib.Path, default=program.ROOT / "build",
+                        help="build folder of the program; default: build")
+    return parser.parse_args()
+
+
+def _say(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,50 @@
+"""What the pictures have in common."""
+
+import program  # noqa: F401 (makes read_results importable)
+from matplotlib.figure import Figure
+from read_results import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
+
+COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK, GREY)
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "h")
+
+
+def figure(rows, columns, size=None, **options):
+    """Return a figure of a README's width, and its panels."""
+    page = Figure(figsize=size or (9.0, 3.6 * rows), layout="constrained")
+    return page, page.subplots(rows, columns, squeeze=False, **options)
+
+
+def dress(panel, title="", x="", y="", log="xy"):
+    """Give a panel its names and its scales."""
+    panel.set_title(title, fontsize=11)
+    panel.set_xlabel(x)
+    panel.set_ylabel(y)
+    if "x" in log:
+        panel.set_xscale("log")
+    if "y" in log:
+        panel.set_yscale("log")
+    panel.grid(True, color="#dddddd", linewidth=0.6)
+    panel.spines[["top", "right"]].set_visible(False)
+
+
+def legend(page, panel, columns=4):
+    """One legend for all panels, below them; each name once."""
+    names = {}
+    for axes in page.axes:
+        for handle, name in zip(*axes.get_legend_handles_labels()):
+            names.setdefault(name, handle)
+    page.legend(names.values(), names.keys(), loc="outside lower center", ncols=columns,
+                frameon=False)
+
+
+def guide(panel, x, y, power, text):
+    """Draw a thin line of a power law through the first point, named at its end."""
+    values = [y * (value / x[0]) ** power for value in x]
+    panel.plot(x, values, color=GREY, linewidth=1.0, linestyle=(0, (4, 2)), zorder=0)
+    panel.annotate(text, (x[-1], values[-1]), color="#555555", fontsize=9, ha="right", va="bottom")
+
+
+def save(page, path):
+    """Write a picture."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    page.savefig(path, dpi=110)

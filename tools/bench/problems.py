@@ -1,0 +1,74 @@
+"""The problems that are measured, and the decks that pose them."""
+
+import dataclasses
+import math
+
+_RADIUS, _Z0, _HAMAKER = 1.5e-2, 0.5e-9, 1e-19
+_P0, _DECAY = 2.5e8, 0.2e-9
+
+
+@dataclasses.dataclass(frozen=True)
+class Problem:
+    """Two bodies, their force, and the range of h0; `length` [m] is that of the force law."""
+
+    name: str
+    label: str
+    physics: str
+    length: float
+    start: float
+    turn: float
+    step: float
+    adhesive: bool = True
+
+    def cycle(self, numerics="", step=None):
+        """Return a deck that loads by steps of h0 and, if the force adheres, unloads."""
+        step = step or self.step
+        parts = [f"&loading h0_start = {self.start * self.length!r}, "
+                 f"h0_end = {self.turn * self.length!r}, h0_step = {step * self.length!r} /"]
+        if self.adhesive:
+            parts.append(f"&unloading from = {self.turn * self.length!r} /")
+        return self._deck("\n".join(parts), numerics)
+
+    def path(self, numerics="", more=""):
+        """Return a deck for the whole path of equilibria, down to the turning point."""
+        return self._deck(f"&equilibrium_path h0_end = {self.turn * self.length!r} /\n{more}",
+                          numerics)
+
+    def _deck(self, parts, numerics):
+        return f"&scene title = '{self.name}' /\n{self.physics}\n{parts}\n&numerics {numerics} /\n"
+
+
+def lennard_jones(sigma):
+    """Return the Lennard-Jones problem of a strength of adhesion sigma, (40) of the paper."""
+    gamma = _HAMAKER / (16 * math.pi * _Z0**2)
+    stiffness = gamma / sigma * math.sqrt(_RADIUS / _Z0**3)
+    # Where the retreat jumps apart, in units of z0, and some more.
+    start = 5 + 3.2 * sigma ** (2 / 3)
+    start, turn = float(f"{start:.2g}"), -float(f"{0.25 * start:.1g}")
+    return Problem(
+        f"sigma_{sigma:g}", f"σ = {sigma:g}",
+        f"&bodies radius = {_RADIUS}, stiffness = {stiffness!r} /\n"
+        f"&force law = 'lennard_jones', hamaker = {_HAMAKER}, z0 = {_Z0} /",
+        _Z0, start, turn, (start - turn) / 50)
+
+
+def exponential(big_lambda):
+    """Return the problem of an exponential repulsion, Lambda (39) of the paper at h0 = 0."""
+    stiffness = _P0 / big_lambda * math.sqrt(_RADIUS / _DECAY)
+    start = 3 + math.ceil(math.log(big_lambda))
+    return Problem(
+        f"lambda_{big_lambda:g}", f"exponential, Λ = {big_lambda:g}",
+        f"&bodies radius = {_RADIUS}, stiffness = {stiffness!r} /\n"
+        f"&force law = 'exponential', p0 = {_P0}, decay_length = {_DECAY} /",
+        _DECAY, float(start), 0.0, start / 30, adhesive=False)
+
+
+FIGURE_10C = (
+    "&bodies radius = 1.5e-2, stiffness = 1e10 /\n"
+    "&force law = 'lennard_jones', hamaker = 1e-19, z0 = 0.5e-9 /\n"
+    "&loading h0_start = 7e-9, h0_end = -5.5e-9, h0_step = 0.05e-9 /\n"
+    "&unloading from = -5.5e-9 /\n")
+
+ADHESIVE = [lennard_jones(sigma) for sigma in (0.0087, 0.87, 8.7, 1000.0)]
+REPULSIVE = [exponential(big_lambda) for big_lambda in (1.0, 1e4)]
+ALL = ADHESIVE + REPULSIVE

@@ -1,0 +1,132 @@
+"""Running the program on a deck, and what comes of it."""
+
+import dataclasses
+import math
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "pywrap" / "plots"))
+
+import f90nml  # noqa: E402
+from read_results import read_table  # noqa: E402
+
+# The three numbers whose errors are measured.
+QUANTITIES = ("pull_off", "jump_in", "load")
+
+
+@dataclasses.dataclass
+class Run:
+    """One run: what was found, what it cost, and what was wrong with it."""
+
+    seconds: float = math.nan
+    kernel_seconds: float = math.nan
+    solve_seconds: float = math.nan
+    estimate_seconds: float = math.nan
+    nodes: int = 0
+    states: int = 0
+    products: int = 0
+    factorisations: int = 0
+    median_products: float = math.nan
+    estimate: float = math.nan
+    failure: str = ""
+    warning: str = ""
+    values: dict = dataclasses.field(default_factory=dict)
+
+    @property
+    def seconds_of_run(self):
+        """Time of what the deck asks for, without that of the error estimate."""
+        return self.seconds - self.estimate_seconds
+
+    def errors(self, reference, length):
+        """Return relative errors against a converged run; of h0, relative to h0 or `length`."""
+        errors = {}
+        for key, exact in reference.values.items():
+            scale = max(abs(exact), length) if key.startswith("jump") else abs(exact)
+            errors[key] = abs(self.values.get(key, math.nan) - exact) / scale
+        return errors
+
+
+class Program:
+    """The programs of one build, run in a folder of their own."""
+
+    def __init__(self, build, scratch):
+        self.snapin = pathlib.Path(build) / "snapin"
+        self.build = pathlib.Path(build)
+        self.scratch = pathlib.Path(scratch)
+        self.scratch.mkdir(parents=True, exist_ok=True)
+        self._references = {}
+
+    def environment(self, threads=1):
+        """Return an environment with so many threads."""
+        return dict(os.environ, OMP_NUM_THREADS=str(threads), OPENBLAS_NUM_THREADS=str(threads))
+
+    def run(self, deck, cap=60, threads=1, before=()):
+        """Run a deck, given as text, for at most `cap` seconds; `before` goes before the command."""
+        path = self.scratch / "deck.nml"
+        path.write_text(deck, encoding="utf-8")
+        command = [*before, str(self.snapin), "--quiet", "--out", str(self.scratch), str(path)]
+        try:
+            done = subprocess.run(command, env=self.environment(threads), capture_output=True,
+                                  text=True, timeout=cap, check=False)
+        except subprocess.TimeoutExpired:
+            return Run(seconds=cap, failure=f"not finished in {cap:g} s")
+        if done.returncode not in (0, 1):
+            return Run(failure=(done.stderr.strip().splitlines() or ["no message"])[0])
+        return self._read(done.returncode)
+
+    def best_of(self, rounds, decks, cap=60, enough=3.0, **options):
+        """Run every deck of a dict in turn, `rounds` times over; keep each one's fastest run.
+
+        What takes longer than `enough` seconds, or fails, is run once.
+        """
+        best = {}
+        for _ in range(rounds):
+            for key, deck in decks.items():
+                if key in best and not best[key].seconds < enough:
+                    continue
+                run = self.run(deck, cap, **options)
+                if key not in best or run.seconds < best[key].seconds:
+                    best[key] = run
+        return best
+
+    def reference(self, problem, order=16):
+        """Return a converged run: the path, as accurate as the program goes, on finer panels."""
+        key = problem.name, order
+        if key not in self._references:
+            self._references[key] = self.run(
+                problem.path(f"accuracy = 1e-10, panel_order = {order}, residual_tolerance = 1e-12"))
+            # A residual at its floor is all that rounding allows: the numbers are what count.
+            self._references[key].failure = ""
+        return self._references[key]
+
+    def _read(self, returncode):
+        folder = self.scratch / "deck"
+        groups = f90nml.read(folder / "summary.nml")
+        summary, cost = groups["summary"], groups["cost"]
+        curve = read_table(folder, "curve.csv")
+        warnings = summary.get("warnings", [])
+        run = Run(
+            seconds=cost["wall_seconds"], kernel_seconds=cost["kernel_seconds"],
+            solve_seconds=cost["solve_seconds"],
+            estimate_seconds=cost.get("estimate_seconds", 0.0), nodes=cost["nodes"],
+            states=cost["states"], products=cost["operator_products"],
+            factorisations=cost["factorisations"],
+            median_products=float(np.median(curve["iterations"])),
+            estimate=float(summary.get("error_estimate", math.nan)),
+            warning="; ".join([warnings] if isinstance(warnings, str) else warnings))
+        if returncode:
+            run.failure = run.warning or "exit status 1"
+        if "max_tension" in summary and "jkr_pull_off" in summary:
+            run.values["pull_off"] = summary["max_tension"]
+        if "jump_in_h0" in summary:
+            run.values["jump_in"] = summary["jump_in_h0"]
+        branch = curve["branch"] == curve["branch"][0]
+        # Loading and path both end at the turning point.
+        run.values["load"] = float(curve["load"][branch][-1])
+        run.summary = summary
+        return run

@@ -1,0 +1,71 @@
+"""Tables of measurements: CSV files, and Markdown for the guide."""
+
+import csv
+import os
+import platform
+import re
+
+
+def machine():
+    """Return the kind of machine, in general words."""
+    return f"{platform.machine()}, {os.cpu_count()} cores, {platform.system()}"
+
+
+def write(path, rows, notes):
+    """Write rows (dicts with the same keys) with lines of notes before them."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        for note in notes:
+            file.write(f"# {note}\n")
+        table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        table.writeheader()
+        for row in rows:
+            table.writerow({key: _cell(value) for key, value in row.items()})
+
+
+def read(path):
+    """Return the rows of a table, numbers as floats; an empty list if there is no such file."""
+    if not path.is_file():
+        return []
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return [{key: _value(cell) for key, cell in row.items()} for row in rows]
+
+
+def markdown(header, rows):
+    """Return a Markdown table; numbers are shortened."""
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    lines += ["| " + " | ".join(short(cell) for cell in row) + " |" for row in rows]
+    return "\n".join(lines)
+
+
+def short(value):
+    """Return a number in few characters, 'none' for NaN; text as it is."""
+    if isinstance(value, str):
+        return value
+    if value != value:
+        return "–"
+    if value == 0:
+        return "0"
+    if 0.01 <= abs(value) < 1e5:
+        return f"{value:.0f}" if abs(value) >= 100 else f"{value:.2g}"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def insert(path, name, text):
+    """Put text between the marks <!-- name --> and <!-- /name --> of a document."""
+    document = path.read_text(encoding="utf-8")
+    pattern = re.compile(rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.DOTALL)
+    path.write_text(pattern.sub(lambda m: f"{m[1]}{text}\n{m[2]}", document), encoding="utf-8")
+
+
+def _cell(value):
+    return f"{value:.6g}" if isinstance(value, float) else value
+
+
+def _value(cell):
+    try:
+        return float(cell)
+    except ValueError:
+        return cell

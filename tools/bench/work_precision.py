@@ -1,0 +1,148 @@
+"""Error against cost, for every iteration on every grid."""
+
+import math
+
+import pictures
+import problems
+from program import QUANTITIES, Run
+
+NAMES = {"pull_off": "pull-off", "jump_in": "jump-in $h_0$", "load": "load at fixed $h_0$"}
+
+_ACCURACY = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
+# A run much longer than this is not started: the last one on a coarser grid tells.
+_CAP = {True: 10.0, False: 60.0}
+
+# Name, what of &numerics makes it, and whether its cost is set by nodes (its steps cost their square or
+# their cube) or by accuracy.
+_METHODS = (
+    ("uniform, mixing, paper's rule",
+     "grid = 'uniform', method = 'mixing', convergence = 'displacement_change'", "nodes", 2),
+    ("uniform, mixing", "grid = 'uniform', method = 'mixing'", "nodes", 2),
+    ("uniform, Anderson", "grid = 'uniform', method = 'anderson'", "nodes", 3),
+    ("uniform, Newton", "grid = 'uniform', method = 'newton'", "nodes", 3),
+    ("fixed panels, mixing", "grid = 'panels', method = 'mixing'", "accuracy", 0),
+    ("edge-locked, Anderson", "grid = 'panels', method = 'anderson'", "accuracy", 0),
+    ("edge-locked, Newton", "grid = 'panels', method = 'newton'", "accuracy", 0),
+    ("whole path", "", "accuracy", 0),
+)
+
+
+def measure(program, quick, say):
+    """Return one row for every problem, method and fineness."""
+    cap = _CAP[quick]
+    nodes = (50, 100, 200) if quick else (100, 200, 400, 800, 1500)
+    accuracy = _ACCURACY[1::2] if quick else _ACCURACY
+    rows = []
+    for problem in problems.ALL:
+        reference = program.reference(problem)
+        for method, numerics, knob, power in _METHODS:
+            last = None
+            for value in nodes if knob == "nodes" else accuracy:
+                last = _one(program, problem, method, numerics, knob, value, power, cap, quick, last)
+                rows.append(_row(problem, method, knob, value, last[1], reference))
+            say(f"{problem.label}: {method}, "
+                f"{', '.join(_outcome(row) for row in rows[-len(nodes):])}")
+    return rows
+
+
+def _one(program, problem, method, numerics, knob, value, power, cap, quick, last):
+    """Run one case, unless the last one of its kind shows that it would not finish."""
+    if last is not None:
+        before, run = last
+        if run.failure.startswith("not ") or run.seconds * (value / before) ** power > 2 * cap:
+            hopeless = Run(failure="not run: a coarser one took "
+                           f"{'all its time' if run.failure else f'{run.seconds:.0f} s'}")
+            return value, hopeless
+    make = problem.path if method == "whole path" else problem.cycle
+    deck = make(f"{numerics}{',' if numerics else ''} {knob} = {value}")
+    best = program.best_of(1 if quick else 3, {0: deck}, cap, enough=1.0)
+    return value, best[0]
+
+
+def _row(problem, method, knob, value, run, reference):
+    errors = run.errors(reference, problem.length)
+    known = [error for error in errors.values() if error == error]
+    lost = [NAMES[key].replace("$", "") for key, error in errors.items() if error != error]
+    failure = run.failure
+    if lost and not failure:
+        failure = f"found no {' and no '.join(lost)}"
+    return {
+        "problem": problem.name, "method": method, "knob": knob, "value": value,
+        "seconds": run.seconds_of_run if run.states else run.seconds,
+        "estimate_seconds": run.estimate_seconds, "products": run.products,
+        "factorisations": run.factorisations, "states": run.states, "nodes": run.nodes,
+        **{f"error_{key}": errors.get(key, math.nan) for key in QUANTITIES},
+        "error": max(known, default=math.nan), "estimate": run.estimate,
+        "failure": failure, "warning": run.warning,
+    }
+
+
+def _outcome(row):
+    return "failed" if row["failure"] else f"{row['error']:.0e} in {row['seconds']:.2g} s"
+
+
+def draw(rows, folder):
+    """Draw the largest error against seconds and products, and each error against seconds."""
+    for cost, unit in (("seconds", "time [s]"), ("products", "operator products")):
+        page, panels = pictures.figure(3, 2, (9.0, 10.5), sharey=True)
+        for panel, problem in zip(panels.flat, problems.ALL):
+            pictures.dress(panel, problem.label, unit, "")
+            _panel(panel, rows, problem, "error", cost)
+        for panel in panels[:, 0]:
+            panel.set_ylabel("largest relative error")
+        _finish(page, panels[0, 0])
+        pictures.save(page, folder / f"work_precision_{cost}.png")
+    page, panels = pictures.figure(3, 3, (10.5, 10.0), sharex=True, sharey="row")
+    for column, problem in enumerate(problems.ADHESIVE[1:]):
+        for row, key in enumerate(QUANTITIES):
+            pictures.dress(panels[row, column], problem.label if row == 0 else "",
+                           "time [s]" if row == 2 else "")
+            _panel(panels[row, column], rows, problem, f"error_{key}", "seconds")
+    for row, key in enumerate(QUANTITIES):
+        panels[row, 0].set_ylabel(f"error of {NAMES[key]}")
+    _finish(page, panels[0, 0])
+    pictures.save(page, folder / "work_precision_quantities.png")
+
+
+def _panel(panel, rows, problem, key, cost):
+    """Draw one problem: filled marks hold, open ones come with a warning, crosses failed."""
+    for (method, *_), colour, marker in zip(_METHODS, pictures.COLOURS, pictures.MARKERS):
+        mine = [row for row in rows if row["problem"] == problem.name and row["method"] == method]
+        done = [row for row in mine if not row["failure"] and row[key] == row[key]]
+        x = [row[cost] for row in done]
+        y = [max(row[key], 1e-13) for row in done]
+        panel.plot(x, y, color=colour, linewidth=1.0, alpha=0.7)
+        for row, at, error in zip(done, x, y):
+            panel.plot(at, error, marker, color=colour, markersize=6, linestyle="none",
+                       markerfacecolor="white" if row["warning"] else colour)
+        panel.plot([], [], marker, color=colour, label=method, linestyle="-", linewidth=1.0)
+        failed = [row[cost] for row in mine if row["failure"] and row[cost] > 0]
+        panel.plot(failed, [0.97] * len(failed), "x", color=colour, markersize=8,
+                   markeredgewidth=2, transform=panel.get_xaxis_transform(), clip_on=False)
+    panel.set_ylim(5e-14, 30)
+
+
+def _finish(page, panel):
+    panel.plot([], [], "o", color="#555555", markerfacecolor="white", linestyle="none",
+               label="with a warning")
+    panel.plot([], [], "x", color="#555555", markersize=8, markeredgewidth=2, linestyle="none",
+               label="failed (along the top)")
+    pictures.legend(page, panel, 4)
+
+
+def tables(rows):
+    """Return the guide's table: the cheapest run of each method within an error of 1e-3."""
+    text = []
+    for method, *_ in _METHODS:
+        cells = [method]
+        for problem in problems.ALL:
+            good = [row for row in rows if row["problem"] == problem.name
+                    and row["method"] == method and not row["failure"] and row["error"] <= 1e-3]
+            best = min(good, key=lambda row: row["seconds"], default=None)
+            cells.append(f"{_time(best['seconds'])}" if best else "–")
+        text.append(cells)
+    return {"work_precision": (["seconds", *(p.label for p in problems.ALL)], text)}
+
+
+def _time(seconds):
+    return f"{seconds:.2g}"
