@@ -1,5 +1,6 @@
 !> The classical theories over the range of a scene, as rows of a table.
 module comparison
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp
   use problem, only: problem_t, surface_energy
   use classical, only: hertz_load_at_displacement, hertz_radius_at_displacement, &
@@ -50,7 +51,7 @@ contains
       real(wp), intent(in) :: load, contact_radius
 
       ! A theory without a state here says NaN.
-      if (load /= load .or. contact_radius /= contact_radius) return
+      if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
       rows = [rows, theory_row_t(theory, h0, delta, load, contact_radius)]
     end subroutine add
 

@@ -42,9 +42,10 @@ module cycle
   end type stretch_t
 
   !> Rounds of refinement of the maximum tension, and the relative change of load that ends them.
-  !> Without such a change it ends when the bracket is this fraction of the first.
-  integer, parameter :: most_rounds = 30
-  real(wp), parameter :: load_tolerance = 1.0e-10_wp, enough = 1.0e-6_wp
+  !> An extremum at an end of the stretch is approached to this fraction of the bracket: it is a jump, whose
+  !> load is known, or an end of the experiment.
+  integer, parameter :: most_rounds = 15
+  real(wp), parameter :: load_tolerance = 1.0e-10_wp, enough = 1.0e-3_wp
 
 contains
 
@@ -88,9 +89,16 @@ contains
       end do
 
       if (.not. event%converged) then
+        ! Shown as it is, but not a place to search from.
         call end_stretch(steps, stretch, last_h0, branch)
+        if (position%state%load < 0) call lower(branch, position%state)
       else if (event%jumped .or. .not. stretch%open) then
-        if (event%jumped) last_h0 = event%jump_h0
+        if (event%jumped) then
+          last_h0 = event%jump_h0
+          ! On the way in the tension grows up to the jump itself.
+          if (plan%h0(i) < event%jump_h0 .and. stretch%open) &
+            stretch%open = event%jump_load >= stretch%lowest%state%load
+        end if
         call end_stretch(steps, stretch, last_h0, branch)
         stretch = stretch_t(position, last_h0, plan%h0(i), .true.)
       else if (position%state%load < stretch%lowest%state%load) then
@@ -111,9 +119,6 @@ contains
     type(event_t), intent(in) :: event
     real(wp), intent(in) :: h0
 
-    branch%reason = event%reason
-    if (event%reason /= '') return
-    branch%states = branch%states + 1
     if (event%jumped .and. .not. allocated(branch%jump_h0)) then
       branch%jump_h0 = event%jump_h0
       branch%jump_load = event%jump_load
@@ -128,6 +133,9 @@ contains
         end if
       end if
     end if
+    branch%reason = event%reason
+    if (event%reason /= '') return
+    branch%states = branch%states + 1
     if (.not. event%converged) then
       if (branch%unconverged == 0) branch%first_unconverged = h0
       branch%unconverged = branch%unconverged + 1

@@ -295,7 +295,7 @@ contains
     type(problem_t), intent(in) :: this
     type(state_t), intent(in) :: state
 
-    residual_floor = 8*epsilon(1.0_wp)*(abs(state%h0) + maxval(abs(state%gap)) + &
+    residual_floor = 2*epsilon(1.0_wp)*(abs(state%h0) + maxval(abs(state%gap)) + &
       4*this%coupling*state%scale*maxval(abs(state%pressure)))
     if (.not. residual_floor <= huge(1.0_wp)) residual_floor = 0
   end function residual_floor

@@ -20,7 +20,7 @@ module experiment
   use blas_threads, only: use_threads_for
   implicit none
   private
-  public :: outcome_t, run_experiment, problem_of, prepare, states_planned
+  public :: outcome_t, run_experiment, problem_of, path_start, states_planned, prepare
 
   !> Everything in the units of `problem`.
   type :: outcome_t
@@ -185,17 +185,26 @@ contains
     class(observer_t), intent(inout) :: observer
     type(outcome_t), intent(inout) :: outcome
     real(wp), allocatable :: profiles(:)
-    real(wp) :: start
 
     associate (length => steps%problem%length)
-      start = beyond_contact(steps%problem)
-      if (allocated(scene%path%h0_start)) start = max(start, scene%path%h0_start/length)
       allocate (profiles(0))
       if (allocated(scene%profiles)) profiles = scene%profiles%h0/length
       allocate (outcome%path)
-      call trace_path(steps, start, scene%path%h0_end/length, profiles, observer, outcome%path)
+      call trace_path(steps, path_start(scene, steps%problem)/length, scene%path%h0_end/length, &
+        profiles, observer, outcome%path)
     end associate
   end subroutine run_path
+
+  !> The h0 [m] from which a path is traced: beyond any contact, or farther if the scene says so.
+  function path_start(scene, problem) result(start)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    real(wp) :: start
+
+    start = beyond_contact(problem)*problem%length
+    if (.not. allocated(scene%path)) return
+    if (allocated(scene%path%h0_start)) start = max(start, scene%path%h0_start)
+  end function path_start
 
   !> The path of a law that does not attract, or of rigid bodies: one state for every h0, so that stepping
   !> h0 gives it.
@@ -342,11 +351,10 @@ contains
     if (allocated(scene%path)) then
       low = min(low, scene%path%h0_end)
       high = max(high, scene%path%h0_end)
-      if (allocated(scene%path%h0_start)) high = max(high, scene%path%h0_start)
+      high = max(high, path_start(scene, problem))
     end if
     low = low/problem%length
     high = high/problem%length
-    if (allocated(scene%path)) high = max(high, beyond_contact(problem))
   end subroutine range_of
 
   pure function number(k) result(text)

@@ -15,9 +15,10 @@ module relaxation
 
   integer, parameter :: most_steps = 400
   !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth and its
-  !> limits, and the nudge off an unstable equilibrium, in the law's lengths.
-  real(wp), parameter :: first_step = 1, growth = 3, shortest_step = 1.0e-3_wp, &
-    longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
+  !> limits: a residual that grows, as it does while bodies come apart, is no reason for steps below the
+  !> usual one, an unstable mode is. The nudge off an unstable equilibrium, in the law's lengths.
+  real(wp), parameter :: first_step = 1, growth = 3, usual_step = 0.3_wp, &
+    shortest_step = 1.0e-3_wp, longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
 
 contains
 
@@ -57,7 +58,7 @@ contains
         before = huge(1.0_wp)
         cycle
       end if
-      dtau = min(dtau*min(growth, max(0.1_wp, before/state%residual)), longest_step)
+      dtau = min(max(dtau*min(growth, before/state%residual), usual_step), longest_step)
       before = state%residual
       do
         call factorise_jacobian(this, grid, control, state, factors, cost, 1/dtau)

@@ -7,7 +7,7 @@ module simulation
   use problem, only: problem_t
   use scene_groups, only: scene_t
   use deck_text, only: brief
-  use experiment, only: outcome_t, run_experiment, problem_of, states_planned
+  use experiment, only: outcome_t, run_experiment, problem_of, path_start, states_planned
   use sweeps, only: run_sweep
   use comparison, only: classical_rows
   use records, only: observer_t
@@ -75,7 +75,7 @@ contains
     outcome%cost%factorisations = outcome%cost%factorisations + recorder%cost%factorisations
 
     if (allocated(scene%classical)) call results%write_theory('classical.csv', &
-      classical_rows(problem, scene%classical, start_of(scene)))
+      classical_rows(problem, scene%classical, path_start(scene, problem)))
     summary = summary_of(scene, problem, outcome)
     if (failed > 0) then
       summary%converged = .false.
@@ -103,13 +103,6 @@ contains
     if (summary%converged) exit_code = 0
   end subroutine run_scene
 
-  !> Where the classical table begins if the deck does not say: where the loading begins, or the path.
-  real(wp) function start_of(scene)
-    type(scene_t), intent(in) :: scene
-
-    start_of = 0
-    if (allocated(scene%loading)) start_of = scene%loading%h0_start
-  end function start_of
 
   !> A count for a message.
   pure function number(k) result(text)

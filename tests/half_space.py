@@ -4,6 +4,11 @@ H = H0 + r^2/2 + 2 s Int P(H(t)) k(r, t) t dt on fixed Gauss-Legendre panels, by
 continuation in H0. In units of the law's length; s is sigma or Lambda.
 """
 
+import json
+import os
+import subprocess
+import sys
+
 import numpy as np
 
 
@@ -115,3 +120,35 @@ def lennard_jones(gap):
         8 * (gap**-4 - 3 * gap**-10),
         gap**-8 / 3 - 4 / 3 * gap**-2,
     )
+
+
+def independent_states(law, s, h0, ends, largest=0.8):
+    """Gaps on the axis and loads at each H0 on panels with the given ends.
+
+    In a process of its own with one thread: NumPy's threads stall each other on a busy machine.
+    """
+    task = {"law": law, "s": s, "h0": list(h0), "ends": list(ends), "largest": largest}
+    environment = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")
+    done = subprocess.run(
+        [sys.executable, __file__],
+        input=json.dumps(task),
+        capture_output=True,
+        text=True,
+        check=True,
+        env=environment,
+        timeout=300,
+    )
+    return np.array(json.loads(done.stdout)).T
+
+
+def main():
+    """Carry out the task on standard input."""
+    task = json.load(sys.stdin)
+    law = {"exponential": exponential, "lennard_jones": lennard_jones}[task["law"]]
+    half_space = HalfSpace(task["ends"])
+    gaps = half_space.solve(law, task["s"], task["h0"], task["largest"])
+    print(json.dumps([[gap[0], half_space.load(law, task["s"], gap)] for gap in gaps]))
+
+
+if __name__ == "__main__":
+    main()

@@ -143,17 +143,19 @@ def several(value):
 
 
 def runner(snapin, folder):
-    """run(deck text, status=0, threads=None) -> Run; the same deck is not run twice."""
+    """run(deck text, status=0, threads=1) -> Run; the same deck is not run twice.
+
+    One thread unless told: on a busy machine threads that wait for each other cost the most.
+    """
     done = {}
 
-    def run(text, *, status=0, threads=None, timeout=300):
+    def run(text, *, status=0, threads=1, timeout=300):
         key = text, threads
         if key not in done:
             name = f"d{len(done)}"
             (folder / f"{name}.nml").write_text(text)
             environment = dict(os.environ)
-            if threads:
-                environment["OMP_NUM_THREADS"] = environment["OPENBLAS_NUM_THREADS"] = str(threads)
+            environment["OMP_NUM_THREADS"] = environment["OPENBLAS_NUM_THREADS"] = str(threads)
             result = snapin(f"{name}.nml", cwd=folder, timeout=timeout, env=environment)
             done[key] = Run(result.returncode, result.stderr, folder / "results" / name)
         assert done[key].status == status, done[key].stderr + text

@@ -25,6 +25,8 @@ DECKS = {
     "&loading h0_start = 4e-9, h0_end = 0e-9, h0_step = 1e-9 /\n&profiles h0 = 1e-9 /\n",
     "rigid": "&bodies radius = 1e-2, rigid = .true. /\n" + FORCE
     + "&loading h0_start = 4e-9, h0_end = 1e-9, h0_step = 1e-9 /\n&profiles h0 = 1e-9 /\n",
+    "sweep": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n"
+    "&sweep key = 'force.hamaker', values = 1e-21, 1e-20 /\n",
     "theories": BODIES + FORCE + "&classical h0_start = 1e-9, h0_end = -1e-9 /\n",
 }
 
@@ -83,6 +85,7 @@ def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):
     [
         (("force_curve.py", "nowhere"), "no such folder"),
         (("force_curve.py", "theories"), "no curve.csv in .*neither &loading nor"),
+        (("force_curve.py", "sweep"), "no curve.csv in .*&sweep"),
         (("profiles.py", "theories"), "no profiles.csv in .*no &profiles group"),
         (("profiles.py", "cycle", "--branch", "path"), "loading, unloading_1, unloading_2"),
         (("force_curve.py", "cycle", "-o", "no/such/folder.png"), "no/such"),

@@ -12,7 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 README = ROOT / "README.md"
 TABLE = re.compile(r"(?<=<!-- keys -->\n).*?(?=<!-- /keys -->)", re.S)
 # Read and checked, but not computed yet.
-NOT_YET = {"approximations", "sweep"}
+NOT_YET = {"approximations"}
 # Written by the program, not by users.
 RESULTS = {"summary", "cost"}
 

@@ -58,7 +58,7 @@ def test_short_ranged_repulsion_multiplies_by_few_columns(run):
         assert cost["operator_columns"] < most * cost["operator_products"] * cost["nodes"]
     # Attraction reaches everywhere.
     cost = run(lennard_jones(0.1, loading=loading(8, -2, 0.5), numerics=numerics)).cost
-    assert cost["operator_columns"] == cost["operator_products"] * cost["nodes"]
+    assert cost["operator_columns"] >= 0.95 * cost["operator_products"] * cost["nodes"]
 
 
 def test_a_law_without_attraction_meshes_the_contact_alone(run):

@@ -51,6 +51,8 @@ def _hint(path):
         return ": there is no such folder; ./run DECK writes results/<name of the deck>"
     if path.with_name(path.name + ".partial").is_file():
         return ": the run has not finished"
+    if path.with_name("sweep.csv").is_file():
+        return ": a &sweep keeps one row a case in sweep.csv, and no curves"
     if path.name == "profiles.csv":
         return ": the deck has no &profiles group"
     if path.name == "curve.csv":

@@ -5,6 +5,7 @@ is the pieces, for looking at by hand and for tests. Each module here wraps one 
 this file gathers the names that users call.
 """
 
+from .approximations import approximation_rows, jump_estimates, slow_deformation
 from .arguments import SnapinError, SnapinWarning
 from .classical import (
     cohesive_zone,
@@ -41,6 +42,7 @@ __all__ = [
     "ForceLaw",
     "SnapinError",
     "SnapinWarning",
+    "approximation_rows",
     "cohesive_zone",
     "contact_curve",
     "contact_radius",
@@ -50,6 +52,7 @@ __all__ = [
     "force_curve",
     "force_law",
     "gauss_rule",
+    "jump_estimates",
     "kernel",
     "kernel_log_coefficient",
     "law_numbers",
@@ -59,5 +62,6 @@ __all__ = [
     "panel_weights",
     "profile",
     "pull_off",
+    "slow_deformation",
     "uniform_mesh",
 ]

@@ -28,7 +28,7 @@ _GUIDE = program.ROOT / "docs" / "accuracy.md"
 # What measures, what draws, what makes the guide's tables.
 _PARTS = {
     "accuracy": (accuracy.measure, accuracy.draw, accuracy.tables),
-    "error_law": (accuracy.measure_law, accuracy.draw_law, None),
+    "error_law": (accuracy.measure_law, accuracy.draw_law, accuracy.tables_law),
     "ratios": (ratios.measure, None, ratios.tables),
     "sigma": (scaling.measure_sigma, scaling.draw_sigma, None),
     "nodes": (scaling.measure_nodes, scaling.draw_nodes, None),

@@ -6,22 +6,17 @@ import subprocess
 
 import problems
 
-# What a function belongs to, by the first pattern that its name matches.
-_KINDS = (
-    ("matrix-vector products (DGEMV)", r"dgemv"),
-    ("factorisations (DGETRF)", r"getrf|gemm|dtrsm|laswp|dger|iamax|dswap|dscal"),
-    ("solutions with factors (DGETRS)", r"getrs|trsv|trmv|ddot|daxpy"),
-    ("kernel assembly", r"kernel|panel_weights|one_side|product_integration|undivided|lagrange"
-     r"|discretisation|quadrature|barycentric"),
-    ("force law", r"lennard_jones|exponential"),
-    ("Jacobian", r"factorise_jacobian|border|scale_derivative"),
-    ("equations, acceleration, extrapolation", r"equilibrium|anderson|tracer|trail|tangent|cycle"
-     r"|quasi_static|locked_steps|state_t|_MOD_between|largest_step"),
-    ("memory copied, set, allocated", r"mem(cpy|set|move)|malloc|free|calloc"),
-    ("text in and out", r"gfortran|printf|scanf|strto|deck|assignments|results|write|read|fputs"
-     r"|memchr|strlen|libquadmath|mpn"),
-    ("start of the process", r"ld-|_dl_|do_lookup|strcmp|check_match|gotoblas|cpuid"),
+# Functions none of which calls another of them, so that their shares add up.
+_PIECES = (
+    ("matrix-vector products (DGEMV)", r"dgemv_"),
+    ("factorisations (DGETRF)", r"dgetrf_"),
+    ("solutions with factors (DGETRS)", r"dgetrs_"),
+    ("kernel assembly", r"__discretisation_MOD_new_discretisation"),
+    ("force law", r"__lennard_jones_MOD_(?:pressure|slope|energy)"),
+    ("interpolation", r"__discretisation_MOD_interpolate"),
+    ("rows of results", r"__results_MOD_take"),
 )
+
 
 
 def measure(program, quick, say):
@@ -46,7 +41,7 @@ def measure(program, quick, say):
         program.run(deck, cap=600, before=("valgrind", "--tool=callgrind", "-q",
                                            f"--callgrind-out-file={output}"))
         shares = _shares(subprocess.run(
-            ["callgrind_annotate", "--threshold=100", "--show-percs=no", str(output)],
+            ["callgrind_annotate", "--inclusive=yes", "--threshold=100", "--show-percs=no", str(output)],
             check=True, capture_output=True, text=True).stdout)
         total = sum(shares.values())
         for what, count in sorted(shares.items(), key=lambda item: -item[1]):
@@ -57,15 +52,18 @@ def measure(program, quick, say):
 
 
 def _shares(text):
-    """Return instructions by kind from callgrind_annotate's table."""
+    """Return instructions of each piece, all it calls included, from callgrind_annotate's table."""
+    total = _count(re.search(r"^ *([\d,]+) .*PROGRAM TOTALS", text, re.MULTILINE)[1])
     shares = {}
-    for match in re.finditer(r"^\s*([\d,]+) +(\S.*)$", text, re.MULTILINE):
-        name = match[2]
-        if "PROGRAM TOTALS" in name or ":" not in name:
-            continue
-        kind = next((kind for kind, pattern in _KINDS if re.search(pattern, name)), "other")
-        shares[kind] = shares.get(kind, 0) + int(match[1].replace(",", ""))
+    for what, function in _PIECES:
+        lines = re.findall(rf"^ *([\d,]+) .*:{function}[ \n]", text, re.MULTILINE)
+        shares[what] = sum(map(_count, lines))
+    shares["all else"] = total - sum(shares.values())
     return shares
+
+
+def _count(digits):
+    return int(digits.replace(",", ""))
 
 
 def tables(rows):

@@ -2,6 +2,7 @@
 
 import program  # noqa: F401 (makes read_results importable)
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 from read_results import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 
 COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK, GREY)
@@ -27,21 +28,29 @@ def dress(panel, title="", x="", y="", log="xy"):
     panel.spines[["top", "right"]].set_visible(False)
 
 
-def legend(page, panel, columns=4):
-    """One legend for all panels, below them; each name once."""
+def legend(page, columns=3):
+    """Draw one legend for all panels, below them; each name once."""
     names = {}
     for axes in page.axes:
         for handle, name in zip(*axes.get_legend_handles_labels()):
             names.setdefault(name, handle)
     page.legend(names.values(), names.keys(), loc="outside lower center", ncols=columns,
-                frameon=False)
+                frameon=False, fontsize=9)
 
 
 def guide(panel, x, y, power, text):
-    """Draw a thin line of a power law through the first point, named at its end."""
+    """Draw a thin line of a power law through the first point, named there."""
     values = [y * (value / x[0]) ** power for value in x]
     panel.plot(x, values, color=GREY, linewidth=1.0, linestyle=(0, (4, 2)), zorder=0)
-    panel.annotate(text, (x[-1], values[-1]), color="#555555", fontsize=9, ha="right", va="bottom")
+    panel.annotate(text, (x[0], values[0]), (6, 4), textcoords="offset points", color="#555555",
+                   fontsize=10, ha="left", va="bottom")
+
+
+def plain_ticks(panel, values, axis="x"):
+    """Put ticks at the given values of a logarithmic axis, written out."""
+    axis = getattr(panel, f"{axis}axis")
+    axis.set_ticks(values, [f"{value:g}" for value in values])
+    axis.set_minor_locator(NullLocator())
 
 
 def save(page, path):

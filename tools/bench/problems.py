@@ -29,6 +29,11 @@ class Problem:
             parts.append(f"&unloading from = {self.turn * self.length!r} /")
         return self._deck("\n".join(parts), numerics)
 
+    def approach(self, h0, numerics):
+        """Return a deck that only comes near: to h0 [m], before the jump into contact."""
+        return self._deck(f"&loading h0_start = {2 * h0!r}, h0_end = {h0!r}, h0_step = {h0!r} /",
+                          numerics)
+
     def path(self, numerics="", more=""):
         """Return a deck for the whole path of equilibria, down to the turning point."""
         return self._deck(f"&equilibrium_path h0_end = {self.turn * self.length!r} /\n{more}",

@@ -15,8 +15,10 @@ sys.path.insert(0, str(ROOT / "pywrap" / "plots"))
 import f90nml  # noqa: E402
 from read_results import read_table  # noqa: E402
 
-# The three numbers whose errors are measured.
+# The three numbers whose errors are drawn, and what is not measured to its own size: h0 at jumps and
+# displacements, where they are small, to the force law's length; the load, to the pull-off.
 QUANTITIES = ("pull_off", "jump_in", "load")
+_LENGTHS = ("jump_in", "jump_out", "displacement")
 
 
 @dataclasses.dataclass
@@ -43,10 +45,14 @@ class Run:
         return self.seconds - self.estimate_seconds
 
     def errors(self, reference, length):
-        """Return relative errors against a converged run; of h0, relative to h0 or `length`."""
+        """Return relative errors against a converged run, for a force law of some length."""
         errors = {}
         for key, exact in reference.values.items():
-            scale = max(abs(exact), length) if key.startswith("jump") else abs(exact)
+            scale = abs(exact)
+            if key in _LENGTHS:
+                scale = max(scale, length)
+            elif key == "load":
+                scale = max(scale, reference.values.get("pull_off", 0.0))
             errors[key] = abs(self.values.get(key, math.nan) - exact) / scale
         return errors
 
@@ -123,10 +129,13 @@ class Program:
             run.failure = run.warning or "exit status 1"
         if "max_tension" in summary and "jkr_pull_off" in summary:
             run.values["pull_off"] = summary["max_tension"]
-        if "jump_in_h0" in summary:
-            run.values["jump_in"] = summary["jump_in_h0"]
+        for key in ("jump_in", "jump_out"):
+            if f"{key}_h0" in summary:
+                run.values[key] = summary[f"{key}_h0"]
+                run.values[f"{key}_load"] = summary[f"{key}_load"]
         branch = curve["branch"] == curve["branch"][0]
         # Loading and path both end at the turning point.
-        run.values["load"] = float(curve["load"][branch][-1])
+        for key in ("load", "displacement"):
+            run.values[key] = float(curve[key][branch][-1])
         run.summary = summary
         return run

@@ -36,18 +36,24 @@ def draw_sigma(rows, folder):
     """Draw time, nodes and states against sigma."""
     page, panels = pictures.figure(1, 2, (9.0, 4.2))
     pictures.dress(panels[0, 0], "accuracy 1e-6, one core", "σ", "time [s]")
-    pictures.dress(panels[0, 1], "", "σ", "number")
-    for kind, colour, marker in (("path", pictures.BLUE, "o"), ("cycle", pictures.VERMILION, "s")):
-        mine = sorted((row for row in rows if row["deck"] == kind), key=lambda row: row["sigma"])
-        sigma = [row["sigma"] for row in mine]
-        panels[0, 0].plot(sigma, [row["seconds"] for row in mine], marker, color=colour,
-                          linestyle="-", label=kind)
+    pictures.dress(panels[0, 1], "the path", "σ", "number")
+    for kind, colour, marker in (("path", pictures.BLUE, "o"),
+                                 ("cycle of 102 states", pictures.VERMILION, "s")):
+        mine = sorted((row for row in rows if row["deck"] == kind.split()[0]),
+                      key=lambda row: row["sigma"])
+        good = [row for row in mine if not row["failure"]]
+        panels[0, 0].plot([row["sigma"] for row in good], [row["seconds"] for row in good], marker,
+                          color=colour, linestyle="-", label=kind)
         failed = [row["sigma"] for row in mine if row["failure"]]
         panels[0, 0].plot(failed, [0.97] * len(failed), "x", color=colour, markersize=9,
                           markeredgewidth=2, transform=panels[0, 0].get_xaxis_transform())
-        for key, style, hollow in (("nodes", "-", colour), ("states", ":", "white")):
-            panels[0, 1].plot(sigma, [row[key] for row in mine], marker, color=colour,
-                              linestyle=style, markerfacecolor=hollow, label=f"{key}, {kind}")
+        if kind == "path":
+            for key, tone, shape in (("nodes", pictures.GREEN, "^"),
+                                     ("states", pictures.PURPLE, "D")):
+                panels[0, 1].plot([row["sigma"] for row in good], [row[key] for row in good],
+                                  shape, color=tone, linestyle="-", label=key)
+    pictures.plain_ticks(panels[0, 0], (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2), "y")
+    pictures.plain_ticks(panels[0, 1], (50, 100, 200, 500, 1000), "y")
     for panel in panels.flat:
         panel.legend(frameon=False, fontsize=9)
     pictures.save(page, folder / "sigma.png")
@@ -93,6 +99,9 @@ def draw_nodes(rows, folder):
             ("Newton / DGESV", pictures.BLACK, "h", lambda row: row["newton"] / row["dgesv"])):
         panels[0, 1].plot(nodes, [ratio(row) for row in rows], marker, color=colour, linestyle="-",
                           markersize=5, label=name)
+    ticks = [count for count in (100, 200, 400, 800, 1500) if nodes[0] <= count <= nodes[-1]]
+    for panel in panels.flat:
+        pictures.plain_ticks(panel, ticks)
     panels[0, 1].axhline(1.3, color=pictures.GREY, linewidth=1, linestyle=(0, (4, 2)))
     panels[0, 1].set_ylim(0, None)
     for panel in panels.flat:

@@ -36,12 +36,11 @@ def measure(program, quick, say):
     for problem in problems.ALL:
         reference = program.reference(problem)
         for method, numerics, knob, power in _METHODS:
-            last = None
+            last, begun = None, len(rows)
             for value in nodes if knob == "nodes" else accuracy:
                 last = _one(program, problem, method, numerics, knob, value, power, cap, quick, last)
                 rows.append(_row(problem, method, knob, value, last[1], reference))
-            say(f"{problem.label}: {method}, "
-                f"{', '.join(_outcome(row) for row in rows[-len(nodes):])}")
+            say(f"{problem.label}: {method}: {', '.join(map(_outcome, rows[begun:]))}")
     return rows
 
 
@@ -61,6 +60,10 @@ def _one(program, problem, method, numerics, knob, value, power, cap, quick, las
 
 def _row(problem, method, knob, value, run, reference):
     errors = run.errors(reference, problem.length)
+    # What an error estimate speaks of: on fixed grids jumps are bracketed, and that is told apart.
+    fixed = method.startswith(("uniform", "fixed"))
+    claimed = [error for key, error in errors.items() if not (fixed and key.startswith("jump"))]
+    errors = {key: errors[key] for key in QUANTITIES if key in errors}
     known = [error for error in errors.values() if error == error]
     lost = [NAMES[key].replace("$", "") for key, error in errors.items() if error != error]
     failure = run.failure
@@ -72,7 +75,8 @@ def _row(problem, method, knob, value, run, reference):
         "estimate_seconds": run.estimate_seconds, "products": run.products,
         "factorisations": run.factorisations, "states": run.states, "nodes": run.nodes,
         **{f"error_{key}": errors.get(key, math.nan) for key in QUANTITIES},
-        "error": max(known, default=math.nan), "estimate": run.estimate,
+        "error": max(known, default=math.nan), "error_claimed": max(claimed, default=math.nan),
+        "estimate": run.estimate,
         "failure": failure, "warning": run.warning,
     }
 
@@ -84,7 +88,7 @@ def _outcome(row):
 def draw(rows, folder):
     """Draw the largest error against seconds and products, and each error against seconds."""
     for cost, unit in (("seconds", "time [s]"), ("products", "operator products")):
-        page, panels = pictures.figure(3, 2, (9.0, 10.5), sharey=True)
+        page, panels = pictures.figure(3, 2, (9.0, 11.0), sharey=True)
         for panel, problem in zip(panels.flat, problems.ALL):
             pictures.dress(panel, problem.label, unit, "")
             _panel(panel, rows, problem, "error", cost)
@@ -92,7 +96,7 @@ def draw(rows, folder):
             panel.set_ylabel("largest relative error")
         _finish(page, panels[0, 0])
         pictures.save(page, folder / f"work_precision_{cost}.png")
-    page, panels = pictures.figure(3, 3, (10.5, 10.0), sharex=True, sharey="row")
+    page, panels = pictures.figure(3, 3, (9.6, 10.0), sharex=True, sharey="row")
     for column, problem in enumerate(problems.ADHESIVE[1:]):
         for row, key in enumerate(QUANTITIES):
             pictures.dress(panels[row, column], problem.label if row == 0 else "",
@@ -106,7 +110,8 @@ def draw(rows, folder):
 
 def _panel(panel, rows, problem, key, cost):
     """Draw one problem: filled marks hold, open ones come with a warning, crosses failed."""
-    for (method, *_), colour, marker in zip(_METHODS, pictures.COLOURS, pictures.MARKERS):
+    for place, ((method, *_), colour, marker) in enumerate(
+            zip(_METHODS, pictures.COLOURS, pictures.MARKERS)):
         mine = [row for row in rows if row["problem"] == problem.name and row["method"] == method]
         done = [row for row in mine if not row["failure"] and row[key] == row[key]]
         x = [row[cost] for row in done]
@@ -117,17 +122,21 @@ def _panel(panel, rows, problem, key, cost):
                        markerfacecolor="white" if row["warning"] else colour)
         panel.plot([], [], marker, color=colour, label=method, linestyle="-", linewidth=1.0)
         failed = [row[cost] for row in mine if row["failure"] and row[cost] > 0]
-        panel.plot(failed, [0.97] * len(failed), "x", color=colour, markersize=8,
-                   markeredgewidth=2, transform=panel.get_xaxis_transform(), clip_on=False)
-    panel.set_ylim(5e-14, 30)
+        # Those stopped at the same time would lie on each other.
+        panel.plot(failed, [1e2 * 6.0**place] * len(failed), "x", color=colour, markersize=7,
+                   markeredgewidth=1.8)
+    panel.axhline(30, color=pictures.GREY, linewidth=0.8)
+    panel.set_ylim(5e-14, 1e9)
+    panel.set_yticks([10.0**k for k in range(-13, 2, 2)])
 
 
 def _finish(page, panel):
+    """Explain the marks below the panels."""
     panel.plot([], [], "o", color="#555555", markerfacecolor="white", linestyle="none",
                label="with a warning")
     panel.plot([], [], "x", color="#555555", markersize=8, markeredgewidth=2, linestyle="none",
-               label="failed (along the top)")
-    pictures.legend(page, panel, 4)
+               label="failed (above the line)")
+    pictures.legend(page)
 
 
 def tables(rows):
