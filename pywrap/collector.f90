@@ -13,8 +13,8 @@ module collector
 
   integer, parameter :: columns = 8
 
-  !> Keeps h0, h_centre, displacement, load, contact radius, stable (1, 0, -1), residual and converged
-  !> (1, 0) of every record that it is given.
+  !> Keeps h0, h_centre, displacement, load, contact radius, stable (1, 0, -1), residual and
+  !> converged (1, 0) of every record that it is given.
   type, extends(observer_t) :: collector_t
     integer :: held = 0
     real(wp), allocatable, private :: column(:, :)

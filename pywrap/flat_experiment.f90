@@ -103,8 +103,8 @@ contains
     call tell(summary_of(scene, problem, outcome), highest, error_estimate, warnings)
   end subroutine force_curve
 
-  !> The whole path to the contact at h0_end [m], from h0_start [m] or, if that is not given (given: 0 or
-  !> 1), from where the program lets it begin. Rows of `states` beyond `reached` are NaN, and so
+  !> The whole path to the contact at h0_end [m], from h0_start [m] or, if that is not given
+  !> (given: 0 or 1), from where the program lets it begin. Rows of `states` beyond `reached` are NaN, and so
   !> are those of `folds` (h0 [m], load [N]) beyond fold_count.
   subroutine equilibrium_path(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
     accuracy, h0_start, given, h0_end, states, folds, fold_count, highest, error_estimate, &
@@ -157,9 +157,9 @@ contains
     folds(:fold_count, 2) = summary%folds_load(:fold_count)
   end subroutine equilibrium_path
 
-  !> Goes through h0 (law's lengths) as through loadings and unloadings of a deck: a stretch goes one
-  !> way, and a value that repeats the one before begins another. After one that ends early there
-  !> is none.
+  !> Goes through h0 (law's lengths) as through loadings and unloadings of a deck: a stretch goes
+  !> one way, and a value that repeats the one before begins another. After one that ends early
+  !> there is none.
   subroutine run_stretches(steps, h0, observer, stretch)
     use cycle, only: branch_t, plan_t, run_branch
     use quasi_static, only: position_t, quasi_static_t
@@ -188,8 +188,8 @@ contains
     end do
   end subroutine run_stretches
 
-  !> Where the stretch that begins at `first` ends. The step into `first` tells its direction, unless
-  !> there is none or it is zero.
+  !> Where the stretch that begins at `first` ends. The step into `first` tells its direction,
+  !> unless there is none or it is zero.
   pure integer function end_of_stretch(h0, first) result(last)
     real(c_double), intent(in) :: h0(:)
     integer, intent(in) :: first
@@ -206,8 +206,8 @@ contains
     end do
   end function end_of_stretch
 
-  !> What stretches showed, for the summary. States that did not converge, and an early end, are told
-  !> from the rows.
+  !> What stretches showed, for the summary. States that did not converge, and an early end, are
+  !> told from the rows.
   pure function as_one(stretch) result(branch)
     use cycle, only: branch_t
     type(branch_t), intent(in) :: stretch(:)
@@ -227,8 +227,8 @@ contains
     end do
   end function as_one
 
-  !> The scene with these bodies, force and numerics; numerics that have no argument have the defaults of
-  !> a deck.
+  !> The scene with these bodies, force and numerics; numerics that have no argument have the
+  !> defaults of a deck.
   subroutine make_scene(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
     method, grid, accuracy, nodes, r_max, scene)
     use scene_groups, only: bodies_t, scene_t

@@ -21,6 +21,8 @@ module anderson
   type :: frozen_t
     type(factorisation_t) :: factors
     integer :: control_kind = 0
+    !> States solved with it.
+    integer :: served = 0
   end type frozen_t
 
   !> Differences of unknowns and of steps, newest last.
@@ -30,6 +32,9 @@ module anderson
     real(wp), allocatable :: z_before(:), f_before(:)
   end type history_t
 
+  !> A factorisation that has served this many states and now takes this many iterations is renewed: it
+  !> costs about as much as the iterations that it saves the next states.
+  integer, parameter :: long_service = 15, many_iterations = 5
   !> Steps rejected before a solution is given up.
   integer, parameter :: most_rejections = 4
 
@@ -109,6 +114,10 @@ contains
       best%iterations = state%iterations
       state = best
     end if
+    ! The next state is better off with a new one.
+    frozen%served = frozen%served + 1
+    if (frozen%served >= long_service .and. state%iterations > many_iterations) &
+      frozen%factors%valid = .false.
 
   contains
 
@@ -119,6 +128,7 @@ contains
       history%held = 0
       if (allocated(history%f_before)) deallocate (history%f_before)
       since_renewal = 0
+      frozen%served = 0
     end subroutine renew
 
   end subroutine solve_anderson

@@ -79,7 +79,7 @@ contains
         nearest, range%count)
       allocate (more(size(gap)))
       do i = 1, size(gap)
-        more(i) = row_of(jump_at(problem, form, gap(i), trim(names(form))))
+        more(i) = row_of(state_at(problem, form, gap(i), trim(names(form))))
       end do
       rows = [rows, more]
     end subroutine add_curve
@@ -114,13 +114,13 @@ contains
       real(wp), intent(in) :: gap
       character(len=*), intent(in) :: theory
 
-      if (.not. ieee_is_nan(gap)) jump = jump_at(problem, form, gap, theory)
+      if (.not. ieee_is_nan(gap)) jump = state_at(problem, form, gap, theory)
     end subroutine set
 
   end function jumps_of
 
   !> The state of a form at a gap on the axis (law's lengths).
-  pure function jump_at(problem, form, gap, theory) result(jump)
+  pure function state_at(problem, form, gap, theory) result(jump)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
     real(wp), intent(in) :: gap
@@ -134,7 +134,7 @@ contains
     jump%h0 = (gap - delta)*problem%length
     jump%displacement = delta*problem%length
     jump%load = slow_load(problem, form, gap)*problem%load
-  end function jump_at
+  end function state_at
 
   !> The row of a state; component by component, since gfortran 12 loses the name in a structure
   !> constructor.

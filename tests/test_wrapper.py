@@ -1,4 +1,4 @@
-"""Claims about whole experiments run from Python: the program's numbers, and errors that say what."""
+"""Claims about whole experiments run from Python: the program's numbers, errors with names."""
 
 import math
 import warnings
@@ -75,8 +75,8 @@ def test_h0_that_turns_round_gives_the_program_s_cycle(run, there_and_back):
     result = run(deck(bodies=BODIES, force=FORCE, loading=step, unloading={}))
     assert len(result.curve) == there_and_back.h0.size
     assert_same(there_and_back, result.curve)
-    jumps = [(result.summary[f"jump_{way}_h0"], result.summary[f"jump_{way}_load"]) for way in
-             ("in", "out")]
+    summary = result.summary
+    jumps = [(summary[f"jump_{way}_h0"], summary[f"jump_{way}_load"]) for way in ("in", "out")]
     np.testing.assert_allclose(there_and_back.jumps, jumps, rtol=SAME)
     assert there_and_back.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
 
