@@ -104,8 +104,8 @@ contains
   end subroutine force_curve
 
   !> The whole path to the contact at h0_end [m], from h0_start [m] or, if that is not given
-  !> (given: 0 or 1), from where the program lets it begin. Rows of `states` beyond `reached` are NaN, and so
-  !> are those of `folds` (h0 [m], load [N]) beyond fold_count.
+  !> (given: 0 or 1), from where the program lets it begin. Rows of `states` beyond `reached` are
+  !> NaN, and so are those of `folds` (h0 [m], load [N]) beyond fold_count.
   subroutine equilibrium_path(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
     accuracy, h0_start, given, h0_end, states, folds, fold_count, highest, error_estimate, &
     reached, reason, warnings, stat, message, n)

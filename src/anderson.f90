@@ -10,7 +10,7 @@ module anderson
   use problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, cost_t, residual, factorise_jacobian, largest_step, &
-    state_from, unknowns_of, residual_floor, at_h0_with_edge
+    state_from, unknowns_of, residual_floor, at_h0, at_h0_with_edge
   use linear_algebra, only: factorisation_t, solve
   use solver_options, only: solver_options_t
   implicit none
@@ -60,6 +60,10 @@ contains
 
     z = unknowns_of(control, state)
     allocate (g(size(z)))
+    if (.not. this%coupling > 0 .and. control%kind == at_h0) then
+      call solve_rigid()
+      return
+    end if
     if (frozen%control_kind /= control%kind) frozen%factors%valid = .false.
     if (frozen%factors%valid) frozen%factors%valid = size(frozen%factors%lu, 1) == size(z)
     best = state_from(size(state%gap))
@@ -120,6 +124,18 @@ contains
       frozen%factors%valid = .false.
 
   contains
+
+    !> Rigid bodies: the residual is the error of the gaps.
+    subroutine solve_rigid()
+      integer :: pass
+
+      do pass = 1, 2
+        if (pass == 2) z = z - g
+        call residual(this, grid, control, z, g, state, cost)
+      end do
+      state%iterations = 0
+      converged = state%residual <= max(options%tolerance, residual_floor(this, state))
+    end subroutine solve_rigid
 
     !> A factorisation at the present state; what was learnt with the old one is forgotten.
     subroutine renew()

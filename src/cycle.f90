@@ -4,8 +4,8 @@ module cycle
   use kinds, only: wp
   use equilibrium, only: state_t
   use interpolation, only: interpolated_maximum
-  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t
-  use records, only: observer_t, record_of, stable_yes, stable_unasked
+  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, add_witness
+  use records, only: observer_t, record_of, stable_unasked
   implicit none
   private
   public :: plan_t, branch_t, run_branch
@@ -41,6 +41,10 @@ module cycle
     logical :: open = .false.
   end type stretch_t
 
+  !> Stretches of a branch that are searched at once; of what an unresolved contact edge, jumping from node to
+  !> node, adds to them only the one of largest tension is searched, at the end.
+  integer, parameter :: searched_at_once = 3
+
   !> Rounds of refinement of the maximum tension, and the relative change of load that ends them.
   !> An extremum at an end of the stretch is approached to this fraction of the bracket: it is a jump, whose
   !> load is known, or an end of the experiment.
@@ -61,11 +65,12 @@ contains
     real(wp), intent(in) :: keep(:)
     type(position_t), intent(out) :: kept(:)
     type(branch_t), intent(out) :: branch
-    type(stretch_t) :: stretch
+    type(stretch_t) :: stretch, deferred
     type(event_t) :: event
     real(wp) :: last_h0
-    integer :: i, k
+    integer :: i, k, ended
 
+    ended = 0
     allocate (branch%witness(0))
     last_h0 = plan%h0(1)
     if (.not. fresh) last_h0 = position%state%h0
@@ -79,18 +84,18 @@ contains
       call note(branch, steps, position, event, plan%h0(i))
       if (event%reason /= '') exit
       call observer%take(record_of(plan%name, steps%problem, steps%grid(position), position%state, &
-        merge(stable_yes, stable_unasked, event%certain), event%converged), steps%problem, &
+        stable_unasked, event%converged), steps%problem, &
         steps%grid(position), position%state, plan%profile(i))
       if (any(i == [1, (1 + size(plan%h0))/2, size(plan%h0)])) &
-        branch%witness = [branch%witness, steps%witness(position)]
-      if (allocated(event%fold)) branch%witness = [branch%witness, event%fold]
+        call add_witness(branch%witness, steps%witness(position))
+      if (allocated(event%fold)) call add_witness(branch%witness, event%fold)
       do k = 1, size(keep)
         if (abs(keep(k) - plan%h0(i)) <= 1.0e-9_wp*max(1.0_wp, abs(keep(k)))) kept(k) = position
       end do
 
       if (.not. event%converged) then
         ! Shown as it is, but not a place to search from.
-        call end_stretch(steps, stretch, last_h0, branch)
+        call end_stretch(steps, stretch, last_h0, ended, deferred, branch)
         if (position%state%load < 0) call lower(branch, position%state)
       else if (event%jumped .or. .not. stretch%open) then
         if (event%jumped) then
@@ -99,7 +104,7 @@ contains
           if (plan%h0(i) < event%jump_h0 .and. stretch%open) &
             stretch%open = event%jump_load >= stretch%lowest%state%load
         end if
-        call end_stretch(steps, stretch, last_h0, branch)
+        call end_stretch(steps, stretch, last_h0, ended, deferred, branch)
         stretch = stretch_t(position, last_h0, plan%h0(i), .true.)
       else if (position%state%load < stretch%lowest%state%load) then
         stretch = stretch_t(position, last_h0, plan%h0(i), .true.)
@@ -108,7 +113,8 @@ contains
       end if
       last_h0 = plan%h0(i)
     end do
-    call end_stretch(steps, stretch, last_h0, branch)
+    call end_stretch(steps, stretch, last_h0, ended, deferred, branch)
+    if (deferred%open) call refine(steps, deferred, branch)
   end subroutine run_branch
 
   !> Keeps the worst and the first of what happened.
@@ -157,11 +163,13 @@ contains
     branch%load_h0 = state%h0
   end subroutine lower
 
-  !> Refines the largest tension of a stretch that ends at `finish`.
-  subroutine end_stretch(steps, stretch, finish, branch)
+  !> Refines the largest tension of a stretch that ends at `finish`, or keeps it for later as `deferred`, which
+  !> is the best of those. ended counts the stretches.
+  subroutine end_stretch(steps, stretch, finish, ended, deferred, branch)
     class(quasi_static_t), intent(inout) :: steps
-    type(stretch_t), intent(inout) :: stretch
+    type(stretch_t), intent(inout) :: stretch, deferred
     real(wp), intent(in) :: finish
+    integer, intent(inout) :: ended
     type(branch_t), intent(inout) :: branch
 
     if (.not. stretch%open) return
@@ -172,7 +180,16 @@ contains
       return
     end if
     if (abs(stretch%after - stretch%lowest%state%h0) <= 0.0_wp) stretch%after = finish
-    call refine(steps, stretch, branch)
+    ended = ended + 1
+    if (ended <= searched_at_once) then
+      call refine(steps, stretch, branch)
+    else if (.not. deferred%open) then
+      deferred = stretch
+      deferred%open = .true.
+    else if (stretch%lowest%state%load < deferred%lowest%state%load) then
+      deferred = stretch
+      deferred%open = .true.
+    end if
   end subroutine end_stretch
 
   !> Searches the largest tension between stretch%before and stretch%after: the polynomial through the
@@ -223,7 +240,7 @@ contains
     end do
     if (best%state%load < 0) then
       call lower(branch, best%state)
-      branch%witness = [branch%witness, steps%witness(best)]
+      call add_witness(branch%witness, steps%witness(best))
     end if
   end subroutine refine
 

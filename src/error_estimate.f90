@@ -29,7 +29,7 @@ module error_estimate
 contains
 
   !> Largest relative error over the witnesses of an edge-locked run; H0 range and resolution are those
-  !> of its meshes. Infinite where a witness does not converge on the finer mesh.
+  !> of its meshes. 1 where a witness has no counterpart on the finer mesh.
   function estimate_locked(this, pair, h0_high, h0_low, resolution, witnesses, cost) result(error)
     type(problem_t), intent(in) :: this
     type(mesh_pair_t), intent(in) :: pair
@@ -90,12 +90,12 @@ contains
     ! As well as rounding allows: the iteration stops at its own floor.
     options%tolerance = 0
     options%patience = 2
+    difference = 1
+    ! What did not converge has no counterpart.
+    if (.not. witness%state%residual < 1) return
     state = regrid(witness%state, mesh, fine, witness%state%scale, nodes)
     call solve_anderson(this, fine, witness%control, options, frozen, state, converged, cost)
-    if (.not. state%residual < 1.0e-6_wp) then
-      difference = huge(1.0_wp)
-      return
-    end if
+    if (.not. state%residual < 1.0e-6_wp) return
     difference = 0
     if (witness%load .and. abs(state%load) > 0) &
       difference = abs(witness%state%load/state%load - 1)

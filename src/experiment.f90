@@ -277,7 +277,7 @@ contains
 
     sense = sign(1.0_wp, finish - start)
     ! A last step that rounding leaves a hair short is not a step.
-    same = 1.0e-6_wp*step
+    same = 1.0e-6_wp*min(step, abs(finish - start))
     count = floor(abs(finish - start)/step + 1.0e-6_wp)
     h0 = [(start + sense*step*i, i=0, count)]
     if (abs(h0(count + 1) - finish) <= same) then

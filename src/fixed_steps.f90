@@ -102,6 +102,12 @@ contains
     before = position%state
     call self%land(h0, before, landed, event)
     event%jumped = event%converged .and. change(before, landed) > jump
+    if (.not. event%converged .and. self%problem%law%adhesion > 0 .and. &
+      .not. self%problem%law%edge_gap > 0) then
+      ! Nothing stops the fall of bodies that only attract.
+      event%jumped = .true.
+      event%reason = 'no stable equilibrium exists beyond this h0'
+    end if
     event%jump_h0 = before%h0 + 1.5_wp*step
     event%jump_load = before%load
     event%jump_uncertainty = abs(1.5_wp*step)

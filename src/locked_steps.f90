@@ -153,7 +153,6 @@ contains
     end if
     call solve_state(self%problem, self%pair%grid(mesh), h0_control(self, mesh, h0), self%options, &
       self%frozen, state, event%converged, self%cost)
-    event%certain = event%converged
     if (.not. (check .and. event%converged)) return
     moved = coordinate_of(self%problem, mesh, state) - before
     ! Along a stable branch the gap on the axis grows and the contact shrinks with h0.
@@ -186,7 +185,7 @@ contains
     do while (.not. found)
       call extend(trail, walker, self%problem, self%pair, walking, self%options, lost, self%cost)
       if (lost) event%reason = 'the equilibrium path was lost'
-      if (trail%held > longest_trace .or. collapsed(trail)) &
+      if (trail%held > longest_trace .or. collapsed(self%problem, trail)) &
         event%reason = 'no stable equilibrium exists beyond this h0'
       if (event%reason /= '') return
       ! The last piece of the trail may still turn out to hold a fold.
@@ -213,7 +212,6 @@ contains
       position%state = state
       return
     end if
-    event%certain = .true.
     call remember(position, state, trail%mesh(seen), event%jumped)
     call change_mesh(self, position)
   end subroutine trace

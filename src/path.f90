@@ -8,7 +8,7 @@ module path
   use tracer, only: tracer_t, new_tracer, inward, path_control
   use trail, only: trail_t, extend, collapsed, polish_extremum, of_load
   use hysteresis, only: energy_lost
-  use quasi_static, only: position_t, event_t, witness_t
+  use quasi_static, only: position_t, event_t, witness_t, add_witness
   use locked_steps, only: locked_steps_t, fold_witness
   use records, only: observer_t, record_of, stable_yes, stable_no
   implicit none
@@ -66,7 +66,7 @@ contains
       if (lost) path%reason = 'the equilibrium path was lost: no step, however small, converged'
       if (lost .or. trail%held >= longest) exit
       ! Without repulsion the path ends in the bodies' collapse onto each other.
-      if (collapsed(trail)) exit
+      if (collapsed(steps%problem, trail)) exit
       associate (last => trail%held)
         if (trail%mesh(last) == contact .and. trail%unstable(last) == 0 .and. &
           trail%state(last)%h0 <= h0_end) exit
@@ -109,7 +109,7 @@ contains
     type(trail_t), intent(in) :: trail
     type(path_t), intent(inout) :: path
     type(state_t) :: state
-    type(witness_t) :: lowest
+    type(witness_t) :: lowest, finish
     integer, allocatable :: fold(:)
     real(wp) :: s
     integer :: i, j, first
@@ -118,10 +118,13 @@ contains
     fold = pack([(j, j=1, trail%held)], trail%fold(:trail%held))
     path%fold_h0 = trail%state(fold)%h0
     path%fold_load = trail%state(fold)%load
-    path%witness = [(fold_witness(steps, trail, fold(j)), j=1, size(fold)), &
-      fold_witness(steps, trail, trail%held)]
-    path%witness(size(path%witness))%load = .true.
-    path%witness(size(path%witness))%displacement = .true.
+    do j = 1, size(fold)
+      call add_witness(path%witness, fold_witness(steps, trail, fold(j)))
+    end do
+    finish = fold_witness(steps, trail, trail%held)
+    finish%load = .true.
+    finish%displacement = .true.
+    call add_witness(path%witness, finish)
     path%unstable_after = trail%unstable(min(fold + 1, trail%held))
     if (size(fold) > 0) then
       path%jump_in_h0 = path%fold_h0(1)
@@ -160,7 +163,7 @@ contains
       if (path%extremum_load(i) <= path%load) then
         path%load = path%extremum_load(i)
         path%load_h0 = path%extremum_h0(i)
-        path%witness = [path%witness, lowest]
+        call add_witness(path%witness, lowest)
       end if
     end if
     path%worst_residual = maxval(trail%state(:trail%held)%residual)

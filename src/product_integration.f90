@@ -61,7 +61,11 @@ contains
     end do
     rule%weight = matmul(inner_basis, rule%inner_weight)
 
-    rule%distant = [(new_distant_rule(node, rule%barycentric, points(k)), k=1, size(points))]
+    ! One by one: gfortran leaks derived-type results inside an array constructor.
+    allocate (rule%distant(size(points)))
+    do k = 1, size(points)
+      rule%distant(k) = new_distant_rule(node, rule%barycentric, points(k))
+    end do
     ! Nodes that are a Gauss rule themselves need no interpolation.
     if (size(node) > 2) then
       associate (own => rule%distant(1))

@@ -9,7 +9,7 @@ module quasi_static
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: quasi_static_t, position_t, event_t, witness_t, memory, remember
+  public :: quasi_static_t, position_t, event_t, witness_t, memory, remember, add_witness
 
   !> States kept for extrapolation in h0.
   integer, parameter :: memory = 4
@@ -38,8 +38,6 @@ module quasi_static
   !> What happened in a step.
   type :: event_t
     logical :: converged = .false.
-    !> The state is known to be stable.
-    logical :: certain = .false.
     !> The state jumped; from where (h0, and the load just before), and how well that is known.
     logical :: jumped = .false.
     real(wp) :: jump_h0 = 0, jump_load = 0, jump_uncertainty = 0
@@ -109,6 +107,15 @@ module quasi_static
   end interface
 
 contains
+
+  !> Appends a witness. (An array constructor around a function's result would leak in gfortran.)
+  subroutine add_witness(witnesses, witness)
+    type(witness_t), allocatable, intent(inout) :: witnesses(:)
+    type(witness_t), intent(in) :: witness
+
+    if (.not. allocated(witnesses)) allocate (witnesses(0))
+    witnesses = [witnesses, witness]
+  end subroutine add_witness
 
   !> Makes `state` the position's present one; on another mesh, or after a jump, the past is
   !> forgotten.

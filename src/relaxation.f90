@@ -13,12 +13,16 @@ module relaxation
   private
   public :: relax
 
-  integer, parameter :: most_steps = 400
+  !> Most pseudo-time steps, and most factorisations in all.
+  integer, parameter :: most_steps = 400, most_factorisations = 200
   !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth and its
   !> limits: a residual that grows, as it does while bodies come apart, is no reason for steps below the
   !> usual one, an unstable mode is. The nudge off an unstable equilibrium, in the law's lengths.
   real(wp), parameter :: first_step = 1, growth = 3, usual_step = 0.3_wp, &
     shortest_step = 1.0e-3_wp, longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
+  !> Stands for a residual before the first; and the gap below which bodies that nothing keeps apart have
+  !> fallen onto each other, in the law's lengths.
+  real(wp), parameter :: unknown = 1.0e100_wp, fallen = 0.01_wp
 
 contains
 
@@ -34,19 +38,22 @@ contains
     type(factorisation_t) :: factors
     real(wp), allocatable :: z(:), g(:), dz(:)
     real(wp) :: dtau, before
-    integer :: step
+    integer :: step, began
 
     converged = .false.
     if (control%kind /= at_h0) return
     z = state%gap
     allocate (g(size(z)))
     dtau = first_step
-    before = huge(1.0_wp)
+    before = unknown
+    began = int(cost%factorisations)
     do step = 1, most_steps
+      if (cost%factorisations - began >= most_factorisations) return
       call residual(this, grid, control, z, g, state, cost)
       cost%iterations = cost%iterations + 1
       state%iterations = step
       if (.not. state%residual < huge(1.0_wp)) return
+      if (this%law%adhesion > 0 .and. .not. this%law%edge_gap > 0 .and. minval(z) < fallen) return
       if (state%residual <= max(options%tolerance, residual_floor(this, state))) then
         call factorise_jacobian(this, grid, control, state, factors, cost)
         if (.not. factors%valid) return
@@ -55,10 +62,11 @@ contains
         ! On an unstable equilibrium nothing drives the bodies away: a nudge towards each other does.
         z = z - nudge
         dtau = first_step
-        before = huge(1.0_wp)
+        before = unknown
         cycle
       end if
-      dtau = min(max(dtau*min(growth, before/state%residual), usual_step), longest_step)
+      dtau = dtau*min(growth, before/max(state%residual, before/(2*growth)))
+      dtau = min(max(dtau, usual_step), longest_step)
       before = state%residual
       do
         call factorise_jacobian(this, grid, control, state, factors, cost, 1/dtau)

@@ -10,6 +10,7 @@ module simulation
   use experiment, only: outcome_t, run_experiment, problem_of, path_start, states_planned
   use sweeps, only: run_sweep
   use comparison, only: classical_rows
+  use approximation_tables, only: approximation_rows
   use records, only: observer_t
   use stability_records, only: stability_recorder_t
   use summarise, only: summary_of
@@ -45,8 +46,8 @@ contains
     began = seconds()
     exit_code = 1
     name = out_dir(index(out_dir, '/', .true.) + 1:)
-    if (resume .or. allocated(scene%approximations)) then
-      call say(out_dir//': --resume and &approximations are not part of this version', .false.)
+    if (resume) then
+      call say(out_dir//': --resume is not part of this version', .false.)
       return
     end if
     problem = problem_of(scene)
@@ -76,6 +77,8 @@ contains
 
     if (allocated(scene%classical)) call results%write_theory('classical.csv', &
       classical_rows(problem, scene%classical, path_start(scene, problem)))
+    if (allocated(scene%approximations)) call results%write_theory('approximations.csv', &
+      approximation_rows(problem, scene%approximations, path_start(scene, problem)))
     summary = summary_of(scene, problem, outcome)
     if (failed > 0) then
       summary%converged = .false.

@@ -35,17 +35,26 @@ module trail
     logical, allocatable :: fold(:)
   end type trail_t
 
-  !> A gap on the axis of this many of the law's lengths is a collapse: a law without repulsion pulls the
-  !> bodies together without end, and means nothing there.
-  real(wp), parameter :: collapse = 0.1_wp
+  !> Without repulsion the bodies fall onto each other once they have jumped, and the path goes on to no gap
+  !> at all. What is left of the gap at the first fold when it is followed no farther, and if there
+  !> is no fold, how many of the law's lengths.
+  real(wp), parameter :: collapse = 0.3_wp
 
 contains
 
   !> Whether the newest state of a trail is one of collapse.
-  pure logical function collapsed(trail)
+  pure logical function collapsed(this, trail)
+    type(problem_t), intent(in) :: this
     type(trail_t), intent(in) :: trail
+    real(wp) :: scale
+    integer :: first
 
-    collapsed = trail%state(trail%held)%axis_gap < collapse
+    collapsed = .false.
+    if (this%law%edge_gap > 0) return
+    scale = 1
+    first = findloc(trail%fold(:trail%held), .true., 1)
+    if (first > 0) scale = trail%state(first)%axis_gap
+    collapsed = trail%state(trail%held)%axis_gap < collapse*scale
   end function collapsed
 
   !> Advances the tracer by a step and appends the new state, and the fold if one has been passed. A

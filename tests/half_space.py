@@ -64,7 +64,7 @@ class HalfSpace:
             r = targets[far, None]
             self.matrix[far, columns] = kernel(r, t, abs(r - t)) * weight * (b - a) * t
             for i in np.flatnonzero(~far):
-                # Towards the point nearest to the target as the sixth power: the logarithm is tamed.
+                # Graded as the sixth power towards the point nearest to the target.
                 near = min(max(targets[i], a), b)
                 row = np.zeros(order)
                 for side, reach in ((-1, near - a), (1, b - near)):

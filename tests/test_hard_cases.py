@@ -95,7 +95,7 @@ def test_deep_indentation_with_adhesion_tends_to_jkr(run, sigma, depth):
     )
     curve = check(run(scene))
     down = curve.rows("loading")
-    # JKR from the contact radius: F = 4 E* a^3/(3 R) - (8 pi gamma E* a^3)^(1/2), with E* = 1/2, and
+    # JKR from the contact radius, with E* = 1/2: F = 4 E* a^3/(3 R) - (8 pi gamma E* a^3)^(1/2) and
     # delta = a^2/R - (2 pi gamma a/E*)^(1/2).
     a = math.sqrt(depth)
     for _ in range(100):
@@ -279,7 +279,9 @@ def test_unit_scene_is_the_scene_of_fig10(run):
         lennard_jones(
             8.7, loading=loading(13, -4, 0.5), unloading={}, equilibrium_path={}, stability={}
         ),
-        lennard_jones(0.87, loading=loading(6, -1, 0.5), numerics={"grid": "uniform", "nodes": 300}),
+        lennard_jones(
+            0.87, loading=loading(6, -1, 0.5), numerics={"grid": "uniform", "nodes": 300}
+        ),
         exponential(100, loading=loading(6, -20, 1)),
     ],
     ids=["adhesion", "uniform grid", "repulsion"],

@@ -1,4 +1,4 @@
-"""Claims about the files of results: their names, columns and contents, and what a failure leaves."""
+"""Claims about the files of results: names, columns, contents, and what a failure leaves."""
 
 import re
 

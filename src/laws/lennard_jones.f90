@@ -29,7 +29,7 @@ contains
     law%pressure_unit = hamaker/(16*pi*z0**2)/z0
     law%range = 60
     ! A ninth of the gap, which in contact is below 1.
-    law%repulsion_length = 0.1_wp
+    if (part /= 'attractive') law%repulsion_length = 0.1_wp
     law%repulsive = merge(0, 1, part == 'attractive')
     law%attractive = merge(0, 1, part == 'repulsive')
     ! The repulsion may grow 25-fold in an iteration, and a gap never reaches zero.

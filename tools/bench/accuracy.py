@@ -135,7 +135,7 @@ def draw_law(rows, folder):
     pictures.dress(panels[0, 0], "order of the panels", "nodes in a panel",
                    "largest relative error", log="y")
     pictures.dress(panels[0, 1], "reach of the mesh", "reach / $(R z_0)^{1/2}$")
-    pictures.dress(panels[0, 2], "uniform grid", "nodes")
+    pictures.dress(panels[0, 2], "uniform grid: pull-off, or load", "nodes")
     for problem, colour, marker in zip(_LAW, pictures.COLOURS[1:], pictures.MARKERS[1:]):
         for panel, knob in zip(panels.flat, ("order", "reach", "nodes")):
             mine = [row for row in rows if row["problem"] == problem.name and row["knob"] == knob

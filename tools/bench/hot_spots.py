@@ -41,7 +41,8 @@ def measure(program, quick, say):
         program.run(deck, cap=600, before=("valgrind", "--tool=callgrind", "-q",
                                            f"--callgrind-out-file={output}"))
         shares = _shares(subprocess.run(
-            ["callgrind_annotate", "--inclusive=yes", "--threshold=100", "--show-percs=no", str(output)],
+            ["callgrind_annotate", "--inclusive=yes", "--threshold=100", "--show-percs=no",
+             str(output)],
             check=True, capture_output=True, text=True).stdout)
         total = sum(shares.values())
         for what, count in sorted(shares.items(), key=lambda item: -item[1]):

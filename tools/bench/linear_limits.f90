@@ -1,7 +1,7 @@
-!> linear_limits NODES [NODES ...]: times the library's pieces beside the linear algebra that bounds them
-!> from below, on a uniform grid of each number of nodes. One line of comma-separated seconds each; every
-!> time is the least of several rounds, and each round has all pieces, so that ratios mean something
-!> on a busy machine.
+!> linear_limits NODES [NODES ...]: times the library's pieces beside the linear algebra that bounds
+!> them from below, on a uniform grid of each number of nodes. One line of comma-separated seconds
+!> each; every time is the least of several rounds, and each round has all pieces, so that ratios
+!> mean something on a busy machine.
 program linear_limits
   use, intrinsic :: iso_fortran_env, only: output_unit
   use kinds, only: wp
@@ -19,9 +19,9 @@ program linear_limits
   use blas_threads, only: use_threads_for
   implicit none
 
-  !> assembly: the kernel. residual: one evaluation of the equations, dgemv in it. mixing, anderson, newton:
-  !> one iteration; Anderson keeps its factors and solves with them (dgetrs). dgesv is the linear algebra of
-  !> a Newton step.
+  !> assembly: the kernel. residual: one evaluation of the equations, dgemv in it. mixing, anderson,
+  !> newton: one iteration; Anderson keeps its factors and solves with them (dgetrs). dgesv is the
+  !> linear algebra of a Newton step.
   character(len=8), parameter :: pieces(*) = [character(len=8) :: 'assembly', 'dgemv', 'residual', &
     'mixing', 'dgetrs', 'anderson', 'dgesv', 'newton']
   integer, parameter :: rounds = 7, most_repeats = 200, iterations = 5

@@ -104,8 +104,9 @@ def draw_nodes(rows, folder):
         pictures.plain_ticks(panel, ticks)
     panels[0, 1].axhline(1.3, color=pictures.GREY, linewidth=1, linestyle=(0, (4, 2)))
     panels[0, 1].set_ylim(0, None)
-    for panel in panels.flat:
-        panel.legend(frameon=False, fontsize=9)
+    panels[0, 0].set_ylim(5e-7, 100)
+    panels[0, 0].legend(frameon=False, fontsize=9, ncols=2, loc="upper left")
+    panels[0, 1].legend(frameon=False, fontsize=9)
     pictures.save(page, folder / "nodes.png")
 
 

@@ -10,10 +10,10 @@ NAMES = {"pull_off": "pull-off", "jump_in": "jump-in $h_0$", "load": "load at fi
 
 _ACCURACY = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
 # A run much longer than this is not started: the last one on a coarser grid tells.
-_CAP = {True: 10.0, False: 60.0}
+_CAP = {True: 10.0, False: 40.0}
 
-# Name, what of &numerics makes it, and whether its cost is set by nodes (its steps cost their square or
-# their cube) or by accuracy.
+# Name, what of &numerics makes it, whether nodes or accuracy set its cost, and the power of the
+# nodes that a step costs.
 _METHODS = (
     ("uniform, mixing, paper's rule",
      "grid = 'uniform', method = 'mixing', convergence = 'displacement_change'", "nodes", 2),
@@ -38,7 +38,8 @@ def measure(program, quick, say):
         for method, numerics, knob, power in _METHODS:
             last, begun = None, len(rows)
             for value in nodes if knob == "nodes" else accuracy:
-                last = _one(program, problem, method, numerics, knob, value, power, cap, quick, last)
+                last = _one(program, problem, method, numerics, knob, value, power, cap, quick,
+                            last)
                 rows.append(_row(problem, method, knob, value, last[1], reference))
             say(f"{problem.label}: {method}: {', '.join(map(_outcome, rows[begun:]))}")
     return rows
@@ -54,7 +55,7 @@ def _one(program, problem, method, numerics, knob, value, power, cap, quick, las
             return value, hopeless
     make = problem.path if method == "whole path" else problem.cycle
     deck = make(f"{numerics}{',' if numerics else ''} {knob} = {value}")
-    best = program.best_of(1 if quick else 3, {0: deck}, cap, enough=1.0)
+    best = program.best_of(1 if quick else 3, {0: deck}, cap, enough=0.5)
     return value, best[0]
 
 
