@@ -5,7 +5,7 @@ module cycle
   use equilibrium, only: state_t
   use interpolation, only: interpolated_maximum
   use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, add_witness
-  use records, only: observer_t, record_of, stable_unasked
+  use records, only: observer_t, record_of, stable_yes, stable_unasked
   implicit none
   private
   public :: plan_t, branch_t, run_branch
@@ -15,6 +15,8 @@ module cycle
     character(len=:), allocatable :: name
     real(wp), allocatable :: h0(:)
     logical, allocatable :: profile(:)
+    !> There is one state for every h0, so that each is known to be stable.
+    logical :: unique = .false.
   end type plan_t
 
   !> What a branch showed, in the units of `problem`. Unallocated: there was none.
@@ -84,7 +86,7 @@ contains
       call note(branch, steps, position, event, plan%h0(i))
       if (event%reason /= '') exit
       call observer%take(record_of(plan%name, steps%problem, steps%grid(position), position%state, &
-        stable_unasked, event%converged), steps%problem, &
+        merge(stable_yes, stable_unasked, plan%unique), event%converged), steps%problem, &
         steps%grid(position), position%state, plan%profile(i))
       if (any(i == [1, (1 + size(plan%h0))/2, size(plan%h0)])) &
         call add_witness(branch%witness, steps%witness(position))

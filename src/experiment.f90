@@ -214,6 +214,7 @@ contains
     class(observer_t), intent(inout) :: observer
     type(outcome_t), intent(inout) :: outcome
     type(position_t) :: position, none(0)
+    type(plan_t) :: plan
     real(wp) :: start
     real(wp), allocatable :: nowhere(:)
 
@@ -225,9 +226,10 @@ contains
         start = max(steps%far_away()*length, scene%path%h0_end + length)
       end if
       allocate (outcome%stepped_path)
-      call run_branch(steps, plan_of('path', start, scene%path%h0_end, &
-        abs(start - scene%path%h0_end)/path_states, scene, length, nowhere), .true., position, &
-        observer, nowhere, none, outcome%stepped_path)
+      plan = plan_of('path', start, scene%path%h0_end, &
+        abs(start - scene%path%h0_end)/path_states, scene, length, nowhere)
+      plan%unique = .true.
+      call run_branch(steps, plan, .true., position, observer, nowhere, none, outcome%stepped_path)
     end associate
   end subroutine run_stepped_path
 

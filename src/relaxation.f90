@@ -13,8 +13,10 @@ module relaxation
   private
   public :: relax
 
-  !> Most pseudo-time steps, and most factorisations in all.
-  integer, parameter :: most_steps = 400, most_factorisations = 200
+  !> Most pseudo-time steps; factorisations that are always allowed, and cubes of the matrix's order that all
+  !> of them may amount to (some ten seconds).
+  integer, parameter :: most_steps = 2000, few_factorisations = 100
+  real(wp), parameter :: most_cubes = 1.0e11_wp
   !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth and its
   !> limits: a residual that grows, as it does while bodies come apart, is no reason for steps below the
   !> usual one, an unstable mode is. The nudge off an unstable equilibrium, in the law's lengths.
@@ -38,7 +40,7 @@ contains
     type(factorisation_t) :: factors
     real(wp), allocatable :: z(:), g(:), dz(:)
     real(wp) :: dtau, before
-    integer :: step, began
+    integer :: step, began, allowed
 
     converged = .false.
     if (control%kind /= at_h0) return
@@ -47,8 +49,9 @@ contains
     dtau = first_step
     before = unknown
     began = int(cost%factorisations)
+    allowed = max(few_factorisations, int(min(most_cubes/real(size(z), wp)**3, 1.0e6_wp)))
     do step = 1, most_steps
-      if (cost%factorisations - began >= most_factorisations) return
+      if (cost%factorisations - began >= allowed) return
       call residual(this, grid, control, z, g, state, cost)
       cost%iterations = cost%iterations + 1
       state%iterations = step

@@ -11,8 +11,6 @@ import subprocess
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 README = ROOT / "README.md"
 TABLE = re.compile(r"(?<=<!-- keys -->\n).*?(?=<!-- /keys -->)", re.S)
-# Read and checked, but not computed yet.
-NOT_YET = {"approximations"}
 # Written by the program, not by users.
 RESULTS = {"summary", "cost"}
 
@@ -26,9 +24,9 @@ def table(keys):
         if line.startswith("&"):
             group, _, note = line[1:].partition(" ")
             note = " " + note if note else ""
-            if group not in NOT_YET | RESULTS:
+            if group not in RESULTS:
                 rows.append(f"| **`&{group}`**{note} | | {cell(next(lines))} |")
-        elif re.match(r"  \w", line) and group not in NOT_YET | RESULTS:
+        elif re.match(r"  \w", line) and group not in RESULTS:
             key, value = line.split(maxsplit=1)
             rows.append(f"| `{key}` | {cell(value)} | {cell(next(lines))} |")
     return "\n".join(rows) + "\n"
