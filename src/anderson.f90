@@ -32,8 +32,8 @@ module anderson
     real(wp), allocatable :: z_before(:), f_before(:)
   end type history_t
 
-  !> A factorisation that has served this many states and now takes this many iterations is renewed: it
-  !> costs about as much as the iterations that it saves the next states.
+  !> A factorisation that has served this many states and now takes this many iterations is
+  !> renewed: it costs about as much as the iterations that it saves the next states.
   integer, parameter :: long_service = 15, many_iterations = 5
   !> Steps rejected before a solution is given up.
   integer, parameter :: most_rejections = 4
@@ -85,8 +85,9 @@ contains
       if (.not. frozen%factors%valid) exit
       f = g
       call solve(frozen%factors, f)
-      ! The length of the plain step measures the distance from equilibrium; the residual does not, for in
-      ! a stiff contact an error in the gap that no longer matters still moves the pressure much.
+      ! The length of the plain step measures the distance from equilibrium; the residual does not,
+      ! for in a stiff contact an error in the gap that no longer matters still moves the pressure
+      ! much.
       length = step_length(z, f)
       if (0.1_wp*length > before .and. since_renewal > 0) then
         cost%rejected_steps = cost%rejected_steps + 1
@@ -108,8 +109,8 @@ contains
       step = accelerated_step(history, options%depth, z, f)
       step = largest_step(this, control, z, step)*step
       z = z + step
-      ! The parabola between the bodies is quadratic in the scale: its second-order part is known, and far
-      ! out it is large.
+      ! The parabola between the bodies is quadratic in the scale: its second-order part is known,
+      ! and far out it is large.
       if (control%kind == at_h0_with_edge) &
         z(:size(z) - 1) = z(:size(z) - 1) + 0.5_wp*(step(size(z))*grid%x(:size(z) - 1))**2
       since_renewal = since_renewal + 1

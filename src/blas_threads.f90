@@ -30,7 +30,8 @@ module blas_threads
 contains
 
   !> Chooses the threads for matrices of the given order, where the library is OpenBLAS; any other
-  !> keeps to its own rules. Where several cases are computed at once each has one. OpenBLAS is asked at run time, so that nothing depends on it.
+  !> keeps to its own rules. Where several cases are computed at once each has one. OpenBLAS is
+  !> asked at run time, so that nothing depends on it.
   subroutine use_threads_for(order)
     integer, intent(in) :: order
     procedure(set_threads), pointer :: set

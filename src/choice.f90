@@ -1,7 +1,7 @@
 !> Which grid, which iteration and how finely: what follows from the accuracy asked for, and why.
 module choice
   use kinds, only: wp
-  use problem, only: problem_t, neck_width
+  use problem, only: problem_t
   use discretisation, only: discretisation_t
   use uniform_grid, only: new_uniform_grid
   use panels, only: new_panel_grid, graded_ends
@@ -81,8 +81,8 @@ contains
     if (allocated(numerics%nodes)) chosen%nodes = numerics%nodes
   end function choose
 
-  !> Order and fineness of panels for a relative accuracy of load and displacement, from the measured
-  !> error (docs/accuracy.md).
+  !> Order and fineness of panels for a relative accuracy of load and displacement, from the
+  !> measured error (docs/accuracy.md).
   pure function resolution_for(accuracy) result(resolution)
     real(wp), intent(in) :: accuracy
     type(resolution_t) :: resolution
@@ -91,8 +91,8 @@ contains
     resolution%accuracy = 0.1_wp*accuracy
   end function resolution_for
 
-  !> The mesh of a fixed grid: equal spacing, or equal panels as far as the contact reaches and doubling
-  !> ones beyond.
+  !> The mesh of a fixed grid: equal spacing, or equal panels as far as the contact reaches and
+  !> doubling ones beyond.
   function fixed_mesh(chosen, problem, h0_low) result(mesh)
     type(choice_t), intent(in) :: chosen
     type(problem_t), intent(in) :: problem
@@ -117,8 +117,8 @@ contains
       .not. problem%rigid)
   end function fixed_mesh
 
-  !> A finer choice of a fixed grid, to estimate its error with: twice the nodes on the same length and a
-  !> fifth farther out, or panels of two more nodes.
+  !> A finer choice of a fixed grid, to estimate its error with: twice the nodes on the same length
+  !> and a fifth farther out, or panels of two more nodes.
   pure function finer(chosen)
     type(choice_t), intent(in) :: chosen
     type(choice_t) :: finer

@@ -1,5 +1,5 @@
-!> The h0-stepped experiment: loading, and an unloading from each turning point, the deformation carried
-!> over from step to step.
+!> The h0-stepped experiment: loading, and an unloading from each turning point, the deformation
+!> carried over from step to step.
 module cycle
   use kinds, only: wp
   use equilibrium, only: state_t
@@ -43,13 +43,13 @@ module cycle
     logical :: open = .false.
   end type stretch_t
 
-  !> Stretches of a branch that are searched at once; of what an unresolved contact edge, jumping from node to
-  !> node, adds to them only the one of largest tension is searched, at the end.
+  !> Stretches of a branch that are searched at once; of what an unresolved contact edge, jumping
+  !> from node to node, adds to them only the one of largest tension is searched, at the end.
   integer, parameter :: searched_at_once = 3
 
   !> Rounds of refinement of the maximum tension, and the relative change of load that ends them.
-  !> An extremum at an end of the stretch is approached to this fraction of the bracket: it is a jump, whose
-  !> load is known, or an end of the experiment.
+  !> An extremum at an end of the stretch is approached to this fraction of the bracket: it is a
+  !> jump, whose load is known, or an end of the experiment.
   integer, parameter :: most_rounds = 15
   real(wp), parameter :: load_tolerance = 1.0e-10_wp, enough = 1.0e-3_wp
 
@@ -165,8 +165,8 @@ contains
     branch%load_h0 = state%h0
   end subroutine lower
 
-  !> Refines the largest tension of a stretch that ends at `finish`, or keeps it for later as `deferred`, which
-  !> is the best of those. ended counts the stretches.
+  !> Refines the largest tension of a stretch that ends at `finish`, or keeps it for later as
+  !> `deferred`, which is the best of those. ended counts the stretches.
   subroutine end_stretch(steps, stretch, finish, ended, deferred, branch)
     class(quasi_static_t), intent(inout) :: steps
     type(stretch_t), intent(inout) :: stretch, deferred
@@ -194,9 +194,10 @@ contains
     end if
   end subroutine end_stretch
 
-  !> Searches the largest tension between stretch%before and stretch%after: the polynomial through the
-  !> states nearest to the lowest is searched, the state there computed and added, and so on; where that
-  !> leads nowhere the larger side is halved, for on a coarse path the extremum may lie on either.
+  !> Searches the largest tension between stretch%before and stretch%after: the polynomial through
+  !> the states nearest to the lowest is searched, the state there computed and added, and so on;
+  !> where that leads nowhere the larger side is halved, for on a coarse path the extremum may lie
+  !> on either.
   subroutine refine(steps, stretch, branch)
     class(quasi_static_t), intent(inout) :: steps
     type(stretch_t), intent(in) :: stretch
@@ -219,7 +220,8 @@ contains
       right = min(high, minval([high, pack(h0, h0 > best%state%h0)]))
       next = interpolated_maximum(h0, -load, left, right)
       if (size(h0) < 3 .or. minval(abs(h0 - next)) <= 1.0e-3_wp*(right - left)) then
-        ! The polynomial has nothing to add: is the extremum there, or has one side not been looked at?
+        ! The polynomial has nothing to add: is the extremum there, or has one side not been looked
+        ! at?
         if (any(h0 < best%state%h0) .and. any(h0 > best%state%h0) .and. &
           right - left < enough*width) exit
         next = merge(0.5_wp*(left + best%state%h0), 0.5_wp*(right + best%state%h0), &

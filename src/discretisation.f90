@@ -23,10 +23,10 @@ module discretisation
     real(wp), allocatable :: x(:)
     !> integral f x dx = sum(weight*f), (nodes).
     real(wp), allocatable :: weight(:)
-    !> matmul(kernel, p) = integral k(r, t) p(t) t dt, (first_node - 1 + nodes, nodes): row axis_row is
-    !> the axis, row centre_row the mesh's centre, and rows from first_node on are the nodes, last
-    !> so that a leading part of rows and columns is the operator of a leading part of the nodes.
-    !> Not allocated for rigid bodies.
+    !> matmul(kernel, p) = integral k(r, t) p(t) t dt, (first_node - 1 + nodes, nodes): row
+    !> axis_row is the axis, row centre_row the mesh's centre, and rows from first_node on are the
+    !> nodes, last so that a leading part of rows and columns is the operator of a leading part of
+    !> the nodes. Not allocated for rigid bodies.
     real(wp), allocatable :: kernel(:, :)
     !> Ends of the panels as offsets from the centre (ascending), (panels + 1).
     real(wp), allocatable :: panel_end(:)

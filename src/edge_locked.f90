@@ -21,8 +21,8 @@ module edge_locked
 
   type :: mesh_pair_t
     type(discretisation_t) :: grid(2)
-    !> Whether the path can be traced: the law attracts, or the bodies are rigid and it is trivial. If
-    !> not, only the mesh for contact exists, and its scale is prescribed by `hertz_scale`.
+    !> Whether the path can be traced: the law attracts, or the bodies are rigid and it is trivial.
+    !> If not, only the mesh for contact exists, and its scale is prescribed by `hertz_scale`.
     logical :: traceable = .true.
     !> Lateral position up to which a state is resolved, and contact radius at which the path passes
     !> from one mesh to the other; both in lateral units.
@@ -100,24 +100,24 @@ contains
     c = max(1.0_wp, 1.2_wp*c)
   end function largest_radius
 
-  !> An H0 beyond which no contact reaches: the jump out of contact at fixed displacement of JKR theory,
-  !> the extremum of (11), with a margin of a fifth.
+  !> An H0 beyond which no contact reaches: the jump out of contact at fixed displacement of JKR
+  !> theory, the extremum of (11), with a margin of a fifth.
   pure real(wp) function beyond_contact(this)
     type(problem_t), intent(in) :: this
 
     beyond_contact = 1.2_wp*(1 + 3*(pi*this%coupling*this%law%adhesion/4)**(2.0_wp/3))
   end function beyond_contact
 
-  !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins at
-  !> the given level, never less than 1.
+  !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins
+  !> at the given level, never less than 1.
   pure real(wp) function hertz_scale(level, h0)
     real(wp), intent(in) :: level, h0
 
     hertz_scale = sqrt(1 + max(0.0_wp, level - h0))
   end function hertz_scale
 
-  !> The gap at which the pressure over a unit radius deforms the bodies by one unit, by bisection of a
-  !> law that decreases with the gap.
+  !> The gap at which the pressure over a unit radius deforms the bodies by one unit, by bisection
+  !> of a law that decreases with the gap.
   pure real(wp) function contact_level(this) result(level)
     type(problem_t), intent(in) :: this
     real(wp) :: low, high, pressure(1)
@@ -136,10 +136,10 @@ contains
     end do
   end function contact_level
 
-  !> The smallest lateral feature of the pressure up to the contact radius c: the neck, or where that is
-  !> wide, the half-width of the pressure between spheres near contact and the boundary layer of a Hertz
-  !> contact, whose gap opens as sqrt(c) s^(3/2) with the distance s from the edge and changes the
-  !> repulsion over one repulsion length.
+  !> The smallest lateral feature of the pressure up to the contact radius c: the neck, or where
+  !> that is wide, the half-width of the pressure between spheres near contact and the boundary
+  !> layer of a Hertz contact, whose gap opens as sqrt(c) s^(3/2) with the distance s from the edge
+  !> and changes the repulsion over one repulsion length.
   pure real(wp) function smallest_feature(this, c)
     type(problem_t), intent(in) :: this
     real(wp), intent(in) :: c

@@ -172,8 +172,8 @@ contains
     end associate
   end function scale_derivative
 
-  !> Derivative of `residual` by the control's value, at a state: with the factors of the same control
-  !> the tangent of the path is minus their solution for it.
+  !> Derivative of `residual` by the control's value, at a state: with the factors of the same
+  !> control the tangent of the path is minus their solution for it.
   pure function control_derivative(this, grid, control, state) result(derivative)
     type(problem_t), intent(in) :: this
     type(discretisation_t), intent(in) :: grid
@@ -197,8 +197,8 @@ contains
     end select
   end function control_derivative
 
-  !> The fraction (at most 1) of a step dz from z that keeps every gap within the law's closure limit
-  !> and the contact radius within a third.
+  !> The fraction (at most 1) of a step dz from z that keeps every gap within the law's closure
+  !> limit and the contact radius within a third.
   pure real(wp) function largest_step(this, control, z, dz) result(fraction)
     type(problem_t), intent(in) :: this
     type(control_t), intent(in) :: control
@@ -257,7 +257,8 @@ contains
     allocate (state%gap(nodes), state%pressure(nodes), source=0.0_wp)
   end function state_from
 
-  !> Position, in lateral units, of the outermost point with the given gap; 0 if all gaps are larger.
+  !> Position, in lateral units, of the outermost point with the given gap; 0 if all gaps are
+  !> larger.
   pure real(wp) function radius_of_gap(level, grid, state) result(c)
     real(wp), intent(in) :: level
     type(discretisation_t), intent(in) :: grid

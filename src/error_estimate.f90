@@ -15,21 +15,21 @@ module error_estimate
   private
   public :: estimate_locked, estimate_fixed
 
-  !> Panels: nodes that the finer mesh has more in each, and its reach over the mesh's; the error of the
-  !> reach falls with its fifth power.
+  !> Panels: nodes that the finer mesh has more in each, and its reach over the mesh's; the error
+  !> of the reach falls with its fifth power.
   integer, parameter :: more_nodes = 2
   real(wp), parameter :: farther = 1.6_wp
-  !> Differences are raised by this much for the error of the finer mesh: a tenth or less for panels, a
-  !> third for a uniform grid, which is of second order and of lower order in places; and because
-  !> other states may be somewhat worse than the witnesses.
+  !> Differences are raised by this much for the error of the finer mesh: a tenth or less for
+  !> panels, a third for a uniform grid, which is of second order and of lower order in places; and
+  !> because other states may be somewhat worse than the witnesses.
   real(wp), parameter :: margin = 2, margin_fixed = 2.5_wp
   !> Rounding of a whole calculation, below which no error is claimed.
   real(wp), parameter :: rounding = 1.0e-13_wp
 
 contains
 
-  !> Largest relative error over the witnesses of an edge-locked run; H0 range and resolution are those
-  !> of its meshes. 1 where a witness has no counterpart on the finer mesh.
+  !> Largest relative error over the witnesses of an edge-locked run; H0 range and resolution are
+  !> those of its meshes. 1 where a witness has no counterpart on the finer mesh.
   function estimate_locked(this, pair, h0_high, h0_low, resolution, witnesses, cost) result(error)
     type(problem_t), intent(in) :: this
     type(mesh_pair_t), intent(in) :: pair
@@ -74,7 +74,8 @@ contains
     end do
   end function estimate_fixed
 
-  !> Relative difference between a witness and its solution on a finer mesh, in what it is compared by.
+  !> Relative difference between a witness and its solution on a finer mesh, in what it is compared
+  !> by.
   function difference(this, mesh, fine, nodes, witness, cost)
     type(problem_t), intent(in) :: this
     type(discretisation_t), intent(in) :: mesh, fine
@@ -101,7 +102,8 @@ contains
       difference = abs(witness%state%load/state%load - 1)
     if (witness%h0) difference = max(difference, &
       abs(witness%state%h0 - state%h0)/max(abs(state%h0), 1.0_wp))
-    ! A displacement is known relative to the movement that made it, not to itself where it is small.
+    ! A displacement is known relative to the movement that made it, not to itself where it is
+    ! small.
     if (witness%displacement) difference = max(difference, &
       abs(witness%state%axis_gap - state%axis_gap)/max(abs(state%axis_gap - state%h0), 1.0_wp))
   end function difference

@@ -1,7 +1,7 @@
 !> Carries out what a scene asks of the elastic problem: the equilibrium path, the h0-stepped cycle.
 !> Effects that the scene leaves out are not set up.
 module experiment
-  use kinds, only: wp, long
+  use kinds, only: wp
   use problem, only: problem_t, new_problem
   use force_law, only: force_law_t
   use laws, only: law_parameters_t, new_law
@@ -12,6 +12,7 @@ module experiment
   use locked_steps, only: locked_steps_t
   use fixed_steps, only: fixed_steps_t
   use cycle, only: plan_t, branch_t, run_branch
+  use plans, only: plan_of
   use error_estimate, only: estimate_locked, estimate_fixed
   use path, only: path_t, trace_path
   use records, only: observer_t
@@ -20,7 +21,7 @@ module experiment
   use blas_threads, only: use_threads_for
   implicit none
   private
-  public :: outcome_t, run_experiment, problem_of, path_start, states_planned, prepare
+  public :: outcome_t, run_experiment, problem_of, path_start, prepare
 
   !> Everything in the units of `problem`.
   type :: outcome_t
@@ -75,8 +76,8 @@ contains
     if (allocated(scene%loading) .and. fixed) call run_fixed(scene, problem, low, observer, outcome)
   end subroutine run_experiment
 
-  !> The path, and the cycle if `with_cycle` and the scene has one, in edge-locked coordinates, for H0 from
-  !> high to low (law's lengths).
+  !> The path, and the cycle if `with_cycle` and the scene has one, in edge-locked coordinates, for
+  !> H0 from high to low (law's lengths).
   subroutine run_locked(scene, problem, high, low, with_cycle, observer, outcome)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -206,8 +207,8 @@ contains
     if (allocated(scene%path%h0_start)) start = max(start, scene%path%h0_start)
   end function path_start
 
-  !> The path of a law that does not attract, or of rigid bodies: one state for every h0, so that stepping
-  !> h0 gives it.
+  !> The path of a law that does not attract, or of rigid bodies: one state for every h0, so that
+  !> stepping h0 gives it.
   subroutine run_stepped_path(scene, steps, observer, outcome)
     type(scene_t), intent(in) :: scene
     type(locked_steps_t), intent(inout) :: steps
@@ -265,77 +266,6 @@ contains
       end do
     end if
   end subroutine run_cycle
-
-  !> Values of h0 [m] from start to finish by step, whichever way that is, both ends included, with the
-  !> scene's profiles and the values `also` (law's lengths) in their places.
-  function plan_of(name, start, finish, step, scene, length, also) result(plan)
-    character(len=*), intent(in) :: name
-    real(wp), intent(in) :: start, finish, step, length, also(:)
-    type(scene_t), intent(in) :: scene
-    type(plan_t) :: plan
-    real(wp), allocatable :: h0(:), profiles(:)
-    real(wp) :: sense, same
-    integer :: count, i
-
-    sense = sign(1.0_wp, finish - start)
-    ! A last step that rounding leaves a hair short is not a step.
-    same = 1.0e-6_wp*min(step, abs(finish - start))
-    count = floor(abs(finish - start)/step + 1.0e-6_wp)
-    h0 = [(start + sense*step*i, i=0, count)]
-    if (abs(h0(count + 1) - finish) <= same) then
-      h0(count + 1) = finish
-    else
-      h0 = [h0, finish]
-    end if
-    allocate (profiles(0))
-    if (allocated(scene%profiles)) profiles = scene%profiles%h0
-    do i = 1, size(also)
-      call include(h0, also(i)*length)
-    end do
-    do i = 1, size(profiles)
-      if ((profiles(i) - start)*(profiles(i) - finish) <= 0) call include(h0, profiles(i))
-    end do
-    plan%name = name
-    plan%h0 = h0/length
-    plan%profile = [(any(abs(profiles - h0(i)) <= same), i=1, size(h0))]
-
-  contains
-
-    subroutine include(values, value)
-      real(wp), allocatable, intent(inout) :: values(:)
-      real(wp), intent(in) :: value
-      integer :: place
-
-      if (any(abs(values - value) <= same)) return
-      place = count_before(values, value)
-      values = [values(:place), value, values(place + 1:)]
-    end subroutine include
-
-    pure integer function count_before(values, value)
-      real(wp), intent(in) :: values(:), value
-
-      count_before = int(sum(merge(1, 0, sense*(values - value) < 0)))
-    end function count_before
-
-  end function plan_of
-
-  !> Number of equilibria that the scene's cycle will take.
-  integer function states_planned(scene)
-    type(scene_t), intent(in) :: scene
-    integer :: k
-
-    states_planned = 0
-    if (.not. allocated(scene%loading)) return
-    associate (l => scene%loading)
-      states_planned = nint(min((l%h0_start - l%h0_end)/l%h0_step, 1.0e9_wp)) + 1
-    end associate
-    if (.not. allocated(scene%unloading)) return
-    associate (u => scene%unloading)
-      do k = 1, size(u%from)
-        states_planned = states_planned + nint(min((u%h0_end - u%from(k))/u%h0_step, 1.0e7_wp)) + 1
-      end do
-    end associate
-  end function states_planned
 
   !> The range of H0, in the law's lengths, that the scene covers.
   subroutine range_of(scene, problem, low, high)

@@ -33,8 +33,8 @@ module fixed_steps
   !> extrapolation than half the extrapolated change plus this many of the law's lengths. Where even
   !> the smallest step leads farther the bodies jump.
   real(wp), parameter :: jump = 0.05_wp
-  !> With the paper's stopping rule states are not exact enough for that; this many times the change of h0
-  !> then counts as a jump.
+  !> With the paper's stopping rule states are not exact enough for that; this many times the
+  !> change of h0 then counts as a jump.
   real(wp), parameter :: paper_jump = 5
 
 contains
@@ -114,9 +114,9 @@ contains
     call remember(position, landed, 1, event%jumped)
   end subroutine go
 
-  !> A step as the paper takes it: h0 changes at constant separation, and the iteration goes on until its
-  !> own rule is met. A jump is a change of deformation many times that of h0, and is known only to have
-  !> happened within the step.
+  !> A step as the paper takes it: h0 changes at constant separation, and the iteration goes on
+  !> until its own rule is met. A jump is a change of deformation many times that of h0, and is
+  !> known only to have happened within the step.
   subroutine paper_step(self, h0, position, event)
     class(fixed_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -160,8 +160,8 @@ contains
     if (self%problem%rigid) continues = .true.
   end subroutine continue_to
 
-  !> Where the bodies go from the state `before` when h0 is changed to a value at which its branch has
-  !> ended. Mixing relaxes by itself.
+  !> Where the bodies go from the state `before` when h0 is changed to a value at which its branch
+  !> has ended. Mixing relaxes by itself.
   subroutine land(self, h0, before, state, event)
     class(fixed_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0

@@ -14,9 +14,9 @@ module hysteresis
 
 contains
 
-  !> Integral of (load of the approach - load of the contact) dh0 between the first and the last fold of
-  !> a trail that runs from afar into contact, in units of load times length; positive. 0 without
-  !> folds.
+  !> Integral of (load of the approach - load of the contact) dh0 between the first and the last
+  !> fold of a trail that runs from afar into contact, in units of load times length; positive. 0
+  !> without folds.
   function energy_lost(trail) result(energy)
     type(trail_t), intent(in) :: trail
     real(wp) :: energy
@@ -27,47 +27,33 @@ contains
     last = findloc(trail%fold(:trail%held), .true., 1, back=.true.)
     if (first == 0 .or. last == first) return
     ! Both parts are run through inward, with falling h0.
-    energy = work(trail, 1, first, trail%state(last)%h0) - &
-      work_to(trail, last, trail%held, trail%state(first)%h0)
-    energy = abs(energy)
+    associate (jump_in => trail%state(first)%h0, jump_out => trail%state(last)%h0)
+      energy = abs(work(trail, 1, first, jump_in, jump_out) - &
+        work(trail, last, trail%held, jump_in, jump_out))
+    end associate
   end function energy_lost
 
-  !> Integral of load dh0 along the trail from where h0 falls below `start` to the state `finish`.
-  function work(trail, begin, finish, start)
+  !> Integral of load dh0 along the trail, on which h0 falls, from the state `begin` to the state
+  !> `finish`, as far as h0 is between low and high.
+  function work(trail, begin, finish, low, high)
     type(trail_t), intent(in) :: trail
     integer, intent(in) :: begin, finish
-    real(wp), intent(in) :: start
+    real(wp), intent(in) :: low, high
     real(wp) :: work
+    real(wp) :: from, to
     integer :: i
 
     work = 0
     do i = begin, finish - 1
-      if (trail%state(i + 1)%h0 >= start) cycle
-      if (trail%state(i)%h0 > start) then
-        work = work + piece(trail, i, start, trail%state(i + 1)%h0)
-      else
-        work = work + piece(trail, i, trail%state(i)%h0, trail%state(i + 1)%h0)
-      end if
+      from = min(trail%state(i)%h0, high)
+      to = max(trail%state(i + 1)%h0, low)
+      if (from > to) work = work + piece(trail, i, from, to)
     end do
   end function work
 
-  !> Integral of load dh0 along the trail from the state `begin` to where h0 falls below `stop`.
-  function work_to(trail, begin, finish, stop) result(work)
-    type(trail_t), intent(in) :: trail
-    integer, intent(in) :: begin, finish
-    real(wp), intent(in) :: stop
-    real(wp) :: work
-    integer :: i
-
-    work = 0
-    do i = begin, finish - 1
-      if (trail%state(i)%h0 <= stop) exit
-      work = work + piece(trail, i, trail%state(i)%h0, max(stop, trail%state(i + 1)%h0))
-    end do
-  end function work_to
-
-  !> Integral of load dh0 over the part of the piece from state i to state i + 1 between two values of h0,
-  !> both functions of the path's coordinate being the polynomials through the nearest states.
+  !> Integral of load dh0 over the part of the piece from state i to state i + 1 between two values
+  !> of h0, both functions of the path's coordinate being the polynomials through the nearest
+  !> states.
   function piece(trail, i, h0_from, h0_to) result(work)
     type(trail_t), intent(in) :: trail
     integer, intent(in) :: i

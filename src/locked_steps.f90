@@ -1,10 +1,10 @@
-!> A quasi-static experiment in edge-locked coordinates: nothing is pinned between nodes and nothing is
-!> stiff, at any adhesion strength.
+!> A quasi-static experiment in edge-locked coordinates: nothing is pinned between nodes and
+!> nothing is stiff, at any adhesion strength.
 !>
-!> Usually a step is a few accelerated iterations from the extrapolated state, with one factorisation
-!> for many steps. Where that does not arrive on the branch it came from, the equilibrium path is
-!> traced from the last state to the next stable state at the wanted h0; a fold on the way is a
-!> jump, and known exactly.
+!> Usually a step is a few accelerated iterations from the extrapolated state, with one
+!> factorisation for many steps. Where that does not arrive on the branch it came from, the
+!> equilibrium path is traced from the last state to the next stable state at the wanted h0; a fold
+!> on the way is a jump, and known exactly.
 module locked_steps
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
@@ -13,9 +13,10 @@ module locked_steps
   use solver_options, only: solver_options_t
   use solver, only: solve_state
   use edge_locked, only: mesh_pair_t, hertz_scale, approach, contact
-  use tracer, only: tracer_t, new_tracer, inward, outward, coordinate_of, move_to_mesh, state_at, &
+  use tracer, only: tracer_t, new_tracer, inward, outward, coordinate_of, move_to_mesh, &
     between, node_count, path_control
   use trail, only: trail_t, extend, collapsed
+  use landing, only: land_between
   use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember
   implicit none
   private
@@ -43,10 +44,6 @@ module locked_steps
   real(wp), parameter :: path_step = 0.15_wp
   character(len=*), parameter :: touching = &
     'rigid bodies would touch: this law has no state at h0 <= 0'
-  !> How near to the wanted h0 (relative, or in the law's lengths) the path is followed before h0 itself is
-  !> prescribed, and in how many rounds at most.
-  real(wp), parameter :: near_enough = 1.0e-4_wp
-  integer, parameter :: most_halvings = 40
   !> Residual, in the law's lengths, of states that only lead the way and are not reported.
   real(wp), parameter :: walking_tolerance = 1.0e-6_wp
   !> Smallest step in h0, in the law's lengths, that is tried.
@@ -98,8 +95,8 @@ contains
     call remember(position, state, mesh, .false.)
   end subroutine begin_afar
 
-  !> An H0 at which the bodies hardly deform: twice the gap (37) of the jump into contact, in these units,
-  !> or where repulsion hardly acts.
+  !> An H0 at which the bodies hardly deform: twice the gap (37) of the jump into contact, in these
+  !> units, or where repulsion hardly acts.
   pure real(wp) function far_away(self)
     class(locked_steps_t), intent(in) :: self
 
@@ -160,8 +157,8 @@ contains
       abs(moved - expected) <= 0.5_wp*abs(expected) + 0.02_wp
   end subroutine attempt
 
-  !> Follows the path from the position to the next stable state at h0, noting the first fold that is
-  !> passed: that is where the bodies jump.
+  !> Follows the path from the position to the next stable state at h0, noting the first fold that
+  !> is passed: that is where the bodies jump.
   subroutine trace(self, h0, position, event)
     class(locked_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -216,8 +213,7 @@ contains
     call change_mesh(self, position)
   end subroutine trace
 
-  !> The state at h0 between two neighbours of the trail: by bisection along the path, on which every
-  !> state converges, then at h0 itself.
+  !> See `land_between`.
   subroutine land(self, h0, trail, upper, state, converged)
     class(locked_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -225,41 +221,13 @@ contains
     integer, intent(in) :: upper
     type(state_t), intent(out) :: state
     logical, intent(out) :: converged
-    type(state_t) :: ends(2)
-    real(wp) :: s(2), at, fraction
-    integer :: mesh, side, round
 
-    mesh = trail%mesh(upper)
-    ends = trail%state(upper - 1:upper)
-    s = trail%coordinate(upper - 1:upper)
-    if (trail%mesh(upper - 1) /= mesh) then
-      call move_to_mesh(self%problem, self%pair, trail%mesh(upper - 1), mesh, self%options, &
-        self%frozen, ends(1), converged, self%cost)
-      s(1) = coordinate_of(self%problem, mesh, ends(1))
-      if (.not. converged) ends(1) = ends(2)
-    end if
-    do round = 1, most_halvings
-      if (minval(abs(ends%h0 - h0)) <= near_enough*max(1.0_wp, abs(h0))) exit
-      fraction = (h0 - ends(1)%h0)/(ends(2)%h0 - ends(1)%h0)
-      ! Every third time halfway, for regula falsi may approach from one side only.
-      if (mod(round, 3) == 0) fraction = 0.5_wp
-      at = s(1) + min(max(fraction, 0.05_wp), 0.95_wp)*(s(2) - s(1))
-      call state_at(self%problem, self%pair, mesh, at, s, ends, self%options, self%frozen, state, &
-        converged, self%cost)
-      if (.not. converged) exit
-      side = merge(1, 2, (state%h0 - h0)*(ends(1)%h0 - h0) > 0)
-      ends(side) = state
-      s(side) = at
-    end do
-    side = merge(1, 2, abs(ends(1)%h0 - h0) < abs(ends(2)%h0 - h0))
-    state = ends(side)
-    self%frozen%factors%valid = .false.
-    call solve_state(self%problem, self%pair%grid(mesh), h0_control(self, mesh, h0), self%options, &
-      self%frozen, state, converged, self%cost)
+    call land_between(self%problem, self%pair, h0_control(self, trail%mesh(upper), h0), &
+      self%options, self%frozen, trail, upper, state, converged, self%cost)
   end subroutine land
 
-  !> Reaches h0 in shorter steps: for laws without a contact edge, whose states are unique, a step is
-  !> only ever too long.
+  !> Reaches h0 in shorter steps: for laws without a contact edge, whose states are unique, a step
+  !> is only ever too long.
   subroutine creep(self, h0, position, event)
     class(locked_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -291,8 +259,8 @@ contains
     end do
   end subroutine creep
 
-  !> Passes to the other mesh when the contact radius has crossed the passage; a band of a fifth on either
-  !> side keeps a state near it from going back and forth.
+  !> Passes to the other mesh when the contact radius has crossed the passage; a band of a fifth on
+  !> either side keeps a state near it from going back and forth.
   subroutine change_mesh(self, position)
     class(locked_steps_t), intent(inout) :: self
     type(position_t), intent(inout) :: position
@@ -320,8 +288,8 @@ contains
     if (done) call remember(position, state, to, .false.)
   end subroutine change_mesh
 
-  !> Nodes for the next state of a position: as many as now while they reach far enough and not four times
-  !> too far, so that factorisations keep their size.
+  !> Nodes for the next state of a position: as many as now while they reach far enough and not
+  !> four times too far, so that factorisations keep their size.
   pure integer function nodes_to_use(self, h0, position) result(n)
     type(locked_steps_t), intent(in) :: self
     real(wp), intent(in) :: h0

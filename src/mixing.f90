@@ -1,10 +1,10 @@
-!> The paper's iteration: the new deformation mixed with the old one, at a ratio that is lowered when
-!> the central displacement oscillates or its change grows and otherwise raised to a limit.
+!> The paper's iteration: the new deformation mixed with the old one, at a ratio that is lowered
+!> when the central displacement oscillates or its change grows and otherwise raised to a limit.
 !>
-!> In a stiff contact the ratio must fall to about one over the largest eigenvalue of the operator, and
-!> then a small *change* of the displacement says nothing: the iteration may have all but stopped far
-!> from equilibrium. It is therefore judged on the residual; the paper's own rule is there, as an
-!> option, to reproduce the paper.
+!> In a stiff contact the ratio must fall to about one over the largest eigenvalue of the operator,
+!> and then a small *change* of the displacement says nothing: the iteration may have all but
+!> stopped far from equilibrium. It is therefore judged on the residual; the paper's own rule is
+!> there, as an option, to reproduce the paper.
 module mixing
   use kinds, only: wp
   use problem, only: problem_t
@@ -15,8 +15,8 @@ module mixing
   private
   public :: solve_mixing
 
-  !> Factors by which the ratio falls and rises, and the smallest ratio: below it a million iterations
-  !> would not relax the softest mode.
+  !> Factors by which the ratio falls and rises, and the smallest ratio: below it a million
+  !> iterations would not relax the softest mode.
   real(wp), parameter :: fall = 0.5_wp, rise = 1.05_wp, smallest_ratio = 1.0e-6_wp
   !> Factor by which the change of the central displacement must grow for the ratio to fall. On its
   !> way to equilibrium the change may grow a little for many iterations, and for the more of them

@@ -41,8 +41,9 @@ module path
 
 contains
 
-  !> Traces from h0_start or from where the bodies hardly deform, whichever is farther, to the contact
-  !> at h0_end. Profiles are handed to the observer where the path crosses the values `profiles`.
+  !> Traces from h0_start or from where the bodies hardly deform, whichever is farther, to the
+  !> contact at h0_end. Profiles are handed to the observer where the path crosses the values
+  !> `profiles`.
   subroutine trace_path(steps, h0_start, h0_end, profiles, observer, path)
     class(locked_steps_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_start, h0_end, profiles(:)

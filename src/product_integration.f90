@@ -121,8 +121,8 @@ contains
     rule%far = distance_for(2*n - size(node))
   end function new_distant_rule
 
-  !> Distance, in panel lengths, at which a polynomial of the given degree approximates the kernel to
-  !> 1e-14: the singularity then lies on the Bernstein ellipse with rho**(-degree) = 1e-14.
+  !> Distance, in panel lengths, at which a polynomial of the given degree approximates the kernel
+  !> to 1e-14: the singularity then lies on the Bernstein ellipse with rho**(-degree) = 1e-14.
   pure real(wp) function distance_for(degree)
     integer, intent(in) :: degree
     real(wp) :: rho

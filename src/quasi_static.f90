@@ -14,8 +14,8 @@ module quasi_static
   !> States kept for extrapolation in h0.
   integer, parameter :: memory = 4
 
-  !> Where an experiment is: the present state and as much of its past as the next step can use. Copied
-  !> to come back to it (turning points, refinements).
+  !> Where an experiment is: the present state and as much of its past as the next step can use.
+  !> Copied to come back to it (turning points, refinements).
   type :: position_t
     type(state_t) :: state
     !> Which of the solver's meshes the state lives on.
@@ -25,8 +25,8 @@ module quasi_static
     type(state_t) :: past(memory)
   end type position_t
 
-  !> A state that reported numbers come from, and what was prescribed there; solved again on a finer mesh,
-  !> it tells the error of these numbers.
+  !> A state that reported numbers come from, and what was prescribed there; solved again on a
+  !> finer mesh, it tells the error of these numbers.
   type :: witness_t
     integer :: mesh = 1
     type(control_t) :: control

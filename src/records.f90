@@ -45,7 +45,8 @@ module records
   end type silent_observer_t
 
   abstract interface
-    !> state and grid are given for whoever wants the profile; profile says that the scene asks for it.
+    !> state and grid are given for whoever wants the profile; profile says that the scene asks for
+    !> it.
     subroutine take_record(self, record, problem, grid, state, profile)
       import :: observer_t, record_t, problem_t, discretisation_t, state_t
       class(observer_t), intent(inout) :: self

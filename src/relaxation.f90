@@ -13,17 +13,18 @@ module relaxation
   private
   public :: relax
 
-  !> Most pseudo-time steps; factorisations that are always allowed, and cubes of the matrix's order that all
-  !> of them may amount to (some ten seconds).
+  !> Most pseudo-time steps; factorisations that are always allowed, and cubes of the matrix's
+  !> order that all of them may amount to (some ten seconds).
   integer, parameter :: most_steps = 2000, few_factorisations = 100
   real(wp), parameter :: most_cubes = 1.0e11_wp
-  !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth and its
-  !> limits: a residual that grows, as it does while bodies come apart, is no reason for steps below the
-  !> usual one, an unstable mode is. The nudge off an unstable equilibrium, in the law's lengths.
+  !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth
+  !> and its limits: a residual that grows, as it does while bodies come apart, is no reason for
+  !> steps below the usual one, an unstable mode is. The nudge off an unstable equilibrium, in the
+  !> law's lengths.
   real(wp), parameter :: first_step = 1, growth = 3, usual_step = 0.3_wp, &
     shortest_step = 1.0e-3_wp, longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
-  !> Stands for a residual before the first; and the gap below which bodies that nothing keeps apart have
-  !> fallen onto each other, in the law's lengths.
+  !> Stands for a residual before the first; and the gap below which bodies that nothing keeps
+  !> apart have fallen onto each other, in the law's lengths.
   real(wp), parameter :: unknown = 1.0e100_wp, fallen = 0.01_wp
 
 contains
@@ -62,7 +63,8 @@ contains
         if (.not. factors%valid) return
         converged = determinant_sign(factors) > 0
         if (converged) return
-        ! On an unstable equilibrium nothing drives the bodies away: a nudge towards each other does.
+        ! On an unstable equilibrium nothing drives the bodies away: a nudge towards each other
+        ! does.
         z = z - nudge
         dtau = first_step
         before = unknown

@@ -7,7 +7,8 @@ module simulation
   use problem, only: problem_t
   use scene_groups, only: scene_t
   use deck_text, only: brief
-  use experiment, only: outcome_t, run_experiment, problem_of, path_start, states_planned
+  use experiment, only: outcome_t, run_experiment, problem_of, path_start
+  use plans, only: states_planned
   use sweeps, only: run_sweep
   use comparison, only: classical_rows
   use approximation_tables, only: approximation_rows
@@ -24,8 +25,8 @@ module simulation
 
 contains
 
-  !> Computes a scene and writes its results into the folder `out_dir`. exit_code: 0 done, 1 something
-  !> failed; what was computed is kept and the summary says what failed.
+  !> Computes a scene and writes its results into the folder `out_dir`. exit_code: 0 done, 1
+  !> something failed; what was computed is kept and the summary says what failed.
   subroutine run_scene(scene, out_dir, quiet, resume, exit_code)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: out_dir

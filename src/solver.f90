@@ -1,6 +1,5 @@
 !> One calling form for the three iterations.
 module solver
-  use kinds, only: wp
   use problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, cost_t
@@ -13,8 +12,8 @@ module solver
 
 contains
 
-  !> From `state` to the equilibrium at `control` by options%method. converged: the residual is within
-  !> options%tolerance, or for mixing the chosen stopping rule is met.
+  !> From `state` to the equilibrium at `control` by options%method. converged: the residual is
+  !> within options%tolerance, or for mixing the chosen stopping rule is met.
   subroutine solve_state(this, grid, control, options, frozen, state, converged, cost)
     type(problem_t), intent(in) :: this
     type(discretisation_t), intent(in) :: grid

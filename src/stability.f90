@@ -1,5 +1,5 @@
-!> Stability of an equilibrium at fixed h0: the smallest eigenvalue of the operator, which decides, and
-!> the paper's local criteria, which estimate.
+!> Stability of an equilibrium at fixed h0: the smallest eigenvalue of the operator, which decides,
+!> and the paper's local criteria, which estimate.
 module stability
   use kinds, only: wp
   use problem, only: problem_t

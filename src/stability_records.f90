@@ -1,5 +1,5 @@
-!> An observer that adds the stability of each state to its record and passes it on. Only scenes with
-!> &stability have one.
+!> An observer that adds the stability of each state to its record and passes it on. Only scenes
+!> with &stability have one.
 module stability_records
   use kinds, only: wp
   use problem, only: problem_t

@@ -14,7 +14,8 @@ module summarise
   private
   public :: summary_of
 
-  !> Nodes may lie this many necks apart at the contact edge: beyond it the edge is pinned between them.
+  !> Nodes may lie this many necks apart at the contact edge: beyond it the edge is pinned between
+  !> them.
   real(wp), parameter :: resolved_spacing = 0.2_wp
 
 contains

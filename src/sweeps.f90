@@ -17,8 +17,8 @@ module sweeps
 
 contains
 
-  !> Computes every case of scene%sweep and hands its row to `results`, in the order of the values. A case
-  !> that fails is a row that says so. failed: how many; cost: of all together.
+  !> Computes every case of scene%sweep and hands its row to `results`, in the order of the values.
+  !> A case that fails is a row that says so. failed: how many; cost: of all together.
   subroutine run_sweep(scene, results, failed, cost)
     type(scene_t), intent(in) :: scene
     type(results_t), intent(inout) :: results

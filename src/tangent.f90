@@ -13,8 +13,8 @@ module tangent
 
 contains
 
-  !> h0_slope and load_slope: derivatives of H0 and load by the value of the control at an equilibrium
-  !> under it. Renews the factorisation, which then fits the state exactly.
+  !> h0_slope and load_slope: derivatives of H0 and load by the value of the control at an
+  !> equilibrium under it. Renews the factorisation, which then fits the state exactly.
   subroutine path_slopes(this, grid, control, state, frozen, h0_slope, load_slope, cost)
     type(problem_t), intent(in) :: this
     type(discretisation_t), intent(in) :: grid

@@ -76,8 +76,8 @@ contains
     call self%remember(this, first)
   end subroutine look_back
 
-  !> Whether the coordinate grows along the way: inward the gap on the axis shrinks, the contact radius
-  !> grows.
+  !> Whether the coordinate grows along the way: inward the gap on the axis shrinks, the contact
+  !> radius grows.
   pure integer function sense_of(self)
     class(tracer_t), intent(in) :: self
 
@@ -176,7 +176,8 @@ contains
     if (mesh == contact) node_count = pair%grid(mesh)%nodes_within(pair%reach/c)
   end function node_count
 
-  !> State at the coordinate s: interpolated or extrapolated from states of the same mesh and corrected.
+  !> State at the coordinate s: interpolated or extrapolated from states of the same mesh and
+  !> corrected.
   subroutine state_at(this, pair, mesh, s, coordinate, states, options, frozen, state, converged, &
     cost)
     type(problem_t), intent(in) :: this
@@ -247,9 +248,9 @@ contains
     self%coordinate(self%held) = coordinate_of(this, self%mesh, state)
   end subroutine remember
 
-  !> Passes to the other mesh once the contact radius has crossed the passage (to be called after each
-  !> `advance`), taking the last two states along, so that three neighbours on one mesh surround every
-  !> fold.
+  !> Passes to the other mesh once the contact radius has crossed the passage (to be called after
+  !> each `advance`), taking the last two states along, so that three neighbours on one mesh
+  !> surround every fold.
   subroutine change_mesh(self, this, pair, options, lost, cost)
     class(tracer_t), intent(inout) :: self
     type(problem_t), intent(in) :: this

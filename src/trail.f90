@@ -1,11 +1,12 @@
-!> The record of a traced path: its states in order, its folds found, polished and put in their places,
-!> and the number of unstable modes of each state.
+!> The record of a traced path: its states in order, its folds found, polished and put in their
+!> places, and the number of unstable modes of each state.
 !>
-!> A fold is an extremum of h0 along the path. Whether stability is lost or gained there follows from
-!> the sense of turning in the plane of h0 and load (Maddocks, Arch. Rational Mech. Anal. 99, 1987):
-!> with primes for derivatives along the path, an eigenvalue of the operator passes zero upward where
-!> h0'' F' > 0. Far apart there are none below zero. Alternating signs would not do: of the two folds
-!> that follow the jump into contact at large sigma, the first makes a second mode unstable.
+!> A fold is an extremum of h0 along the path. Whether stability is lost or gained there follows
+!> from the sense of turning in the plane of h0 and load (Maddocks, Arch. Rational Mech. Anal. 99,
+!> 1987): with primes for derivatives along the path, an eigenvalue of the operator passes zero
+!> upward where h0'' F' > 0. Far apart there are none below zero. Alternating signs would not do:
+!> of the two folds that follow the jump into contact at large sigma, the first makes a second mode
+!> unstable.
 module trail
   use kinds, only: wp
   use problem, only: problem_t
@@ -35,9 +36,9 @@ module trail
     logical, allocatable :: fold(:)
   end type trail_t
 
-  !> Without repulsion the bodies fall onto each other once they have jumped, and the path goes on to no gap
-  !> at all. What is left of the gap at the first fold when it is followed no farther, and if there
-  !> is no fold, how many of the law's lengths.
+  !> Without repulsion the bodies fall onto each other once they have jumped, and the path goes on
+  !> to no gap at all. What is left of the gap at the first fold when it is followed no farther,
+  !> and if there is no fold, how many of the law's lengths.
   real(wp), parameter :: collapse = 0.3_wp
 
 contains
@@ -57,10 +58,10 @@ contains
     collapsed = trail%state(trail%held)%axis_gap < collapse*scale
   end function collapsed
 
-  !> Advances the tracer by a step and appends the new state, and the fold if one has been passed. A
-  !> fold between the two newest states is seen only with the next state, so what lies before the
-  !> newest but one is final. A new trail begins with the tracer's own newest state. States are solved as
-  !> `walking` says, folds as `options` says.
+  !> Advances the tracer by a step and appends the new state, and the fold if one has been passed.
+  !> A fold between the two newest states is seen only with the next state, so what lies before the
+  !> newest but one is final. A new trail begins with the tracer's own newest state. States are
+  !> solved as `walking` says, folds as `options` says.
   subroutine extend(trail, walker, this, pair, walking, options, lost, cost)
     type(trail_t), intent(inout) :: trail
     type(tracer_t), intent(inout) :: walker
@@ -125,9 +126,9 @@ contains
     trail%unstable(place + 1:trail%held) = trail%unstable(place + 1:trail%held) + change
   end subroutine insert_fold
 
-  !> The state at the extremum of h0 or load that the last three states surround: a root of its exact
-  !> derivative along the path, begun at the extremum of the polynomial through the states and
-  !> found by secants. lost: a solve failed or the root escaped.
+  !> The state at the extremum of h0 or load that the last three states surround: a root of its
+  !> exact derivative along the path, begun at the extremum of the polynomial through the states
+  !> and found by secants. lost: a solve failed or the root escaped.
   subroutine polish_extremum(this, pair, mesh, quantity, coordinate, states, options, s, state, &
     lost, cost)
     type(problem_t), intent(in) :: this

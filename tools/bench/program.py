@@ -4,6 +4,7 @@ import dataclasses
 import math
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -60,13 +61,14 @@ class Run:
 
 
 class Program:
-    """The programs of one build, run in a folder of their own."""
+    """The program of one build, run in a folder of its own."""
 
     def __init__(self, build, scratch):
-        self.snapin = pathlib.Path(build) / "snapin"
         self.build = pathlib.Path(build)
         self.scratch = pathlib.Path(scratch)
         self.scratch.mkdir(parents=True, exist_ok=True)
+        # A copy, so that everything is measured with one program even if it is built anew meanwhile.
+        self.snapin = pathlib.Path(shutil.copy2(self.build / "snapin", self.scratch))
         self._references = {}
 
     def environment(self, threads=1):
