@@ -170,7 +170,8 @@ contains
 
     step = -f
     if (depth == 0) return
-    if (.not. allocated(history%dz)) allocate (history%dz(size(z), depth), history%df(size(z), depth))
+    if (.not. allocated(history%dz)) &
+      allocate (history%dz(size(z), depth), history%df(size(z), depth))
     if (allocated(history%f_before)) then
       if (history%held == depth) then
         history%dz(:, :depth - 1) = history%dz(:, 2:)

@@ -42,7 +42,8 @@ contains
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, set)
     count = 1
-    !$ if (order >= worthwhile .and. .not. omp_in_parallel()) count = int(omp_get_max_threads(), c_int)
+    !$ if (order >= worthwhile .and. .not. omp_in_parallel()) &
+    !$   count = int(omp_get_max_threads(), c_int)
     call set(count)
   end subroutine use_threads_for
 

@@ -78,8 +78,8 @@ contains
     logical, intent(in) :: elastic
     type(discretisation_t) :: grid
 
-    grid = new_panel_grid(1.0_wp, graded_ends(1.0_wp, extent, min(finest, 0.25_wp), 1.0_wp, extent), &
-      order, elastic)
+    grid = new_panel_grid(1.0_wp, &
+      graded_ends(1.0_wp, extent, min(finest, 0.25_wp), 1.0_wp, extent), order, elastic)
   end function new_locked_grid
 
   !> Contact radius that JKR theory (11) gives at H0, with a margin of a fifth; for a law without

@@ -22,7 +22,8 @@ contains
 
   !> The state at the h0 that `control` prescribes, between the neighbours upper - 1 and upper of a
   !> trail: by bisection along the path, on which every state converges, then at h0 itself.
-  subroutine land_between(this, pair, control, options, frozen, trail, upper, state, converged, cost)
+  subroutine land_between(this, pair, control, options, frozen, trail, upper, state, converged, &
+    cost)
     type(problem_t), intent(in) :: this
     type(mesh_pair_t), intent(in) :: pair
     type(control_t), intent(in) :: control

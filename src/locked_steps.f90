@@ -279,8 +279,8 @@ contains
     end if
     state = position%state
     self%frozen%factors%valid = .false.
-    call move_to_mesh(self%problem, self%pair, position%mesh, to, self%options, self%frozen, state, &
-      done, self%cost)
+    call move_to_mesh(self%problem, self%pair, position%mesh, to, self%options, self%frozen, &
+      state, done, self%cost)
     if (.not. done) return
     ! The same contact on the other mesh is at an h0 that differs by the meshes' errors.
     call solve_state(self%problem, self%pair%grid(to), h0_control(self, to, position%state%h0), &

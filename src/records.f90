@@ -6,7 +6,8 @@ module records
   use equilibrium, only: state_t, radius_of_gap
   implicit none
   private
-  public :: record_t, observer_t, silent_observer_t, theory_row_t, record_of, stable_yes, stable_no, stable_unasked
+  public :: record_t, observer_t, silent_observer_t, theory_row_t, record_of
+  public :: stable_yes, stable_no, stable_unasked
 
   !> The column `stable`.
   integer, parameter :: stable_yes = 1, stable_no = 0, stable_unasked = -1

@@ -130,7 +130,8 @@ contains
     character(len=:), allocatable :: text
     character(len=160) :: buffer
 
-    write (buffer, '(i0, a, f0.2, a)') outcome%cost%states, ' states in ', summary%wall_seconds, ' s'
+    write (buffer, '(i0, a, f0.2, a)') outcome%cost%states, ' states in ', summary%wall_seconds, &
+      ' s'
     if (summary%wall_seconds < 1) write (buffer, '(i0, a, f5.3, a)') outcome%cost%states, &
       ' states in ', summary%wall_seconds, ' s'
     text = trim(buffer)

@@ -56,8 +56,8 @@ contains
     if (allocated(outcome%path)) call take_path(problem, outcome, summary)
     if (.not. problem%rigid) call judge_resolution(summary)
     if (outcome%chosen%options%stop_on_change .and. outcome%chosen%options%method == 'mixing') then
-      call summary%warn('the iteration was stopped on a small change of the displacement, which is '// &
-        'not convergence: the largest residual left is '//about(summary%worst_residual)// &
+      call summary%warn('the iteration was stopped on a small change of the displacement, '// &
+        'which is not convergence: the largest residual left is '//about(summary%worst_residual)// &
         ' lengths of the force law')
       ! Equations that were not asked to hold may hold all the same.
       summary%converged = summary%worst_residual <= outcome%chosen%options%tolerance
@@ -210,7 +210,8 @@ contains
     if (summary%resolved) return
     call summary%warn('under-resolved: nodes are '//about(summary%spacing_over_neck)// &
       ' neck widths apart at the contact edge, which is then pinned between them; use '// &
-      about(summary%spacing_over_neck/resolved_spacing)//' times as many nodes or grid = ''panels''')
+      about(summary%spacing_over_neck/resolved_spacing)// &
+      ' times as many nodes or grid = ''panels''')
   end subroutine judge_resolution
 
   !> A number for a message, to three digits.

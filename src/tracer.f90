@@ -162,8 +162,8 @@ contains
     done = c > 0
     if (.not. done) return
     state = regrid(state, pair%grid(from), pair%grid(to), c, node_count(pair, to, c))
-    call solve_anderson(this, pair%grid(to), path_control(this, to, coordinate_of(this, to, state)), &
-      options, frozen, state, done, cost)
+    call solve_anderson(this, pair%grid(to), &
+      path_control(this, to, coordinate_of(this, to, state)), options, frozen, state, done, cost)
   end subroutine move_to_mesh
 
   !> Nodes of a mesh that are in use at the scale c.

@@ -78,8 +78,8 @@ contains
     if (lost) return
     n = walker%held
     unstable = trail%unstable(trail%held)
-    call insert(trail, trail%held + 1, walker%past(n), walker%mesh, walker%coordinate(n), unstable, &
-      .false.)
+    call insert(trail, trail%held + 1, walker%past(n), walker%mesh, walker%coordinate(n), &
+      unstable, .false.)
     if (n >= 3) then
       if (surrounded(walker%past(n - 2:n)%h0)) &
         call insert_fold(trail, walker, this, pair, options, lost, cost)
@@ -155,11 +155,12 @@ contains
     end associate
     slope_size = huge(1.0_wp)
     do round = 1, most_rounds
-      call state_at(this, pair, mesh, s, coordinate, states, options, frozen, state, converged, cost)
+      call state_at(this, pair, mesh, s, coordinate, states, options, frozen, state, converged, &
+        cost)
       lost = .not. converged
       if (lost) return
-      call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), state, frozen, slopes(1), &
-        slopes(2), cost)
+      call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), state, frozen, &
+        slopes(1), slopes(2), cost)
       slope = slopes(quantity)
       ! Rounding rules once the derivative no longer falls.
       if (abs(slope) >= slope_size) exit
