@@ -20,7 +20,7 @@ contains
   subroutine force_curve(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
     method, grid, accuracy, nodes, r_max, h0, states, jumps, jump_count, highest, error_estimate, &
     reached, reason, warnings, stat, message, n)
-    use choice, only: choose, finer, fixed_mesh
+    use choice, only: choose, companion, fixed_mesh
     use collector, only: collector_t
     use cycle, only: branch_t
     use edge_locked, only: new_mesh_pair
@@ -89,7 +89,7 @@ contains
       call run_stretches(fixed, h0/problem%length, rows, stretch)
       witnesses = [(stretch(k)%witness, k=1, size(stretch))]
       if (rows%held > 0) outcome%error_estimate = estimate_fixed(problem, fixed%mesh, &
-        fixed_mesh(finer(outcome%chosen), problem, low), witnesses, fixed%cost)
+        fixed_mesh(companion(outcome%chosen), problem, low), witnesses, fixed%cost)
     end if
 
     do k = 1, size(stretch)

@@ -8,8 +8,8 @@ module blas_threads
   private
   public :: use_threads_for
 
-  !> Order of the matrix from which threads pay.
-  integer, parameter :: worthwhile = 1000
+  !> Order of the matrix from which threads pay, even on a machine with other work.
+  integer, parameter :: worthwhile = 2500
 
   interface
     function dlsym(handle, name) bind(c, name='dlsym') result(address)

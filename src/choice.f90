@@ -10,7 +10,7 @@ module choice
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: choice_t, choose, fixed_mesh, finer, resolution_for
+  public :: choice_t, choose, fixed_mesh, companion, resolution_for
 
   type :: choice_t
     !> 'edge_locked' panels, or fixed 'uniform' or 'panels'.
@@ -26,6 +26,8 @@ module choice
   !> nodes, which bounds what is chosen unasked.
   real(wp), parameter :: comfortable = 0.2_wp
   integer, parameter :: fewest = 200, most = 1500
+  !> Nodes up to which the error of a uniform grid is estimated on a finer one.
+  integer, parameter :: largest_doubled = 300
 
 contains
 
@@ -87,7 +89,7 @@ contains
     real(wp), intent(in) :: accuracy
     type(resolution_t) :: resolution
 
-    resolution%order = min(12, max(6, nint(5 - 0.6_wp*log10(accuracy))))
+    resolution%order = min(16, max(6, nint(4.6_wp - 0.8_wp*log10(accuracy))))
     resolution%accuracy = 0.1_wp*accuracy
   end function resolution_for
 
@@ -117,16 +119,22 @@ contains
       .not. problem%rigid)
   end function fixed_mesh
 
-  !> A finer choice of a fixed grid, to estimate its error with: twice the nodes on the same length
-  !> and a fifth farther out, or panels of two more nodes.
-  pure function finer(chosen)
+  !> Another choice of a fixed grid, to estimate the error by: panels of two more nodes; twice the nodes on
+  !> the same length and a fifth farther out, or where that would cost more than the run, half of them
+  !> and a fifth less far.
+  pure function companion(chosen)
     type(choice_t), intent(in) :: chosen
-    type(choice_t) :: finer
+    type(choice_t) :: companion
 
-    finer = chosen
-    finer%extent = 1.2_wp*chosen%extent
-    finer%nodes = 12*chosen%nodes/5
-    finer%resolution%order = chosen%resolution%order + 2
-  end function finer
+    companion = chosen
+    companion%resolution%order = chosen%resolution%order + 2
+    if (chosen%nodes <= largest_doubled) then
+      companion%extent = 1.2_wp*chosen%extent
+      companion%nodes = 12*chosen%nodes/5
+    else
+      companion%extent = chosen%extent/1.2_wp
+      companion%nodes = 5*chosen%nodes/12
+    end if
+  end function companion
 
 end module choice

@@ -6,7 +6,7 @@ module experiment
   use force_law, only: force_law_t
   use laws, only: law_parameters_t, new_law
   use scene_groups, only: scene_t
-  use choice, only: choice_t, choose, fixed_mesh, finer
+  use choice, only: choice_t, choose, fixed_mesh, companion
   use edge_locked, only: new_mesh_pair, beyond_contact
   use quasi_static, only: quasi_static_t, position_t, witness_t
   use locked_steps, only: locked_steps_t
@@ -138,7 +138,7 @@ contains
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
     of_cycle%error_estimate = estimate_fixed(problem, steps%mesh, &
-      fixed_mesh(finer(outcome%chosen), problem, low), witnesses_of(of_cycle), steps%cost)
+      fixed_mesh(companion(outcome%chosen), problem, low), witnesses_of(of_cycle), steps%cost)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     if (.not. allocated(outcome%error_estimate)) outcome%error_estimate = 0
     outcome%error_estimate = max(outcome%error_estimate, of_cycle%error_estimate)

@@ -141,8 +141,9 @@ contains
     type(state_t), intent(out) :: state
     logical, intent(out) :: lost
     type(cost_t), intent(inout) :: cost
+    type(state_t) :: trial
     type(frozen_t) :: frozen
-    real(wp) :: slopes(2), slope, slope_size, slope_before, s_before, s_next, low, high
+    real(wp) :: slopes(2), slope, slope_size, slope_before, s_before, s_next, s_best, low, high
     integer :: round, sense, n
     logical :: converged
 
@@ -155,16 +156,20 @@ contains
     end associate
     slope_size = huge(1.0_wp)
     do round = 1, most_rounds
-      call state_at(this, pair, mesh, s, coordinate, states, options, frozen, state, converged, &
-        cost)
+      call state_at(this, pair, mesh, s, coordinate, states, options, frozen, trial, converged, cost)
       lost = .not. converged
       if (lost) return
-      call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), state, frozen, &
-        slopes(1), slopes(2), cost)
+      call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), trial, frozen, slopes(1), &
+        slopes(2), cost)
       slope = slopes(quantity)
-      ! Rounding rules once the derivative no longer falls.
-      if (abs(slope) >= slope_size) exit
-      slope_size = abs(slope)
+      if (abs(slope) < slope_size) then
+        slope_size = abs(slope)
+        state = trial
+        s_best = s
+      else if (round > 2) then
+        ! Rounding rules once the derivative no longer falls; the first two only set the secant up.
+        exit
+      end if
       ! A maximum has its rising side before it.
       if ((slope > 0) .eqv. (sense > 0)) then
         low = s
@@ -182,6 +187,7 @@ contains
       slope_before = slope
       s = s_next
     end do
+    s = s_best
   end subroutine polish_extremum
 
   !> H0 or load of states.
