@@ -103,6 +103,8 @@ contains
         call say(out_dir//': warning: '//summary%warnings(i)%text, quiet)
       end do
     end if
+    if (allocated(summary%grid)) call say(out_dir//': grid '//summary%grid//', method '// &
+      summary%method//': '//summary%chosen_because, quiet)
     call say(report(out_dir, summary, outcome), quiet)
     if (summary%converged) exit_code = 0
   end subroutine run_scene
