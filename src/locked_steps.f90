@@ -336,8 +336,6 @@ contains
     witness%control = path_control(self%problem, trail%mesh(i), trail%coordinate(i))
     witness%state = trail%state(i)
     witness%h0 = .true.
-    ! Along the path the load goes through a fold at full slope, h0 does not.
-    witness%load = .false.
   end function fold_witness
 
   pure function witness(self, position)

@@ -123,7 +123,6 @@ contains
       call add_witness(path%witness, fold_witness(steps, trail, fold(j)))
     end do
     finish = fold_witness(steps, trail, trail%held)
-    finish%load = .true.
     finish%displacement = .true.
     call add_witness(path%witness, finish)
     path%unstable_after = trail%unstable(min(fold + 1, trail%held))
