@@ -78,6 +78,7 @@ contains
   pure subroutine warn(self, text)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: text
+    type(line_t) :: line
     integer :: i
 
     if (.not. allocated(self%warnings)) allocate (self%warnings(0))
@@ -85,7 +86,9 @@ contains
     do i = 1, size(self%warnings)
       if (self%warnings(i)%text == text) return
     end do
-    self%warnings = [self%warnings, line_t(text)]
+    ! A structure constructor inside an array constructor would leak in gfortran.
+    line%text = text
+    self%warnings = [self%warnings, line]
     if (size(self%warnings) == most_warnings) &
       self%warnings(most_warnings)%text = 'further warnings are not shown'
   end subroutine warn
