@@ -36,6 +36,11 @@ module case_columns
     'resolved [] whether the mesh is fine enough, 1 or 0', &
     'converged [] whether every equilibrium was found, 1 or 0']
 
+  !> With &classical.
+  character(len=*), parameter :: of_classical(*) = [character(len=width) :: &
+    'maugis_lambda [] parameter of Maugis-Dugdale theory', &
+    'maugis_pull_off [N] pull-off of Maugis-Dugdale theory']
+
   !> With &approximations.
   character(len=*), parameter :: of_approximations(*) = [character(len=width) :: &
     'jump_criterion_29_h0 [m] where approaching bodies violate (29)', &
@@ -58,12 +63,17 @@ contains
     integer :: k, n
 
     n = size(always)
+    if (allocated(scene%classical)) n = n + size(of_classical)
     if (allocated(scene%approximations)) n = n + size(of_approximations)
     if (allocated(scene%unloading)) n = n + 2*size(scene%unloading%from)
     ! Filled item by item: gfortran 12 overruns constructors of strings made on the way.
     allocate (columns(n))
     n = size(always)
     columns(:n) = always
+    if (allocated(scene%classical)) then
+      columns(n + 1:n + size(of_classical)) = of_classical
+      n = n + size(of_classical)
+    end if
     if (allocated(scene%approximations)) then
       columns(n + 1:n + size(of_approximations)) = of_approximations
       n = n + size(of_approximations)
@@ -93,6 +103,8 @@ contains
         or_nan(s%end_displacement), or_nan(s%end_load), or_nan(s%energy_lost), &
         or_nan(s%worst_residual), or_nan(s%spacing_over_neck), or_nan(s%error_estimate), &
         as_number(s%resolved), as_number(s%converged)]
+      if (allocated(scene%classical)) values = [values, or_nan(s%maugis_lambda), &
+        or_nan(s%maugis_pull_off)]
       if (allocated(scene%approximations)) values = [values, &
         or_nan(s%jump_criterion_29_h0), or_nan(s%jump_criterion_29_load), &
         or_nan(s%jump_equation_37_h0), or_nan(s%jump_equation_37_load), &

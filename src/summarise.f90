@@ -3,8 +3,9 @@
 module summarise
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
-  use problem, only: problem_t, tabor_parameter, surface_energy
+  use problem, only: problem_t, tabor_parameter, surface_energy, largest_tension
   use classical, only: jkr_pull_off, dmt_pull_off
+  use maugis, only: maugis_lambda, maugis_pull_off
   use approximation_tables, only: jump_t, jumps_t, jumps_of
   use scene_groups, only: scene_t
   use deck_text, only: brief
@@ -84,8 +85,22 @@ contains
     else if (scene%force%law == 'exponential' .and. .not. problem%rigid) then
       summary%big_lambda = problem%coupling
     end if
+    if (allocated(scene%classical)) call take_maugis(problem, summary)
     if (allocated(scene%approximations)) call estimate_jumps(problem, summary)
   end subroutine describe
+
+  !> Maugis-Dugdale theory with the law's surface energy and largest tension, where both exist.
+  subroutine take_maugis(problem, summary)
+    type(problem_t), intent(in) :: problem
+    type(summary_t), intent(inout) :: summary
+    real(wp) :: gamma, strength
+
+    gamma = surface_energy(problem)
+    strength = largest_tension(problem)
+    if (problem%rigid .or. .not. (gamma > 0 .and. strength > 0)) return
+    summary%maugis_lambda = maugis_lambda(problem%radius, problem%stiffness, gamma, strength)
+    summary%maugis_pull_off = -maugis_pull_off(problem%radius, problem%stiffness, gamma, strength)
+  end subroutine take_maugis
 
   !> Where approaching bodies jump in the approximation of slow deformation.
   subroutine estimate_jumps(problem, summary)

@@ -21,6 +21,8 @@ module summary
     logical, allocatable :: converged
     !> Dimensionless; [J/m^2]; loads [N].
     real(wp), allocatable :: sigma, tabor, big_lambda, surface_energy, jkr_pull_off, dmt_pull_off
+    !> Maugis' parameter, and his pull-off, positive [N].
+    real(wp), allocatable :: maugis_lambda, maugis_pull_off
     !> Positive [N], and where [m].
     real(wp), allocatable :: max_tension, max_tension_h0
     !> Folds in h0 [m], the load [N] there and, from a cycle, how well h0 is known [m].
@@ -101,6 +103,8 @@ contains
       assignment_of('surface_energy', self%surface_energy) // &
       assignment_of('jkr_pull_off', self%jkr_pull_off) // &
       assignment_of('dmt_pull_off', self%dmt_pull_off) // &
+      assignment_of('maugis_lambda', self%maugis_lambda) // &
+      assignment_of('maugis_pull_off', self%maugis_pull_off) // &
       assignment_of('max_tension', self%max_tension) // &
       assignment_of('max_tension_h0', self%max_tension_h0) // &
       assignment_of('jump_in_h0', self%jump_in_h0) // &
