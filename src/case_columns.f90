@@ -1,5 +1,5 @@
-!> What a case of a sweep leaves in the table of all cases: a list of columns, which follows from the
-!> deck, and one number a column, which follows from the summary of the case.
+!> What a case of a sweep leaves in the table of all cases: a list of columns, which follows from
+!> the deck, and one number a column, which follows from the summary of the case.
 module case_columns
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp

@@ -46,7 +46,8 @@ contains
           hertz_radius_at_displacement(delta, r))
         if (.not. strength > 0) cycle
         a = maugis_radius_at_displacement(delta, r, y, gamma, strength)
-        if (.not. ieee_is_nan(a)) call add('maugis_dugdale', maugis_load(a, r, y, gamma, strength), a)
+        if (.not. ieee_is_nan(a)) &
+          call add('maugis_dugdale', maugis_load(a, r, y, gamma, strength), a)
       end do
     end associate
 
