@@ -56,10 +56,13 @@ contains
     subroutine add(theory, load, contact_radius)
       character(len=*), intent(in) :: theory
       real(wp), intent(in) :: load, contact_radius
+      type(theory_row_t) :: row
 
       ! A theory without a state here says NaN.
       if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
-      rows = [rows, theory_row_t(theory, h0, delta, load, contact_radius)]
+      ! A structure constructor inside an array constructor would leak in gfortran.
+      row = theory_row_t(theory, h0, delta, load, contact_radius)
+      rows = [rows, row]
     end subroutine add
 
   end function classical_rows

@@ -38,7 +38,7 @@ memory() {
   has valgrind || { say 'valgrind is missing: apt-get install valgrind'; return 1; }
   builds build-memory --buildtype=debugoptimized -Dpython=disabled || return
   scratch=$(mktemp -d)
-  failed=0
+  errors=0
   for deck in "$here"/decks/*.nml; do
     name=$(basename "$deck" .nml)
     OMP_NUM_THREADS=1 OPENBLAS_CORETYPE=Haswell valgrind -q --error-exitcode=99 --leak-check=full \
@@ -46,13 +46,13 @@ memory() {
       "$top/build-memory/snapin" --quiet --out "$scratch" "$deck" > "$scratch/$name.log" 2>&1
     status=$?
     if [ $status = 99 ]; then
-      failed=1
+      errors=1
       cat "$scratch/$name.log"
     fi
     printf 'memory: %s: %s\n' "$name" "$([ $status = 99 ] && echo errors || echo clean)"
   done
   rm -rf "$scratch"
-  return $failed
+  return $errors
 }
 
 # gcovr merges what gcov counts and writes the report.
