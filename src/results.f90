@@ -15,7 +15,7 @@ module results
   use text_file, only: output_t, partial
   use tables, only: table_t, cells
   use profiles, only: profile_columns, write_profile
-  use summary, only: summary_t, summary_text, resolved_text, number_columns, numbers_of
+  use summary, only: summary_t, summary_text, number_columns, numbers_of
   use progress, only: progress_t
   implicit none
   private
@@ -189,18 +189,15 @@ contains
     type(deck_t), intent(in) :: deck
     type(summary_t) :: complete
     type(output_t) :: file
-    character(len=:), allocatable :: path, text
 
     if (allocated(self%trouble)) return
     complete = summary
     if (.not. allocated(complete%title)) complete%title = self%title
     if (.not. allocated(complete%version)) complete%version = self%version
     call self%mark('summary.nml')
-    path = self%path_of('summary.nml') // partial
-    call resolved_text(deck, path, text, self%trouble)
-    if (.not. allocated(self%trouble)) call file%open(path, self%trouble)
+    call file%open(self%path_of('summary.nml') // partial, self%trouble)
     if (.not. allocated(self%trouble)) &
-      call file%put(summary_text(complete, cost) // text, self%trouble)
+      call file%put(summary_text(complete, cost) // deck%resolved(), self%trouble)
     if (.not. allocated(self%trouble)) call file%close(self%trouble)
   end subroutine write_summary
 
