@@ -8,7 +8,7 @@ module snapin_flat
   implicit none
   private
   public :: classical_states, classical_curve, classical_profile, classical_loads
-  public :: classical_pull_off, maugis_numbers
+  public :: classical_pull_off, maugis_numbers, use_one_thread
 
 contains
 
@@ -186,5 +186,13 @@ contains
     lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
     edge_ratio = maugis_edge_ratio(a, radius, stiffness, surface_energy, strength)
   end subroutine maugis_numbers
+
+  !> Lets the calling thread compute alone from now on: in a process that was forked after the
+  !> OpenMP run-time had started threads they are gone, and it would wait for them for ever.
+  subroutine use_one_thread()
+    !$ use omp_lib, only: omp_set_num_threads
+
+    !$ call omp_set_num_threads(1)
+  end subroutine use_one_thread
 
 end module snapin_flat
