@@ -92,7 +92,6 @@ def vectors(good):
         "None": None,
         "row": good[None, :],
         "column": good[:, None],
-        "matrix": np.matrix(good),
         "3-d": good.reshape(1, n, 1),
         "empty 2-d": np.empty((0, 4)),
         "complex array": good * (1 + 1j),
@@ -156,7 +155,8 @@ def vectors(good):
     for value in (0.0, *EXTREMES):
         yield f"all {value:g}", np.full(n, value), np.full(n, value)
         yield f"all {-value:g}", np.full(n, -value), np.full(n, -value)
-        yield f"times {value:g}", good * value, good * value
+        scaled = np.minimum(good, np.finfo(float).max / value) * value if value > 0 else good * 0
+        yield f"times {value:g}", scaled, scaled
         yield f"last {value:g}", np.r_[good[:-1], value], np.r_[good[:-1], value]
         yield f"first {-value:g}", np.r_[-value, good[1:]], np.r_[-value, good[1:]]
     yield "negative", -good, -good
