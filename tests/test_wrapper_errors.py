@@ -9,6 +9,10 @@ import pytest
 import snapin
 from wrapper_registry import UNIT, law_of
 
+# A law of hardly any force.
+WEAK = snapin.exponential(p0=1e-40, decay_length=1e30)
+
+
 # --- What did not converge
 
 
@@ -99,6 +103,15 @@ def path_with(**changes):
         (path_with(h0_start=math.inf), "h0_start"),
         (path_with(radius=-1), "radius"),
         (path_with(accuracy=2), "accuracy"),
+        # Beyond all physical sense, beyond what was tried, or beyond float64.
+        (curve_with(radius=1e60), "radius"),
+        (curve_with(h0=[4e9, 2.0]), "h0"),
+        (curve_with(stiffness=1e-20), "stiffness"),
+        (curve_with(stiffness=1e40, radius=1e-50, law=WEAK), "stiffness"),
+        (path_with(h0_start=1e9), "h0_start"),
+        (lambda: snapin.force_law("lennard_jones", 1e-60, hamaker=1, z0=1), "gap"),
+        (lambda: snapin.panel_mesh(np.arange(400.0), 64), "ends"),
+        (lambda: snapin.numerics.Mesh("uniform", 1.0, [0.0, 2.0], 5), "ends"),
         (lambda: snapin.lennard_jones(hamaker=-1, z0=1), "hamaker"),
         (lambda: snapin.lennard_jones(hamaker=1, z0=0), "z0"),
         (lambda: snapin.exponential(p0=math.nan, decay_length=1), "p0"),
@@ -145,3 +158,14 @@ def test_an_unknown_name_is_answered_with_those_there_are(call, name, known):
 def test_what_is_of_another_kind_is_an_error_that_begins_with_its_name(call, name):
     with pytest.raises((TypeError, ValueError), match=rf"^{name}: "):
         call()
+
+
+def test_a_mesh_keeps_its_own_ends_and_lets_nobody_change_them():
+    ends = np.array([0.0, 1.0, 3.0])
+    mesh = snapin.panel_mesh(ends, 4)
+    before = mesh.matrix().nodes
+    ends[:] = 7.0
+    np.testing.assert_array_equal(mesh.matrix().nodes, before)
+    for array in mesh.ends, mesh.x, mesh.weight:
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1.0
