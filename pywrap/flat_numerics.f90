@@ -271,7 +271,7 @@ contains
       mesh = new_panel_grid(centre, panel_end, order, elastic)
     case default
       stat = bad_input
-      message = 'there is no mesh of kind "'//trim(kind)//'"'
+      message = 'kind: there is no mesh of kind "'//trim(kind)//'"'
     end select
   end subroutine make_mesh
 

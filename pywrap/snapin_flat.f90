@@ -45,7 +45,7 @@ contains
       a = maugis_radius_at_edge_ratio(values, radius, stiffness, surface_energy, strength)
     case default
       stat = bad_input
-      message = 'theory "'//trim(theory)//'" has no states at given "'//trim(control)//'"'
+      message = 'theory: "'//trim(theory)//'" has no states at given "'//trim(control)//'"'
     end select
   end subroutine classical_states
 
@@ -81,7 +81,7 @@ contains
       displacement = maugis_displacement(a, radius, stiffness, surface_energy, strength)
     case default
       stat = bad_input
-      message = 'there is no theory "'//trim(theory)//'"'
+      message = 'theory: there is no "'//trim(theory)//'"'
     end select
   end subroutine classical_curve
 
@@ -110,7 +110,7 @@ contains
       gap = jkr_gap(r, a, radius, stiffness, surface_energy)
     case default
       stat = bad_input
-      message = 'theory "'//trim(theory)//'" has no profile'
+      message = 'theory: "'//trim(theory)//'" has no profile'
     end select
   end subroutine classical_profile
 
@@ -139,7 +139,7 @@ contains
       load = dmt_load_at_displacement(displacement, radius, stiffness, surface_energy)
     case default
       stat = bad_input
-      message = 'theory "'//trim(theory)//'" gives no load at a displacement'
+      message = 'theory: "'//trim(theory)//'" gives no load at a displacement'
     end select
   end subroutine classical_loads
 
@@ -169,7 +169,7 @@ contains
       load = maugis_pull_off(radius, stiffness, surface_energy, strength)
     case default
       stat = bad_input
-      message = 'theory "'//trim(theory)//'" has no pull-off at fixed "'//trim(control)//'"'
+      message = 'theory: "'//trim(theory)//'" has no pull-off at fixed "'//trim(control)//'"'
     end select
   end subroutine classical_pull_off
 

@@ -135,7 +135,7 @@ def test_what_is_beyond_the_memory_that_is_free_is_refused(monkeypatch):
     """The system would promise it, and end the process when it is used."""
     monkeypatch.setattr("snapin.arguments._free_memory", lambda: 10**6)
     mesh = snapin.uniform_mesh(1000, 10.0)
-    with pytest.raises(MemoryError, match=r"^mesh: 0.024 GB of memory are needed, 0.001 GB are free"):
+    with pytest.raises(MemoryError, match="^mesh: 0.024 GB of memory .* 0.001 GB are free$"):
         mesh.matrix()
     with pytest.raises(MemoryError, match="^nodes: "):
         snapin.force_curve([4.0, 3.0], **UNIT, law=law_of(0.1), grid="uniform", nodes=1000)

@@ -79,7 +79,8 @@ def fault(entry, name, value, clean):
             return f"raised {type(result).__name__}: {str(result)[:200]}"
         # Where a value is right by itself another may be the one that does not fit.
         alone = clean is REFUSED and entry.kinds[name] != "paired"
-        if not str(result).startswith(tuple(f"{one}: " for one in ([name] if alone else entry.good))):
+        named = tuple(f"{one}: " for one in ([name] if alone else entry.good))
+        if not str(result).startswith(named):
             return f"the message names no argument: {type(result).__name__}: {str(result)[:200]}"
         if len(str(result)) > 400:
             return "the message has more than 400 characters"

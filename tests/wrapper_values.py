@@ -155,7 +155,8 @@ def vectors(good):
     for value in (0.0, *EXTREMES):
         yield f"all {value:g}", np.full(n, value), np.full(n, value)
         yield f"all {-value:g}", np.full(n, -value), np.full(n, -value)
-        scaled = np.minimum(good, np.finfo(float).max / value) * value if value > 0 else good * 0
+        with np.errstate(over="ignore"):
+            scaled = good * value
         yield f"times {value:g}", scaled, scaled
         yield f"last {value:g}", np.r_[good[:-1], value], np.r_[good[:-1], value]
         yield f"first {-value:g}", np.r_[-value, good[1:]], np.r_[-value, good[1:]]

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import _snapin
 import numpy as np
 
-from .arguments import accept, count as whole, one_of, positive_vector, scalar, vector
+from .arguments import accept, one_of, positive_vector, scalar, vector
+from .arguments import count as whole
 from .scene import law_of, scene_of, within_reach
 
 _flat = _snapin.flat_approximations

@@ -32,7 +32,8 @@ def _shown(value):
     """Return a short text for a message."""
     try:
         return reprlib.repr(value)
-    except Exception:  # A repr of others may fail in any way; that of an int does beyond 4300 digits.
+    # A repr of others may fail in any way; that of an int does beyond 4300 digits.
+    except Exception:
         return f"this {type(value).__name__}"
 
 

@@ -14,16 +14,8 @@ from typing import NamedTuple
 import _snapin
 import numpy as np
 
-from .arguments import (
-    SnapinWarning,
-    accept,
-    count as whole,
-    one_of,
-    positive,
-    room_for,
-    scalar,
-    vector,
-)
+from .arguments import SnapinWarning, accept, one_of, positive, room_for, scalar, vector
+from .arguments import count as whole
 from .numerics import METHODS, MOST_NODES, bytes_for
 from .scene import accuracy_of, scene_of, within_reach
 
