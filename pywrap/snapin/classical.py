@@ -23,7 +23,7 @@ _CONTROLS = ("load", "displacement", "edge_ratio")
 
 
 def _material(theory, radius, stiffness, surface_energy, strength=0.0):
-    """Return radius, stiffness, surface energy and strength; 0 may be what `theory` does not use."""
+    """Return radius, stiffness, surface energy, strength; 0 may be what `theory` does not use."""
     one_of("theory", theory, _NEEDS)
     needed = {"surface_energy": surface_energy, "strength": strength}
     checked = [
