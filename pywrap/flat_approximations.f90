@@ -120,9 +120,8 @@ contains
   !> The problem of these bodies under this law; stat and message where there is no such law.
   subroutine pose(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, problem, &
     stat, message)
-    use failure, only: bad_input
     use force_law, only: force_law_t
-    use laws, only: law_parameters_t, new_law
+    use law_by_name, only: make_law
     use problem, only: new_problem, problem_t
     character(len=*), intent(in) :: law, part
     integer(c_int), intent(in) :: rigid
@@ -132,16 +131,8 @@ contains
     character(len=200), intent(out) :: message
     class(force_law_t), allocatable :: this
 
-    stat = 0
-    message = ''
-    call new_law(law_parameters_t(law=trim(law), part=trim(part), hamaker=hamaker, z0=z0, p0=p0, &
-      decay_length=decay_length), this)
-    if (allocated(this)) then
-      problem = new_problem(this, radius, stiffness, rigid /= 0)
-    else
-      stat = bad_input
-      message = 'there is no law "'//trim(law)//'"'
-    end if
+    call make_law(law, part, hamaker, z0, p0, decay_length, this, stat, message)
+    if (stat == 0) problem = new_problem(this, radius, stiffness, rigid /= 0)
   end subroutine pose
 
 end module flat_approximations

@@ -5,7 +5,9 @@
 !> residual and converged (`collector`). A number that does not exist is NaN. `warnings` is what the
 !> program would warn of, one a line; `reason`, why the experiment ended early, blank if it did not.
 !>
-!> Nothing is kept from call to call; f2py holds Python's global lock, so that calls do not overlap.
+!> Nothing is kept from call to call. f2py holds Python's global lock, so that calls do not overlap;
+!> they must not (no `threadsafe`), since gfortran keeps lengths of intermediate strings in static
+!> variables where text is put together.
 module flat_experiment
   use iso_c_binding, only: c_double, c_int
   implicit none

@@ -62,6 +62,7 @@ contains
   subroutine law_values(name, part, hamaker, z0, p0, decay_length, gap, pressure, slope, energy, &
     stat, message, n)
     use force_law, only: force_law_t
+    use law_by_name, only: make_law
     character(len=*), intent(in) :: name, part
     integer(c_int), intent(in) :: n
     real(c_double), intent(in) :: hamaker, z0, p0, decay_length, gap(n)
@@ -85,6 +86,7 @@ contains
   subroutine law_numbers(name, part, hamaker, z0, p0, decay_length, length, pressure_unit, &
     surface_energy, edge_gap, rest_gap, reach, stat, message)
     use force_law, only: force_law_t
+    use law_by_name, only: make_law
     character(len=*), intent(in) :: name, part
     real(c_double), intent(in) :: hamaker, z0, p0, decay_length
     real(c_double), intent(out) :: length, pressure_unit, surface_energy, edge_gap, rest_gap, reach
@@ -231,30 +233,11 @@ contains
     rejected_steps = int(cost%rejected_steps, c_int)
   end subroutine equilibrium_state
 
-  !> The law of this name; stat and message where there is none.
-  subroutine make_law(name, part, hamaker, z0, p0, decay_length, law, stat, message)
-    use failure, only: bad_input
-    use force_law, only: force_law_t
-    use laws, only: law_parameters_t, new_law
-    character(len=*), intent(in) :: name, part
-    real(c_double), intent(in) :: hamaker, z0, p0, decay_length
-    class(force_law_t), allocatable, intent(out) :: law
-    integer(c_int), intent(out) :: stat
-    character(len=200), intent(out) :: message
-
-    stat = 0
-    message = ''
-    call new_law(law_parameters_t(law=trim(name), part=trim(part), hamaker=hamaker, z0=z0, p0=p0, &
-      decay_length=decay_length), law)
-    if (allocated(law)) return
-    stat = bad_input
-    message = 'there is no law "'//trim(name)//'"'
-  end subroutine make_law
-
   !> The law of this name in its own units.
   subroutine make_unit_law(name, part, law, stat, message)
     use force_law, only: force_law_t
     use kinds, only: pi
+    use law_by_name, only: make_law
     character(len=*), intent(in) :: name, part
     class(force_law_t), allocatable, intent(out) :: law
     integer(c_int), intent(out) :: stat
@@ -288,7 +271,7 @@ contains
       mesh = new_panel_grid(centre, panel_end, order, elastic)
     case default
       stat = bad_input
-      message = 'there is no mesh of kind "'//trim(kind)//'"'
+      message = 'kind: there is no mesh of kind "'//trim(kind)//'"'
     end select
   end subroutine make_mesh
 

@@ -8,7 +8,7 @@ module snapin_flat
   implicit none
   private
   public :: classical_states, classical_curve, classical_profile, classical_loads
-  public :: classical_pull_off, maugis_numbers
+  public :: classical_pull_off, maugis_numbers, use_one_thread
 
 contains
 
@@ -45,7 +45,7 @@ contains
       a = maugis_radius_at_edge_ratio(values, radius, stiffness, surface_energy, strength)
     case default
       stat = bad_input
-      message = 'theory "'//trim(theory)//'" has no states at given "'//trim(control)//'"'
+      message = 'theory: "'//trim(theory)//'" has no states at given "'//trim(control)//'"'
     end select
   end subroutine classical_states
 
@@ -81,7 +81,7 @@ contains
       displacement = maugis_displacement(a, radius, stiffness, surface_energy, strength)
     case default
       stat = bad_input
-      message = 'there is no theory "'//trim(theory)//'"'
+      message = 'theory: there is no "'//trim(theory)//'"'
     end select
   end subroutine classical_curve
 
@@ -110,7 +110,7 @@ contains
       gap = jkr_gap(r, a, radius, stiffness, surface_energy)
     case default
       stat = bad_input
-      message = 'theory "'//trim(theory)//'" has no profile'
+      message = 'theory: "'//trim(theory)//'" has no profile'
     end select
   end subroutine classical_profile
 
@@ -139,7 +139,7 @@ contains
       load = dmt_load_at_displacement(displacement, radius, stiffness, surface_energy)
     case default
       stat = bad_input
-      message = 'theory "'//trim(theory)//'" gives no load at a displacement'
+      message = 'theory: "'//trim(theory)//'" gives no load at a displacement'
     end select
   end subroutine classical_loads
 
@@ -169,7 +169,7 @@ contains
       load = maugis_pull_off(radius, stiffness, surface_energy, strength)
     case default
       stat = bad_input
-      message = 'theory "'//trim(theory)//'" has no pull-off at fixed "'//trim(control)//'"'
+      message = 'theory: "'//trim(theory)//'" has no pull-off at fixed "'//trim(control)//'"'
     end select
   end subroutine classical_pull_off
 
@@ -186,5 +186,13 @@ contains
     lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
     edge_ratio = maugis_edge_ratio(a, radius, stiffness, surface_energy, strength)
   end subroutine maugis_numbers
+
+  !> Lets the calling thread compute alone from now on: in a process that was forked after the
+  !> OpenMP run-time had started threads they are gone, and it would wait for them for ever.
+  subroutine use_one_thread()
+    !$ use omp_lib, only: omp_set_num_threads
+
+    !$ call omp_set_num_threads(1)
+  end subroutine use_one_thread
 
 end module snapin_flat

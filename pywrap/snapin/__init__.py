@@ -5,6 +5,10 @@ is the pieces, for looking at by hand and for tests. Each module here wraps one 
 this file gathers the names that users call.
 """
 
+import os
+
+import _snapin
+
 from .approximations import approximation_rows, jump_estimates, slow_deformation
 from .arguments import SnapinError, SnapinWarning
 from .classical import (
@@ -15,15 +19,7 @@ from .classical import (
     profile,
     pull_off,
 )
-from .experiment import (
-    EquilibriumPath,
-    ForceCurve,
-    ForceLaw,
-    equilibrium_path,
-    exponential,
-    force_curve,
-    lennard_jones,
-)
+from .experiment import EquilibriumPath, ForceCurve, equilibrium_path, force_curve
 from .numerics import (
     equilibrium,
     force_law,
@@ -35,6 +31,11 @@ from .numerics import (
     panel_weights,
     uniform_mesh,
 )
+from .scene import ForceLaw, exponential, lennard_jones
+
+# Where there is no fork there is nothing to register.
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_snapin.snapin_flat.use_one_thread)
 
 __all__ = [
     "EquilibriumPath",

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import _snapin
 import numpy as np
 
-from .arguments import accept, positive_vector, scalar, vector
-from .experiment import _bodies, _law
-from .numerics import _count, _one_of
+from .arguments import accept, one_of, positive_vector, scalar, vector
+from .arguments import count as whole
+from .scene import law_of, scene_of, within_reach
 
 _flat = _snapin.flat_approximations
 
@@ -61,10 +61,11 @@ def slow_deformation(gap, *, radius, stiffness=None, law, rigid=False, form="qua
     `form` is "quadrature", (22) and (23); "closed_form", (31) and (32) or (35a) and (36a); or
     "attraction_only", (35b) and (36b).
     """
-    law = _law(law)
+    law = law_of(law)
     gap = (positive_vector if law.law == "lennard_jones" else vector)("gap", gap)
-    bodies = _bodies(radius, stiffness, rigid)
-    *values, stat, message = _flat.slow_states(*law, *bodies, _one_of("form", form, _FORMS), gap)
+    within_reach("gap", gap, law)
+    scene = scene_of(law, radius, stiffness, rigid)
+    *values, stat, message = _flat.slow_states(*scene, one_of("form", form, _FORMS), gap)
     accept(stat, message)
     displacement, slope, load = values
     return SlowDeformation(gap - displacement, displacement, slope, load)
@@ -72,7 +73,7 @@ def slow_deformation(gap, *, radius, stiffness=None, law, rigid=False, form="qua
 
 def jump_estimates(*, radius, stiffness=None, law, rigid=False):
     """Return the `JumpEstimates` for approaching bodies."""
-    values, stat, message = _flat.slow_jumps(*_law(law), *_bodies(radius, stiffness, rigid))
+    values, stat, message = _flat.slow_jumps(*scene_of(law, radius, stiffness, rigid))
     accept(stat, message)
     return JumpEstimates(
         *(None if np.isnan(jump).any() else JumpState(*map(float, jump)) for jump in values.T)
@@ -86,9 +87,12 @@ def approximation_rows(
     h0_start, h0_end = scalar("h0_start", h0_start), scalar("h0_end", h0_end)
     if not h0_end < h0_start:
         raise ValueError(f"h0_end: {h0_end} is not below h0_start = {h0_start}")
-    count = _count("count", count, 2, _LARGEST_COUNT)
+    scene = scene_of(law, radius, stiffness, rigid)
+    within_reach("h0_start", h0_start, law)
+    within_reach("h0_end", h0_end, law)
+    count = whole("count", count, 2, _LARGEST_COUNT)
     theory, values, rows, stat, message = _flat.approximation_table(
-        *_law(law), *_bodies(radius, stiffness, rigid), h0_start, h0_end, count, 3 * count + 4
+        *scene, h0_start, h0_end, count, 3 * count + 4
     )
     accept(stat, message)
     names = (name.decode().strip() for name in theory[:rows])

@@ -1,10 +1,14 @@
 """Checks on what goes into the Fortran library, and on what it says about it.
 
-f2py passes on whatever it can convert, so that shapes, signs and NaN are looked at here; every
-exception names the argument.
+f2py passes on whatever it can convert, so that kind, shape, sign and size are looked at here; every
+exception begins with the argument's name. What passes is what a contiguous float64 copy of it would
+be; nothing is ever written to.
 """
 
-import math
+import operator
+import reprlib
+from decimal import Decimal
+from numbers import Real
 
 import numpy as np
 
@@ -17,49 +21,196 @@ class SnapinWarning(UserWarning):
     """A result is not all that was asked for: something did not converge, or is not resolved."""
 
 
-def vector(name, values):
-    """Return `values` as a one-dimensional, contiguous array of finite float64."""
+# Sizes go to Fortran as C ints, and results have up to eight columns.
+_MOST_VALUES = 2**27
+# Limits of a physical quantity in SI units: within them no product that the formulas form leaves
+# the range of float64, where NaN would pass for "no such state".
+_LEAST, _MOST = 1e-50, 1e50
+
+
+def _shown(value):
+    """Return a short text for a message."""
     try:
-        array = np.ascontiguousarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as problem:
-        raise TypeError(f"{name}: real numbers are needed, not {values!r}") from problem
-    if np.ndim(values) > 1:
-        raise ValueError(f"{name}: one dimension is needed, not shape {array.shape}")
+        return reprlib.repr(value)
+    # A repr of others may fail in any way; that of an int does beyond 4300 digits.
+    except Exception:
+        return f"this {type(value).__name__}"
+
+
+# --- Numbers
+
+
+def _reals(name, values, most):
+    """Return `values`, of any shape, as a contiguous float64 array within +-`most`."""
+    refusal = f"{name}: real numbers are needed, not {_shown(values)}"
+    try:
+        given = np.asanyarray(values)
+    except (TypeError, ValueError, OverflowError) as problem:
+        raise TypeError(refusal) from problem
+    if given.size > _MOST_VALUES:
+        raise ValueError(f"{name}: at most {_MOST_VALUES} values are taken, not {given.size}")
+    if np.ma.is_masked(given):
+        raise ValueError(f"{name}: values are masked")
+    given = np.asarray(given)
+    # An empty list is of no kind, and NumPy calls it float.
+    if given.dtype.kind not in "fiu" and not (given.dtype.kind == "O" and _all_real(given)):
+        raise TypeError(refusal)
+    try:
+        with np.errstate(over="ignore"):
+            array = np.ascontiguousarray(given, dtype=np.float64).reshape(given.shape)
+    except OverflowError:
+        raise ValueError(f"{name}: too large for float64") from None
     if not np.isfinite(array).all():
-        raise ValueError(f"{name}: all values must be finite")
+        raise ValueError(f"{name}: must be finite, not {_shown(values)}")
+    if (abs(array) > most).any():
+        raise ValueError(f"{name}: must be within {most:g}, not {_shown(values)}")
+    if given.dtype.kind != "f" and not _exact(given, array):
+        raise ValueError(f"{name}: whole numbers this large are not exact in float64")
+    return array
+
+
+def _all_real(objects):
+    """Whether these objects are real numbers, bools not counting."""
+    return all(
+        isinstance(one, (Real, Decimal)) and not isinstance(one, (bool, np.bool_))
+        for one in objects.flat
+    )
+
+
+def _exact(given, array):
+    """Whether whole numbers came through the conversion; those below 2**53 do."""
+    large = abs(array) >= 2.0**53
+    return all(
+        int(one) == int(number)
+        for one, number in zip(given[large].flat, array[large].flat)
+        if one == int(one)
+    )
+
+
+def vector(name, values, *, most=_MOST):
+    """Return `values` as a one-dimensional, contiguous array of finite float64; a number is one."""
+    array = _reals(name, values, most)
+    if array.ndim > 1:
+        raise ValueError(f"{name}: one dimension is needed, not shape {array.shape}")
     return array.reshape(-1)
 
 
 def positive_vector(name, values):
     """Return `values` as `vector` does, refusing any that is not above zero."""
     array = vector(name, values)
-    if not (array > 0).all():
-        raise ValueError(f"{name}: all values must be positive")
+    if not (array >= _LEAST).all():
+        raise ValueError(f"{name}: all values must be positive, and at least {_LEAST:g}")
+    return array
+
+
+def ascending(name, values, least_size):
+    """Return `values` as a vector of at least `least_size` numbers, each above the one before."""
+    array = vector(name, values)
+    if array.size < least_size:
+        raise ValueError(f"{name}: at least {least_size} values are needed, not {array.size}")
+    if not (np.diff(array) > 0).all():
+        raise ValueError(f"{name}: each value must be above the one before")
+    return array
+
+
+def as_long_as(name, values, size):
+    """Return `values` as a vector of `size` numbers."""
+    array = vector(name, values)
+    if array.size != size:
+        raise ValueError(f"{name}: {size} values are needed, not {array.size}")
     return array
 
 
 def scalar(name, value):
     """Return `value` as a finite float."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError) as problem:
-        raise TypeError(f"{name}: a real number is needed, not {value!r}") from problem
-    if not math.isfinite(number):
-        raise ValueError(f"{name}: must be finite, not {number}")
-    return number
+    array = _reals(name, value, _MOST)
+    if array.ndim > 0:
+        raise TypeError(f"{name}: one number is needed, not shape {array.shape}")
+    return float(array)
 
 
 def positive(name, value):
     """Return `value` as a finite float above zero."""
     number = scalar(name, value)
-    if number <= 0:
-        raise ValueError(f"{name}: must be positive, not {number}")
+    if not number >= _LEAST:
+        raise ValueError(f"{name}: must be positive, and at least {_LEAST:g}, not {number}")
     return number
+
+
+def not_negative(name, value):
+    """Return `value` as a finite float that is zero or more."""
+    number = scalar(name, value)
+    if number < 0:
+        raise ValueError(f"{name}: must not be negative, not {number}")
+    return number
+
+
+def count(name, value, least, most=2**31 - 1):
+    """Return `value` as an int within the limits; a float is none."""
+    try:
+        if isinstance(value, (bool, np.bool_)) or np.ndim(value) > 0:
+            raise TypeError
+        number = operator.index(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: a whole number is needed, not {_shown(value)}") from None
+    if not least <= number <= most:
+        raise ValueError(f"{name}: must be from {least} to {most}, not {_shown(number)}")
+    return number
+
+
+# --- Names and flags
+
+
+def one_of(name, value, choices):
+    """Return `value` as a str if it is one of `choices`."""
+    if not isinstance(value, str) or value not in choices:
+        raise ValueError(f"{name}: must be one of {', '.join(choices)}, not {_shown(value)}")
+    return str(value)
+
+
+def flag(name, value):
+    """Return `value` as a bool if it is True or False."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name}: True or False is needed, not {_shown(value)}")
+    return bool(value)
+
+
+def instance(name, value, kind, origin):
+    """Return `value` if it is of this class; `origin` says where one comes from."""
+    if not isinstance(value, kind):
+        raise TypeError(f"{name}: must come from {origin}, not {_shown(value)}")
+    return value
+
+
+# --- Memory, and what the library says
+
+
+def room_for(name, needed):
+    """Refuse what needs more memory [bytes] than there is: the library could only end Python."""
+    text = f"{name}: {needed / 1e9:.3g} GB of memory are needed"
+    try:
+        # Takes address space alone, and fails where that is limited.
+        np.empty(needed, dtype=np.uint8)
+    except MemoryError:
+        raise MemoryError(f"{text}, more than this process may have") from None
+    free = _free_memory()
+    if needed > free:
+        raise MemoryError(f"{text}, {free / 1e9:.3g} GB are free")
+
+
+def _free_memory():
+    """Return the memory [bytes] that the system can give; infinite where it does not say."""
+    try:
+        with open("/proc/meminfo", encoding="ascii") as table:
+            rows = dict(line.split(":", 1) for line in table)
+        return 1024 * int(rows["MemAvailable"].split()[0])
+    except (OSError, KeyError, ValueError):
+        return float("inf")
 
 
 def accept(stat, message):
     """Raise what the library reported; `stat` is 0, or the kind in src/failure.f90."""
     if stat == 0:
         return
-    text = message.decode().strip()
+    text = message.decode(errors="replace").strip()
     raise ValueError(text) if stat == 1 else SnapinError(text)

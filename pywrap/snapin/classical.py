@@ -8,7 +8,7 @@ the theory has no equilibrium.
 
 import _snapin
 
-from .arguments import accept, positive, positive_vector, vector
+from .arguments import accept, not_negative, one_of, positive, positive_vector, vector
 
 _flat = _snapin.snapin_flat
 
@@ -19,20 +19,18 @@ _NEEDS = {
     "dmt": ("surface_energy",),
     "maugis": ("surface_energy", "strength"),
 }
+_CONTROLS = ("load", "displacement", "edge_ratio")
 
 
 def _material(theory, radius, stiffness, surface_energy, strength=0.0):
-    """Return radius, stiffness, surface energy and strength, each checked if `theory` uses it."""
-    if theory not in _NEEDS:
-        raise ValueError(f"theory: must be one of {', '.join(_NEEDS)}, not {theory!r}")
+    """Return radius, stiffness, surface energy, strength; 0 may be what `theory` does not use."""
+    one_of("theory", theory, _NEEDS)
     needed = {"surface_energy": surface_energy, "strength": strength}
-    used = {name: positive(name, needed[name]) for name in _NEEDS[theory]}
-    return (
-        positive("radius", radius),
-        positive("stiffness", stiffness),
-        used.get("surface_energy", 0.0),
-        used.get("strength", 0.0),
-    )
+    checked = [
+        (positive if name in _NEEDS[theory] else not_negative)(name, value)
+        for name, value in needed.items()
+    ]
+    return positive("radius", radius), positive("stiffness", stiffness), *checked
 
 
 def contact_radius(
@@ -45,6 +43,7 @@ def contact_radius(
     radius.
     """
     material = _material(theory, radius, stiffness, surface_energy, strength)
+    one_of("control", control, _CONTROLS)
     values = vector("values", values)
     if control == "edge_ratio" and not (values > 1).all():
         raise ValueError("values: every edge_ratio must be above 1")
@@ -90,6 +89,7 @@ def pull_off(
 ):
     """Return the load [N], negative, at which the bodies part at a fixed `control`."""
     material = _material(theory, radius, stiffness, surface_energy, strength)
+    one_of("control", control, _CONTROLS)
     load, stat, message = _flat.classical_pull_off(theory, control, *material)
     accept(stat, message)
     return load

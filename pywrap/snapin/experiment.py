@@ -14,46 +14,17 @@ from typing import NamedTuple
 import _snapin
 import numpy as np
 
-from .arguments import SnapinWarning, accept, positive, scalar, vector
-from .numerics import METHODS, _count, _law_arguments, _one_of
+from .arguments import SnapinWarning, accept, one_of, positive, room_for, scalar, vector
+from .arguments import count as whole
+from .numerics import METHODS, MOST_NODES, bytes_for
+from .scene import accuracy_of, scene_of, within_reach
 
 _flat = _snapin.flat_experiment
 
 _METHODS = ("auto", *METHODS)
 _GRIDS = ("auto", "uniform", "panels")
-# As in src/scene_keys.f90.
-_ACCURACIES = 1e-10, 1e-1
-_MOST_NODES = 20000
 # The path takes steps of its own choice; the program gives up after some 5000.
 _MOST_PATH_STATES = 20000
-
-
-# --- Force laws
-
-
-class ForceLaw(NamedTuple):
-    """A force law with its parameters, from `lennard_jones` or `exponential`."""
-
-    law: str
-    part: str
-    hamaker: float
-    z0: float
-    p0: float
-    decay_length: float
-
-
-def lennard_jones(*, hamaker, z0, part="full"):
-    """Return the law with Hamaker constant `hamaker` [J] and separation of zero force `z0` [m].
-
-    `part` is "full", "repulsive" or "attractive".
-    """
-    return ForceLaw(*_law_arguments("lennard_jones", part, {"hamaker": hamaker, "z0": z0}))
-
-
-def exponential(*, p0, decay_length):
-    """Return the repulsion p0 exp(-h/decay_length), `p0` [Pa], `decay_length` [m]."""
-    parameters = {"p0": p0, "decay_length": decay_length}
-    return ForceLaw(*_law_arguments("exponential", "full", parameters))
 
 
 # --- Experiments
@@ -136,13 +107,16 @@ def force_curve(
     h0 = vector("h0", h0).copy()
     if h0.size < 2:
         raise ValueError(f"h0: at least 2 values are needed, not {h0.size}")
+    scene = scene_of(law, radius, stiffness, rigid)
+    within_reach("h0", h0, law)
+    nodes = 0 if nodes is None else whole("nodes", nodes, 2, MOST_NODES)
+    room_for("nodes", bytes_for(nodes))
     states, jumps, count, highest, error, reached, reason, told, stat, message = _flat.force_curve(
-        *_law(law),
-        *_bodies(radius, stiffness, rigid),
-        _one_of("method", method, _METHODS),
-        _one_of("grid", grid, _GRIDS),
-        _accuracy(accuracy),
-        0 if nodes is None else _count("nodes", nodes, 2, _MOST_NODES),
+        *scene,
+        one_of("method", method, _METHODS),
+        one_of("grid", grid, _GRIDS),
+        accuracy_of(accuracy),
+        nodes,
         0.0 if r_max is None else positive("r_max", r_max),
         h0,
     )
@@ -176,11 +150,14 @@ def equilibrium_path(
         h0_start = scalar("h0_start", h0_start)
         if h0_start <= h0_end:
             raise ValueError(f"h0_start: {h0_start} is not above h0_end = {h0_end}")
+    scene = scene_of(law, radius, stiffness, rigid)
+    within_reach("h0_end", h0_end, law)
+    if h0_start is not None:
+        within_reach("h0_start", h0_start, law)
     states, folds, count, highest, error, reached, reason, told, stat, message = (
         _flat.equilibrium_path(
-            *_law(law),
-            *_bodies(radius, stiffness, rigid),
-            _accuracy(accuracy),
+            *scene,
+            accuracy_of(accuracy),
             0.0 if h0_start is None else h0_start,
             h0_start is not None,
             h0_end,
@@ -207,34 +184,6 @@ def equilibrium_path(
 
 
 # --- What goes in and comes out
-
-
-def _law(law):
-    if not isinstance(law, ForceLaw):
-        raise TypeError(f"law: must be one of lennard_jones(...), exponential(...), not {law!r}")
-    return law
-
-
-def _bodies(radius, stiffness, rigid):
-    """Return radius, stiffness and whether the bodies are rigid, checked."""
-    radius = positive("radius", radius)
-    if not isinstance(rigid, (bool, np.bool_)):
-        raise TypeError(f"rigid: True or False is needed, not {rigid!r}")
-    if rigid:
-        if stiffness is not None:
-            raise ValueError("stiffness: rigid bodies have none")
-        return radius, 1.0, True
-    if stiffness is None:
-        raise TypeError("stiffness: needed unless rigid=True")
-    return radius, positive("stiffness", stiffness), False
-
-
-def _accuracy(accuracy):
-    accuracy = positive("accuracy", accuracy)
-    least, most = _ACCURACIES
-    if not least <= accuracy <= most:
-        raise ValueError(f"accuracy: must be from {least} to {most}, not {accuracy}")
-    return accuracy
 
 
 def _points(rows):

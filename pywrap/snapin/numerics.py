@@ -5,14 +5,26 @@ units of src/problem.f90: gaps in the law's length, lateral positions in sqrt(R 
 in the law's unit, loads in that unit times R length.
 """
 
-import operator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import _snapin
 import numpy as np
 
-from .arguments import accept, positive, positive_vector, scalar, vector
+from .arguments import (
+    accept,
+    as_long_as,
+    ascending,
+    count,
+    instance,
+    not_negative,
+    one_of,
+    positive,
+    positive_vector,
+    room_for,
+    scalar,
+    vector,
+)
 
 _flat = _snapin.flat_numerics
 
@@ -24,52 +36,14 @@ LAWS = {
 METHODS = ("mixing", "anderson", "newton")
 
 _LARGEST_ORDER = 64
+# As in src/scene_keys.f90.
+MOST_NODES = 20000
+_MOST_DEPTH = 1000
 
 
-def _one_of(name, value, choices):
-    """Return `value` if it is one of `choices`."""
-    if value not in choices:
-        raise ValueError(f"{name}: must be one of {', '.join(choices)}, not {value!r}")
-    return value
-
-
-def _count(name, value, least, most=2**31 - 1):
-    """Return `value` as an int within the limits."""
-    try:
-        if isinstance(value, (bool, np.bool_)):
-            raise TypeError
-        number = operator.index(value)
-    except TypeError:
-        raise TypeError(f"{name}: a whole number is needed, not {value!r}") from None
-    if not least <= number <= most:
-        raise ValueError(f"{name}: must be from {least} to {most}, not {number}")
-    return number
-
-
-def _not_negative(name, value):
-    """Return `value` as a finite float that is zero or more."""
-    number = scalar(name, value)
-    if number < 0:
-        raise ValueError(f"{name}: must not be negative, not {number}")
-    return number
-
-
-def _ascending(name, values, least_size):
-    """Return `values` as a vector of at least `least_size` numbers, each above the one before."""
-    array = vector(name, values)
-    if array.size < least_size:
-        raise ValueError(f"{name}: at least {least_size} values are needed, not {array.size}")
-    if not (np.diff(array) > 0).all():
-        raise ValueError(f"{name}: each value must be above the one before")
-    return array
-
-
-def _as_long_as(name, values, size):
-    """Return `values` as a vector of `size` numbers."""
-    array = vector(name, values)
-    if array.size != size:
-        raise ValueError(f"{name}: {size} values are needed, not {array.size}")
-    return array
+def bytes_for(nodes):
+    """Return the memory that a calculation on so many nodes takes: at most three matrices."""
+    return 3 * 8 * nodes**2
 
 
 # --- Kernel and quadrature
@@ -77,7 +51,7 @@ def _as_long_as(name, values, size):
 
 def _sum_and_distance(total, distance):
     total = positive_vector("total", total)
-    distance = positive_vector("distance", _as_long_as("distance", distance, total.size))
+    distance = positive_vector("distance", as_long_as("distance", distance, total.size))
     if not (distance <= total).all():
         raise ValueError("distance: |r - t| cannot be above the total r + t")
     return total, distance
@@ -104,7 +78,7 @@ class GaussRule(NamedTuple):
 
 def gauss_rule(points):
     """Return the Gauss-Legendre rule of so many points (src/quadrature.f90)."""
-    return GaussRule(*_flat.gauss_rule(_count("points", points, 1, _LARGEST_ORDER)))
+    return GaussRule(*_flat.gauss_rule(count("points", points, 1, _LARGEST_ORDER)))
 
 
 def panel_weights(node, target, left, right, *, centre=0.0):
@@ -113,10 +87,10 @@ def panel_weights(node, target, left, right, *, centre=0.0):
     L_j are the Lagrange polynomials on the nodes `node` of [0, 1]; r = centre + target for every
     offset in `target`. The result has shape (targets, nodes).
     """
-    node = _ascending("node", node, 2)
+    node = ascending("node", node, 2)
     if node[0] < 0 or node[-1] > 1 or node.size > _LARGEST_ORDER:
         raise ValueError(f"node: at most {_LARGEST_ORDER} values within [0, 1] are needed")
-    centre = _not_negative("centre", centre)
+    centre = not_negative("centre", centre)
     target = vector("target", target)
     left, right = scalar("left", left), scalar("right", right)
     if not left < right:
@@ -150,9 +124,10 @@ class LawNumbers(NamedTuple):
     range: float
 
 
-def _law_arguments(law, part, parameters):
-    needed, parts = LAWS[_one_of("law", law, LAWS)]
-    _one_of("part", part, parts)
+def law_arguments(law, part, parameters):
+    """Return law, part and the four parameters that the library takes, checked; 0: not used."""
+    needed, parts = LAWS[one_of("law", law, LAWS)]
+    law, part = str(law), one_of("part", part, parts)
     for name in needed:
         if name not in parameters:
             raise TypeError(f"{name}: needed by law {law!r}")
@@ -169,18 +144,20 @@ def force_law(law, gap, *, part="full", **parameters):
     "lennard_jones" needs `hamaker` [J] and `z0` [m], "exponential" `p0` [Pa] and `decay_length`
     [m]. A gap of exactly zero is refused for the former.
     """
-    arguments = _law_arguments(law, part, parameters)
-    gap = vector("gap", gap)
+    arguments = law_arguments(law, part, parameters)
+    gap = vector("gap", gap, most=np.inf)
     if law == "lennard_jones" and not gap.all():
         raise ValueError("gap: must not be zero")
     *values, stat, message = _flat.law_values(*arguments, gap)
     accept(stat, message)
+    if not np.isfinite(values).all():
+        raise ValueError("gap: pressure, slope or energy leave the range of float64")
     return LawValues(*values)
 
 
 def law_numbers(law, *, part="full", **parameters):
     """Return the numbers that characterise a law, SI; `parameters` as in `force_law`."""
-    *values, stat, message = _flat.law_numbers(*_law_arguments(law, part, parameters))
+    *values, stat, message = _flat.law_numbers(*law_arguments(law, part, parameters))
     accept(stat, message)
     return LawNumbers(*values)
 
@@ -216,10 +193,29 @@ class Mesh:
     spacing: float = field(init=False)
 
     def __post_init__(self):
+        panels = one_of("kind", self.kind, ("uniform", "panels")) == "panels"
+        # A copy that nobody can change, as a mesh keeps what its nodes were made from.
+        ends = ascending("ends", self.ends, 2).copy()
+        ends.flags.writeable = False
+        centre = not_negative("centre", self.centre)
+        if centre + ends[0] < 0:
+            raise ValueError("ends: the first lies beyond the axis")
+        if not panels and (centre != 0 or ends[0] != 0 or ends.size != 2):
+            raise ValueError("ends: a uniform mesh has centre 0 and ends 0 and its extent")
+        name = "order" if panels else "nodes"
+        limits = (3, _LARGEST_ORDER) if panels else (2, MOST_NODES)
+        order = count(name, self.order, *limits)
+        if order * (ends.size - 1) > MOST_NODES:
+            raise ValueError(f"ends: these panels have more than {MOST_NODES} nodes")
+        for key, value in {"kind": str(self.kind), "centre": centre, "ends": ends}.items():
+            object.__setattr__(self, key, value)
+        object.__setattr__(self, "order", order)
         *values, stat, message = _flat.mesh_nodes(*self._description)
         accept(stat, message)
-        for name, value in zip(("x", "weight", "spacing"), values):
-            object.__setattr__(self, name, value)
+        for key, value in zip(("x", "weight", "spacing"), values):
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+            object.__setattr__(self, key, value)
 
     @property
     def _description(self):
@@ -227,13 +223,14 @@ class Mesh:
 
     def matrix(self):
         """Return the `KernelMatrix`; computed anew at every call."""
+        room_for("mesh", bytes_for(self.x.size))
         rows, stat, message = _flat.mesh_matrix(*self._description)
         accept(stat, message)
         return KernelMatrix(rows[0], rows[1], rows[2:])
 
     def interpolate(self, values, at):
         """Return at positions `at` on the mesh the function with the given nodal values."""
-        values = _as_long_as("values", values, self.x.size)
+        values = as_long_as("values", values, self.x.size)
         at = vector("at", at)
         if (at < self.centre + self.ends[0]).any() or (at > self.centre + self.ends[-1]).any():
             raise ValueError("at: lies outside the mesh")
@@ -244,12 +241,7 @@ class Mesh:
 
 def uniform_mesh(nodes, extent):
     """Return a mesh of equally spaced nodes on [0, extent], pressure linear between them."""
-    return Mesh(
-        "uniform",
-        0.0,
-        np.array([0.0, positive("extent", extent)]),
-        _count("nodes", nodes, 2, 20000),
-    )
+    return Mesh("uniform", 0.0, np.array([0.0, positive("extent", extent)]), nodes)
 
 
 def panel_mesh(ends, order, *, centre=0.0):
@@ -257,11 +249,7 @@ def panel_mesh(ends, order, *, centre=0.0):
 
     `ends` are the panels' ends as offsets from `centre`, ascending, none beyond the axis.
     """
-    ends = _ascending("ends", ends, 2)
-    centre = _not_negative("centre", centre)
-    if centre + ends[0] < 0:
-        raise ValueError("ends: the first lies beyond the axis")
-    return Mesh("panels", centre, ends, _count("order", order, 3, _LARGEST_ORDER))
+    return Mesh("panels", centre, ends, order)
 
 
 # --- Equilibrium
@@ -310,17 +298,16 @@ def equilibrium(
     mixing's, and so is `displacement_tolerance`: with it mixing stops as the paper does, on a
     small change of the gap on the axis.
     """
-    _, parts = LAWS[_one_of("law", law, LAWS)]
-    _one_of("part", part, parts)
-    _one_of("method", method, METHODS)
-    if not isinstance(mesh, Mesh):
-        raise TypeError(f"mesh: a Mesh is needed, not {mesh!r}")
+    law = one_of("law", law, LAWS)
+    part, method = one_of("part", part, LAWS[law][1]), one_of("method", method, METHODS)
+    instance("mesh", mesh, Mesh, "uniform_mesh(...) or panel_mesh(...)")
+    room_for("mesh", bytes_for(mesh.x.size))
     h0, scale = scalar("h0", h0), positive("scale", scale)
     if start is None:
         start = h0 + (scale * mesh.x) ** 2 / 2
         if law == "lennard_jones":
             start = np.maximum(start, 1.0)
-    start = _as_long_as("start", start, mesh.x.size)
+    start = as_long_as("start", start, mesh.x.size)
     if law == "lennard_jones" and not (start > 0).all():
         raise ValueError("start: all gaps must be positive")
     on_change = displacement_tolerance is not None
@@ -329,19 +316,19 @@ def equilibrium(
     *values, stat, message = _flat.equilibrium_state(
         law,
         part,
-        _not_negative("coupling", coupling),
+        not_negative("coupling", coupling),
         *mesh._description,
         scale,
         h0,
         start,
         method,
         positive("tolerance", tolerance),
-        _count("most_iterations", most_iterations, 1),
-        _count("depth", depth, 0, 1000),
-        _count("patience", patience, 1),
+        count("most_iterations", most_iterations, 1),
+        count("depth", depth, 0, _MOST_DEPTH),
+        count("patience", patience, 1),
         positive("mixing_limit", mixing_limit),
         int(on_change),
-        _not_negative("displacement_tolerance", displacement_tolerance) if on_change else 0.0,
+        not_negative("displacement_tolerance", displacement_tolerance) if on_change else 0.0,
     )
     accept(stat, message)
     state = State(*values)
