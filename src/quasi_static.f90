@@ -63,6 +63,8 @@ module quasi_static
     procedure(spacing_of), deferred :: spacing_over_neck
     !> The witness of a position's state: what its h0 was prescribed as.
     procedure(witness_of), deferred :: witness
+    !> Which of the meshes the Jacobian for a kind of control lives on.
+    procedure :: mesh_of
   end type quasi_static_t
 
   abstract interface
@@ -107,6 +109,14 @@ module quasi_static
   end interface
 
 contains
+
+  !> With one mesh there is no choice.
+  pure integer function mesh_of(self, kind)
+    class(quasi_static_t), intent(in) :: self
+    integer, intent(in) :: kind
+
+    mesh_of = 1
+  end function mesh_of
 
   !> Appends a witness. (An array constructor around a function's result would leak in gfortran.)
   subroutine add_witness(witnesses, witness)

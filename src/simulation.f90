@@ -87,6 +87,7 @@ contains
     observer => results
     if (allocated(scene%stability)) then
       recorder%next => results
+      recorder%journal => results%journal
       observer => recorder
     end if
     failed = 0
@@ -95,7 +96,7 @@ contains
       call run_sweep(scene, results, failed, outcome%cost)
     else
       call results%progress%start(states_planned(scene), name, quiet)
-      call run_experiment(scene, problem, observer, outcome)
+      call run_experiment(scene, problem, observer, outcome, results%journal)
     end if
     call results%progress%finish()
     outcome%cost%factorisations = outcome%cost%factorisations + recorder%cost%factorisations

@@ -9,7 +9,8 @@ import subprocess
 import time
 
 import pytest
-from scenes import lennard_jones, loading
+from conftest import ROOT
+from scenes import deck, exponential, lennard_jones, loading
 
 WORD = 8
 
@@ -79,12 +80,8 @@ class Bench:
         assert done.returncode == status, done.stderr
         self.whole = self.files("whole")
         # Where the summary cannot get its name the run stops short of the end.
-        (folder / "cut/deck/summary.nml").mkdir(parents=True)
-        stopped = self.run("cut")
-        assert stopped.returncode == 1
-        assert "then go on with --resume" in stopped.stderr
-        self.journal = (folder / "cut/deck/journal.partial").read_bytes()
-        (folder / "cut/deck/summary.nml").rmdir()
+        (folder / "cut/deck").mkdir(parents=True, exist_ok=True)
+        self.journal = self.stop(b"")
 
     def run(self, out, *options, **kwargs):
         return self.snapin(
@@ -108,6 +105,17 @@ class Bench:
             path.unlink()
         (target / "journal.partial").write_bytes(journal)
         return self.run(out, "--resume")
+
+    def stop(self, journal):
+        """The journal of the run that goes on from a journal and is stopped at its end."""
+        (self.folder / "cut/deck/summary.nml").unlink(missing_ok=True)
+        (self.folder / "cut/deck/summary.nml").mkdir()
+        (self.folder / "cut/deck/journal.partial").write_bytes(journal)
+        try:
+            assert self.run("cut", "--resume").returncode == 1
+        finally:
+            (self.folder / "cut/deck/summary.nml").rmdir()
+        return (self.folder / "cut/deck/journal.partial").read_bytes()
 
     def check(self, journal):
         done = self.resume(journal)
@@ -171,6 +179,12 @@ def test_a_damaged_record_is_computed_again(sweep):
     changed = bytearray(cases[4])
     changed[6 * WORD : 7 * WORD] = struct.pack("<d", 12345.0)
     sweep.check(first + b"".join(cases[:4]) + bytes(changed))
+
+
+def test_what_was_torn_is_cut_off(sweep):
+    first, *cases = frames(sweep.journal)
+    ended = sweep.stop(first + b"".join(cases[:7]) + bytes(100 * len(cases[0])))
+    assert sorted(len(part) for part in frames(ended)) == sorted(map(len, frames(sweep.journal)))
 
 
 def test_the_number_of_threads_may_change_between_the_parts_of_a_sweep(sweep):
@@ -312,3 +326,85 @@ def test_a_second_run_is_refused_and_touches_nothing(sweep, options):
     assert after == before
     # The lock is gone with its holder.
     assert sweep.run("cut", *options).returncode == 0
+
+
+# --- Cycles
+
+UNIFORM = {"grid": "uniform", "nodes": 120, "r_max": 12.0}
+CYCLES = {
+    "first": (ROOT / "inputs/first.nml").read_text(),
+    "two turning points, strong adhesion": lennard_jones(
+        8.7, loading=loading(14, -4, 1), unloading={"from_": [2.0, -4.0]},
+        profiles={"h0": [2.0, -2.0]},
+    ),
+    "the paper's grid and rule": lennard_jones(
+        0.87, loading=loading(5, -1, 0.5), unloading={}, profiles={"h0": [1.0]},
+        numerics={**UNIFORM, "method": "mixing", "convergence": "displacement_change",
+                  "displacement_tolerance": 1e-4},
+    ),
+    "uniform grid": lennard_jones(
+        0.87, loading=loading(5, -1, 0.5), unloading={}, numerics=UNIFORM,
+    ),
+    "newton": lennard_jones(
+        0.87, loading=loading(5, -1, 0.5), unloading={}, numerics={"method": "newton"},
+    ),
+    "repulsion": exponential(
+        100, loading=loading(6, -6, 0.5), unloading={}, profiles={"h0": [0.0]},
+    ),
+    "stability beside path and cycle": lennard_jones(
+        0.87, loading=loading(4, -1, 0.5), unloading={}, equilibrium_path={}, stability={},
+        profiles={"h0": [1.0]},
+    ),
+    "no state at the end": lennard_jones(0.87, part="attractive", loading=loading(6, -1, 0.25)),
+    "rigid": deck(
+        bodies={"radius": 1.0, "rigid": True},
+        force={"law": "lennard_jones", "hamaker": 50.0, "z0": 1.0},
+        loading=loading(6, 1, 0.25), unloading={},
+    ),
+}
+FAILS = ("the paper's grid and rule", "no state at the end")
+
+
+@pytest.fixture(scope="module", params=CYCLES)
+def cycle(request, snapin, snapin_path, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("cycle")
+    return Bench(snapin, snapin_path, folder, CYCLES[request.param],
+                 status=int(request.param in FAILS))
+
+
+def test_a_cycle_goes_on_from_anywhere(cycle):
+    parts = frames(cycle.journal)
+    rng = random.Random(3)
+    for count in rng.sample(range(1, len(parts)), 4) + [len(parts)]:
+        cycle.check(b"".join(parts[:count]))
+    # In the middle of a record, or of the heading.
+    for size in [len(parts[0]) // 2] + rng.sample(range(len(cycle.journal)), 2):
+        cycle.check(cycle.journal[:size])
+
+
+@pytest.mark.long
+def test_a_cycle_goes_on_from_any_record(cycle):
+    parts = frames(cycle.journal)
+    for count in range(len(parts) + 1):
+        cycle.check(b"".join(parts[:count]))
+
+
+def test_a_killed_cycle_goes_on_again_and_again(cycle):
+    rng = random.Random(4)
+    assert cycle.resume(b"").returncode == cycle.status
+    target = cycle.folder / "cut/deck"
+    for path in target.iterdir():
+        path.unlink()
+    for _ in range(4):
+        cycle.kill(rng.uniform(0.02, 0.15), "--resume")
+    assert cycle.run("cut", "--resume").returncode == cycle.status
+    assert cycle.files("cut") == cycle.whole
+
+
+def test_a_cycle_adds_only_what_its_journal_lacks(cycle):
+    parts = frames(cycle.journal)
+    begun = b"".join(parts[: 2 * len(parts) // 3])
+    ended = cycle.stop(begun + parts[-1][:-WORD])
+    assert ended.startswith(begun)
+    # The same records but for the times they were made at.
+    assert [len(part) for part in frames(ended)] == [len(part) for part in parts]
