@@ -12,8 +12,8 @@ module equilibrium
   use linear_algebra, only: multiply, factorisation_t, factorise
   implicit none
   private
-  public :: control_t, state_t, cost_t, residual, factorise_jacobian, factorise_again, largest_step, state_from, &
-    unknowns_of, control_derivative, residual_floor, load_reach, &
+  public :: control_t, state_t, cost_t, residual, factorise_jacobian, factorise_again, &
+    largest_step, state_from, unknowns_of, control_derivative, residual_floor, load_reach, &
     radius_of_gap
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 

@@ -60,8 +60,8 @@ contains
     problem = new_problem(law, scene%bodies%radius, scene%bodies%stiffness, scene%bodies%rigid)
   end function problem_of
 
-  !> Runs the path and the cycle of a scene; neither may be asked for, and then nothing is done. With
-  !> a journal, the cycle goes on from what that has, and is kept in it.
+  !> Runs the path and the cycle of a scene; neither may be asked for, and then nothing is done.
+  !> With a journal, the cycle goes on from what that has, and is kept in it.
   subroutine run_experiment(scene, problem, observer, outcome, journal)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem

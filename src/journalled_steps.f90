@@ -1,6 +1,6 @@
-!> A quasi-static experiment whose steps are kept in a journal. Those that an interrupted run has left
-!> there are taken from it instead of being solved; whoever drives the experiment does all it does
-!> and does not notice. Then the solver goes on as if it had never stopped.
+!> A quasi-static experiment whose steps are kept in a journal. Those that an interrupted run has
+!> left there are taken from it instead of being solved; whoever drives the experiment does all it
+!> does and does not notice. Then the solver goes on as if it had never stopped.
 module journalled_steps
   use kinds, only: wp
   use discretisation, only: discretisation_t
@@ -85,8 +85,8 @@ contains
     call self%keep(h0, before, position, event, began)
   end subroutine go
 
-  !> Takes a step from `before` to h0 out of the journal. .false. where it has no more: then the step
-  !> is to be solved. A journal that cannot be gone on with ends the experiment.
+  !> Takes a step from `before` to h0 out of the journal. .false. where it has no more: then the
+  !> step is to be solved. A journal that cannot be gone on with ends the experiment.
   logical function recall(self, h0, before, position, event) result(known)
     class(journalled_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0

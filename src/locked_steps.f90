@@ -318,8 +318,8 @@ contains
     if (mesh == contact .and. self%pair%traceable) control%kind = at_h0_with_edge
   end function h0_control
 
-  !> A scale that is prescribed or unknown belongs to the contact, and so does everything where there
-  !> is no other mesh.
+  !> A scale that is prescribed or unknown belongs to the contact, and so does everything where
+  !> there is no other mesh.
   pure integer function mesh_of(self, kind)
     class(locked_steps_t), intent(in) :: self
     integer, intent(in) :: kind

@@ -75,8 +75,8 @@ contains
       call say(out_dir//': '//error%message, .false.)
       return
     end if
-    if (.not. results%lock%is_held()) call say(out_dir//': warning: folders cannot be locked here; '// &
-      'let no other run write into this one', quiet)
+    if (.not. results%lock%is_held()) call say(out_dir//': warning: folders cannot be locked '// &
+      'here; let no other run write into this one', quiet)
     if (left_over .and. resume) then
       call say(out_dir//': going on with what was interrupted after '// &
         duration(results%journal%earlier), quiet)
