@@ -87,8 +87,12 @@ contains
 
     pure subroutine add_jump(jump)
       type(jump_t), allocatable, intent(in) :: jump
+      type(theory_row_t) :: row
 
-      if (allocated(jump)) rows = [rows, row_of(jump)]
+      if (.not. allocated(jump)) return
+      ! A function's result inside an array constructor would leak in gfortran.
+      row = row_of(jump)
+      rows = [rows, row]
     end subroutine add_jump
 
   end function approximation_rows

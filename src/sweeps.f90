@@ -9,7 +9,8 @@ module sweeps
   use equilibrium, only: cost_t
   use records, only: silent_observer_t
   use summarise, only: summary_of
-  use summary, only: summary_t, numbers_of
+  use summary, only: summary_t
+  use case_columns, only: columns_of, numbers_of
   use packing, only: packed_t
   use packed_states, only: put_cost, take_cost
   use results, only: results_t
@@ -99,7 +100,7 @@ contains
       do while (written < size(cases))
         if (.not. cases(written + 1)%done) exit
         written = written + 1
-        call results%take_case(scene%sweep%key, scene%sweep%values(written), &
+        call results%take_case(scene%sweep%key, scene%sweep%values(written), columns_of(scene), &
           cases(written)%numbers)
       end do
     end subroutine enter
@@ -128,7 +129,7 @@ contains
     end if
     case%done = .true.
     case%converged = summary%converged
-    case%numbers = numbers_of(summary)
+    case%numbers = numbers_of(summary, scene)
     case%cost = outcome%cost
   end subroutine run_case
 
