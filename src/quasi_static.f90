@@ -16,7 +16,7 @@ module quasi_static
   integer, parameter :: memory = 4
 
   !> Where an experiment is: the present state and as much of its past as the next step can use.
-  !> Copied to come back to it (turning points, refinements).
+  !> Copied to come back to it (turning points, refinements), and packed whole by `packed_states`.
   type :: position_t
     type(state_t) :: state
     !> Which of the solver's meshes the state lives on.
@@ -41,7 +41,7 @@ module quasi_static
     real(wp) :: h0 = 0, displacement = 0, load = 0
   end type end_t
 
-  !> What happened in a step.
+  !> What happened in a step; packed whole by `packed_states`.
   type :: event_t
     logical :: converged = .false.
     !> The state jumped; from where (h0, and the load just before), and how well that is known.

@@ -9,6 +9,7 @@ import struct
 import subprocess
 import time
 
+import f90nml
 import pytest
 from conftest import ROOT
 from scenes import deck, exponential, lennard_jones, loading
@@ -416,8 +417,6 @@ def test_a_cycle_adds_only_what_its_journal_lacks(cycle):
     assert [len(part) for part in frames(ended)] == [len(part) for part in parts]
 
 
-# --- Where files cannot be written
-
 SHORT = CYCLES["first"]
 
 
@@ -425,6 +424,30 @@ SHORT = CYCLES["first"]
 def short(snapin, snapin_path, tmp_path_factory):
     return Bench(snapin, snapin_path, tmp_path_factory.mktemp("short"), SHORT)
 
+
+def test_another_number_of_threads_is_refused_in_a_cycle(snapin, snapin_path, tmp_path):
+    bench = Bench(snapin, snapin_path, tmp_path, lennard_jones(0.2, loading=loading(6, 5, 0.5)))
+    bench.threads = 2
+    done = bench.resume(bench.journal)
+    assert done.returncode == 1
+    assert "set OMP_NUM_THREADS=1" in done.stderr
+    assert (tmp_path / "cut/deck/journal.partial").read_bytes() == bench.journal
+
+
+def test_times_of_a_run_that_was_interrupted_are_those_of_all_its_parts(short):
+    parts = frames(short.journal)
+    late = bytearray(parts[-1])
+    late[2 * WORD : 3 * WORD] = struct.pack("<d", 1000.0)
+    assert short.resume(b"".join(parts[:-1]) + sealed(bytes(late))).returncode == 0
+    cost = f90nml.read(short.folder / "cut/deck/summary.nml")["cost"]
+    assert 1000 < cost["wall_seconds"] < 1100
+    assert short.resume(b"".join(parts[:-1])).returncode == 0
+    cost = f90nml.read(short.folder / "cut/deck/summary.nml")["cost"]
+    assert cost["wall_seconds"] >= cost["kernel_seconds"] + cost["solve_seconds"]
+    assert cost["solve_seconds"] > 0
+
+
+# --- Where files cannot be written
 
 def empty(folder):
     folder.mkdir(parents=True, exist_ok=True)
