@@ -199,7 +199,9 @@ contains
     character(len=:), allocatable :: advice
 
     select case (code)
-    case (disk_full, quota_used_up, file_too_large)
+    case (file_too_large)
+      advice = 'raise the limit on the size of files (ulimit -f)'
+    case (disk_full, quota_used_up)
       advice = 'make room there, or choose another folder with --out'
     case (file_exists_already, not_a_folder, is_a_folder)
       advice = 'move away what is in the way, or choose another folder with --out'

@@ -12,8 +12,8 @@ module equilibrium
   use linear_algebra, only: multiply, factorisation_t, factorise
   implicit none
   private
-  public :: control_t, state_t, cost_t, residual, factorise_jacobian, largest_step, state_from, &
-    unknowns_of, control_derivative, residual_floor, load_reach, &
+  public :: control_t, state_t, cost_t, residual, factorise_jacobian, factorise_again, &
+    largest_step, state_from, unknowns_of, control_derivative, residual_floor, load_reach, &
     radius_of_gap
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
@@ -139,7 +139,30 @@ contains
     if (m > n) call border(this, grid, control, state, factors%lu(:, m))
     call factorise(factors)
     cost%factorisations = cost%factorisations + 1
+    factors%origin = [real(control%kind, wp), control%value, control%scale, diagonal - 1, &
+      state%h0, state%scale, state%gap]
   end subroutine factorise_jacobian
+
+  !> Factors of the Jacobian that factors%origin tells of, bit by bit what `factorise_jacobian` made
+  !> on the same mesh.
+  subroutine factorise_again(this, grid, factors)
+    type(problem_t), intent(in) :: this
+    type(discretisation_t), intent(in) :: grid
+    type(factorisation_t), intent(inout) :: factors
+    type(control_t) :: control
+    type(state_t) :: state
+    type(cost_t) :: not_counted
+    real(wp) :: shift
+
+    associate (origin => factors%origin)
+      control = control_t(nint(origin(1)), origin(2), origin(3))
+      shift = origin(4)
+      state%h0 = origin(5)
+      state%scale = origin(6)
+      state%gap = origin(7:)
+    end associate
+    call factorise_jacobian(this, grid, control, state, factors, not_counted, shift)
+  end subroutine factorise_again
 
   !> The column of derivatives of `residual` by the control's unknown.
   pure subroutine border(this, grid, control, state, column)

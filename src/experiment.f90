@@ -11,6 +11,8 @@ module experiment
   use quasi_static, only: quasi_static_t, position_t, witness_t
   use locked_steps, only: locked_steps_t
   use fixed_steps, only: fixed_steps_t
+  use journalled_steps, only: journalled_steps_t, new_journalled_steps
+  use journal, only: journal_t
   use cycle, only: plan_t, branch_t, run_branch
   use plans, only: plan_of
   use error_estimate, only: estimate_locked, estimate_fixed
@@ -59,11 +61,13 @@ contains
   end function problem_of
 
   !> Runs the path and the cycle of a scene; neither may be asked for, and then nothing is done.
-  subroutine run_experiment(scene, problem, observer, outcome)
+  !> With a journal, the cycle goes on from what that has, and is kept in it.
+  subroutine run_experiment(scene, problem, observer, outcome, journal)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(outcome_t), intent(out) :: outcome
+    type(journal_t), intent(inout), optional :: journal
     real(wp) :: low, high
     logical :: fixed
 
@@ -72,19 +76,22 @@ contains
     outcome%chosen = choose(scene%numerics, problem, low)
     fixed = outcome%chosen%grid /= 'edge_locked'
     if (allocated(scene%path) .or. .not. fixed) &
-      call run_locked(scene, problem, high, low, .not. fixed, observer, outcome)
-    if (allocated(scene%loading) .and. fixed) call run_fixed(scene, problem, low, observer, outcome)
+      call run_locked(scene, problem, high, low, .not. fixed, observer, outcome, journal)
+    if (allocated(scene%loading) .and. fixed) &
+      call run_fixed(scene, problem, low, observer, outcome, journal)
   end subroutine run_experiment
 
   !> The path, and the cycle if `with_cycle` and the scene has one, in edge-locked coordinates, for
   !> H0 from high to low (law's lengths).
-  subroutine run_locked(scene, problem, high, low, with_cycle, observer, outcome)
+  subroutine run_locked(scene, problem, high, low, with_cycle, observer, outcome, &
+    journal)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: high, low
     logical, intent(in) :: with_cycle
     class(observer_t), intent(inout) :: observer
     type(outcome_t), intent(inout) :: outcome
+    type(journal_t), intent(inout), optional :: journal
     type(locked_steps_t) :: steps
     real(wp) :: began
 
@@ -105,8 +112,9 @@ contains
         call run_stepped_path(scene, steps, observer, outcome)
       end if
     end if
-    if (allocated(scene%loading) .and. with_cycle) call run_cycle(scene, steps, observer, outcome)
-    steps%cost%solve_seconds = seconds() - began
+    if (allocated(scene%loading) .and. with_cycle) &
+      call run_cycle(scene, steps, observer, outcome, journal)
+    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
     outcome%error_estimate = estimate_locked(problem, steps%pair, high, low, &
       outcome%chosen%resolution, witnesses_of(outcome), steps%cost)
@@ -115,12 +123,13 @@ contains
   end subroutine run_locked
 
   !> The cycle on a mesh fixed in space, for H0 down to low.
-  subroutine run_fixed(scene, problem, low, observer, outcome)
+  subroutine run_fixed(scene, problem, low, observer, outcome, journal)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: low
     class(observer_t), intent(inout) :: observer
     type(outcome_t), intent(inout) :: outcome
+    type(journal_t), intent(inout), optional :: journal
     type(fixed_steps_t) :: steps
     type(outcome_t) :: of_cycle
     real(wp) :: began
@@ -134,7 +143,7 @@ contains
     outcome%nodes = outcome%nodes + steps%mesh%nodes
     call use_threads_for(steps%mesh%nodes)
     began = seconds()
-    call run_cycle(scene, steps, observer, of_cycle)
+    call run_cycle(scene, steps, observer, of_cycle, journal)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
     of_cycle%error_estimate = estimate_fixed(problem, steps%mesh, &
@@ -234,8 +243,27 @@ contains
     end associate
   end subroutine run_stepped_path
 
+  !> The cycle, kept in a journal where there is one.
+  subroutine run_cycle(scene, steps, observer, outcome, journal)
+    type(scene_t), intent(in) :: scene
+    class(quasi_static_t), intent(inout), target :: steps
+    class(observer_t), intent(inout) :: observer
+    type(outcome_t), intent(inout) :: outcome
+    type(journal_t), intent(inout), optional, target :: journal
+    type(journalled_steps_t) :: kept
+
+    if (.not. present(journal)) then
+      call go_through(scene, steps, observer, outcome)
+      return
+    end if
+    kept = new_journalled_steps(steps, journal)
+    call go_through(scene, kept, observer, outcome)
+    steps%cost%states = steps%cost%states + kept%cost%states
+    steps%cost%solve_seconds = steps%cost%solve_seconds + kept%earlier_seconds
+  end subroutine run_cycle
+
   !> Loading, then an unloading from each turning point.
-  subroutine run_cycle(scene, steps, observer, outcome)
+  subroutine go_through(scene, steps, observer, outcome)
     type(scene_t), intent(in) :: scene
     class(quasi_static_t), intent(inout) :: steps
     class(observer_t), intent(inout) :: observer
@@ -265,7 +293,7 @@ contains
           nowhere), .false., position, observer, nowhere, none, outcome%unloading(k))
       end do
     end if
-  end subroutine run_cycle
+  end subroutine go_through
 
   !> The range of H0, in the law's lengths, that the scene covers.
   subroutine range_of(scene, problem, low, high)

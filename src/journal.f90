@@ -38,6 +38,8 @@ module journal
     procedure :: is_open
     procedure :: is_behind
     procedure :: next
+    procedure :: next_of
+    procedure :: reject
     procedure :: append
     procedure :: close => close_journal
     procedure, private :: read_frame
@@ -165,6 +167,29 @@ contains
     ! Between reading and writing C asks for a change of position.
     if (self%waiting == 0) status = c_fseek(self%stream, 0_c_long, from_here)
   end subroutine next
+
+  !> The next record, which must begin with the text `mark`.
+  subroutine next_of(self, mark, record, found)
+    class(journal_t), intent(inout) :: self
+    character(len=*), intent(in) :: mark
+    type(packed_t), intent(inout) :: record
+    logical, intent(out) :: found
+    character(len=:), allocatable :: kind
+
+    call self%next(record, found)
+    if (.not. found) return
+    call record%take(kind)
+    if (kind /= mark) call self%reject()
+  end subroutine next_of
+
+  !> Takes the records for those of another run: nothing can be done with them.
+  subroutine reject(self)
+    class(journal_t), intent(inout) :: self
+
+    call fail(self%trouble, file_trouble, self%path // &
+      ' does not tell of this run; remove it and start over')
+    call self%close()
+  end subroutine reject
 
   !> Adds a record and hands it to the system, so that it survives this process. Not before `next`
   !> has handed out all there were.

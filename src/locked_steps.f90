@@ -9,7 +9,7 @@ module locked_steps
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: state_t, state_from
+  use equilibrium, only: state_t, state_from, at_edge_radius, at_h0_with_edge
   use solver_options, only: solver_options_t
   use solver, only: solve_state
   use edge_locked, only: mesh_pair_t, approach, contact
@@ -31,6 +31,7 @@ module locked_steps
     procedure :: grid
     procedure :: spacing_over_neck
     procedure :: witness
+    procedure :: mesh_of
     procedure :: begin_afar
     procedure :: far_away
     procedure :: land
@@ -260,6 +261,17 @@ contains
       end if
     end do
   end subroutine creep
+
+  !> A scale that is prescribed or unknown belongs to the contact, and so does everything where
+  !> there is no other mesh.
+  pure integer function mesh_of(self, kind)
+    class(locked_steps_t), intent(in) :: self
+    integer, intent(in) :: kind
+
+    mesh_of = approach
+    if (kind == at_h0_with_edge .or. kind == at_edge_radius .or. .not. self%pair%traceable) &
+      mesh_of = contact
+  end function mesh_of
 
   !> The witness of a fold on a trail.
   pure function fold_witness(self, trail, i) result(witness)

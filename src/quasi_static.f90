@@ -16,7 +16,7 @@ module quasi_static
   integer, parameter :: memory = 4
 
   !> Where an experiment is: the present state and as much of its past as the next step can use.
-  !> Copied to come back to it (turning points, refinements).
+  !> Copied to come back to it (turning points, refinements), and packed whole by `packed_states`.
   type :: position_t
     type(state_t) :: state
     !> Which of the solver's meshes the state lives on.
@@ -41,7 +41,7 @@ module quasi_static
     real(wp) :: h0 = 0, displacement = 0, load = 0
   end type end_t
 
-  !> What happened in a step.
+  !> What happened in a step; packed whole by `packed_states`.
   type :: event_t
     logical :: converged = .false.
     !> The state jumped; from where (h0, and the load just before), and how well that is known.
@@ -69,6 +69,8 @@ module quasi_static
     procedure(spacing_of), deferred :: spacing_over_neck
     !> The witness of a position's state: what its h0 was prescribed as.
     procedure(witness_of), deferred :: witness
+    !> Which of the meshes the Jacobian for a kind of control lives on.
+    procedure :: mesh_of
   end type quasi_static_t
 
   abstract interface
@@ -113,6 +115,14 @@ module quasi_static
   end interface
 
 contains
+
+  !> With one mesh there is no choice.
+  pure integer function mesh_of(self, kind)
+    class(quasi_static_t), intent(in) :: self
+    integer, intent(in) :: kind
+
+    mesh_of = 1
+  end function mesh_of
 
   !> Appends a witness. (An array constructor around a function's result would leak in gfortran.)
   subroutine add_witness(witnesses, witness)

@@ -2,8 +2,8 @@
 !>
 !> All of them are written to `.partial` files, the curve and the profiles row by row; `finish`
 !> gives the whole set its names. Until then the results of an earlier run stay as they are, and
-!> what an interrupted run leaves is partial by name. One run at a time has the folder; what it finds
-!> goes into a journal, so that another can go on from there.
+!> what an interrupted run leaves is partial by name. One run at a time has the folder; what it
+!> finds goes into a journal, so that another can go on from there.
 module results
   use kinds, only: wp
   use failure, only: failure_t, fail, file_trouble
@@ -138,8 +138,8 @@ contains
       return
     end if
     call self%journal%go_on(path, owner, other, error)
-    if (allocated(other)) call fail(error, file_trouble, 'cannot go on: what was interrupted is ' // &
-      'of another ' // difference_between(other, owner))
+    if (allocated(other)) call fail(error, file_trouble, 'cannot go on: what was interrupted ' // &
+      'is of another ' // difference_between(other, owner))
   end subroutine claim
 
   !> Path of the journal in a folder of results.
@@ -249,8 +249,8 @@ contains
   end subroutine write_summary
 
   !> Ends the progress and gives the files of this run their names; those of an earlier run which
-  !> this one has not made disappear, and so does the journal, at last. With `trouble`, the journal's
-  !> included, the partial files stay and `error` tells why. The folder is then free for others.
+  !> this one has not made disappear, and so does the journal, at last. With `trouble`, the
+  !> journal's included, the partial files stay and `error` tells why. The folder is then free.
   subroutine finish(self, error)
     class(results_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error

@@ -25,8 +25,8 @@ module run_identity
 
 contains
 
-  !> The identity of a run of `deck`, the text of a deck as resolved, in this program; threads: those
-  !> in use, 0 where the numbers do not depend on them.
+  !> The identity of a run of `deck`, the text of a deck as resolved, in this program; threads:
+  !> those in use, 0 where the numbers do not depend on them.
   function identity_of(deck, threads) result(text)
     character(len=*), intent(in) :: deck
     integer, intent(in) :: threads

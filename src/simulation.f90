@@ -75,8 +75,8 @@ contains
       call say(out_dir//': '//error%message, .false.)
       return
     end if
-    if (.not. results%lock%is_held()) call say(out_dir//': warning: folders cannot be locked here; '// &
-      'let no other run write into this one', quiet)
+    if (.not. results%lock%is_held()) call say(out_dir//': warning: folders cannot be locked '// &
+      'here; let no other run write into this one', quiet)
     if (left_over .and. resume) then
       call say(out_dir//': going on with what was interrupted after '// &
         duration(results%journal%earlier), quiet)
@@ -87,6 +87,7 @@ contains
     observer => results
     if (allocated(scene%stability)) then
       recorder%next => results
+      recorder%journal => results%journal
       observer => recorder
     end if
     failed = 0
@@ -95,7 +96,7 @@ contains
       call run_sweep(scene, results, failed, outcome%cost)
     else
       call results%progress%start(states_planned(scene), name, quiet)
-      call run_experiment(scene, problem, observer, outcome)
+      call run_experiment(scene, problem, observer, outcome, results%journal)
     end if
     call results%progress%finish()
     outcome%cost%factorisations = outcome%cost%factorisations + recorder%cost%factorisations
