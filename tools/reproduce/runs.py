@@ -10,6 +10,8 @@ import subprocess
 import sys
 import time
 
+import numpy as np
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INPUTS = ROOT / "inputs"
 sys.path[:0] = [str(ROOT / "pywrap" / "plots"), str(ROOT / "pywrap"),
@@ -57,6 +59,10 @@ class Results:
     def sweep(self):
         """The columns of sweep.csv."""
         return read_table(self.folder, "sweep.csv")
+
+    def last(self, key):
+        """Return a number of the summary; of an array, the value of the last turning point."""
+        return float(np.ravel(self.summary[key])[-1])
 
     def branch(self, name, table="curve"):
         """Return the rows of one branch, or of one theory."""

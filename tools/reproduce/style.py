@@ -39,6 +39,13 @@ def figure(rows=1, columns=1, height=4.2, width=WIDTH, **kwargs):
     return page, page.subplots(rows, columns, **kwargs)
 
 
+def mosaic(layout, height, width=WIDTH, **kwargs):
+    """Return a figure and its panels, a dict, laid out as the rows of names say."""
+    matplotlib.rcParams.update(_SETTINGS)
+    page = Figure(figsize=(width, height), layout="constrained")
+    return page, page.subplot_mosaic(layout, **kwargs)
+
+
 def label(panel, x, y, zero_lines=""):
     """Name the axes; `zero_lines` ("x", "y", "xy") draws thin lines where these are zero."""
     panel.set_xlabel(x)
@@ -52,6 +59,17 @@ def label(panel, x, y, zero_lines=""):
 def letter(panel, text):
     """Put a panel's letter above its upper left corner."""
     panel.set_title(f"({text})", loc="left", fontweight="bold")
+
+
+def heading(panel, text):
+    """Put a few words above a panel."""
+    panel.set_title(text, loc="left")
+
+
+def legend(page, columns, panel=None):
+    """Put the legend of a panel, by default the first, below the picture, clear of all data."""
+    handles, names = (panel or page.axes[0]).get_legend_handles_labels()
+    page.legend(handles, names, loc="outside lower center", ncols=columns, columnspacing=1.6)
 
 
 def statement(panel, text, x, y, align="left", color=BLACK, **kwargs):
