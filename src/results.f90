@@ -15,7 +15,7 @@ module results
   use text_file, only: output_t, partial
   use tables, only: table_t, cells
   use profiles, only: profile_columns, write_profile
-  use summary, only: summary_t, summary_text, resolved_text, number_columns, numbers_of
+  use summary, only: summary_t, summary_text, resolved_text
   use progress, only: progress_t
   implicit none
   private
@@ -140,25 +140,24 @@ contains
       record%local_criterion, record%axis_criterion])
   end function stability_cells
 
-  !> Adds a case of a sweep, the value of its key and what its summary has to say, to `sweep.csv`.
-  !> `key` is 'group.key'.
-  subroutine take_case(self, key, value, summary)
+  !> Adds a case of a sweep, the value of its key and its numbers, to `sweep.csv`. `key` is
+  !> 'group.key', `columns` are those of the numbers.
+  subroutine take_case(self, key, value, columns, numbers)
     class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: key
-    real(wp), intent(in) :: value
-    type(summary_t), intent(in) :: summary
-    character(len=len(number_columns)) :: columns(1 + size(number_columns))
+    character(len=*), intent(in) :: key, columns(:)
+    real(wp), intent(in) :: value, numbers(:)
+    character(len=max(len(columns), len(key) + 24)) :: header(1 + size(columns))
 
     if (allocated(self%trouble)) return
     if (.not. self%cases%has_begun()) then
       call self%mark('sweep.csv')
-      columns(1) = key // ' in the unit of the key'
-      columns(2:) = number_columns
-      call self%cases%begin(self%path_of('sweep.csv'), self%title, self%version, columns, &
+      header(1) = key // ' in the unit of the key'
+      header(2:) = columns
+      call self%cases%begin(self%path_of('sweep.csv'), self%title, self%version, header, &
         self%trouble)
     end if
     if (.not. allocated(self%trouble)) &
-      call self%cases%row(cells([value, numbers_of(summary)]), self%trouble)
+      call self%cases%row(cells([value, numbers]), self%trouble)
     if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
   end subroutine take_case
 

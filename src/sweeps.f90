@@ -10,6 +10,7 @@ module sweeps
   use records, only: silent_observer_t
   use summarise, only: summary_of
   use summary, only: summary_t
+  use case_columns, only: columns_of, numbers_of
   use results, only: results_t
   implicit none
   private
@@ -46,7 +47,8 @@ contains
         do while (written < size(values))
           if (.not. done(written + 1)) exit
           written = written + 1
-          call results%take_case(scene%sweep%key, values(written), summaries(written))
+          call results%take_case(scene%sweep%key, values(written), &
+            columns_of(scene), numbers_of(summaries(written), scene))
         end do
         !$omp end critical (sweep_rows)
       end do
