@@ -123,7 +123,4 @@ def rows(runs):
             (summary["jump_out_h0"] - summary["jump_in_h0"]) * 1e9, "nm",
             "jump apart less jump into contact, in h0: the one difference between them; in "
             "contact both run through the same states"),
-        Row("Fig. 1, units of the loads", "µN/m", None, "µN", "",
-            f"misprint: with gamma = {summary['surface_energy'] * 1e3:.3f} mJ/m^2 and R = 1.5 cm, "
-            f"1.5 pi gamma R = {summary['jkr_pull_off'] * 1e6:.2f} µN, the paper's 56"),
     ]

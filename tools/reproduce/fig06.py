@@ -97,7 +97,7 @@ def numbers(runs):
 
 def draw(runs):
     """Return the picture: (a) with its inset above (b), (c), (d)."""
-    page, panels = style.mosaic([["a", "a", "a"], ["b", "c", "d"]], height=6.4)
+    page, panels = style.mosaic([["a", "a", "a"], ["b", "c", "d"]], height=6.8)
     states = _states(runs)
     rule = [state for state in _states(runs, "fig06_paper")
             if round(state["h0"][0] * 1e9, 1) in (0.1, -2.0)]
@@ -114,17 +114,20 @@ def draw(runs):
         style.label(panel, "r [µm]", y, "y")
         style.letter(panel, name)
         panel.set_xlim(0, 16 if name == "a" else 9.5)
-    panels["a"].set_ylim(0, 12.5)
+    panels["a"].set_ylim(0, 15)
     panels["b"].set_ylim(0.42, 0.8)
+    panels["c"].set_ylim(-18, 15.5)
     panels["d"].set_ylim(-8.9, 0.5)
+    panels["b"].text(0.3, 0.455, "dashed: paper's rule", fontsize=8.5, va="top", color="#555555")
+    style.statement(panels["a"], "paper: drawn out\nbefore the jump,\na neck after it", 0.985, 0.195,
+                    align="right")
     gamma = runs["fig06_converged"].summary["surface_energy"] * 1e3
     panels["d"].axhline(-gamma, color=style.VERMILION, linewidth=1, linestyle=":")
-    panels["d"].text(9.4, -gamma - 0.1, f"−γ = −{gamma:.2f}", fontsize=8.5, ha="right", va="top",
+    panels["d"].text(0.3, -gamma - 0.1, f"−γ = −{gamma:.2f}", fontsize=8.5, va="top",
                      color=style.VERMILION)
-    panels["d"].text(9.4, -0.95, "the paper's −0.80", fontsize=8.5, ha="right", va="top",
-                     color=style.VERMILION)
+    panels["d"].text(0.3, -0.9, "paper:\n−0.80", fontsize=8.5, va="top", color=style.VERMILION)
     panels["d"].axhline(-0.80, color=style.VERMILION, linewidth=1, linestyle=":")
-    _inset(panels["a"].inset_axes((0.085, 0.5, 0.4, 0.47)), runs)
+    _inset(panels["a"].inset_axes((0.085, 0.53, 0.42, 0.46)), runs)
     profile_lines.bar(page, [panels[name] for name in "abcd"], colors)
     return page
 

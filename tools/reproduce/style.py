@@ -5,8 +5,11 @@ README. Colours are Okabe and Ito's, which stay apart for the colour-blind; mark
 repeat what they say.
 """
 
+import io
+
 import matplotlib
 from matplotlib.figure import Figure
+from PIL import Image
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#8C8C8C"
@@ -98,5 +101,9 @@ def note(panel, text, at, to, align="left", color=BLACK, **kwargs):
 
 
 def save(page, path):
-    """Write the picture; colours are indexed where that keeps it small."""
-    page.savefig(path, dpi=DPI)
+    """Write the picture; a palette of 200 colours makes it a third of the size."""
+    full = io.BytesIO()
+    page.savefig(full, format="png", dpi=DPI)
+    picture = Image.open(full).convert("RGB")
+    # Without dithering lines keep their colour and white stays white.
+    picture.quantize(200, dither=Image.Dither.NONE).save(path, optimize=True)
