@@ -23,8 +23,8 @@ the central displacement changes by less than 1e-4 nm (`fig06_paper`, grey dashe
 ratio that the stiff contact keeps low, the iteration ends after {few:.0f} iterations in the median,
 the paper's 50–1000 being more, and up to {residual:.1f} z0 from equilibrium; the radii then do
 differ between approach and retreat, by up to {rule_radii:.0f} %. The largest tension, in units of
-JKR's, follows from the tolerance: {tolerances}; converged {ratio:.4f}. The smooth curves of the
-paper therefore were stopped by a stricter rule than this reading of its text."""
+JKR's, follows from the tolerance: {tolerances}; converged {ratio:.4f}. The paper's
+curves, smooth as they are, must come from a stricter rule than this reading of its text."""
 
 _Z0 = 0.5e-9
 

@@ -70,7 +70,8 @@ def main():
 def chapter_names():
     """Return the modules of the report, in its order."""
     figures = [path.stem for path in sorted(HERE.glob("fig[0-9][0-9].py"))]
-    return figures + [name for name in ("history", "misprints") if (HERE / f"{name}.py").is_file()]
+    others = ("history", "verdict", "misprints")
+    return figures + [name for name in others if (HERE / f"{name}.py").is_file()]
 
 
 def _chapter(name, module, runs, folder):
