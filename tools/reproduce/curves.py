@@ -49,7 +49,7 @@ def jump(curve, towards):
 
 
 def broken(curve, columns, cut):
-    """Return columns of a branch with a gap (NaN) after row `cut`, so that no line crosses a jump."""
+    """Return columns of a branch with NaN after row `cut`, so that no line crosses a jump."""
     return [np.insert(curve[column], cut + 1, np.nan) for column in columns]
 
 

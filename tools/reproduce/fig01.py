@@ -9,12 +9,12 @@ DECKS = ("fig01_hertz_exponential", "fig01_lennard_jones", "fig06_paper", "fig06
 TITLE = "Fig. 1: displacement against load, repulsion and adhesion"
 CAPTION = """Central displacement against load for crossed cylinders of 1.5 cm: exponential
 repulsion (squares) on the curve of Hertz theory (solid), Lennard-Jones adhesion (triangles, σ =
-{sigma:.2f}) on that of JKR theory (dashed). The paper reports a largest tension of 59 µN (it prints
-µN/m), between JKR (56) and DMT (75). The equations give **{tension:.3f} µN**, {over:.1f} % above
-JKR, known to {error:.0e}. Steps of h0 are enough to explain the difference: a curve with one state
-every {window:.2f} nm or more can miss the maximum and show 59. The paper says that on this scale
-retreat and approach cannot be told apart: the bodies jump in at h0 = {jump_in:.3f} nm and apart at
-{jump_out:.3f} nm, {between:.2f} nm further."""
+{sigma:.2f}) on that of JKR theory (dashed). The paper reports a largest tension of 59 µN (it
+prints µN/m), between JKR (56) and DMT (75). The equations give **{tension:.3f} µN**, {over:.1f} %
+above JKR, known to {error:.0e}. Steps of h0 are enough to explain the difference: a curve with
+one state every {window:.2f} nm or more can miss the maximum and show 59. The paper says that on
+this scale retreat and approach cannot be told apart: the bodies jump in at h0 = {jump_in:.3f} nm
+and apart at {jump_out:.3f} nm, {between:.2f} nm further."""
 
 _RADIUS, _STIFFNESS = 1.5e-2, 1e10
 _PUBLISHED = 59e-6

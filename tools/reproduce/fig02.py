@@ -7,13 +7,13 @@ from published import Row
 
 DECKS = ("fig02_exponential_short", "fig02_exponential_long", "fig02_lennard_jones_repulsive")
 TITLE = "Fig. 2: repulsion, Hertz theory and the slowly varying deformation"
-CAPTION = """Central displacement against load for exponential repulsions over 0.2 nm (diamonds) and
-1.0 nm (squares) and the repulsive part of the Lennard-Jones law (triangles); Hertz theory solid,
-and in the inset (31) and (32) dashed. The paper finds that Hertz theory overestimates the
-displacement, less so for shorter ranges, and that (31) and (32) are the better ones at small load,
-above all for the longer range. So it is: at 1 mN Hertz theory is {short:+.1f} % off for 0.2 nm,
-{lennard_jones:+.1f} % for Lennard-Jones and {long:+.1f} % for 1.0 nm; (31) with (32) is the better
-one up to {cross_short:.3g} µN for 0.2 nm and up to {cross_long:.3g} µN for 1.0 nm."""
+CAPTION = """Central displacement against load for exponential repulsions over 0.2 nm (diamonds)
+and 1.0 nm (squares) and the repulsive part of the Lennard-Jones law (triangles); Hertz theory
+solid, and in the inset (31) and (32) dashed. The paper finds that Hertz theory overestimates the
+displacement, less so for shorter ranges, and that (31) and (32) are the better ones at small
+load, above all for the longer range. So it is: at 1 mN Hertz theory is {short:+.1f} % off for 0.2
+nm, {lennard_jones:+.1f} % for Lennard-Jones and {long:+.1f} % for 1.0 nm; (31) with (32) is the
+better one up to {cross_short:.3g} µN for 0.2 nm and up to {cross_long:.3g} µN for 1.0 nm."""
 
 _RADIUS, _STIFFNESS, _P0 = 1.5e-2, 1e10, 2.5e8
 _STYLES = {

@@ -9,13 +9,14 @@ DECKS = ("fig03",)
 TITLE = "Fig. 3: where Hertz theory holds"
 CAPTION = """Relative error, against Λ of (39), of the Hertz load at the computed displacement
 (solid), of the displacement (31) (dotted) and of the load (32) (dashed), both at the computed
-separation h(0) on the axis, as the paper discusses them. In units of the decay length nothing but Λ
-matters, so that one approach of {states:.0f} states gives the whole figure in {seconds:.2f} s. At Λ
-= 10⁴ the paper reads 10–20 %; it is **{hertz_1e4:.2f} %** low, at Λ = 1 {hertz_1:.2f} % and at 0.01
-{hertz_001:.2f} %. As the paper says, (31) and (32) are low everywhere, (32) by more ({slow_31:.2f} %
-and {slow_32:.2f} % at Λ = 0.01), and worse for larger Λ, where Hertz theory gets better. Where
-(31) and (32) are solved at a given h0 instead (thin lines), as one would use them, they are much
-better: {same_31:.1f} % and {same_32:.1f} % at Λ = 10⁴ rather than {far_31:.1f} % and {far_32:.1f} %."""
+separation h(0) on the axis, as the paper discusses them. In units of the decay length nothing but
+Λ matters, so that one approach of {states:.0f} states gives the whole figure in {seconds:.2f} s.
+At Λ = 10⁴ the paper reads 10–20 %; it is **{hertz_1e4:.2f} %** low, at Λ = 1 {hertz_1:.2f} % and
+at 0.01 {hertz_001:.2f} %. As the paper says, (31) and (32) are low everywhere, (32) by more
+({slow_31:.2f} % and {slow_32:.2f} % at Λ = 0.01), and worse for larger Λ, where Hertz theory gets
+better. Where (31) and (32) are solved at a given h0 instead (thin lines), as one would use them,
+they are much better: {same_31:.1f} % and {same_32:.1f} % at Λ = 10⁴ rather than {far_31:.1f} %
+and {far_32:.1f} %."""
 
 _RADIUS, _STIFFNESS, _P0, _DECAY = 1.5e-2, 1e10, 2.581988897471611e6, 1e-9
 

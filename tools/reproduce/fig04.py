@@ -8,11 +8,11 @@ from published import Row
 
 DECKS = ("fig04",)
 TITLE = "Fig. 4: profiles under an exponential repulsion"
-CAPTION = """Separation (a) and pressure (b) against the distance from the axis, from h0 = 4.3 to −2.0
-nm in steps of 0.7 nm; exponential repulsion of 10 MPa over 1 nm. The paper reports that the bodies
-grow flatter under load, but nowhere flat or at h = 0, and that the pressure falls steadily from the
-axis outwards. At h0 = −2.0 nm the gap on the axis is **{gap:.3f} nm**, and the surfaces keep
-{curved:.1f} % of their undeformed curvature there ({first:.0f} % at h0 = 4.3 nm)."""
+CAPTION = """Separation (a) and pressure (b) against the distance from the axis, from h0 = 4.3 to
+−2.0 nm in steps of 0.7 nm; exponential repulsion of 10 MPa over 1 nm. The paper reports that the
+bodies grow flatter under load, but nowhere flat or at h = 0, and that the pressure falls steadily
+from the axis outwards. At h0 = −2.0 nm the gap on the axis is **{gap:.3f} nm**, and the surfaces
+keep {curved:.1f} % of their undeformed curvature there ({first:.0f} % at h0 = 4.3 nm)."""
 
 _RADIUS, _STIFFNESS = 1.5e-2, 1e10
 

@@ -8,12 +8,13 @@ from published import Row
 DECKS = ("fig05_hamaker_1e-19", "fig05_hamaker_2e-20", "fig05_hamaker_1e-21")
 TITLE = "Fig. 5: low and moderate adhesion"
 CAPTION = """Central displacement against load for three Hamaker constants, approach (symbols) and
-retreat (thin lines), beside JKR theory (black). The paper finds JKR theory very good, a jump for σ
-= {sigma_0:.2f} alone, and no difference between approach and retreat. At 1 mN JKR's displacement
-is off by {off_0:+.1f} %, {off_1:+.1f} % and {off_2:+.1f} % for σ = {sigma_0:.2f}, {sigma_1:.2f} and
-{sigma_2:.4f}. Only the first has folds: it jumps into contact at h0 = {jump_in:.4f} nm and apart at
-{jump_out:.4f} nm, a hysteresis of {between:.3f} nm that the paper's scale does not show. The
-pull-off, {ratio_0:.3f}, {ratio_1:.3f} and {ratio_2:.3f} of JKR's, moves to DMT's 4/3."""
+retreat (thin lines), beside JKR theory (black). The paper finds JKR theory very good, a jump for
+σ = {sigma_0:.2f} alone, and no difference between approach and retreat. At 1 mN JKR's
+displacement is off by {off_0:+.1f} %, {off_1:+.1f} % and {off_2:+.1f} % for σ = {sigma_0:.2f},
+{sigma_1:.2f} and {sigma_2:.4f}. Only the first has folds: it jumps into contact at h0 =
+{jump_in:.4f} nm and apart at {jump_out:.4f} nm, a hysteresis of {between:.3f} nm that the paper's
+scale does not show. The pull-off, {ratio_0:.3f}, {ratio_1:.3f} and {ratio_2:.3f} of JKR's, moves
+to DMT's 4/3."""
 
 _RADIUS, _STIFFNESS = 1.5e-2, 1e11
 _STYLES = (("s", style.VERMILION), ("D", style.BLUE), ("^", style.GREEN))

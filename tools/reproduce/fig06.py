@@ -8,22 +8,23 @@ from published import Row
 
 DECKS = ("fig06_converged", "fig06_uniform", "fig06_paper", "fig06_paper_tolerance")
 TITLE = "Fig. 6: profiles under adhesion, before and after the jump into contact"
-CAPTION = """Separation (a, enlarged in b), pressure (c) and energy of the surface force (d) against
-the distance from the axis, from h0 = 4.3 to −2.0 nm in steps of 0.7 nm; σ = {sigma:.2f}. Inset:
-contact radius, where h < 1.1 z0, against load, approach and retreat beside JKR theory. As the paper
-says, the bodies are drawn out before the jump (their curvature on the axis at h0 = {last:.1f} nm is
-{drawn:.2f} times the undeformed one), and a neck under tension surrounds the contact after it. The
-energy in the contact comes near **−{gamma:.2f} mJ/m²**, the surface energy of A = 1e-19 J; the 0.80
-mJ/m² of the text is that of Fig. 1. The paper finds slightly larger radii in retreat at the same
-load: the equations have one contact branch, and the radii agree to {radii:.1e} of themselves.
+CAPTION = """Separation (a, enlarged in b), pressure (c) and energy of the surface force (d)
+against the distance from the axis, from h0 = 4.3 to −2.0 nm in steps of 0.7 nm; σ = {sigma:.2f}.
+Inset: contact radius, where h < 1.1 z0, against load, approach and retreat beside JKR theory. As
+the paper says, the bodies are drawn out before the jump (their curvature on the axis at h0 =
+{last:.1f} nm is {drawn:.2f} times the undeformed one), and a neck under tension surrounds the
+contact after it. The energy in the contact comes near **−{gamma:.2f} mJ/m²**, the surface energy
+of A = 1e-19 J; the 0.80 mJ/m² of the text is that of Fig. 1. The paper finds slightly larger
+radii in retreat at the same load: the equations have one contact branch, and the radii agree to
+{radii:.1e} of themselves.
 
 The grid of the paper, nodes 50 nm apart, is fine enough here: with the equations solved on it
 (`fig06_uniform`) the largest tension is {grid:+.3f} % off. The stopping rule is not. Stopped when
 the central displacement changes by less than 1e-4 nm (`fig06_paper`, grey dashes), with a mixing
-ratio that the stiff contact keeps low, the iteration ends after {few:.0f} iterations in the median,
-the paper's 50–1000 being more, and up to {residual:.1f} z0 from equilibrium; the radii then do
-differ between approach and retreat, by up to {rule_radii:.0f} %. The largest tension, in units of
-JKR's, follows from the tolerance: {tolerances}; converged {ratio:.4f}. The paper's
+ratio that the stiff contact keeps low, the iteration ends after {few:.0f} iterations in the
+median, the paper's 50–1000 being more, and up to {residual:.1f} z0 from equilibrium; the radii
+then do differ between approach and retreat, by up to {rule_radii:.0f} %. The largest tension, in
+units of JKR's, follows from the tolerance: {tolerances}; converged {ratio:.4f}. The paper's
 curves, smooth as they are, must come from a stricter rule than this reading of its text."""
 
 _Z0 = 0.5e-9
@@ -119,8 +120,8 @@ def draw(runs):
     panels["c"].set_ylim(-18, 15.5)
     panels["d"].set_ylim(-8.9, 0.5)
     panels["b"].text(0.3, 0.455, "dashed: paper's rule", fontsize=8.5, va="top", color="#555555")
-    style.statement(panels["a"], "paper: drawn out\nbefore the jump,\na neck after it", 0.985, 0.195,
-                    align="right")
+    style.statement(panels["a"], "paper: drawn out\nbefore the jump,\na neck after it",
+                    0.985, 0.195, align="right")
     gamma = runs["fig06_converged"].summary["surface_energy"] * 1e3
     panels["d"].axhline(-gamma, color=style.VERMILION, linewidth=1, linestyle=":")
     panels["d"].text(0.3, -gamma - 0.1, f"−γ = −{gamma:.2f}", fontsize=8.5, va="top",
@@ -176,8 +177,8 @@ def rows(runs):
             _curvature(before), "", "curvature of the gap on the axis times R at h0 = "
             f"{before['h0'][0] * 1e9:.1f} nm; 1 for undeformed bodies"),
         Row("Fig. 6(a), after the jump", "a neck under tension", None, neck * 1e6, "µm",
-            f"radius of the greatest tension, {-last['pressure'].min() / 1e6:.2f} MPa, at h0 = -2.0 "
-            f"nm; pressure changes sign at {edge * 1e6:.2f} µm"),
+            f"radius of the greatest tension, {-last['pressure'].min() / 1e6:.2f} MPa, at h0 = "
+            f"-2.0 nm; pressure changes sign at {edge * 1e6:.2f} µm"),
         Row("Fig. 6(a) inset, contact radius in retreat over approach, same load",
             "slightly larger", 1 + _radii_differ(rule), 1 + _radii_differ(results), "",
             "largest ratio at compressive loads; one contact branch once the equations hold"),
@@ -186,8 +187,8 @@ def rows(runs):
         Row("Fig. 6(c), pressure towards the centre", "increasingly repulsive", None,
             last["pressure"][0] / 1e6, "MPa", "on the axis at h0 = -2.0 nm; finite at the edge"),
         Row("Fig. 6(d), least energy", -0.80, deepest["fig06_paper"], deepest["fig06_converged"],
-            "mJ/m^2", f"misprint: gamma = {summary['surface_energy'] * 1e3:.4f} mJ/m^2 for A = 1e-19 "
-            "J, z0 = 0.5 nm by (34); 0.80 belongs to A = 1e-20 J of Fig. 1"),
+            "mJ/m^2", f"misprint: gamma = {summary['surface_energy'] * 1e3:.4f} mJ/m^2 for A = "
+            "1e-19 J, z0 = 0.5 nm by (34); 0.80 belongs to A = 1e-20 J of Fig. 1"),
         Row("Fig. 6, largest tension over JKR's, grid alone", None,
             grid.summary["max_tension"] / summary["jkr_pull_off"],
             summary["max_tension"] / summary["jkr_pull_off"], "",
@@ -195,8 +196,8 @@ def rows(runs):
         Row("Method, iterations for one state", "50-1000",
             f"{np.min(iterations['rule']):.0f}-{np.max(iterations['rule']):.0f}",
             f"{np.min(iterations['solved']):.0f}-{np.max(iterations['solved']):.0f}", "",
-            "mixing at no more than 0.2; computed: stopped on a change of 1e-4 nm; converged: until "
-            "the residual is small (fig06_uniform)"),
+            "mixing at no more than 0.2; computed: stopped on a change of 1e-4 nm; converged: "
+            "until the residual is small (fig06_uniform)"),
     ]
     for value, ratio in _tolerances(runs):
         found.append(Row(

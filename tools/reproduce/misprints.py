@@ -6,21 +6,21 @@ from published import Row
 
 DECKS = ("fig01_lennard_jones", "fig06_converged")
 TITLE = "Misprints, and how they were settled"
-CAPTION = """The text of the paper that was available here is a machine reading of the printed pages;
-some of these may be the reader's. None of them touches the paper's figures.
+CAPTION = """The text of the paper that was available here is a machine reading of the printed
+pages; some of these may be the reader's. None of them touches the paper's figures.
 
 - **Kernel (15).** It must be 4 K/(π r), as (13) requires: with it, Hertz's pressure displaces the
-  axis by {right:.6f} a²/R, (4) being one. Without 1/π it would be {without:.4f}, as printed, with
-  4π K/r, {printed:.4f}.
-- **K(m) "of modulus m".** m = t²/r² is the parameter, k². At t = r/2 the angular integral of
-  1/|r − t| is {angular:.6f}/r; the parameter gives {parameter:.6f}, the modulus {modulus:.6f}.
-- **(8)** is missing from the text. With the contact energy −c π a² γ, the displacement (11) is the
-  one of least energy for c = {coefficient:.6f}: (8) is −π a² γ.
+  axis by {right:.6f} a²/R, (4) being one. Without 1/π it would be {without:.4f}; with 4π K/r,
+  as the text at hand reads, {printed:.4f}.
+- **K(m) "of modulus m".** m = t²/r² is the parameter, k². At t = r/2 the angular integral of 1/|r
+  − t| is {angular:.6f}/r; the parameter gives {parameter:.6f}, the modulus {modulus:.6f}.
+- **(8)** is missing from the text. With the contact energy −c π a² γ, the displacement (11) is
+  the one of least energy for c = {coefficient:.6f}: (8) is −π a² γ.
 - **Fig. 1, µN/m.** 1.5 π γ R is {pull_off:.2f} µN there, the paper's 56: a force.
-- **Fig. 6(d), γ = 0.80 mJ/m².** A = 1e-19 J and z0 = 0.5 nm make γ = {gamma:.2f} mJ/m² by (34), and
-  the energy computed goes down to {energy:.2f}. 0.80 belongs to Fig. 1.
-- **E in J m⁻³** is Pa. **Sec. III C** has σ "Eq. (39)" where it means (40), as the caption of Fig. 9
-  has it."""
+- **Fig. 6(d), γ = 0.80 mJ/m².** A = 1e-19 J and z0 = 0.5 nm make γ = {gamma:.2f} mJ/m² by (34),
+  and the energy computed goes down to {energy:.2f}. 0.80 belongs to Fig. 1.
+- **E in J m⁻³** is Pa. **Sec. III C** has σ "Eq. (39)" where it means (40), as the caption of
+  Fig. 9 has it."""
 
 
 def _elliptic(m):
@@ -65,8 +65,8 @@ def rows(runs):
     found = evidence(runs)
     return [
         Row("Misprint, (15): factor of the kernel", "4 pi K/r", None,
-            "4 K/(pi r)", "", "displacement of Hertz's pressure on the axis, over the a^2/R of (4): "
-            f"{found['printed']:.4f} as read, {found['without']:.4f} without 1/pi, "
+            "4 K/(pi r)", "", "displacement of Hertz's pressure on the axis, over the a^2/R of "
+            f"(4): {found['printed']:.4f} as read, {found['without']:.4f} without 1/pi, "
             f"{found['right']:.6f} with 4 K/(pi r)"),
         Row("Misprint, (15): what m is in K(m)", "modulus", None, "parameter", "",
             f"r times the angular integral of 1/abs(r-t) at t = r/2: {found['angular']:.6f}; 4 K "

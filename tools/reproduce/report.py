@@ -5,15 +5,15 @@ import pathlib
 import published
 from runs import path_name
 
-_INTRODUCTION = """P. Attard and J. L. Parker, *Deformation and adhesion of elastic bodies in contact*,
-Phys. Rev. A **46**, 7959 (1992): every figure drawn again from runs of snapin, and every number of
-the text beside the one computed.
+_INTRODUCTION = """P. Attard and J. L. Parker, *Deformation and adhesion of elastic bodies in
+contact*, Phys. Rev. A **46**, 7959 (1992): every figure drawn again from runs of snapin, and
+every number of the text beside the one computed.
 
 In the tables, **published** is what the paper prints. **Computed** is found with the paper's own
 grid and stopping rule, where there is such a run: nodes 10–100 nm apart, mixing of at most 0.2,
 stopped when the central displacement changes by less than 1e-4 nm. **Converged** is what the
-equations give, with the error estimated in each run's summary. The same rows, all together, are in
-[published_vs_computed.csv](published_vs_computed.csv).
+equations give, with the error estimated in each run's summary. The same rows, all together, are
+in [published_vs_computed.csv](published_vs_computed.csv).
 """
 
 _RUNNING = """./reproduce            # all of it
@@ -83,6 +83,6 @@ def _ending(chapters, runs, version, seconds):
         record = runs.record(deck)
         lines.append(f"| `{path_name(deck)}` | {record.get('seconds', '')} | "
                      f"{record.get('status', 'not run')} |")
-    lines += ["", "Exit status 1 is what decks named `_paper` may end with: they stop on the paper's "
-              "rule, and snapin does not call that converged."]
+    lines += ["", "Exit status 1 is what decks named `_paper` may end with: they stop on the "
+              "paper's rule, and snapin does not call that converged."]
     return lines

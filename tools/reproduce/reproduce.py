@@ -126,4 +126,8 @@ def _say(text):
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        _say("interrupted; the runs that were done stay, ./reproduce goes on with the others")
+        sys.exit(130)

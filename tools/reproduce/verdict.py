@@ -8,25 +8,25 @@ from published import Row
 DECKS = ("fig03", *fig05.DECKS, "fig06_converged", "fig06_uniform", "fig06_paper",
          "fig10c_converged", "fig10c_uniform", "fig10c_paper")
 TITLE = "Where the paper is right, and where its grid or stopping rule decided"
-CAPTION = """**It is right** about repulsion: Hertz theory is the limit of short range and high load
-(at Λ = 10⁴ it is {hertz:.1f} % low, "10–20 %"), and (31) and (32) are the limit of small load. It is
-right about adhesion up to σ near 1: JKR theory gives the displacement to {jkr:.1f} % at 1 mN in all
-three cases of Fig. 5, only σ = 0.87 jumps, the pull-off lies between JKR and DMT and goes to DMT as
-σ falls ({weak:.3f} of JKR at σ = 0.0087).
+CAPTION = """**It is right** about repulsion: Hertz theory is the limit of short range and high
+load (at Λ = 10⁴ it is {hertz:.1f} % low, "10–20 %"), and (31) and (32) are the limit of small
+load. It is right about adhesion up to σ near 1: JKR theory gives the displacement to {jkr:.1f} %
+at 1 mN in all three cases of Fig. 5, only σ = 0.87 jumps, the pull-off lies between JKR and DMT
+and goes to DMT as σ falls ({weak:.3f} of JKR at σ = 0.0087).
 
 **Its grid decides** what the load is once the nodes are not close against the neck. At σ = 0.87,
 nodes 50 nm apart change the largest tension by {grid_low:.3f} %. At σ = 8.7 the neck is ten times
 narrower: nodes {spacing:.2f} neck widths apart pin the contact edge and make the pull-off
-**{uniform:.3f}** of JKR's rather than **{converged:.4f}**, although every equation on that grid is
-solved. It is still the same after every turning point, to {uniform_spread:.0e}.
+**{uniform:.3f}** of JKR's rather than **{converged:.4f}**, although every equation on that grid
+is solved. It is still the same after every turning point, to {uniform_spread:.0e}.
 
-**Its stopping rule decides** that the pull-off depends on the penetration. Stopped on a small change
-of the displacement, Fig. 10(c)'s retreats from h0 = 1, −2, −4 and −10 nm pull off at {paper} of
-JKR's, up to {residual:.0f} z0 from equilibrium; converged they agree to {converged_spread:.0e}: one
-contact branch, one pull-off. The hysteresis between the jump in and the jump out is real, the memory
-of the penetration is not. How far the iteration stops depends on how the mixing ratio is adapted,
-which the paper does not say; the numbers under "computed" are therefore those of this reading of
-its text, not the paper's own."""
+**Its stopping rule decides** that the pull-off depends on the penetration. Stopped on a small
+change of the displacement, Fig. 10(c)'s retreats from h0 = 1, −2, −4 and −10 nm pull off at
+{paper} of JKR's, up to {residual:.0f} z0 from equilibrium; converged they agree to
+{converged_spread:.0e}: one contact branch, one pull-off. The hysteresis between the jump in and
+the jump out is real, the memory of the penetration is not. How far the iteration stops depends on
+how the mixing ratio is adapted, which the paper does not say; the numbers under "computed" are
+therefore those of this reading of its text, not the paper's own."""
 
 
 def _over_jkr(results):
