@@ -128,7 +128,7 @@ def test_only_decks_on_the_paper_s_rule_may_end_unconverged(tools, tmp_path, ste
         assert runs.run(deck).summary["converged"] is False
 
 
-def test_a_deck_on_the_paper_s_rule_must_leave_a_summary(tools, tmp_path):
+def test_a_deck_on_the_paper_s_rule_must_leave_a_summary_of_its_own(tools, tmp_path):
     from runs import RunError, Runs
 
     program = tmp_path / "nothing"
@@ -136,6 +136,9 @@ def test_a_deck_on_the_paper_s_rule_must_leave_a_summary(tools, tmp_path):
     program.chmod(0o755)
     deck = tmp_path / "fig00_paper.nml"
     deck.write_text(DECK)
+    left = tmp_path / "runs" / "fig00_paper" / "summary.nml"
+    left.parent.mkdir(parents=True)
+    left.write_text("&summary /\n")
     with pytest.raises(RunError, match="status 1"):
         Runs(tmp_path / "runs", program).run(deck)
 
