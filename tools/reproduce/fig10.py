@@ -200,8 +200,8 @@ def _draw_converged(panel, results, x_range, y_range):
         if x_range[0] < x < x_range[1] and y_range[0] < y < y_range[1]:
             panel.plot(x, y, "o", color=style.VERMILION, markersize=4.5, zorder=7)
             turn = penetrations.turns([pull]).replace("-", "\N{MINUS SIGN}")
-            panel.annotate(f"{turn} nm", (x, y), (8, -1), textcoords="offset points",
-                           fontsize=8.5, va="center", color=style.VERMILION)
+            panel.annotate(f"{turn} nm", (x, y), (-8, 0), textcoords="offset points",
+                           fontsize=8.5, ha="right", va="center", color=style.VERMILION)
 
 
 def _jump(panel, curve, before, after, color):

@@ -179,8 +179,8 @@ def rows(runs):
     return [
         Row("Fig. 11, jump ends bracket jump starts", "always", None,
             f"{_brackets()} of {_FRACTIONS.size} stiffnesses", "", "a spring before a "
-            "Lennard-Jones wall, where the slope of the force exceeds the stiffness on one interval. "
-            "The paper is right"),
+            "Lennard-Jones wall, where the slope of the force exceeds the stiffness on one "
+            "interval. The paper is right"),
         Row("Fig. 11, contact radius of unloading over loading at the same h0",
             "always larger", float(np.median(freed[inside] / caught[inside])),
             f"1 to {_same(converged):.0e}", "",
