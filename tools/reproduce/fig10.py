@@ -23,17 +23,19 @@ apart at another (arrows), and lose energy, for all σ above a value between {no
 {some:.2f} rather than about 1. JKR theory follows the contact branch: loads under tension differ by
 up to {jkr_a:.0f} % of the pull-off for σ = 1.7 and {jkr:.0f} % for σ = 8.7. {reached}.
 
-What the paper describes has two causes. **The grid** makes the loops. The neck at σ = 8.7 is
+What the paper describes arises here in two ways. **The grid** makes loops. The neck at σ = 8.7 is
 {neck:.0f} nm wide; nodes about as far apart hold the contact edge, which then follows late, inwards
-and outwards. The result (d) is the paper's figure: unloading leaves the loading at once and on a
-line of its own for each penetration, these lines meet later, JKR theory lies between loading and
-unloading and somewhat nearer to the former (at {fraction:.2f} of the way from one to the other for
-200 nm, {fraction_100:.2f} for 100 nm), and pull-off is too large, {uniform:.3f} and {coarse:.3f} of
-JKR's; for 200 nm the lines meet about where the tension is largest. A grid that resolves the neck
-has none of this. **The stopping rule** makes the scatter: left, states are up to {residual:.0f} z0
-from equilibrium, and the largest tension, here {c_least:.2f} to {c_most:.2f} of JKR's for σ = 8.7,
-is that of single states. To the letter it scatters more than the paper's words suggest; how its
-mixing ratio changes and how large its steps of h0 are it does not say."""
+and outwards. The result (d) fits the paper's description, on 200 nm, twice its coarsest grid,
+better than on 100 nm: unloading leaves the loading at once and on a line of its own for each
+penetration, these lines meet later, JKR theory lies between loading and unloading and somewhat
+nearer to the former (at {fraction:.2f} of the way from one to the other for 200 nm,
+{fraction_100:.2f} for 100 nm), and pull-off is too large, {uniform:.3f} and {coarse:.3f} of JKR's;
+for 200 nm the lines meet about where the tension is largest. A grid that resolves the neck has none
+of this. **The stopping rule** makes scatter: left, states are up to {residual:.0f} z0 from
+equilibrium, and the largest tension, here {c_least:.2f} to {c_most:.2f} of JKR's for σ = 8.7, is
+that of single states. To the letter it scatters more than the paper's words suggest; how its mixing
+ratio changes and how large its steps of h0 are it does not say, nor how its kernel was integrated,
+on which the strength of the pinning depends."""
 
 _PANELS = (
     # Letter, sigma as the paper gives it, limits of load [uN] and displacement [nm].
