@@ -148,7 +148,7 @@ contains
       '', &
       '  --out DIR   write to DIR/<name of the deck>/ instead', &
       '  --check     validate the decks, compute nothing', &
-      '  --resume    go on where an interrupted run stopped', &
+      '  --resume    go on where an interrupted run stopped; leave finished results as they are', &
       '  --quiet     no progress on the terminal', &
       '  --keys      print every group and key a deck may hold: unit, default, meaning', &
       '  --version   print version, compiler and libraries', &

@@ -2,13 +2,11 @@
 !> file can be run again. gfortran, f90nml and this program read it.
 module summary
   use kinds, only: wp
-  use failure, only: failure_t, fail, file_trouble
-  use deck, only: deck_t
   use equilibrium, only: cost_t
   use assignments, only: line_t, assignment_of
   implicit none
   private
-  public :: summary_t, summary_text, resolved_text
+  public :: summary_t, summary_text
 
   !> More warnings than this are not read.
   integer, parameter :: most_warnings = 20
@@ -165,36 +163,5 @@ contains
       assignment_of('factorisations', cost%factorisations) // &
       assignment_of('rejected_steps', cost%rejected_steps) // '/' // nl
   end function summary_text
-
-  !> The deck with every default written out. It passes through the file `scratch`, which remains,
-  !> since a deck writes itself to a unit; a short one means that the disk was full.
-  subroutine resolved_text(deck, scratch, text, error)
-    type(deck_t), intent(in) :: deck
-    character(len=*), intent(in) :: scratch
-    character(len=:), allocatable, intent(out) :: text
-    type(failure_t), allocatable, intent(out) :: error
-    character(len=200) :: reason
-    integer :: unit, status, length
-
-    length = 1
-    reason = ''
-    open (newunit=unit, file=scratch, status='replace', action='write', access='stream', &
-      form='formatted', iostat=status, iomsg=reason)
-    if (status == 0) then
-      call deck%write_resolved(unit, status)
-      inquire (unit, pos=length)
-      close (unit, iostat=status)
-      open (newunit=unit, file=scratch, status='old', action='read', access='stream', &
-        form='unformatted', iostat=status, iomsg=reason)
-    end if
-    allocate (character(len=length - 1) :: text)
-    if (status == 0) then
-      read (unit, iostat=status, iomsg=reason) text
-      close (unit)
-      if (is_iostat_end(status)) reason = 'No space left on device'
-    end if
-    if (status /= 0) call fail(error, file_trouble, 'cannot write ' // scratch // ': ' // &
-      trim(reason) // '; make room there, or choose another folder with --out')
-  end subroutine resolved_text
 
 end module summary
