@@ -1,0 +1,225 @@
+"""Runs decks and hands out their results; what was run and has not changed is not run again."""
+
+import concurrent.futures
+import functools
+import hashlib
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+INPUTS = ROOT / "inputs"
+sys.path[:0] = [str(ROOT / "pywrap" / "plots"), str(ROOT / "pywrap"),
+                str(ROOT / "build" / "pywrap")]
+
+from read_results import read_summary, read_table  # noqa: E402 (found through the line above)
+
+
+# After so many seconds without news, what runs is named.
+_HEARTBEAT = 10.0
+
+
+class RunError(Exception):
+    """A deck could not be run, or left no results; the message says why."""
+
+
+class Results:
+    """A folder of results; its files are read when they are asked for."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+
+    @functools.cached_property
+    def summary(self):
+        """The group &summary as a dict."""
+        return read_summary(self.folder)
+
+    @functools.cached_property
+    def curve(self):
+        """The columns of curve.csv."""
+        return read_table(self.folder, "curve.csv")
+
+    @functools.cached_property
+    def profiles(self):
+        """The columns of profiles.csv."""
+        return read_table(self.folder, "profiles.csv")
+
+    @functools.cached_property
+    def classical(self):
+        """The columns of classical.csv."""
+        return read_table(self.folder, "classical.csv")
+
+    @functools.cached_property
+    def approximations(self):
+        """The columns of approximations.csv."""
+        return read_table(self.folder, "approximations.csv")
+
+    @functools.cached_property
+    def sweep(self):
+        """The columns of sweep.csv."""
+        return read_table(self.folder, "sweep.csv")
+
+    def last(self, key):
+        """Return a number of the summary; of an array, the value of the last turning point."""
+        return float(np.ravel(self.summary[key])[-1])
+
+    def branch(self, name, table="curve"):
+        """Return the rows of one branch, or of one theory."""
+        columns = getattr(self, table)
+        rows = columns["branch" if "branch" in columns else "theory"] == name
+        return {column: values[rows] for column, values in columns.items()}
+
+
+def path_name(deck):
+    """Return the stem of a deck given by its stem or its path."""
+    name = pathlib.Path(deck).name
+    return name[: -len(".nml")] if name.endswith(".nml") else name
+
+
+class Runs:
+    """The runs of many decks, each in `root`/<stem of the deck>/.
+
+    Beside the folder lies <stem>.json: a digest of deck and program, the exit status, the time
+    taken. It is written last and removed first, so that what was interrupted is run again.
+    """
+
+    def __init__(self, root, program=None):
+        self.root = pathlib.Path(root)
+        self.program = pathlib.Path(program or os.environ.get("SNAPIN", ROOT / "build" / "snapin"))
+        self._results = {}
+        self._program_digest = None
+
+    def __getitem__(self, stem):
+        """Return the results of a deck in inputs/; it is run where that is needed."""
+        return self.run(stem)
+
+    def run(self, deck):
+        """Run a deck, given by its stem or path, unless that is done; return its results."""
+        path = self.path_of(deck)
+        if path.stem not in self._results:
+            if not self.is_done(path):
+                self.execute(path)
+            self._results[path.stem] = Results(self.root / path.stem)
+        return self._results[path.stem]
+
+    def path_of(self, deck):
+        """Return the path of a deck given by its stem or its path."""
+        path = pathlib.Path(deck)
+        return path if path.suffix == ".nml" else INPUTS / f"{deck}.nml"
+
+    def digest(self, path):
+        """Return what tells one deck and program from another."""
+        if self._program_digest is None:
+            self._program_digest = hashlib.sha256(self.program.read_bytes()).hexdigest()
+        deck = hashlib.sha256(self.path_of(path).read_bytes()).hexdigest()
+        return f"deck {deck} program {self._program_digest}"
+
+    def record(self, deck):
+        """Return what is known of the deck's last complete run, an empty dict if nothing."""
+        try:
+            return json.loads(self._record_path(self.path_of(deck)).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return {}
+
+    def is_done(self, deck):
+        """Whether this deck was run to its end, well, with this program."""
+        record = self.record(deck)
+        return (record.get("digest") == self.digest(deck) and record.get("problem") is None
+                and (self.root / self.path_of(deck).stem / "summary.nml").is_file())
+
+    def execute(self, deck):
+        """Run a deck now; raise RunError unless it leaves the results it should.
+
+        Exit status 1 is what decks that stop on the paper's rule are expected to end with: they
+        only have to say where they stopped.
+        """
+        path = self.path_of(deck)
+        if not path.is_file():
+            raise RunError(f"no deck {path}")
+        self.root.mkdir(parents=True, exist_ok=True)
+        self._record_path(path).unlink(missing_ok=True)
+        # An earlier run's must not pass for this one's.
+        (self.root / path.stem / "summary.nml").unlink(missing_ok=True)
+        self._results.pop(path.stem, None)
+        digest, began = self.digest(path), time.perf_counter()
+        done = subprocess.run(
+            [str(self.program), "--quiet", "--out", str(self.root), str(path)],
+            env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+            stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
+            check=False)
+        seconds = time.perf_counter() - began
+        problem = self._problem_of(path, done)
+        self._record_path(path).write_text(json.dumps(
+            {"digest": digest, "status": done.returncode, "problem": problem,
+             "seconds": round(seconds, 2), "messages": done.stderr}, indent=1) + "\n",
+            encoding="utf-8")
+        if problem is not None:
+            raise RunError(problem)
+
+    def run_all(self, decks, jobs, say):
+        """Run decks, `jobs` at a time, going on where one fails; return {stem: problem}.
+
+        `say(text)` is told each deck that ends.
+        """
+        decks = list(dict.fromkeys(decks))
+        waiting = [deck for deck in decks if not self._is_done_or_missing(deck)]
+        if len(waiting) < len(decks):
+            say(f"{len(decks) - len(waiting)} of {len(decks)} runs are there already")
+        # Long ones first, so that none is left alone at the end.
+        waiting.sort(key=lambda deck: -self._likely_seconds(deck))
+        problems, ended, began = {}, 0, time.perf_counter()
+        pool = concurrent.futures.ThreadPoolExecutor(max(jobs, 1))
+        futures = {pool.submit(self.execute, deck): deck for deck in waiting}
+        try:
+            while futures:
+                done, _ = concurrent.futures.wait(
+                    futures, _HEARTBEAT, concurrent.futures.FIRST_COMPLETED)
+                if not done:
+                    running = [path_name(deck) for future, deck in futures.items()
+                               if future.running()]
+                    say(f"{ended} of {len(waiting)} runs done after "
+                        f"{time.perf_counter() - began:.0f} s; running: {', '.join(running)}")
+                for future in done:
+                    deck, ended = futures.pop(future), ended + 1
+                    word = self._outcome(future, deck, problems)
+                    say(f"run {ended} of {len(waiting)}: {path_name(deck)}: {word}")
+        finally:
+            pool.shutdown(cancel_futures=True)
+        return problems
+
+    def _outcome(self, future, deck, problems):
+        try:
+            future.result()
+        except (RunError, OSError) as problem:
+            problems[path_name(deck)] = str(problem)
+            return f"FAILED: {problem}"
+        return f"{self.record(deck)['seconds']:.1f} s"
+
+    def _is_done_or_missing(self, deck):
+        return self.path_of(deck).is_file() and self.is_done(deck)
+
+    def _likely_seconds(self, deck):
+        known = self.record(deck).get("seconds")
+        if known is not None or not self.path_of(deck).is_file():
+            return known or 0.0
+        # The paper's iteration is the slow one.
+        return 1e3 if "'mixing'" in self.path_of(deck).read_text(encoding="utf-8") else 1.0
+
+    def _record_path(self, path):
+        return self.root / f"{path.stem}.json"
+
+    def _problem_of(self, path, done):
+        if done.returncode == 1 and "_paper" in path.stem:
+            if (self.root / path.stem / "summary.nml").is_file():
+                return None
+        elif done.returncode == 0:
+            return None
+        # The first line says what is wrong; after it may come the line of the deck.
+        messages = [line for line in done.stderr.splitlines() if line and ": warning: " not in line]
+        message = messages[0] if messages else "no message"
+        return f"snapin ended with status {done.returncode}: {message}"
