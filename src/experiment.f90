@@ -271,6 +271,7 @@ contains
     type(position_t) :: position
     type(position_t), allocatable :: turning(:), none(:)
     real(wp), allocatable :: from(:), nowhere(:)
+    character(len=24) :: name
     integer :: k
 
     allocate (from(0), nowhere(0), none(0))
@@ -288,7 +289,10 @@ contains
           cycle
         end if
         position = turning(k)
-        call run_branch(steps, plan_of('unloading_'//number(k), scene%unloading%from(k), &
+        ! Not by a function with a result of deferred length: gfortran keeps that length in static
+        ! storage, and the cases of a sweep share it.
+        write (name, '(a, i0)') 'unloading_', k
+        call run_branch(steps, plan_of(trim(name), scene%unloading%from(k), &
           scene%unloading%h0_end, scene%unloading%h0_step, scene, steps%problem%length, &
           nowhere), .false., position, observer, nowhere, none, outcome%unloading(k))
       end do
@@ -316,14 +320,5 @@ contains
     low = low/problem%length
     high = high/problem%length
   end subroutine range_of
-
-  pure function number(k) result(text)
-    integer, intent(in) :: k
-    character(len=:), allocatable :: text
-    character(len=12) :: buffer
-
-    write (buffer, '(i0)') k
-    text = trim(buffer)
-  end function number
 
 end module experiment

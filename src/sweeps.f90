@@ -76,19 +76,19 @@ contains
       type(packed_t) :: record
       logical :: stopped
 
-      !$omp critical (sweep_rows)
+      !$omp critical (one_at_a_time)
       stopped = allocated(results%trouble) .or. allocated(results%journal%trouble)
-      !$omp end critical (sweep_rows)
+      !$omp end critical (one_at_a_time)
       if (stopped) return
       call run_case(scene, scene%sweep%values(i), fresh)
       call record%put(i)
       call put_case(record, fresh)
-      !$omp critical (sweep_rows)
+      !$omp critical (one_at_a_time)
       call results%journal%append(record)
       cases(i) = fresh
       call results%progress%step('case')
       call enter(cases(i))
-      !$omp end critical (sweep_rows)
+      !$omp end critical (one_at_a_time)
     end subroutine complete
 
     !> Counts a case that is done, and writes the rows whose turn it is.
@@ -119,17 +119,22 @@ contains
     type(silent_observer_t) :: observer
     type(failure_t), allocatable :: error
 
+    ! gfortran keeps the lengths of strings that functions return in static storage, which threads
+    ! share: what makes strings is done by one at a time.
+    !$omp critical (one_at_a_time)
     call swept_scene(scene, value, variant, error)
-    if (allocated(error)) then
-      summary%converged = .false.
-    else
+    !$omp end critical (one_at_a_time)
+    summary%converged = .false.
+    if (.not. allocated(error)) then
       problem = problem_of(variant)
       call run_experiment(variant, problem, observer, outcome)
-      summary = summary_of(variant, problem, outcome)
     end if
+    !$omp critical (one_at_a_time)
+    if (.not. allocated(error)) summary = summary_of(variant, problem, outcome)
+    case%numbers = numbers_of(summary, scene)
+    !$omp end critical (one_at_a_time)
     case%done = .true.
     case%converged = summary%converged
-    case%numbers = numbers_of(summary, scene)
     case%cost = outcome%cost
   end subroutine run_case
 
