@@ -79,7 +79,9 @@ contains
     feature = smallest_feature(problem, widest)
     chosen%extent = 1.5_wp*widest + 8
     if (allocated(numerics%r_max)) chosen%extent = numerics%r_max/problem%lateral
-    chosen%nodes = min(most, max(fewest, ceiling(chosen%extent/(comfortable*feature))))
+    ! The bounds before the whole number: where bodies adhere strongly the quotient is beyond any.
+    chosen%nodes = ceiling(min(real(most, wp), max(real(fewest, wp), &
+      chosen%extent/(comfortable*feature))))
     if (allocated(numerics%nodes)) chosen%nodes = numerics%nodes
   end function choose
 

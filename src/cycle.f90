@@ -52,6 +52,8 @@ module cycle
   !> jump, whose load is known, or an end of the experiment.
   integer, parameter :: most_rounds = 15
   real(wp), parameter :: load_tolerance = 1.0e-10_wp, enough = 1.0e-3_wp
+  !> Smallest bracket that is searched, relative or in the law's lengths.
+  real(wp), parameter :: closest = 1.0e-9_wp
 
 contains
 
@@ -96,9 +98,8 @@ contains
       end do
 
       if (.not. event%converged) then
-        ! Shown as it is, but not a place to search from.
+        ! Shown as it is, but neither a tension nor a place to search from.
         call end_stretch(steps, stretch, last_h0, ended, deferred, branch)
-        if (position%state%load < 0) call lower(branch, position%state)
       else if (event%jumped .or. .not. stretch%open) then
         if (event%jumped) then
           last_h0 = event%jump_h0
@@ -214,7 +215,8 @@ contains
     low = min(stretch%before, stretch%after)
     high = max(stretch%before, stretch%after)
     width = high - low
-    if (.not. width > 0) return
+    ! Between steps as close as this there is nothing to find that rounding would not hide.
+    if (.not. width > closest*max(1.0_wp, abs(low), abs(high))) return
     do round = 1, most_rounds
       left = max(low, maxval([low, pack(h0, h0 < best%state%h0)]))
       right = min(high, minval([high, pack(h0, h0 > best%state%h0)]))

@@ -31,6 +31,10 @@ module edge_locked
     real(wp) :: level = -huge(1.0_wp)
   end type mesh_pair_t
 
+  !> Smallest feature over the contact radius that a mesh follows: where adhesion makes smaller ones,
+  !> rounding hides them, and the mesh would grow for nothing.
+  real(wp), parameter :: finest = 1.0e-13_wp
+
   !> How finely to resolve.
   type, public :: resolution_t
     !> Nodes a panel; size of the smallest panel over the smallest feature; relative error that the
@@ -123,7 +127,7 @@ contains
     real(wp) :: low, high, pressure(1)
     integer :: step
 
-    low = merge(1.0e-3_wp, -500.0_wp, this%law%closure_fraction > 0)
+    low = this%law%smallest_gap
     high = this%law%range + 500
     do step = 1, 100
       level = 0.5_wp*(low + high)
@@ -144,8 +148,8 @@ contains
     type(problem_t), intent(in) :: this
     real(wp), intent(in) :: c
 
-    smallest_feature = min(neck_width(this), 0.5_wp, &
-      (this%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3))
+    smallest_feature = max(finest*max(c, 1.0_wp), min(neck_width(this), 0.5_wp, &
+      (this%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3)))
   end function smallest_feature
 
   !> The state on another mesh (or a shorter or longer part of the same), at the scale given: gaps

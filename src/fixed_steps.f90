@@ -8,7 +8,8 @@ module fixed_steps
   use solver, only: solve_state
   use relaxation, only: relax
   use tracer, only: between
-  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember
+  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember, &
+    touching
   implicit none
   private
   public :: fixed_steps_t
@@ -27,8 +28,10 @@ module fixed_steps
     procedure, private :: solve_at
   end type fixed_steps_t
 
-  !> Steps of the approach from afar, in the law's lengths.
+  !> Steps of the approach from afar, in the law's lengths, and the most of them: where the way is
+  !> long they are longer.
   real(wp), parameter :: approach_step = 0.5_wp
+  integer, parameter :: most_approach = 400
   !> A state continues the branch that was extrapolated to it if it lies no farther from the
   !> extrapolation than half the extrapolated change plus this many of the law's lengths. Where even
   !> the smallest step leads farther the bodies jump.
@@ -48,6 +51,10 @@ contains
     real(wp) :: far
     integer :: i, steps
 
+    if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
+      event%reason = touching
+      return
+    end if
     far = h0
     ! Twice the gap (37) of the jump into contact, in these units: there the bodies hardly deform.
     if (.not. self%problem%rigid) far = max(h0, 5.0_wp, &
@@ -58,7 +65,7 @@ contains
     state%gap = far + 0.5_wp*self%mesh%x**2
     call self%solve_at(far, state, event)
     call remember(position, state, 1, .false.)
-    steps = ceiling((far - h0)/approach_step)
+    steps = ceiling(min((far - h0)/approach_step, real(most_approach, wp)))
     do i = 1, steps
       call self%go(far - (far - h0)*i/steps, position, event)
     end do
@@ -74,6 +81,10 @@ contains
     real(wp) :: step, next
     logical :: continues
 
+    if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
+      event%reason = touching
+      return
+    end if
     if (self%options%stop_on_change) then
       call self%paper_step(h0, position, event)
       return
@@ -127,7 +138,7 @@ contains
     state = position%state
     call self%solve_at(h0, state, event)
     associate (before => position%state)
-      event%jumped = change(before, state) > max(1.0_wp, paper_jump*abs(h0 - before%h0))
+      event%jumped = event%converged .and. change(before, state) > max(1.0_wp, paper_jump*abs(h0 - before%h0))
       event%jump_h0 = 0.5_wp*(before%h0 + h0)
       event%jump_load = before%load
       event%jump_uncertainty = 0.5_wp*abs(h0 - before%h0)

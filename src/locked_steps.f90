@@ -9,18 +9,20 @@ module locked_steps
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, state_from, radius_of_gap, at_h0_with_edge
+  use equilibrium, only: control_t, state_t, state_from, radius_of_gap, at_h0_with_edge, &
+    lost_in_rounding
   use solver_options, only: solver_options_t
   use solver, only: solve_state
-  use edge_locked, only: mesh_pair_t, hertz_scale, approach, contact
+  use edge_locked, only: mesh_pair_t, hertz_scale, approach, contact, largest_radius
   use tracer, only: tracer_t, new_tracer, inward, outward, coordinate_of, move_to_mesh, &
     between, node_count, path_control
   use trail, only: trail_t, extend, collapsed
   use landing, only: land_between
-  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember
+  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember, &
+    touching
   implicit none
   private
-  public :: locked_steps_t, fold_witness
+  public :: locked_steps_t, fold_witness, beyond_rounding
 
   type, extends(quasi_static_t) :: locked_steps_t
     type(mesh_pair_t) :: pair
@@ -42,12 +44,13 @@ module locked_steps
   integer, parameter :: longest_trace = 2000
   !> Largest relative change of the path's coordinate in a step of a trace.
   real(wp), parameter :: path_step = 0.15_wp
-  character(len=*), parameter :: touching = &
-    'rigid bodies would touch: this law has no state at h0 <= 0'
   !> Residual, in the law's lengths, of states that only lead the way and are not reported.
   real(wp), parameter :: walking_tolerance = 1.0e-6_wp
   !> Smallest step in h0, in the law's lengths, that is tried.
   real(wp), parameter :: smallest_creep = 1.0e-6_wp
+
+  character(len=*), parameter :: beyond_rounding = &
+    'adhesion is so strong that rounding hides the force law once the bodies are in contact'
 
 contains
 
@@ -78,7 +81,7 @@ contains
     far = max(h0, self%far_away())
     if (self%problem%rigid) then
       far = h0
-      if (h0 <= 0 .and. self%problem%law%closure_fraction > 0) then
+      if (h0 < self%problem%law%smallest_gap) then
         event%reason = touching
         return
       end if
@@ -111,7 +114,7 @@ contains
     type(event_t), intent(out) :: event
     type(state_t) :: state
 
-    if (self%problem%rigid .and. h0 <= 0 .and. self%problem%law%closure_fraction > 0) then
+    if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
       event%reason = touching
       return
     end if
@@ -171,6 +174,10 @@ contains
     logical :: lost, found
     integer :: seen, direction
 
+    if (lost_in_rounding(self%problem, largest_radius(self%problem, h0, self%pair%level))) then
+      event%reason = beyond_rounding
+      return
+    end if
     self%frozen%factors%valid = .false.
     direction = merge(inward, outward, h0 < position%state%h0)
     walker = new_tracer(self%problem, position%state, position%mesh, direction, path_step)

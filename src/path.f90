@@ -3,13 +3,13 @@
 module path
   use kinds, only: wp
   use problem, only: spacing_over_neck
-  use equilibrium, only: state_t
-  use edge_locked, only: contact
+  use equilibrium, only: state_t, lost_in_rounding
+  use edge_locked, only: contact, largest_radius
   use tracer, only: tracer_t, new_tracer, inward, path_control
   use trail, only: trail_t, extend, collapsed, polish_extremum, of_load
   use hysteresis, only: energy_lost
   use quasi_static, only: position_t, event_t, witness_t, add_witness
-  use locked_steps, only: locked_steps_t, fold_witness
+  use locked_steps, only: locked_steps_t, fold_witness, beyond_rounding
   use records, only: observer_t, record_of, stable_yes, stable_no
   implicit none
   private
@@ -55,6 +55,11 @@ contains
     type(event_t) :: event
     logical :: lost
 
+    if (lost_in_rounding(steps%problem, &
+      largest_radius(steps%problem, h0_end, steps%pair%level))) then
+      path%reason = beyond_rounding
+      return
+    end if
     call steps%begin_afar(h0_start, position, event)
     if (event%reason /= '') then
       path%reason = event%reason

@@ -9,7 +9,11 @@ module quasi_static
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: quasi_static_t, position_t, event_t, witness_t, memory, remember, add_witness
+  public :: quasi_static_t, position_t, event_t, witness_t, memory, remember, add_witness, touching
+
+  !> Why rigid bodies have no state below the smallest gap of their law.
+  character(len=*), parameter :: touching = &
+    'rigid bodies would touch: so near (h0 <= 0, or far below it) this law has no pressure'
 
   !> States kept for extrapolation in h0.
   integer, parameter :: memory = 4

@@ -160,7 +160,9 @@ contains
       lost = .not. converged
       if (lost) return
       call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), trial, frozen, slopes(1), &
-        slopes(2), cost)
+        slopes(2), converged, cost)
+      lost = .not. converged
+      if (lost) return
       slope = slopes(quantity)
       if (abs(slope) < slope_size) then
         slope_size = abs(slope)
@@ -178,8 +180,10 @@ contains
       end if
       if (round == 1) then
         s_next = s + sign(1.0e-4_wp*(high - low) + 1.0e-7_wp, sense*slope)
-      else
+      else if (abs(slope - slope_before) > tiny(slope)) then
         s_next = s - slope*(s - s_before)/(slope - slope_before)
+      else
+        exit
       end if
       if (s_next < low .or. s_next > high) s_next = 0.5_wp*(low + high)
       if (abs(s_next - s) < root_tolerance) exit
