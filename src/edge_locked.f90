@@ -47,14 +47,19 @@ module edge_locked
 
 contains
 
-  !> Meshes for H0 from h0_high down to h0_low.
-  function new_mesh_pair(this, h0_high, h0_low, resolution) result(pair)
+  !> Meshes for H0 from h0_high down to h0_low. shape_only leaves the kernels out, to learn how large
+  !> they would be.
+  function new_mesh_pair(this, h0_high, h0_low, resolution, shape_only) result(pair)
     type(problem_t), intent(in) :: this
     real(wp), intent(in) :: h0_high, h0_low
     type(resolution_t), intent(in) :: resolution
+    logical, intent(in), optional :: shape_only
     type(mesh_pair_t) :: pair
     real(wp) :: feature, widest
+    logical :: elastic
 
+    elastic = .not. this%rigid
+    if (present(shape_only)) elastic = elastic .and. .not. shape_only
     pair%traceable = this%law%adhesion > 0 .or. this%rigid
     if (.not. pair%traceable) pair%level = contact_level(this)
     widest = largest_radius(this, h0_low, pair%level)
@@ -67,11 +72,10 @@ contains
     pair%reach = resolution%farther*pair%reach
     associate (fineness => resolution%fineness, order => resolution%order)
       if (pair%traceable) pair%grid(approach) = new_panel_grid(0.0_wp, &
-        graded_ends(0.0_wp, pair%reach, fineness*feature, 1.0_wp, pair%reach), order, &
-        .not. this%rigid)
+        graded_ends(0.0_wp, pair%reach, fineness*feature, 1.0_wp, pair%reach), order, elastic)
       if (this%law%edge_gap > 0 .and. .not. this%rigid .or. .not. pair%traceable) &
         pair%grid(contact) = new_locked_grid(pair%reach/min(pair%passage, 1.0_wp), &
-        fineness*smallest_feature(this, widest)/widest, order, .not. this%rigid)
+        fineness*smallest_feature(this, widest)/widest, order, elastic)
     end associate
   end function new_mesh_pair
 

@@ -21,7 +21,7 @@ module experiment
   use blas_threads, only: use_threads_for
   implicit none
   private
-  public :: outcome_t, run_experiment, problem_of, path_start, prepare
+  public :: outcome_t, run_experiment, problem_of, path_start, prepare, range_of
 
   !> Everything in the units of `problem`.
   type :: outcome_t

@@ -68,6 +68,7 @@ contains
     steps = ceiling(min((far - h0)/approach_step, real(most_approach, wp)))
     do i = 1, steps
       call self%go(far - (far - h0)*i/steps, position, event)
+      if (event%reason /= '') exit
     end do
     event%jumped = .false.
   end subroutine begin

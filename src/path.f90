@@ -81,7 +81,7 @@ contains
     if (path%reason == '' .and. steps%problem%law%edge_gap > 0) &
       call end_at(steps, h0_end, trail)
     call collect(steps, trail, path)
-    call hand_over(steps, trail, profiles, observer)
+    call hand_over(steps, trail, profiles, observer, path)
     path%states = trail%held
     steps%cost%states = steps%cost%states + trail%held
   end subroutine trace_path
@@ -179,11 +179,12 @@ contains
   end subroutine collect
 
   !> Gives all states to the observer, and the profiles where pieces of the path cross their h0.
-  subroutine hand_over(steps, trail, profiles, observer)
+  subroutine hand_over(steps, trail, profiles, observer, path)
     class(locked_steps_t), intent(inout) :: steps
     type(trail_t), intent(in) :: trail
     real(wp), intent(in) :: profiles(:)
     class(observer_t), intent(inout) :: observer
+    type(path_t), intent(inout) :: path
     type(state_t) :: state
     real(wp), allocatable :: crossed(:)
     integer :: i, k
@@ -196,6 +197,9 @@ contains
         end associate
         do k = 1, size(crossed)
           call steps%land(crossed(k), trail, i, state, converged)
+          path%worst_residual = max(path%worst_residual, state%residual)
+          if (.not. converged .and. path%reason == '') &
+            path%reason = 'a state whose profile is asked for did not converge'
           call give(trail%mesh(i), state, stability(i), converged, .true.)
         end do
       end if

@@ -5,7 +5,7 @@ module progress
   use files, only: is_terminal, write_stderr
   implicit none
   private
-  public :: progress_t
+  public :: progress_t, duration
 
   !> Seconds between two updates of the live line, and before the first: nobody needs one that is
   !> gone at once.

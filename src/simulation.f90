@@ -10,6 +10,8 @@ module simulation
   use experiment, only: outcome_t, run_experiment, problem_of, path_start
   use plans, only: states_planned
   use sweeps, only: run_sweep
+  use forecast, only: forecast_t, forecast_of
+  use memory, only: available_memory
   use comparison, only: classical_rows
   use approximation_tables, only: approximation_rows
   use records, only: observer_t
@@ -19,9 +21,13 @@ module simulation
   use results, only: results_t
   use files, only: write_stderr
   use clock, only: seconds
+  use progress, only: duration
   implicit none
   private
-  public :: run_scene
+  public :: run_scene, outlook
+
+  !> Seconds beyond which a run is announced as long.
+  real(wp), parameter :: long_run = 60
 
 contains
 
@@ -39,7 +45,8 @@ contains
     type(outcome_t) :: outcome
     type(summary_t) :: summary
     type(failure_t), allocatable :: error
-    character(len=:), allocatable :: name
+    character(len=:), allocatable :: name, too_large
+    type(forecast_t) :: expected
     real(wp) :: began
     integer :: i, failed
     logical :: curve
@@ -66,10 +73,13 @@ contains
       observer => recorder
     end if
     failed = 0
-    if (allocated(scene%sweep)) then
+    expected = forecast_of(scene, thread_count())
+    too_large = excess_of(expected)
+    if (too_large == '') call announce(out_dir, expected, quiet)
+    if (allocated(scene%sweep) .and. too_large == '') then
       call results%progress%start(size(scene%sweep%values), name, quiet)
       call run_sweep(scene, results, failed, outcome%cost)
-    else
+    else if (too_large == '') then
       call results%progress%start(states_planned(scene), name, quiet)
       call run_experiment(scene, problem, observer, outcome)
     end if
@@ -81,6 +91,10 @@ contains
     if (allocated(scene%approximations)) call results%write_theory('approximations.csv', &
       approximation_rows(problem, scene%approximations, path_start(scene, problem)))
     summary = summary_of(scene, problem, outcome)
+    if (too_large /= '') then
+      summary%converged = .false.
+      call summary%warn(too_large)
+    end if
     if (failed > 0) then
       summary%converged = .false.
       call summary%warn(number(failed)//' of '//number(size(scene%sweep%values))// &
@@ -109,6 +123,59 @@ contains
     if (summary%converged) exit_code = 0
   end subroutine run_scene
 
+  !> What the user should know before a long run begins; empty for a short one.
+  function outlook(scene) result(text)
+    type(scene_t), intent(in) :: scene
+    character(len=:), allocatable :: text
+    type(forecast_t) :: expected
+
+    expected = forecast_of(scene, thread_count())
+    text = excess_of(expected)
+    if (text == '') text = length_of(expected)
+  end function outlook
+
+  !> Says how long a run will be if it is long.
+  subroutine announce(out_dir, expected, quiet)
+    character(len=*), intent(in) :: out_dir
+    type(forecast_t), intent(in) :: expected
+    logical, intent(in) :: quiet
+
+    if (length_of(expected) /= '') call say(out_dir//': '//length_of(expected), quiet)
+  end subroutine announce
+
+  !> How long a run will be; empty if not long.
+  function length_of(expected) result(text)
+    type(forecast_t), intent(in) :: expected
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (expected%seconds > long_run) text = brief(expected%states)//' states on '// &
+      number(expected%nodes)//' nodes: may take '//duration(expected%seconds)//' or so'
+  end function length_of
+
+  !> Why a run would not fit into the memory; empty if it does.
+  function excess_of(expected) result(text)
+    type(forecast_t), intent(in) :: expected
+    character(len=:), allocatable :: text
+    real(wp) :: available
+
+    text = ''
+    available = available_memory()
+    if (expected%bytes > available) text = 'not computed: matrices for '// &
+      number(expected%nodes)//' nodes need '//gigabytes(expected%bytes)//' of memory, and '// &
+      gigabytes(available)//' are available'
+  end function excess_of
+
+  !> Bytes for a message.
+  function gigabytes(bytes) result(text)
+    real(wp), intent(in) :: bytes
+    character(len=:), allocatable :: text
+    character(len=24) :: buffer
+
+    write (buffer, '(f0.2, a)') bytes/1.0e9_wp, ' GB'
+    text = trim(buffer)
+    if (text(1:1) == '.') text = '0'//text
+  end function gigabytes
 
   !> A count for a message.
   pure function number(k) result(text)

@@ -8,7 +8,7 @@ program snapin
   use scene, only: scene_t, read_scene
   use scene_keys, only: keys_of_scene
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
-  use simulation, only: run_scene
+  use simulation, only: run_scene, outlook
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
 
@@ -64,6 +64,8 @@ contains
         status = 2
       else if (options%check) then
         call print_line(output_unit, options%decks(i)%name // ': ok')
+        if (outlook(scenes(i)) /= '') call print_line(error_unit, options%decks(i)%name // ': ' // &
+          outlook(scenes(i)))
       end if
     end do
     if (options%check .or. status /= 0) return

@@ -20,7 +20,7 @@ import sys
 import time
 
 import f90nml
-from scenes import deck, read_table
+from scenes import deck, read_table, several
 
 # --- Decks
 
@@ -212,7 +212,7 @@ def check_run(status, stderr, folder):
             claim(not found, f"{path.name}: {line}")
     groups = f90nml.read(folder / "summary.nml")
     summary = groups["summary"]
-    warnings = summary.get("warnings", [])
+    warnings = several(summary.get("warnings", []))
     claim(summary["converged"] == (status == 0), "converged and status differ")
     claim(status == 0 or warnings, "a failed run does not say why")
     for key in ("max_tension", "jump_in_load", "jump_out_load", "error_estimate"):
