@@ -109,8 +109,9 @@ contains
     steps%cost%solve_seconds = seconds() - began
     began = seconds()
     ! Of nothing there is no error.
-    if (steps%cost%states > 0) outcome%error_estimate = estimate_locked(problem, steps%pair, high, &
-      low, outcome%chosen%resolution, steps%options%tolerance, witnesses_of(outcome), steps%cost)
+    if (size(witnesses_of(outcome)) > 0) outcome%error_estimate = estimate_locked(problem, &
+      steps%pair, high, low, outcome%chosen%resolution, steps%options%tolerance, &
+      witnesses_of(outcome), steps%cost)
     steps%cost%estimate_seconds = seconds() - began
     outcome%cost = steps%cost
   end subroutine run_locked

@@ -4,7 +4,8 @@ module fixed_steps
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, state_from
+  use equilibrium, only: control_t, state_t, state_from, residual_floor
+  use solver_options, only: solver_options_t
   use solver, only: solve_state
   use relaxation, only: relax
   use tracer, only: between
@@ -24,6 +25,7 @@ module fixed_steps
     procedure :: witness
     procedure, private :: continue_to
     procedure, private :: land
+    procedure, private :: goes_on
     procedure, private :: paper_step
     procedure, private :: solve_at
   end type fixed_steps_t
@@ -32,6 +34,8 @@ module fixed_steps
   !> long they are longer.
   real(wp), parameter :: approach_step = 0.5_wp
   integer, parameter :: most_approach = 400
+  !> Newton's method needs few iterations, or is not going to arrive.
+  integer, parameter :: newton_iterations = 12
   !> A state continues the branch that was extrapolated to it if it lies no farther from the
   !> extrapolation than half the extrapolated change plus this many of the law's lengths. Where even
   !> the smallest step leads farther the bodies jump.
@@ -80,7 +84,7 @@ contains
     type(event_t), intent(out) :: event
     type(state_t) :: state, before, landed
     real(wp) :: step, next
-    logical :: continues
+    logical :: continues, stalled
 
     if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
       event%reason = touching
@@ -112,8 +116,17 @@ contains
       end if
     end do
     before = position%state
+    stalled = self%goes_on(before%h0 + 1.5_wp*step, before)
     call self%land(h0, before, landed, event)
-    event%jumped = event%converged .and. change(before, landed) > jump
+    if (stalled) then
+      ! Whether what is found at h0 is on this branch nobody knows, and no jump has been seen.
+      event%converged = .false.
+      call remember(position, landed, 1, .true.)
+      return
+    end if
+    ! From where there was no equilibrium nothing jumps.
+    event%jumped = event%converged .and. change(before, landed) > jump .and. &
+      before%residual <= max(self%options%tolerance, residual_floor(self%problem, before))
     if (.not. event%converged .and. self%problem%law%adhesion > 0 .and. &
       .not. self%problem%law%edge_gap > 0) then
       ! Nothing stops the fall of bodies that only attract.
@@ -125,6 +138,30 @@ contains
     event%jump_uncertainty = abs(1.5_wp*step)
     call remember(position, landed, 1, event%jumped)
   end subroutine go
+
+  !> Whether the branch of the state `before` goes on to an h0 close by, where the iteration has not
+  !> found it: by Newton's method, whatever the deck says of iterations. Where it does, the iteration
+  !> has failed; where not, the bodies jump.
+  logical function goes_on(self, h0, before)
+    class(fixed_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(state_t), intent(in) :: before
+    type(solver_options_t) :: newton
+    type(control_t) :: control
+    type(state_t) :: state
+
+    goes_on = .false.
+    if (self%options%method == 'mixing') return
+    newton = self%options
+    newton%method = 'newton'
+    newton%most_iterations = newton_iterations
+    control%value = h0
+    state = before
+    call solve_state(self%problem, self%mesh, control, newton, self%frozen, state, goes_on, &
+      self%cost)
+    self%frozen%factors%valid = .false.
+    goes_on = goes_on .and. change(before, state) <= jump
+  end function goes_on
 
   !> A step as the paper takes it: h0 changes at constant separation, and the iteration goes on
   !> until its own rule is met. A jump is a change of deformation many times that of h0, and is

@@ -94,7 +94,9 @@ contains
       state%gap = far + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2
     end associate
     call self%attempt(far, state, mesh, position, event)
-    if (.not. event%converged) event%reason = 'no equilibrium was found far from contact'
+    if (.not. event%converged) write (event%reason, '(a, i0, a, es7.1)') &
+      'no equilibrium was found far from contact: after ', state%iterations, &
+      ' iterations the residual was ', state%residual
     call remember(position, state, mesh, .false.)
   end subroutine begin_afar
 

@@ -31,6 +31,8 @@ module path
     !> The folds, the largest tension and the end.
     type(witness_t), allocatable :: witness(:)
     real(wp) :: worst_residual = 0, worst_spacing = 0
+    !> Whether it ends in the fall of bodies that nothing keeps apart.
+    logical :: fallen = .false.
     !> Why the path ends before its end; empty where it does not.
     character(len=160) :: reason = ''
   end type path_t
@@ -72,7 +74,8 @@ contains
       if (lost) path%reason = 'the equilibrium path was lost: no step, however small, converged'
       if (lost .or. trail%held >= longest) exit
       ! Without repulsion the path ends in the bodies' collapse onto each other.
-      if (collapsed(steps%problem, trail)) exit
+      path%fallen = collapsed(steps%problem, trail)
+      if (path%fallen) exit
       associate (last => trail%held)
         if (trail%mesh(last) == contact .and. trail%unstable(last) == 0 .and. &
           trail%state(last)%h0 <= h0_end) exit
@@ -129,7 +132,8 @@ contains
     end do
     finish = fold_witness(steps, trail, trail%held)
     finish%displacement = .true.
-    call add_witness(path%witness, finish)
+    ! How a fall ends is of no interest and on no mesh.
+    if (.not. path%fallen) call add_witness(path%witness, finish)
     path%unstable_after = trail%unstable(min(fold + 1, trail%held))
     if (size(fold) > 0) then
       path%jump_in_h0 = path%fold_h0(1)

@@ -177,6 +177,8 @@ contains
         summary%converged = .false.
         call summary%warn('path: '//trim(path%reason))
       end if
+      if (path%fallen) call summary%warn('path: nothing keeps the bodies apart under this law: '// &
+        'the path ends in their fall onto each other, and there is no state in contact')
       if (allocated(path%load)) then
         if (path%load < 0) call raise_tension(problem, path%load, path%load_h0, summary)
       end if
