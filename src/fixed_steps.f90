@@ -36,6 +36,8 @@ module fixed_steps
   integer, parameter :: most_approach = 400
   !> Newton's method needs few iterations, or is not going to arrive.
   integer, parameter :: newton_iterations = 12
+  !> How often Newton's method may help the iteration on in a step before that is said to fail.
+  integer, parameter :: most_rescues = 20
   !> A state continues the branch that was extrapolated to it if it lies no farther from the
   !> extrapolation than half the extrapolated change plus this many of the law's lengths. Where even
   !> the smallest step leads farther the bodies jump.
@@ -85,6 +87,7 @@ contains
     type(state_t) :: state, before, landed
     real(wp) :: step, next
     logical :: continues, stalled
+    integer :: rescues
 
     if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
       event%reason = touching
@@ -103,23 +106,30 @@ contains
     ! The branch ends, or turns sharply, on the way: how far does it go?
     landed = state
     step = 0.5_wp*(h0 - position%state%h0)
-    do while (abs(step) > self%jump_tolerance)
-      next = position%state%h0 + step
-      if (abs(h0 - position%state%h0) <= 1.1_wp*abs(step)) next = h0
-      call self%continue_to(next, position, state, event, continues)
-      if (continues) then
-        call remember(position, state, 1, .false.)
-        if (abs(next - h0) <= 0.0_wp) return
-        step = 1.5_wp*step
-      else
-        step = step/3
-      end if
+    do rescues = 0, most_rescues
+      do while (abs(step) > self%jump_tolerance)
+        next = position%state%h0 + step
+        if (abs(h0 - position%state%h0) <= 1.1_wp*abs(step)) next = h0
+        call self%continue_to(next, position, state, event, continues)
+        if (continues) then
+          call remember(position, state, 1, .false.)
+          if (abs(next - h0) <= 0.0_wp) return
+          step = 1.5_wp*step
+        else
+          step = step/3
+        end if
+      end do
+      stalled = self%goes_on(position%state%h0 + 1.5_wp*step, position%state, state)
+      if (.not. stalled) exit
+      ! Near its end a branch turns sharply, and is worth another try.
+      call remember(position, state, 1, .false.)
+      step = sign(min(2*self%jump_tolerance, abs(h0 - state%h0)), step)
     end do
     before = position%state
-    stalled = self%goes_on(before%h0 + 1.5_wp*step, before)
     call self%land(h0, before, landed, event)
     if (stalled) then
-      ! Whether what is found at h0 is on this branch nobody knows, and no jump has been seen.
+      ! The iteration does not follow the branch, and no jump has been seen: whether what is found at
+      ! h0 is on this branch nobody knows.
       event%converged = .false.
       call remember(position, landed, 1, .true.)
       return
@@ -140,15 +150,15 @@ contains
   end subroutine go
 
   !> Whether the branch of the state `before` goes on to an h0 close by, where the iteration has not
-  !> found it: by Newton's method, whatever the deck says of iterations. Where it does, the iteration
-  !> has failed; where not, the bodies jump.
-  logical function goes_on(self, h0, before)
+  !> found it: by Newton's method, whatever the deck says of iterations. Where it does, to `state`, the
+  !> iteration has failed; where not, the bodies jump.
+  logical function goes_on(self, h0, before, state)
     class(fixed_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(state_t), intent(in) :: before
+    type(state_t), intent(out) :: state
     type(solver_options_t) :: newton
     type(control_t) :: control
-    type(state_t) :: state
 
     goes_on = .false.
     if (self%options%method == 'mixing') return

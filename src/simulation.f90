@@ -123,7 +123,7 @@ contains
     if (summary%converged) exit_code = 0
   end subroutine run_scene
 
-  !> What the user should know before a long run begins; empty for a short one.
+  !> What the user should know of a run that will be long or too large; empty for others.
   function outlook(scene) result(text)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: text

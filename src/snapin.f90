@@ -64,8 +64,8 @@ contains
         status = 2
       else if (options%check) then
         call print_line(output_unit, options%decks(i)%name // ': ok')
-        if (outlook(scenes(i)) /= '') call print_line(error_unit, options%decks(i)%name // ': ' // &
-          outlook(scenes(i)))
+        if (outlook(scenes(i)) /= '') call print_line(error_unit, 'snapin: ' // &
+          options%decks(i)%name // ': ' // outlook(scenes(i)))
       end if
     end do
     if (options%check .or. status /= 0) return
