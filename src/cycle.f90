@@ -2,7 +2,7 @@
 !> carried over from step to step.
 module cycle
   use kinds, only: wp
-  use equilibrium, only: state_t
+  use equilibrium, only: state_t, residual_floor
   use interpolation, only: interpolated_maximum
   use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, add_witness
   use records, only: observer_t, record_of, stable_yes, stable_unasked
@@ -88,7 +88,8 @@ contains
       call note(branch, steps, position, event, plan%h0(i))
       if (event%reason /= '') exit
       call observer%take(record_of(plan%name, steps%problem, steps%grid(position), position%state, &
-        merge(stable_yes, stable_unasked, plan%unique), event%converged), steps%problem, &
+        merge(stable_yes, stable_unasked, plan%unique), holds(steps, position%state)), &
+        steps%problem, &
         steps%grid(position), position%state, plan%profile(i))
       if (any(i == [1, (1 + size(plan%h0))/2, size(plan%h0)])) &
         call add_witness(branch%witness, steps%witness(position))
@@ -119,6 +120,14 @@ contains
     call end_stretch(steps, stretch, last_h0, ended, deferred, branch)
     if (deferred%open) call refine(steps, deferred, branch)
   end subroutine run_branch
+
+  !> Whether a state is an equilibrium, which the paper's stopping rule does not say.
+  pure logical function holds(steps, state)
+    class(quasi_static_t), intent(in) :: steps
+    type(state_t), intent(in) :: state
+
+    holds = state%residual <= max(steps%options%tolerance, residual_floor(steps%problem, state))
+  end function holds
 
   !> Keeps the worst and the first of what happened.
   subroutine note(branch, steps, position, event, h0)

@@ -26,6 +26,8 @@ module path
     real(wp), allocatable :: jump_in_h0, jump_in_load, jump_out_h0, jump_out_load
     !> Lost in a cycle of approach and separation at controlled h0; unallocated without jumps.
     real(wp), allocatable :: energy_lost
+    !> What its integration leaves open, and the work that it is a difference of.
+    real(wp) :: energy_uncertainty = 0, energy_turned_over = 0
     !> Largest tension, the pull-off at controlled load.
     real(wp), allocatable :: load, load_h0
     !> The folds, the largest tension and the end.
@@ -141,7 +143,8 @@ contains
       if (path%unstable_after(size(fold)) == 0) then
         path%jump_out_h0 = path%fold_h0(size(fold))
         path%jump_out_load = path%fold_load(size(fold))
-        path%energy_lost = energy_lost(trail)
+        path%energy_lost = 0
+        call energy_lost(trail, path%energy_lost, path%energy_uncertainty, path%energy_turned_over)
       end if
     end if
     allocate (path%extremum_h0(0), path%extremum_load(0))

@@ -48,7 +48,7 @@ module results
     procedure, private :: mark
   end type results_t
 
-  character(len=*), parameter :: curve_columns(*) = [character(len=100) :: &
+  character(len=*), parameter :: curve_columns(*) = [character(len=96) :: &
     'branch [] loading, unloading_1, unloading_2, ..., or path', &
     'h0 [m] separation that undeformed bodies would have on the axis', &
     'h_centre [m] separation on the axis', &
@@ -58,9 +58,9 @@ module results
     'stable [] 1, 0, or -1 where not asked for', &
     'residual [] largest error of the equations, in units of the length of the force law', &
     'iterations [] products with the elastic operator', &
-    'converged [] 1; 0 where the residual is not small enough: no equilibrium, and not in the summary']
+    'converged [] 1; 0 where the residual is larger than asked for: the row is no equilibrium']
   !> Added by &stability.
-  character(len=*), parameter :: stability_columns(*) = [character(len=100) :: &
+  character(len=*), parameter :: stability_columns(*) = [character(len=96) :: &
     'smallest_eigenvalue [] of the operator at fixed h0; negative: unstable', &
     'criterion_28 [] largest |2 u p''/p|; above 1: unstable by (28)', &
     'criterion_29 [] 2 p'' u/p on the axis; below -1: unstable by (29)']

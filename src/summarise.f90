@@ -188,8 +188,13 @@ contains
       summary%folds_stable = merge(1, 0, path%unstable_after == 0)
       summary%load_folds_h0 = path%extremum_h0*problem%length
       summary%load_folds_load = path%extremum_load*problem%load
-      if (allocated(path%energy_lost)) &
+      if (allocated(path%energy_lost)) then
         summary%energy_lost = path%energy_lost*problem%load*problem%length
+        summary%energy_lost_uncertainty = path%energy_uncertainty*problem%load*problem%length
+        if (allocated(summary%error_estimate)) summary%energy_lost_uncertainty = &
+          summary%energy_lost_uncertainty + &
+          summary%error_estimate*path%energy_turned_over*problem%load*problem%length
+      end if
       if (allocated(path%jump_in_h0)) then
         summary%jump_in_h0 = path%jump_in_h0*problem%length
         summary%jump_in_load = path%jump_in_load*problem%load

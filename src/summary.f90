@@ -36,7 +36,7 @@ module summary
     integer, allocatable :: folds_stable(:)
     real(wp), allocatable :: load_folds_h0(:), load_folds_load(:)
     !> In a cycle [J].
-    real(wp), allocatable :: energy_lost
+    real(wp), allocatable :: energy_lost, energy_lost_uncertainty
     !> In units of the law's length; dimensionless; whether that is fine enough; relative.
     real(wp), allocatable :: worst_residual, spacing_over_neck
     logical, allocatable :: resolved
@@ -132,6 +132,7 @@ contains
       assignment_of('load_folds_h0', self%load_folds_h0) // &
       assignment_of('load_folds_load', self%load_folds_load) // &
       assignment_of('energy_lost', self%energy_lost) // &
+      assignment_of('energy_lost_uncertainty', self%energy_lost_uncertainty) // &
       assignment_of('worst_residual', self%worst_residual) // &
       assignment_of('spacing_over_neck', self%spacing_over_neck) // &
       assignment_of('resolved', self%resolved) // &
