@@ -121,9 +121,9 @@ contains
       .not. problem%rigid)
   end function fixed_mesh
 
-  !> Another choice of a fixed grid, to estimate the error by: panels of two more nodes; twice the nodes on
-  !> the same length and a fifth farther out, or where that would cost more than the run, half of them
-  !> and a fifth less far.
+  !> Another choice of a fixed grid, to estimate the error by: panels of two more nodes; twice the
+  !> nodes on the same length and a fifth farther out, or where that would cost more than the run,
+  !> half of them and a fifth less far.
   pure function companion(chosen)
     type(choice_t), intent(in) :: chosen
     type(choice_t) :: companion

@@ -31,8 +31,8 @@ module edge_locked
     real(wp) :: level = -huge(1.0_wp)
   end type mesh_pair_t
 
-  !> Smallest feature over the contact radius that a mesh follows: where adhesion makes smaller ones,
-  !> rounding hides them, and the mesh would grow for nothing.
+  !> Smallest feature over the contact radius that a mesh follows: where adhesion makes smaller
+  !> ones, rounding hides them, and the mesh would grow for nothing.
   real(wp), parameter :: finest = 1.0e-13_wp
 
   !> How finely to resolve.
@@ -47,8 +47,8 @@ module edge_locked
 
 contains
 
-  !> Meshes for H0 from h0_high down to h0_low. shape_only leaves the kernels out, to learn how large
-  !> they would be.
+  !> Meshes for H0 from h0_high down to h0_low. shape_only leaves the kernels out, to learn how
+  !> large they would be.
   function new_mesh_pair(this, h0_high, h0_low, resolution, shape_only) result(pair)
     type(problem_t), intent(in) :: this
     real(wp), intent(in) :: h0_high, h0_low

@@ -328,8 +328,8 @@ contains
     residual_floor = min(residual_floor, largest_floor)
   end function residual_floor
 
-  !> Whether the deformation of a contact of radius c (lateral units) under the law's largest tension,
-  !> about one unit of pressure, is so large that rounding hides the law.
+  !> Whether the deformation of a contact of radius c (lateral units) under the law's largest
+  !> tension, about one unit of pressure, is so large that rounding hides the law.
   pure logical function lost_in_rounding(this, c)
     type(problem_t), intent(in) :: this
     real(wp), intent(in) :: c

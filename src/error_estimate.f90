@@ -69,8 +69,8 @@ contains
     end do
   end function estimate_locked
 
-  !> The same for a run on a fixed mesh, against the mesh given, which is finer or, where that would cost
-  !> too much, coarser.
+  !> The same for a run on a fixed mesh, against the mesh given, which is finer or, where that would
+  !> cost too much, coarser.
   function estimate_fixed(this, mesh, fine, tolerance, witnesses, cost) result(error)
     type(problem_t), intent(in) :: this
     type(discretisation_t), intent(in) :: mesh, fine
@@ -127,8 +127,8 @@ contains
     control%value = control%value + shift
     shifted = state
     call solve_anderson(this, fine, control, options, frozen, shifted, converged, cost)
-    if (converged .or. shifted%residual < nearly_solved) left = deviation(witness, shifted, state)* &
-      max(tolerance, witness%state%residual)/shift
+    if (converged .or. shifted%residual < nearly_solved) left = &
+      deviation(witness, shifted, state)*max(tolerance, witness%state%residual)/shift
   end subroutine compare
 
   !> Relative difference of a state from the one that is right, in what a witness is compared by.

@@ -128,8 +128,8 @@ contains
     before = position%state
     call self%land(h0, before, landed, event)
     if (stalled) then
-      ! The iteration does not follow the branch, and no jump has been seen: whether what is found at
-      ! h0 is on this branch nobody knows.
+      ! The iteration does not follow the branch, and no jump has been seen: whether what is found
+      ! at h0 is on this branch nobody knows.
       event%converged = .false.
       call remember(position, landed, 1, .true.)
       return
@@ -150,8 +150,8 @@ contains
   end subroutine go
 
   !> Whether the branch of the state `before` goes on to an h0 close by, where the iteration has not
-  !> found it: by Newton's method, whatever the deck says of iterations. Where it does, to `state`, the
-  !> iteration has failed; where not, the bodies jump.
+  !> found it: by Newton's method, whatever the deck says of iterations. Where it does, to `state`,
+  !> the iteration has failed; where not, the bodies jump.
   logical function goes_on(self, h0, before, state)
     class(fixed_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -186,7 +186,8 @@ contains
     state = position%state
     call self%solve_at(h0, state, event)
     associate (before => position%state)
-      event%jumped = event%converged .and. change(before, state) > max(1.0_wp, paper_jump*abs(h0 - before%h0))
+      event%jumped = event%converged .and. &
+        change(before, state) > max(1.0_wp, paper_jump*abs(h0 - before%h0))
       event%jump_h0 = 0.5_wp*(before%h0 + h0)
       event%jump_load = before%load
       event%jump_uncertainty = 0.5_wp*abs(h0 - before%h0)

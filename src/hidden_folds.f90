@@ -1,6 +1,6 @@
 !> Folds that lie between two states of a path whose h0 seems to go on falling or rising: near the
-!> adhesion strength at which jumps begin, two folds are so close that steps pass over both. They show
-!> in the derivative of h0 along the path, which between them has the other sign.
+!> adhesion strength at which jumps begin, two folds are so close that steps pass over both. They
+!> show in the derivative of h0 along the path, which between them has the other sign.
 module hidden_folds
   use kinds, only: wp
   use problem, only: problem_t
@@ -33,8 +33,8 @@ module hidden_folds
 
 contains
 
-  !> The two folds between the last three of some states of a path, along which h0 goes one way; none
-  !> where there are none. Coordinates run one way.
+  !> The two folds between the last three of some states of a path, along which h0 goes one way;
+  !> none where there are none. Coordinates run one way.
   subroutine find_hidden_folds(this, pair, mesh, coordinate, states, options, folds, cost)
     type(problem_t), intent(in) :: this
     type(mesh_pair_t), intent(in) :: pair
@@ -117,8 +117,8 @@ contains
 
       derivative = 0
       call state_at(this, pair, mesh, s, coordinate, states, options, frozen, state, fine, cost)
-      if (fine) call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), state, frozen, &
-        h0_slope, load_slope, fine, cost)
+      if (fine) call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), state, &
+        frozen, h0_slope, load_slope, fine, cost)
       lost = lost .or. .not. fine
       if (.not. fine) return
       derivative = sense*h0_slope

@@ -253,10 +253,10 @@ contains
     real(wp) :: enough
 
     associate (tolerance => outcome%chosen%options%tolerance)
-      if (summary%converged .and. summary%worst_residual > max(tolerance, scene%numerics%accuracy, &
-        usual_residual) .and. .not. outcome%chosen%options%stop_on_change) call summary%warn('rounding leaves residuals '// &
-        'of up to '//about(summary%worst_residual)//' lengths of the force law, above the '// &
-        'tolerance of '//about(tolerance))
+      if (summary%converged .and. .not. outcome%chosen%options%stop_on_change .and. &
+        summary%worst_residual > max(tolerance, scene%numerics%accuracy, usual_residual)) &
+        call summary%warn('rounding leaves residuals of up to '//about(summary%worst_residual)// &
+        ' lengths of the force law, above the tolerance of '//about(tolerance))
     end associate
     if (.not. allocated(summary%error_estimate)) return
     enough = clearly*scene%numerics%accuracy

@@ -143,8 +143,8 @@ contains
     integer :: i, n, place, change
 
     n = walker%held
-    call find_hidden_folds(this, pair, walker%mesh, walker%coordinate(:n), walker%past(:n), options, &
-      folds, cost)
+    call find_hidden_folds(this, pair, walker%mesh, walker%coordinate(:n), walker%past(:n), &
+      options, folds, cost)
     travel = sign(1.0_wp, walker%coordinate(n) - walker%coordinate(n - 1))
     do i = 1, size(folds)
       place = trail%held
@@ -194,11 +194,12 @@ contains
     end associate
     slope_size = huge(1.0_wp)
     do round = 1, most_rounds
-      call state_at(this, pair, mesh, s, coordinate, states, options, frozen, trial, converged, cost)
+      call state_at(this, pair, mesh, s, coordinate, states, options, frozen, trial, converged, &
+        cost)
       lost = .not. converged
       if (lost) return
-      call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), trial, frozen, slopes(1), &
-        slopes(2), converged, cost)
+      call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), trial, frozen, &
+        slopes(1), slopes(2), converged, cost)
       lost = .not. converged
       if (lost) return
       slope = slopes(quantity)
