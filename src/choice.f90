@@ -113,7 +113,7 @@ contains
     widest = min(largest_radius(problem, h0_low, contact_level(problem)), chosen%extent)
     finest = chosen%resolution%fineness*smallest_feature(problem, widest)
     ! No more nodes than a uniform grid would have been given.
-    count = min(ceiling(widest/finest), max(1, chosen%nodes/chosen%resolution%order))
+    count = ceiling(min(widest/finest, real(max(1, chosen%nodes/chosen%resolution%order), wp)))
     finest = widest/count
     outer = widest + graded_ends(0.0_wp, max(chosen%extent, 2*widest) - widest, finest, 1.0_wp, &
       chosen%extent)

@@ -37,7 +37,7 @@ module fixed_steps
   !> Newton's method needs few iterations, or is not going to arrive.
   integer, parameter :: newton_iterations = 12
   !> How often Newton's method may help the iteration on in a step before that is said to fail.
-  integer, parameter :: most_rescues = 20
+  integer, parameter :: most_rescues = 5
   !> A state continues the branch that was extrapolated to it if it lies no farther from the
   !> extrapolation than half the extrapolated change plus this many of the law's lengths. Where even
   !> the smallest step leads farther the bodies jump.

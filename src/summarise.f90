@@ -251,9 +251,12 @@ contains
     type(outcome_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
     real(wp) :: enough
+    logical :: on_change
 
+    on_change = outcome%chosen%options%stop_on_change .and. &
+      outcome%chosen%options%method == 'mixing'
     associate (tolerance => outcome%chosen%options%tolerance)
-      if (summary%converged .and. .not. outcome%chosen%options%stop_on_change .and. &
+      if (summary%converged .and. .not. on_change .and. &
         summary%worst_residual > max(tolerance, scene%numerics%accuracy, usual_residual)) &
         call summary%warn('rounding leaves residuals of up to '//about(summary%worst_residual)// &
         ' lengths of the force law, above the tolerance of '//about(tolerance))
