@@ -83,7 +83,7 @@ contains
       call run_stretches(locked, h0/problem%length, rows, stretch)
       witnesses = [(stretch(k)%witness, k=1, size(stretch))]
       if (rows%held > 0) outcome%error_estimate = estimate_locked(problem, locked%pair, &
-        high, low, outcome%chosen%resolution, witnesses, locked%cost)
+        high, low, outcome%chosen%resolution, locked%options%tolerance, witnesses, locked%cost)
     else
       call prepare(fixed, problem, outcome%chosen, accuracy)
       fixed%mesh = fixed_mesh(outcome%chosen, problem, low)
@@ -91,7 +91,8 @@ contains
       call run_stretches(fixed, h0/problem%length, rows, stretch)
       witnesses = [(stretch(k)%witness, k=1, size(stretch))]
       if (rows%held > 0) outcome%error_estimate = estimate_fixed(problem, fixed%mesh, &
-        fixed_mesh(companion(outcome%chosen), problem, low), witnesses, fixed%cost)
+        fixed_mesh(companion(outcome%chosen), problem, low), fixed%options%tolerance, witnesses, &
+        fixed%cost)
     end if
 
     do k = 1, size(stretch)

@@ -126,14 +126,10 @@ contains
 
   contains
 
-    !> Rigid bodies: the residual is the error of the gaps.
+    !> Rigid bodies: their gap is known.
     subroutine solve_rigid()
-      integer :: pass
-
-      do pass = 1, 2
-        if (pass == 2) z = z - g
-        call residual(this, grid, control, z, g, state, cost)
-      end do
+      z = control%value + 0.5_wp*(control%scale*grid%x(:size(z)))**2
+      call residual(this, grid, control, z, g, state, cost)
       state%iterations = 0
       converged = state%residual <= max(options%tolerance, residual_floor(this, state))
     end subroutine solve_rigid

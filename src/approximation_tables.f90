@@ -168,14 +168,14 @@ contains
     if (.not. start > finish) return
     if (.not. problem%coupling > 0) then
       gap = [(start + (finish - start)*(i - 1)/(count - 1), i=1, count)]
-      ! Rigid bodies would touch where the law has no end.
-      if (problem%law%closure_fraction > 0) gap = pack(gap, gap > 0)
+      ! Nearer than that rigid bodies would touch.
+      gap = pack(gap, gap >= problem%law%smallest_gap)
       return
     end if
     high = gap_of_h0(problem, form, start, nearest)
     if (ieee_is_nan(high)) return
     low = gap_of_h0(problem, form, finish, nearest)
-    if (ieee_is_nan(low)) low = nearest
+    if (ieee_is_nan(low)) low = max(nearest, problem%law%smallest_gap)
     if (high > low) gap = spaced(problem, form, high, low, count)
   end function gaps_between
 

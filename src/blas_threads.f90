@@ -6,7 +6,7 @@ module blas_threads
   !$ use omp_lib, only: omp_get_max_threads, omp_in_parallel
   implicit none
   private
-  public :: use_threads_for
+  public :: use_threads_for, thread_count
 
   !> Order of the matrix from which threads pay, even on a machine with other work.
   integer, parameter :: worthwhile = 2500
@@ -37,5 +37,11 @@ contains
     !$   count = int(omp_get_max_threads(), c_int)
     call set(count)
   end subroutine use_threads_for
+
+  !> Threads that the program may use.
+  integer function thread_count()
+    thread_count = 1
+    !$ thread_count = omp_get_max_threads()
+  end function thread_count
 
 end module blas_threads

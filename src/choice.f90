@@ -79,7 +79,9 @@ contains
     feature = smallest_feature(problem, widest)
     chosen%extent = 1.5_wp*widest + 8
     if (allocated(numerics%r_max)) chosen%extent = numerics%r_max/problem%lateral
-    chosen%nodes = min(most, max(fewest, ceiling(chosen%extent/(comfortable*feature))))
+    ! The bounds before the whole number: where bodies adhere strongly the quotient is beyond any.
+    chosen%nodes = ceiling(min(real(most, wp), max(real(fewest, wp), &
+      chosen%extent/(comfortable*feature))))
     if (allocated(numerics%nodes)) chosen%nodes = numerics%nodes
   end function choose
 
@@ -111,7 +113,7 @@ contains
     widest = min(largest_radius(problem, h0_low, contact_level(problem)), chosen%extent)
     finest = chosen%resolution%fineness*smallest_feature(problem, widest)
     ! No more nodes than a uniform grid would have been given.
-    count = min(ceiling(widest/finest), max(1, chosen%nodes/chosen%resolution%order))
+    count = ceiling(min(widest/finest, real(max(1, chosen%nodes/chosen%resolution%order), wp)))
     finest = widest/count
     outer = widest + graded_ends(0.0_wp, max(chosen%extent, 2*widest) - widest, finest, 1.0_wp, &
       chosen%extent)
@@ -119,9 +121,9 @@ contains
       .not. problem%rigid)
   end function fixed_mesh
 
-  !> Another choice of a fixed grid, to estimate the error by: panels of two more nodes; twice the nodes on
-  !> the same length and a fifth farther out, or where that would cost more than the run, half of them
-  !> and a fifth less far.
+  !> Another choice of a fixed grid, to estimate the error by: panels of two more nodes; twice the
+  !> nodes on the same length and a fifth farther out, or where that would cost more than the run,
+  !> half of them and a fifth less far.
   pure function companion(chosen)
     type(choice_t), intent(in) :: chosen
     type(choice_t) :: companion

@@ -2,7 +2,7 @@
 !> carried over from step to step.
 module cycle
   use kinds, only: wp
-  use equilibrium, only: state_t
+  use equilibrium, only: state_t, residual_floor
   use interpolation, only: interpolated_maximum
   use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, add_witness, &
     end_t, end_of
@@ -55,6 +55,8 @@ module cycle
   !> jump, whose load is known, or an end of the experiment.
   integer, parameter :: most_rounds = 15
   real(wp), parameter :: load_tolerance = 1.0e-10_wp, enough = 1.0e-3_wp
+  !> Smallest bracket that is searched, relative or in the law's lengths.
+  real(wp), parameter :: closest = 1.0e-9_wp
 
 contains
 
@@ -90,7 +92,8 @@ contains
       if (event%reason /= '') exit
       if (event%converged) branch%finish = end_of(position%state)
       call observer%take(record_of(plan%name, steps%problem, steps%grid(position), position%state, &
-        merge(stable_yes, stable_unasked, plan%unique), event%converged), steps%problem, &
+        merge(stable_yes, stable_unasked, plan%unique), holds(steps, position%state)), &
+        steps%problem, &
         steps%grid(position), position%state, plan%profile(i))
       if (any(i == [1, (1 + size(plan%h0))/2, size(plan%h0)])) &
         call add_witness(branch%witness, steps%witness(position))
@@ -100,9 +103,8 @@ contains
       end do
 
       if (.not. event%converged) then
-        ! Shown as it is, but not a place to search from.
+        ! Shown as it is, but neither a tension nor a place to search from.
         call end_stretch(steps, stretch, last_h0, ended, deferred, branch)
-        if (position%state%load < 0) call lower(branch, position%state)
       else if (event%jumped .or. .not. stretch%open) then
         if (event%jumped) then
           last_h0 = event%jump_h0
@@ -122,6 +124,14 @@ contains
     call end_stretch(steps, stretch, last_h0, ended, deferred, branch)
     if (deferred%open) call refine(steps, deferred, branch)
   end subroutine run_branch
+
+  !> Whether a state is an equilibrium, which the paper's stopping rule does not say.
+  pure logical function holds(steps, state)
+    class(quasi_static_t), intent(in) :: steps
+    type(state_t), intent(in) :: state
+
+    holds = state%residual <= max(steps%options%tolerance, residual_floor(steps%problem, state))
+  end function holds
 
   !> Keeps the worst and the first of what happened.
   subroutine note(branch, steps, position, event, h0)
@@ -218,7 +228,8 @@ contains
     low = min(stretch%before, stretch%after)
     high = max(stretch%before, stretch%after)
     width = high - low
-    if (.not. width > 0) return
+    ! Between steps as close as this there is nothing to find that rounding would not hide.
+    if (.not. width > closest*max(1.0_wp, abs(low), abs(high))) return
     do round = 1, most_rounds
       left = max(low, maxval([low, pack(h0, h0 < best%state%h0)]))
       right = min(high, minval([high, pack(h0, h0 > best%state%h0)]))

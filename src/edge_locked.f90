@@ -31,6 +31,10 @@ module edge_locked
     real(wp) :: level = -huge(1.0_wp)
   end type mesh_pair_t
 
+  !> Smallest feature over the contact radius that a mesh follows: where adhesion makes smaller
+  !> ones, rounding hides them, and the mesh would grow for nothing.
+  real(wp), parameter :: finest = 1.0e-13_wp
+
   !> How finely to resolve.
   type, public :: resolution_t
     !> Nodes a panel; size of the smallest panel over the smallest feature; relative error that the
@@ -43,14 +47,19 @@ module edge_locked
 
 contains
 
-  !> Meshes for H0 from h0_high down to h0_low.
-  function new_mesh_pair(this, h0_high, h0_low, resolution) result(pair)
+  !> Meshes for H0 from h0_high down to h0_low. shape_only leaves the kernels out, to learn how
+  !> large they would be.
+  function new_mesh_pair(this, h0_high, h0_low, resolution, shape_only) result(pair)
     type(problem_t), intent(in) :: this
     real(wp), intent(in) :: h0_high, h0_low
     type(resolution_t), intent(in) :: resolution
+    logical, intent(in), optional :: shape_only
     type(mesh_pair_t) :: pair
     real(wp) :: feature, widest
+    logical :: elastic
 
+    elastic = .not. this%rigid
+    if (present(shape_only)) elastic = elastic .and. .not. shape_only
     pair%traceable = this%law%adhesion > 0 .or. this%rigid
     if (.not. pair%traceable) pair%level = contact_level(this)
     widest = largest_radius(this, h0_low, pair%level)
@@ -63,11 +72,10 @@ contains
     pair%reach = resolution%farther*pair%reach
     associate (fineness => resolution%fineness, order => resolution%order)
       if (pair%traceable) pair%grid(approach) = new_panel_grid(0.0_wp, &
-        graded_ends(0.0_wp, pair%reach, fineness*feature, 1.0_wp, pair%reach), order, &
-        .not. this%rigid)
+        graded_ends(0.0_wp, pair%reach, fineness*feature, 1.0_wp, pair%reach), order, elastic)
       if (this%law%edge_gap > 0 .and. .not. this%rigid .or. .not. pair%traceable) &
         pair%grid(contact) = new_locked_grid(pair%reach/min(pair%passage, 1.0_wp), &
-        fineness*smallest_feature(this, widest)/widest, order, .not. this%rigid)
+        fineness*smallest_feature(this, widest)/widest, order, elastic)
     end associate
   end function new_mesh_pair
 
@@ -123,7 +131,7 @@ contains
     real(wp) :: low, high, pressure(1)
     integer :: step
 
-    low = merge(1.0e-3_wp, -500.0_wp, this%law%closure_fraction > 0)
+    low = this%law%smallest_gap
     high = this%law%range + 500
     do step = 1, 100
       level = 0.5_wp*(low + high)
@@ -144,8 +152,8 @@ contains
     type(problem_t), intent(in) :: this
     real(wp), intent(in) :: c
 
-    smallest_feature = min(neck_width(this), 0.5_wp, &
-      (this%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3))
+    smallest_feature = max(finest*max(c, 1.0_wp), min(neck_width(this), 0.5_wp, &
+      (this%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3)))
   end function smallest_feature
 
   !> The state on another mesh (or a shorter or longer part of the same), at the scale given: gaps

@@ -14,7 +14,7 @@ module equilibrium
   private
   public :: control_t, state_t, cost_t, residual, factorise_jacobian, factorise_again, &
     largest_step, state_from, unknowns_of, control_derivative, residual_floor, load_reach, &
-    radius_of_gap
+    radius_of_gap, lost_in_rounding
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 prescribed at a fixed scale; no further unknown.
@@ -25,6 +25,12 @@ module equilibrium
   integer, parameter :: at_edge_radius = 3
   !> H0 prescribed, the contact radius c unknown.
   integer, parameter :: at_h0_with_edge = 4
+
+  !> No length of an equilibrium, in the law's or in lateral units, is larger; its cube is a number.
+  real(wp), parameter :: largest_unknown = 1.0e80_wp
+
+  !> A residual that rounding excuses, in the law's lengths: beyond it the law is not resolved.
+  real(wp), parameter :: largest_floor = 1.0e-3_wp
 
   type :: control_t
     integer :: kind = at_h0
@@ -57,6 +63,8 @@ contains
 
   !> g(:nodes) = G and, where the control has one, g(nodes + 1) = its own equation, for the unknowns
   !> z = (gaps [, H0 or c]). On return `state` is what z stands for, with its load and residual.
+  !> Where z is outside the law's domain there are neither pressures nor a load, and the residual is
+  !> huge.
   subroutine residual(this, grid, control, z, g, state, cost)
     type(problem_t), intent(in) :: this
     type(discretisation_t), intent(in) :: grid
@@ -72,6 +80,14 @@ contains
     n = node_count(control, size(z))
     call unpack(control, z, state%h0, state%scale)
     state%gap = z(:n)
+    if (.not. defined(this, z, state)) then
+      g = 0
+      state%pressure = 0*g(:n)
+      state%load = 0
+      state%axis_gap = state%h0
+      state%residual = huge(1.0_wp)
+      return
+    end if
     state%pressure = this%law%pressure(state%gap)
     cost%pressure_evaluations = cost%pressure_evaluations + n
     raised = 0
@@ -100,6 +116,17 @@ contains
     ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
     if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
   end subroutine residual
+
+  !> Whether unknowns are such that pressures, and all that follows from them, are numbers.
+  pure logical function defined(this, z, state)
+    type(problem_t), intent(in) :: this
+    real(wp), intent(in) :: z(:)
+    type(state_t), intent(in) :: state
+
+    defined = all(abs(z) <= largest_unknown) .and. &
+      abs(state%h0) <= largest_unknown .and. state%scale > 0
+    if (defined) defined = all(state%gap >= this%law%smallest_gap)
+  end function defined
 
   !> Factors of the Jacobian of `residual` at a state, bordered where the control has an unknown of
   !> its own: I - 2 coupling c W diag(P'), and the derivatives by H0 or c. `shift` is added to the
@@ -314,15 +341,24 @@ contains
 
   !> The residual that rounding alone leaves: a few units in the last place of the gaps and of the
   !> deformation's parts, which are of opposite signs in an adhesive contact (the operator on a
-  !> uniform pressure gives at most 2).
+  !> uniform pressure gives at most 2). Never more than still is an equilibrium of the law.
   pure real(wp) function residual_floor(this, state)
     type(problem_t), intent(in) :: this
     type(state_t), intent(in) :: state
 
     residual_floor = 2*epsilon(1.0_wp)*(abs(state%h0) + maxval(abs(state%gap)) + &
       4*this%coupling*state%scale*maxval(abs(state%pressure)))
-    if (.not. residual_floor <= huge(1.0_wp)) residual_floor = 0
+    residual_floor = min(residual_floor, largest_floor)
   end function residual_floor
+
+  !> Whether the deformation of a contact of radius c (lateral units) under the law's largest
+  !> tension, about one unit of pressure, is so large that rounding hides the law.
+  pure logical function lost_in_rounding(this, c)
+    type(problem_t), intent(in) :: this
+    real(wp), intent(in) :: c
+
+    lost_in_rounding = 8*epsilon(1.0_wp)*this%coupling*this%law%adhesion*c > largest_floor
+  end function lost_in_rounding
 
   !> Number of gaps among `size` unknowns.
   pure integer function node_count(control, size)

@@ -23,7 +23,7 @@ module experiment
   use blas_threads, only: use_threads_for
   implicit none
   private
-  public :: outcome_t, run_experiment, problem_of, path_start, prepare
+  public :: outcome_t, run_experiment, problem_of, path_start, prepare, range_of
 
   !> Everything in the units of `problem`.
   type :: outcome_t
@@ -116,8 +116,10 @@ contains
       call run_cycle(scene, steps, observer, outcome, journal)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
-    outcome%error_estimate = estimate_locked(problem, steps%pair, high, low, &
-      outcome%chosen%resolution, witnesses_of(outcome), steps%cost)
+    ! Of nothing there is no error.
+    if (size(witnesses_of(outcome)) > 0) outcome%error_estimate = estimate_locked(problem, &
+      steps%pair, high, low, outcome%chosen%resolution, steps%options%tolerance, &
+      witnesses_of(outcome), steps%cost)
     steps%cost%estimate_seconds = seconds() - began
     outcome%cost = steps%cost
   end subroutine run_locked
@@ -146,11 +148,15 @@ contains
     call run_cycle(scene, steps, observer, of_cycle, journal)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
-    of_cycle%error_estimate = estimate_fixed(problem, steps%mesh, &
-      fixed_mesh(companion(outcome%chosen), problem, low), witnesses_of(of_cycle), steps%cost)
+    if (size(witnesses_of(of_cycle)) > 0) then
+      of_cycle%error_estimate = estimate_fixed(problem, steps%mesh, &
+        fixed_mesh(companion(outcome%chosen), problem, low), steps%options%tolerance, &
+        witnesses_of(of_cycle), steps%cost)
+      if (allocated(outcome%error_estimate)) &
+        of_cycle%error_estimate = max(outcome%error_estimate, of_cycle%error_estimate)
+      outcome%error_estimate = of_cycle%error_estimate
+    end if
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
-    if (.not. allocated(outcome%error_estimate)) outcome%error_estimate = 0
-    outcome%error_estimate = max(outcome%error_estimate, of_cycle%error_estimate)
     outcome%cost = steps%cost
     call move_alloc(of_cycle%loading, outcome%loading)
     call move_alloc(of_cycle%unloading, outcome%unloading)

@@ -4,11 +4,13 @@ module fixed_steps
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, state_from
+  use equilibrium, only: control_t, state_t, state_from, residual_floor
+  use solver_options, only: solver_options_t
   use solver, only: solve_state
   use relaxation, only: relax
   use tracer, only: between
-  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember
+  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember, &
+    touching
   implicit none
   private
   public :: fixed_steps_t
@@ -23,12 +25,19 @@ module fixed_steps
     procedure :: witness
     procedure, private :: continue_to
     procedure, private :: land
+    procedure, private :: goes_on
     procedure, private :: paper_step
     procedure, private :: solve_at
   end type fixed_steps_t
 
-  !> Steps of the approach from afar, in the law's lengths.
+  !> Steps of the approach from afar, in the law's lengths, and the most of them: where the way is
+  !> long they are longer.
   real(wp), parameter :: approach_step = 0.5_wp
+  integer, parameter :: most_approach = 400
+  !> Newton's method needs few iterations, or is not going to arrive.
+  integer, parameter :: newton_iterations = 12
+  !> How often Newton's method may help the iteration on in a step before that is said to fail.
+  integer, parameter :: most_rescues = 5
   !> A state continues the branch that was extrapolated to it if it lies no farther from the
   !> extrapolation than half the extrapolated change plus this many of the law's lengths. Where even
   !> the smallest step leads farther the bodies jump.
@@ -48,6 +57,10 @@ contains
     real(wp) :: far
     integer :: i, steps
 
+    if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
+      event%reason = touching
+      return
+    end if
     far = h0
     ! Twice the gap (37) of the jump into contact, in these units: there the bodies hardly deform.
     if (.not. self%problem%rigid) far = max(h0, 5.0_wp, &
@@ -58,9 +71,10 @@ contains
     state%gap = far + 0.5_wp*self%mesh%x**2
     call self%solve_at(far, state, event)
     call remember(position, state, 1, .false.)
-    steps = ceiling((far - h0)/approach_step)
+    steps = ceiling(min((far - h0)/approach_step, real(most_approach, wp)))
     do i = 1, steps
       call self%go(far - (far - h0)*i/steps, position, event)
+      if (event%reason /= '') exit
     end do
     event%jumped = .false.
   end subroutine begin
@@ -72,8 +86,13 @@ contains
     type(event_t), intent(out) :: event
     type(state_t) :: state, before, landed
     real(wp) :: step, next
-    logical :: continues
+    logical :: continues, stalled
+    integer :: rescues
 
+    if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
+      event%reason = touching
+      return
+    end if
     if (self%options%stop_on_change) then
       call self%paper_step(h0, position, event)
       return
@@ -87,21 +106,37 @@ contains
     ! The branch ends, or turns sharply, on the way: how far does it go?
     landed = state
     step = 0.5_wp*(h0 - position%state%h0)
-    do while (abs(step) > self%jump_tolerance)
-      next = position%state%h0 + step
-      if (abs(h0 - position%state%h0) <= 1.1_wp*abs(step)) next = h0
-      call self%continue_to(next, position, state, event, continues)
-      if (continues) then
-        call remember(position, state, 1, .false.)
-        if (abs(next - h0) <= 0.0_wp) return
-        step = 1.5_wp*step
-      else
-        step = step/3
-      end if
+    do rescues = 0, most_rescues
+      do while (abs(step) > self%jump_tolerance)
+        next = position%state%h0 + step
+        if (abs(h0 - position%state%h0) <= 1.1_wp*abs(step)) next = h0
+        call self%continue_to(next, position, state, event, continues)
+        if (continues) then
+          call remember(position, state, 1, .false.)
+          if (abs(next - h0) <= 0.0_wp) return
+          step = 1.5_wp*step
+        else
+          step = step/3
+        end if
+      end do
+      stalled = self%goes_on(position%state%h0 + 1.5_wp*step, position%state, state)
+      if (.not. stalled) exit
+      ! Near its end a branch turns sharply, and is worth another try.
+      call remember(position, state, 1, .false.)
+      step = sign(min(2*self%jump_tolerance, abs(h0 - state%h0)), step)
     end do
     before = position%state
     call self%land(h0, before, landed, event)
-    event%jumped = event%converged .and. change(before, landed) > jump
+    if (stalled) then
+      ! The iteration does not follow the branch, and no jump has been seen: whether what is found
+      ! at h0 is on this branch nobody knows.
+      event%converged = .false.
+      call remember(position, landed, 1, .true.)
+      return
+    end if
+    ! From where there was no equilibrium nothing jumps.
+    event%jumped = event%converged .and. change(before, landed) > jump .and. &
+      before%residual <= max(self%options%tolerance, residual_floor(self%problem, before))
     if (.not. event%converged .and. self%problem%law%adhesion > 0 .and. &
       .not. self%problem%law%edge_gap > 0) then
       ! Nothing stops the fall of bodies that only attract.
@@ -113,6 +148,30 @@ contains
     event%jump_uncertainty = abs(1.5_wp*step)
     call remember(position, landed, 1, event%jumped)
   end subroutine go
+
+  !> Whether the branch of the state `before` goes on to an h0 close by, where the iteration has not
+  !> found it: by Newton's method, whatever the deck says of iterations. Where it does, to `state`,
+  !> the iteration has failed; where not, the bodies jump.
+  logical function goes_on(self, h0, before, state)
+    class(fixed_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(state_t), intent(in) :: before
+    type(state_t), intent(out) :: state
+    type(solver_options_t) :: newton
+    type(control_t) :: control
+
+    goes_on = .false.
+    if (self%options%method == 'mixing') return
+    newton = self%options
+    newton%method = 'newton'
+    newton%most_iterations = newton_iterations
+    control%value = h0
+    state = before
+    call solve_state(self%problem, self%mesh, control, newton, self%frozen, state, goes_on, &
+      self%cost)
+    self%frozen%factors%valid = .false.
+    goes_on = goes_on .and. change(before, state) <= jump
+  end function goes_on
 
   !> A step as the paper takes it: h0 changes at constant separation, and the iteration goes on
   !> until its own rule is met. A jump is a change of deformation many times that of h0, and is
@@ -127,7 +186,8 @@ contains
     state = position%state
     call self%solve_at(h0, state, event)
     associate (before => position%state)
-      event%jumped = change(before, state) > max(1.0_wp, paper_jump*abs(h0 - before%h0))
+      event%jumped = event%converged .and. &
+        change(before, state) > max(1.0_wp, paper_jump*abs(h0 - before%h0))
       event%jump_h0 = 0.5_wp*(before%h0 + h0)
       event%jump_load = before%load
       event%jump_uncertainty = 0.5_wp*abs(h0 - before%h0)

@@ -26,6 +26,9 @@ module force_law
     !> A gap may close in one iteration by at most closure_fraction*gap + closure_length: beyond it
     !> the linearised law means nothing. Keeps gaps where the formulas are defined.
     real(wp) :: closure_fraction = 0, closure_length = 0
+    !> Smallest gap at which the formulas are asked for. No equilibrium has a smaller one; below it
+    !> pressures, and their products with the coupling, would leave the range of numbers.
+    real(wp) :: smallest_gap = -300
   contains
     !> Pressure, its derivative by the gap, and its integral from the gap to infinity.
     procedure(gap_function), deferred :: pressure

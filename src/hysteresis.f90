@@ -11,33 +11,45 @@ module hysteresis
 
   !> States in the polynomial that stands for the curve near a piece, and points of the rule on it.
   integer, parameter :: stencil = 6, points = 5
+  !> States in the polynomial that it is compared with.
+  integer, parameter :: lower = 5
 
 contains
 
   !> Integral of (load of the approach - load of the contact) dh0 between the first and the last
   !> fold of a trail that runs from afar into contact, in units of load times length; positive. 0
-  !> without folds.
-  function energy_lost(trail) result(energy)
+  !> without folds. uncertainty: what a lower order of the interpolation between states changes;
+  !> turned_over: the work done on both ways together, to which errors of the load are relative.
+  subroutine energy_lost(trail, energy, uncertainty, turned_over)
     type(trail_t), intent(in) :: trail
-    real(wp) :: energy
+    real(wp), intent(out) :: energy, uncertainty, turned_over
+    real(wp) :: inward, outward
     integer :: first, last
 
     energy = 0
+    uncertainty = 0
+    turned_over = 0
     first = findloc(trail%fold(:trail%held), .true., 1)
     last = findloc(trail%fold(:trail%held), .true., 1, back=.true.)
     if (first == 0 .or. last == first) return
     ! Both parts are run through inward, with falling h0.
     associate (jump_in => trail%state(first)%h0, jump_out => trail%state(last)%h0)
-      energy = abs(work(trail, 1, first, jump_in, jump_out) - &
-        work(trail, last, trail%held, jump_in, jump_out))
+      inward = work(trail, 1, first, jump_in, jump_out, lower)
+      outward = work(trail, last, trail%held, jump_in, jump_out, lower)
+      uncertainty = abs(inward - outward)
+      inward = work(trail, 1, first, jump_in, jump_out, stencil)
+      outward = work(trail, last, trail%held, jump_in, jump_out, stencil)
+      energy = abs(inward - outward)
+      uncertainty = abs(uncertainty - energy)
+      turned_over = abs(inward) + abs(outward)
     end associate
-  end function energy_lost
+  end subroutine energy_lost
 
   !> Integral of load dh0 along the trail, on which h0 falls, from the state `begin` to the state
   !> `finish`, as far as h0 is between low and high.
-  function work(trail, begin, finish, low, high)
+  function work(trail, begin, finish, low, high, stencil)
     type(trail_t), intent(in) :: trail
-    integer, intent(in) :: begin, finish
+    integer, intent(in) :: begin, finish, stencil
     real(wp), intent(in) :: low, high
     real(wp) :: work
     real(wp) :: from, to
@@ -47,16 +59,16 @@ contains
     do i = begin, finish - 1
       from = min(trail%state(i)%h0, high)
       to = max(trail%state(i + 1)%h0, low)
-      if (from > to) work = work + piece(trail, i, from, to)
+      if (from > to) work = work + piece(trail, i, from, to, stencil)
     end do
   end function work
 
   !> Integral of load dh0 over the part of the piece from state i to state i + 1 between two values
   !> of h0, both functions of the path's coordinate being the polynomials through the nearest
   !> states.
-  function piece(trail, i, h0_from, h0_to) result(work)
+  function piece(trail, i, h0_from, h0_to, stencil) result(work)
     type(trail_t), intent(in) :: trail
-    integer, intent(in) :: i
+    integer, intent(in) :: i, stencil
     real(wp), intent(in) :: h0_from, h0_to
     real(wp) :: work
     real(wp) :: node(points), weight(points), a, b, s

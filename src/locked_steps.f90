@@ -9,19 +9,20 @@ module locked_steps
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: state_t, state_from, at_edge_radius, at_h0_with_edge
+  use equilibrium, only: state_t, state_from, at_edge_radius, at_h0_with_edge, lost_in_rounding
   use solver_options, only: solver_options_t
   use solver, only: solve_state
-  use edge_locked, only: mesh_pair_t, approach, contact
+  use edge_locked, only: mesh_pair_t, approach, contact, largest_radius
   use locked_meshes, only: change_mesh, nodes_to_use, h0_control, scale_at
   use tracer, only: tracer_t, new_tracer, inward, outward, coordinate_of, between, &
     node_count, path_control
   use trail, only: trail_t, extend, collapsed
   use landing, only: land_between
-  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember
+  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember, &
+    touching
   implicit none
   private
-  public :: locked_steps_t, fold_witness
+  public :: locked_steps_t, fold_witness, beyond_rounding
 
   type, extends(quasi_static_t) :: locked_steps_t
     type(mesh_pair_t) :: pair
@@ -44,12 +45,13 @@ module locked_steps
   integer, parameter :: longest_trace = 2000
   !> Largest relative change of the path's coordinate in a step of a trace.
   real(wp), parameter :: path_step = 0.15_wp
-  character(len=*), parameter :: touching = &
-    'rigid bodies would touch: this law has no state at h0 <= 0'
   !> Residual, in the law's lengths, of states that only lead the way and are not reported.
   real(wp), parameter :: walking_tolerance = 1.0e-6_wp
   !> Smallest step in h0, in the law's lengths, that is tried.
   real(wp), parameter :: smallest_creep = 1.0e-6_wp
+
+  character(len=*), parameter :: beyond_rounding = &
+    'adhesion is so strong that rounding hides the force law once the bodies are in contact'
 
 contains
 
@@ -80,7 +82,7 @@ contains
     far = max(h0, self%far_away())
     if (self%problem%rigid) then
       far = h0
-      if (h0 <= 0 .and. self%problem%law%closure_fraction > 0) then
+      if (h0 < self%problem%law%smallest_gap) then
         event%reason = touching
         return
       end if
@@ -93,7 +95,9 @@ contains
       state%gap = far + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2
     end associate
     call self%attempt(far, state, mesh, position, event)
-    if (.not. event%converged) event%reason = 'no equilibrium was found far from contact'
+    if (.not. event%converged) write (event%reason, '(a, i0, a, es7.1)') &
+      'no equilibrium was found far from contact: after ', state%iterations, &
+      ' iterations the residual was ', state%residual
     call remember(position, state, mesh, .false.)
   end subroutine begin_afar
 
@@ -113,7 +117,7 @@ contains
     type(event_t), intent(out) :: event
     type(state_t) :: state
 
-    if (self%problem%rigid .and. h0 <= 0 .and. self%problem%law%closure_fraction > 0) then
+    if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
       event%reason = touching
       return
     end if
@@ -174,6 +178,10 @@ contains
     logical :: lost, found
     integer :: seen, direction
 
+    if (lost_in_rounding(self%problem, largest_radius(self%problem, h0, self%pair%level))) then
+      event%reason = beyond_rounding
+      return
+    end if
     self%frozen%factors%valid = .false.
     direction = merge(inward, outward, h0 < position%state%h0)
     walker = new_tracer(self%problem, position%state, position%mesh, direction, path_step)

@@ -3,14 +3,13 @@
 module path
   use kinds, only: wp
   use problem, only: spacing_over_neck
-  use equilibrium, only: state_t
-  use edge_locked, only: contact
+  use equilibrium, only: state_t, lost_in_rounding
+  use edge_locked, only: contact, largest_radius
   use tracer, only: tracer_t, new_tracer, inward, path_control
   use trail, only: trail_t, extend, collapsed, polish_extremum, of_load
   use hysteresis, only: energy_lost
-  use quasi_static, only: position_t, event_t, witness_t, add_witness, &
-    end_t, end_of
-  use locked_steps, only: locked_steps_t, fold_witness
+  use quasi_static, only: position_t, event_t, witness_t, add_witness, end_t, end_of
+  use locked_steps, only: locked_steps_t, fold_witness, beyond_rounding
   use records, only: observer_t, record_of, stable_yes, stable_no
   implicit none
   private
@@ -27,6 +26,8 @@ module path
     real(wp), allocatable :: jump_in_h0, jump_in_load, jump_out_h0, jump_out_load
     !> Lost in a cycle of approach and separation at controlled h0; unallocated without jumps.
     real(wp), allocatable :: energy_lost
+    !> What its integration leaves open, and the work that it is a difference of.
+    real(wp) :: energy_uncertainty = 0, energy_turned_over = 0
     !> Largest tension, the pull-off at controlled load.
     real(wp), allocatable :: load, load_h0
     !> The last state, if it is stable.
@@ -34,6 +35,8 @@ module path
     !> The folds, the largest tension and the end.
     type(witness_t), allocatable :: witness(:)
     real(wp) :: worst_residual = 0, worst_spacing = 0
+    !> Whether it ends in the fall of bodies that nothing keeps apart.
+    logical :: fallen = .false.
     !> Why the path ends before its end; empty where it does not.
     character(len=160) :: reason = ''
   end type path_t
@@ -58,6 +61,11 @@ contains
     type(event_t) :: event
     logical :: lost
 
+    if (lost_in_rounding(steps%problem, &
+      largest_radius(steps%problem, h0_end, steps%pair%level))) then
+      path%reason = beyond_rounding
+      return
+    end if
     call steps%begin_afar(h0_start, position, event)
     if (event%reason /= '') then
       path%reason = event%reason
@@ -70,7 +78,8 @@ contains
       if (lost) path%reason = 'the equilibrium path was lost: no step, however small, converged'
       if (lost .or. trail%held >= longest) exit
       ! Without repulsion the path ends in the bodies' collapse onto each other.
-      if (collapsed(steps%problem, trail)) exit
+      path%fallen = collapsed(steps%problem, trail)
+      if (path%fallen) exit
       associate (last => trail%held)
         if (trail%mesh(last) == contact .and. trail%unstable(last) == 0 .and. &
           trail%state(last)%h0 <= h0_end) exit
@@ -79,7 +88,7 @@ contains
     if (path%reason == '' .and. steps%problem%law%edge_gap > 0) &
       call end_at(steps, h0_end, trail)
     call collect(steps, trail, path)
-    call hand_over(steps, trail, profiles, observer)
+    call hand_over(steps, trail, profiles, observer, path)
     path%states = trail%held
     steps%cost%states = steps%cost%states + trail%held
   end subroutine trace_path
@@ -127,7 +136,8 @@ contains
     end do
     finish = fold_witness(steps, trail, trail%held)
     finish%displacement = .true.
-    call add_witness(path%witness, finish)
+    ! How a fall ends is of no interest and on no mesh.
+    if (.not. path%fallen) call add_witness(path%witness, finish)
     if (trail%unstable(trail%held) == 0) path%finish = end_of(trail%state(trail%held))
     path%unstable_after = trail%unstable(min(fold + 1, trail%held))
     if (size(fold) > 0) then
@@ -136,7 +146,8 @@ contains
       if (path%unstable_after(size(fold)) == 0) then
         path%jump_out_h0 = path%fold_h0(size(fold))
         path%jump_out_load = path%fold_load(size(fold))
-        path%energy_lost = energy_lost(trail)
+        path%energy_lost = 0
+        call energy_lost(trail, path%energy_lost, path%energy_uncertainty, path%energy_turned_over)
       end if
     end if
     allocate (path%extremum_h0(0), path%extremum_load(0))
@@ -178,11 +189,12 @@ contains
   end subroutine collect
 
   !> Gives all states to the observer, and the profiles where pieces of the path cross their h0.
-  subroutine hand_over(steps, trail, profiles, observer)
+  subroutine hand_over(steps, trail, profiles, observer, path)
     class(locked_steps_t), intent(inout) :: steps
     type(trail_t), intent(in) :: trail
     real(wp), intent(in) :: profiles(:)
     class(observer_t), intent(inout) :: observer
+    type(path_t), intent(inout) :: path
     type(state_t) :: state
     real(wp), allocatable :: crossed(:)
     integer :: i, k
@@ -195,6 +207,9 @@ contains
         end associate
         do k = 1, size(crossed)
           call steps%land(crossed(k), trail, i, state, converged)
+          path%worst_residual = max(path%worst_residual, state%residual)
+          if (.not. converged .and. path%reason == '') &
+            path%reason = 'a state whose profile is asked for did not converge'
           call give(trail%mesh(i), state, stability(i), converged, .true.)
         end do
       end if

@@ -23,6 +23,9 @@ module product_integration
   !> then has rho = 3.7, far more than 2*40 - 24 degrees need.
   real(wp), parameter :: reach = 3
 
+  !> A distance in panels that stands for none; any that a rule is good at is far below it.
+  real(wp), parameter :: never = 1.0e30_wp
+
   !> A Gauss rule for targets at a distance from the panel of at least `far` of its lengths, where
   !> it integrates the kernel times a Lagrange polynomial to rounding.
   type :: distant_rule_t
@@ -93,6 +96,8 @@ contains
       weights = 2*length*rule%weight
     else
       do k = 1, size(rule%distant)
+        ! Too few points for this order at any distance.
+        if (rule%distant(k)%far >= never) cycle
         if (gap >= rule%distant(k)%far*length) then
           weights = undivided(rule%distant(k), centre, target, left, length, size(weights))
           return
@@ -127,7 +132,7 @@ contains
     integer, intent(in) :: degree
     real(wp) :: rho
 
-    distance_for = huge(1.0_wp)
+    distance_for = never
     if (degree < 4) return
     rho = 10.0_wp**(14.0_wp/degree)
     distance_for = (0.5_wp*(rho + 1/rho) - 1)/2

@@ -10,7 +10,11 @@ module quasi_static
   implicit none
   private
   public :: quasi_static_t, position_t, event_t, witness_t, end_t, memory, remember, &
-    add_witness, end_of
+    add_witness, end_of, touching
+
+  !> Why rigid bodies have no state below the smallest gap of their law.
+  character(len=*), parameter :: touching = &
+    'rigid bodies would touch: so near (h0 <= 0, or far below it) this law has no pressure'
 
   !> States kept for extrapolation in h0.
   integer, parameter :: memory = 4

@@ -88,6 +88,8 @@ contains
     if (problem%law%rest_gap > 0) record%contact_radius = problem%lateral* &
       radius_of_gap(contact_gap*problem%law%rest_gap, grid, state)
     record%stable = stable
+    ! What is not an equilibrium is neither stable nor unstable.
+    if (.not. converged) record%stable = stable_unasked
     record%residual = state%residual
     record%iterations = state%iterations
     record%converged = converged

@@ -67,7 +67,8 @@ module results
     'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
     'stable [] 1, 0, or -1 where not asked for', &
     'residual [] largest error of the equations, in units of the length of the force law', &
-    'iterations [] products with the elastic operator']
+    'iterations [] products with the elastic operator', &
+    'converged [] 1; 0 where the residual is larger than asked for: the row is no equilibrium']
   !> Added by &stability.
   character(len=*), parameter :: stability_columns(*) = [character(len=96) :: &
     'smallest_eigenvalue [] of the operator at fixed h0; negative: unstable', &
@@ -172,7 +173,8 @@ contains
     write (iterations, '(i0)') record%iterations
     call self%curve%row(record%branch // ',' // cells([record%h0, record%h_centre, &
       record%displacement, record%load, record%contact_radius]) // ',' // trim(stable) // ',' // &
-      cells([record%residual]) // ',' // trim(iterations) // stability_cells(record), self%trouble)
+      cells([record%residual]) // ',' // trim(iterations) // &
+      merge(',1', ',0', record%converged) // stability_cells(record), self%trouble)
     if (.not. allocated(self%trouble)) call self%curve%flush(self%trouble)
     if (profile .and. .not. allocated(self%trouble)) call write_profile(self%shapes, &
       record%branch, record%h0, problem, grid, state, self%trouble)

@@ -11,6 +11,7 @@ module scene
   use scene_ranges, only: take_loading, take_unloading, take_path, take_profiles, take_range, &
                           take_stability
   use scene_sweep, only: take_sweep
+  use magnitudes, only: check_given, check_derived
   implicit none
   private
   public :: scene_t, bodies_t, force_t, loading_t, unloading_t, path_t, profiles_t, range_t, &
@@ -45,6 +46,8 @@ contains
 
     scene%deck = deck
     call deck%get('scene', 'title', scene%title)
+    call check_given(deck, error)
+    if (allocated(error)) return
     call take_bodies(scene, error)
     call take_force(scene, error)
     call take_loading(scene, error)
@@ -63,6 +66,7 @@ contains
                allocated(scene%approximations) .or. allocated(scene%classical))) &
       call deck%mistake('', '', 'nothing to compute; a deck needs at least one of &loading, ' // &
                         '&equilibrium_path, &approximations, &classical', error)
+    if (.not. allocated(error)) call check_derived(scene, error)
   end subroutine make_scene
 
   !> The scene, which has a sweep, with the sweep's key set to `value` and without the sweep.

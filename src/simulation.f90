@@ -1,6 +1,5 @@
 !> One deck from scene to results: the effects that the scene calls for, and no others.
 module simulation
-  !$ use omp_lib, only: omp_get_max_threads
   use kinds, only: wp
   use failure, only: failure_t
   use build_info, only: version, compiler, blas, options
@@ -10,6 +9,8 @@ module simulation
   use experiment, only: outcome_t, run_experiment, problem_of, path_start
   use plans, only: states_planned
   use sweeps, only: run_sweep
+  use outlook, only: outlook_t, outlook_of
+  use blas_threads, only: thread_count
   use comparison, only: classical_rows
   use approximation_tables, only: approximation_rows
   use records, only: observer_t
@@ -45,6 +46,7 @@ contains
     type(summary_t) :: summary
     type(failure_t), allocatable :: error
     character(len=:), allocatable :: name, resolved
+    type(outlook_t) :: expected
     real(wp) :: began
     integer :: i, failed
     logical :: curve, left_over, finished, converged
@@ -91,10 +93,12 @@ contains
       observer => recorder
     end if
     failed = 0
-    if (allocated(scene%sweep)) then
+    expected = outlook_of(scene)
+    if (expected%long /= '') call say(out_dir//': '//expected%long, quiet)
+    if (allocated(scene%sweep) .and. expected%too_large == '') then
       call results%progress%start(size(scene%sweep%values), name, quiet)
       call run_sweep(scene, results, failed, outcome%cost)
-    else
+    else if (expected%too_large == '') then
       call results%progress%start(states_planned(scene), name, quiet)
       call run_experiment(scene, problem, observer, outcome, results%journal)
     end if
@@ -106,6 +110,10 @@ contains
     if (allocated(scene%approximations)) call results%write_theory('approximations.csv', &
       approximation_rows(problem, scene%approximations, path_start(scene, problem)))
     summary = summary_of(scene, problem, outcome)
+    if (expected%too_large /= '') then
+      summary%converged = .false.
+      call summary%warn(expected%too_large)
+    end if
     if (failed > 0) then
       summary%converged = .false.
       call summary%warn(number(failed)//' of '//number(size(scene%sweep%values))// &
@@ -141,12 +149,6 @@ contains
 
     text = brief(real(k, wp))
   end function number
-
-  !> Threads in use.
-  integer function thread_count()
-    thread_count = 1
-    !$ thread_count = omp_get_max_threads()
-  end function thread_count
 
   !> What was found, in a line.
   function report(out_dir, summary, outcome) result(text)

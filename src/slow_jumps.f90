@@ -77,19 +77,20 @@ contains
     if (this%law%rest_gap > 0) rest_of = this%law%rest_gap
   end function rest_of
 
-  !> The largest gap not below `lowest` at which the excess is zero; far away it is negative. NaN
+  !> The largest gap not below `nearest` at which the excess is zero; far away it is negative. NaN
   !> where there is none.
-  pure real(wp) function largest_gap(this, form, condition, h0, lowest) result(found)
+  pure real(wp) function largest_gap(this, form, condition, h0, nearest) result(found)
     type(problem_t), intent(in) :: this
     integer, intent(in) :: form, condition
-    real(wp), intent(in) :: h0, lowest
+    real(wp), intent(in) :: h0, nearest
     !> Beyond several gaps of most tension, once that little is left of what reaches 1 at a jump, it
     !> falls to zero without turning.
     real(wp), parameter :: edges = 4, settled = -0.999_wp
-    real(wp) :: gap, next, stride, value, top, above_top, below_top
+    real(wp) :: lowest, gap, next, stride, value, top, above_top, below_top
     integer :: step
 
     found = nan()
+    lowest = max(nearest, this%law%smallest_gap)
     if (.not. has_form(this, form)) return
     if (condition /= at_h0 .and. .not. this%coupling > 0) return
     gap = edges*max(this%law%edge_gap, 1.0_wp)

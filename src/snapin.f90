@@ -10,6 +10,7 @@ program snapin
   use process, only: prepare_process
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
   use simulation, only: run_scene
+  use outlook, only: outlook_t, outlook_of
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
 
@@ -54,6 +55,7 @@ contains
   function run_decks() result(status)
     integer :: status
     type(scene_t), allocatable :: scenes(:)
+    type(outlook_t) :: expected
     type(failure_t), allocatable :: trouble
     integer :: i, outcome
 
@@ -66,6 +68,9 @@ contains
         status = 2
       else if (options%check) then
         call print_line(output_unit, options%decks(i)%name // ': ok')
+        expected = outlook_of(scenes(i))
+        if (expected%too_large // expected%long /= '') call print_line(error_unit, 'snapin: ' // &
+          options%decks(i)%name // ': ' // expected%too_large // expected%long)
       end if
     end do
     if (options%check .or. status /= 0) return

@@ -12,6 +12,8 @@ module stability
 
   !> Inverse iterations with one shift, and the relative change that ends them.
   integer, parameter :: most_iterations = 200
+  !> Pressures that are none, and by which nothing is divided.
+  real(wp), parameter :: least_pressure = 1.0e-100_wp
   real(wp), parameter :: settled = 1.0e-10_wp, nearly_settled = 1.0e-3_wp
 
 contains
@@ -40,10 +42,8 @@ contains
     ! Attractive slopes alone lower eigenvalues, by no more than their largest row sum.
     shift = 1 - 2*this%coupling*state%scale*maxval(bound) - 0.01_wp
     vector = exp(-grid%x(:n))
-    call factorise_jacobian(this, grid, control, state, factors, cost, -shift)
     call iterate(nearly_settled)
     shift = eigenvalue - 0.01_wp*max(abs(eigenvalue), 0.1_wp)
-    call factorise_jacobian(this, grid, control, state, factors, cost, -shift)
     call iterate(settled)
 
   contains
@@ -53,12 +53,17 @@ contains
       real(wp) :: before, growth, image(n)
       integer :: step
 
-      before = huge(1.0_wp)
+      call factorise_jacobian(this, grid, control, state, factors, cost, -shift)
+      eigenvalue = shift
+      ! Singular: the shift is the eigenvalue.
+      if (.not. factors%valid) return
+      before = 0.1_wp*huge(1.0_wp)
       do step = 1, most_iterations
         vector = vector/norm2(vector)
         image = vector
         call solve(factors, image)
         growth = dot_product(vector, image)
+        if (.not. abs(growth) > tiny(growth)) return
         eigenvalue = shift + 1/growth
         vector = image
         if (abs(eigenvalue - before) <= tolerance*max(1.0_wp, abs(eigenvalue))) exit
@@ -78,8 +83,9 @@ contains
 
     associate (two_u => state%h0 + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2 - state%gap, &
       slope => this%law%slope(state%gap))
-      value = maxval(abs(two_u*slope)/max(abs(state%pressure), tiny(1.0_wp)*1.0e10_wp), &
-        state%pressure /= 0)
+      ! Slopes are below 1e121 and lengths below 1e80.
+      value = max(0.0_wp, maxval(abs(two_u*slope)/max(abs(state%pressure), least_pressure), &
+        abs(state%pressure) > least_pressure))
     end associate
   end function local_criterion
 
@@ -90,10 +96,12 @@ contains
     type(state_t), intent(in) :: state
     real(wp) :: slope(1), pressure(1)
 
+    value = 0
+    ! Where the iteration has failed the axis may be anywhere.
+    if (.not. state%axis_gap >= this%law%smallest_gap) return
     slope = this%law%slope([state%axis_gap])
     pressure = this%law%pressure([state%axis_gap])
-    value = 0
-    if (pressure(1) /= 0) value = (state%h0 - state%axis_gap)*slope(1)/pressure(1)
+    if (abs(pressure(1)) > least_pressure) value = (state%h0 - state%axis_gap)*slope(1)/pressure(1)
   end function axis_criterion
 
 end module stability

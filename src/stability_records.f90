@@ -42,11 +42,19 @@ contains
     real(wp) :: eigenvalue
 
     completed = record
+    completed%eigenvalue = 0
+    completed%local_criterion = 0
+    completed%axis_criterion = 0
+    ! What has no residual has no derivatives either.
+    if (.not. state%residual < huge(1.0_wp)) then
+      call self%next%take(completed, problem, grid, state, profile)
+      return
+    end if
     call self%find_eigenvalue(problem, grid, state, eigenvalue)
     completed%eigenvalue = eigenvalue
     completed%local_criterion = local_criterion(problem, grid, state)
     completed%axis_criterion = axis_criterion(problem, state)
-    completed%stable = merge(stable_yes, stable_no, eigenvalue > 0)
+    if (record%converged) completed%stable = merge(stable_yes, stable_no, eigenvalue > 0)
     call self%next%take(completed, problem, grid, state, profile)
   end subroutine take
 

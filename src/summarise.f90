@@ -21,6 +21,15 @@ module summarise
   !> them.
   real(wp), parameter :: resolved_spacing = 0.2_wp
 
+  !> Relative error above which the numbers of a grid that the deck has chosen get a warning; it is
+  !> chosen to show such errors.
+  real(wp), parameter :: meaningless = 0.1_wp
+  !> An estimate carries a margin of two and more; only beyond this many times the accuracy is it
+  !> clear that the accuracy is missed.
+  real(wp), parameter :: clearly = 3
+  !> A residual that nobody need hear of.
+  real(wp), parameter :: usual_residual = 1.0e-8_wp
+
 contains
 
   !> The summary of a run.
@@ -59,14 +68,27 @@ contains
     if (allocated(outcome%path)) call take_path(problem, outcome, summary)
     call take_end(problem, outcome, summary)
     if (.not. problem%rigid) call judge_resolution(summary)
+    if (allocated(outcome%chosen%grid)) call judge_accuracy(scene, outcome, summary)
     if (outcome%chosen%options%stop_on_change .and. outcome%chosen%options%method == 'mixing') then
       call summary%warn('the iteration was stopped on a small change of the displacement, '// &
         'which is not convergence: the largest residual left is '//about(summary%worst_residual)// &
         ' lengths of the force law')
       ! Equations that were not asked to hold may hold all the same.
-      summary%converged = summary%worst_residual <= outcome%chosen%options%tolerance
+      summary%converged = ended_as_planned(outcome) .and. &
+        summary%worst_residual <= outcome%chosen%options%tolerance
     end if
   end function summary_of
+
+  !> Whether every branch came to its end.
+  pure logical function ended_as_planned(outcome) result(ended)
+    type(outcome_t), intent(in) :: outcome
+
+    ended = .true.
+    if (allocated(outcome%path)) ended = outcome%path%reason == ''
+    if (allocated(outcome%stepped_path)) ended = ended .and. outcome%stepped_path%reason == ''
+    if (allocated(outcome%loading)) ended = ended .and. outcome%loading%reason == ''
+    if (allocated(outcome%unloading)) ended = ended .and. all(outcome%unloading%reason == '')
+  end function ended_as_planned
 
   !> What follows from the deck alone.
   subroutine describe(scene, problem, summary)
@@ -205,6 +227,8 @@ contains
         summary%converged = .false.
         call summary%warn('path: '//trim(path%reason))
       end if
+      if (path%fallen) call summary%warn('path: nothing keeps the bodies apart under this law: '// &
+        'the path ends in their fall onto each other, and there is no state in contact')
       if (allocated(path%load)) then
         if (path%load < 0) call raise_tension(problem, path%load, path%load_h0, summary)
       end if
@@ -214,8 +238,13 @@ contains
       summary%folds_stable = merge(1, 0, path%unstable_after == 0)
       summary%load_folds_h0 = path%extremum_h0*problem%length
       summary%load_folds_load = path%extremum_load*problem%load
-      if (allocated(path%energy_lost)) &
+      if (allocated(path%energy_lost)) then
         summary%energy_lost = path%energy_lost*problem%load*problem%length
+        summary%energy_lost_uncertainty = path%energy_uncertainty*problem%load*problem%length
+        if (allocated(summary%error_estimate)) summary%energy_lost_uncertainty = &
+          summary%energy_lost_uncertainty + &
+          summary%error_estimate*path%energy_turned_over*problem%load*problem%length
+      end if
       if (allocated(path%jump_in_h0)) then
         summary%jump_in_h0 = path%jump_in_h0*problem%length
         summary%jump_in_load = path%jump_in_load*problem%load
@@ -283,6 +312,36 @@ contains
       about(summary%spacing_over_neck/resolved_spacing)// &
       ' times as many nodes or grid = ''panels''')
   end subroutine judge_resolution
+
+  !> Whether the numbers are as good as the deck asks for; on a grid that the deck has chosen,
+  !> whether they are any good. And whether residuals count as converged because rounding allows no
+  !> better, though they may show in a displacement of one of the law's lengths.
+  subroutine judge_accuracy(scene, outcome, summary)
+    type(scene_t), intent(in) :: scene
+    type(outcome_t), intent(in) :: outcome
+    type(summary_t), intent(inout) :: summary
+    real(wp) :: enough
+    logical :: on_change
+
+    on_change = outcome%chosen%options%stop_on_change .and. &
+      outcome%chosen%options%method == 'mixing'
+    associate (tolerance => outcome%chosen%options%tolerance)
+      if (summary%converged .and. .not. on_change .and. &
+        summary%worst_residual > max(tolerance, scene%numerics%accuracy, usual_residual)) &
+        call summary%warn('rounding leaves residuals of up to '//about(summary%worst_residual)// &
+        ' lengths of the force law, above the tolerance of '//about(tolerance))
+    end associate
+    if (.not. allocated(summary%error_estimate)) return
+    enough = clearly*scene%numerics%accuracy
+    if (outcome%chosen%grid /= 'edge_locked') enough = max(enough, meaningless)
+    if (summary%error_estimate >= 1) then
+      call summary%warn('the error could not be estimated: a finer mesh has no such states, or '// &
+        'these did not converge; the numbers may mean nothing')
+    else if (summary%error_estimate > enough) then
+      call summary%warn('the error is estimated as '//about(summary%error_estimate)// &
+        ', above the accuracy of '//about(scene%numerics%accuracy)//' asked for')
+    end if
+  end subroutine judge_accuracy
 
   !> A number for a message, to three digits.
   pure function about(x) result(text)

@@ -42,7 +42,7 @@ module summary
       jump_equation_37_load, jump_equation_37_gap, fold_closed_form_h0, fold_closed_form_load, &
       fold_attractive_only_h0, fold_attractive_only_load
     !> In a cycle [J].
-    real(wp), allocatable :: energy_lost
+    real(wp), allocatable :: energy_lost, energy_lost_uncertainty
     !> In units of the law's length; dimensionless; whether that is fine enough; relative.
     real(wp), allocatable :: worst_residual, spacing_over_neck
     logical, allocatable :: resolved
@@ -122,6 +122,7 @@ contains
       assignment_of('load_folds_h0', self%load_folds_h0) // &
       assignment_of('load_folds_load', self%load_folds_load) // &
       assignment_of('energy_lost', self%energy_lost) // &
+      assignment_of('energy_lost_uncertainty', self%energy_lost_uncertainty) // &
       assignment_of('end_h0', self%end_h0) // &
       assignment_of('end_displacement', self%end_displacement) // &
       assignment_of('end_load', self%end_load)

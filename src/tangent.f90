@@ -14,14 +14,16 @@ module tangent
 contains
 
   !> h0_slope and load_slope: derivatives of H0 and load by the value of the control at an
-  !> equilibrium under it. Renews the factorisation, which then fits the state exactly.
-  subroutine path_slopes(this, grid, control, state, frozen, h0_slope, load_slope, cost)
+  !> equilibrium under it; found = .false. where the Jacobian is singular. Renews the factorisation,
+  !> which then fits the state exactly.
+  subroutine path_slopes(this, grid, control, state, frozen, h0_slope, load_slope, found, cost)
     type(problem_t), intent(in) :: this
     type(discretisation_t), intent(in) :: grid
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(frozen_t), intent(inout) :: frozen
     real(wp), intent(out) :: h0_slope, load_slope
+    logical, intent(out) :: found
     type(cost_t), intent(inout) :: cost
     real(wp), allocatable :: dz(:)
     real(wp) :: reach, c_slope, gap(1)
@@ -30,6 +32,10 @@ contains
     n = size(state%gap)
     call factorise_jacobian(this, grid, control, state, frozen%factors, cost)
     frozen%control_kind = control%kind
+    h0_slope = 0
+    load_slope = 0
+    found = frozen%factors%valid
+    if (.not. found) return
     dz = -control_derivative(this, grid, control, state)
     call solve(frozen%factors, dz)
     h0_slope = dz(n + 1)

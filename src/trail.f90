@@ -17,6 +17,7 @@ module trail
   use tangent, only: path_slopes
   use interpolation, only: interpolated_maximum
   use tracer, only: tracer_t, state_at, path_control
+  use hidden_folds, only: fold_t, find_hidden_folds
   implicit none
   private
   public :: trail_t, extend, collapsed, polish_extremum, quantity_of, of_h0, of_load
@@ -81,8 +82,11 @@ contains
     call insert(trail, trail%held + 1, walker%past(n), walker%mesh, walker%coordinate(n), &
       unstable, .false.)
     if (n >= 3) then
-      if (surrounded(walker%past(n - 2:n)%h0)) &
+      if (surrounded(walker%past(n - 2:n)%h0)) then
         call insert_fold(trail, walker, this, pair, options, lost, cost)
+      else if (.not. any(trail%fold(max(1, trail%held - 4):trail%held))) then
+        call insert_hidden(trail, walker, this, pair, options, cost)
+      end if
     end if
     if (.not. lost) call walker%change_mesh(this, pair, walking, lost, cost)
   end subroutine extend
@@ -126,6 +130,40 @@ contains
     trail%unstable(place + 1:trail%held) = trail%unstable(place + 1:trail%held) + change
   end subroutine insert_fold
 
+  !> Puts folds that the walker's last three states pass over in their places.
+  subroutine insert_hidden(trail, walker, this, pair, options, cost)
+    type(trail_t), intent(inout) :: trail
+    type(tracer_t), intent(in) :: walker
+    type(problem_t), intent(in) :: this
+    type(mesh_pair_t), intent(in) :: pair
+    type(solver_options_t), intent(in) :: options
+    type(cost_t), intent(inout) :: cost
+    type(fold_t), allocatable :: folds(:)
+    real(wp) :: travel, curvature
+    integer :: i, n, place, change
+
+    n = walker%held
+    call find_hidden_folds(this, pair, walker%mesh, walker%coordinate(:n), walker%past(:n), &
+      options, folds, cost)
+    travel = sign(1.0_wp, walker%coordinate(n) - walker%coordinate(n - 1))
+    do i = 1, size(folds)
+      place = trail%held
+      do while ((trail%coordinate(place - 1) - folds(i)%coordinate)*travel > 0)
+        place = place - 1
+        ! Behind the first state of the trail, or of this mesh.
+        if (place < 2) return
+        if (trail%mesh(place - 1) /= walker%mesh) return
+      end do
+      ! Along the way h0 first turns against its course, then back to it.
+      curvature = walker%past(n - 2)%h0 - walker%past(n)%h0
+      if (i == 2) curvature = -curvature
+      change = merge(-1, 1, curvature*travel*folds(i)%load_slope > 0)
+      call insert(trail, place, folds(i)%state, walker%mesh, folds(i)%coordinate, &
+        trail%unstable(place - 1) + max(change, 0), .true.)
+      trail%unstable(place + 1:trail%held) = trail%unstable(place + 1:trail%held) + change
+    end do
+  end subroutine insert_hidden
+
   !> The state at the extremum of h0 or load that the last three states surround: a root of its
   !> exact derivative along the path, begun at the extremum of the polynomial through the states
   !> and found by secants. lost: a solve failed or the root escaped.
@@ -156,11 +194,14 @@ contains
     end associate
     slope_size = huge(1.0_wp)
     do round = 1, most_rounds
-      call state_at(this, pair, mesh, s, coordinate, states, options, frozen, trial, converged, cost)
+      call state_at(this, pair, mesh, s, coordinate, states, options, frozen, trial, converged, &
+        cost)
       lost = .not. converged
       if (lost) return
-      call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), trial, frozen, slopes(1), &
-        slopes(2), cost)
+      call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), trial, frozen, &
+        slopes(1), slopes(2), converged, cost)
+      lost = .not. converged
+      if (lost) return
       slope = slopes(quantity)
       if (abs(slope) < slope_size) then
         slope_size = abs(slope)
@@ -178,8 +219,10 @@ contains
       end if
       if (round == 1) then
         s_next = s + sign(1.0e-4_wp*(high - low) + 1.0e-7_wp, sense*slope)
-      else
+      else if (abs(slope - slope_before) > tiny(slope)) then
         s_next = s - slope*(s - s_before)/(slope - slope_before)
+      else
+        exit
       end if
       if (s_next < low .or. s_next > high) s_next = 0.5_wp*(low + high)
       if (abs(s_next - s) < root_tolerance) exit

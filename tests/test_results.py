@@ -16,6 +16,7 @@ CURVE = [
     ("stable", ""),
     ("residual", ""),
     ("iterations", ""),
+    ("converged", ""),
 ]
 PROFILES = [
     ("branch", ""),

@@ -295,7 +295,9 @@ def test_resume_runs_a_deck_whose_results_are_of_another(snapin, tmp_path):
     assert snapin("deck.nml", cwd=tmp_path).returncode == 0
     (tmp_path / "deck.nml").write_text(lennard_jones(0.87, loading=loading(6, 4, 0.5)))
     assert snapin("--resume", "deck.nml", cwd=tmp_path).returncode == 0
-    assert len((tmp_path / "results/deck/curve.csv").read_text().splitlines()) == 12 + 5
+    lines = (tmp_path / "results/deck/curve.csv").read_text().splitlines()
+    header, *rows = [line for line in lines if not line.startswith("#")]
+    assert len(rows) == 5
 
 
 def test_without_resume_what_was_interrupted_is_dropped_and_that_is_said(sweep):

@@ -13,7 +13,7 @@ module exponential
     procedure :: energy
   end type exponential_t
 
-  !> Beyond this exponent the pressure is neither a number nor a material.
+  !> Exponent beyond which the pressure would underflow or overflow.
   real(wp), parameter :: largest_exponent = 700
 
 contains
@@ -36,8 +36,9 @@ contains
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(size(gap))
 
+    ! Both branches of a mask may be evaluated everywhere, hence the bounds on both sides.
     where (gap < largest_exponent)
-      value = exp(min(-gap, largest_exponent))
+      value = exp(-max(min(gap, largest_exponent), -largest_exponent))
     elsewhere
       value = 0
     end where

@@ -28,6 +28,8 @@ contains
     law%length = z0
     law%pressure_unit = hamaker/(16*pi*z0**2)/z0
     law%range = 60
+    ! The slope is 1e121 there: even its square is a number.
+    law%smallest_gap = 1.0e-12_wp
     ! A ninth of the gap, which in contact is below 1.
     if (part /= 'attractive') law%repulsion_length = 0.1_wp
     law%repulsive = merge(0, 1, part == 'attractive')
