@@ -93,6 +93,7 @@ contains
     type(outcome_t), intent(inout) :: outcome
     type(journal_t), intent(inout), optional :: journal
     type(locked_steps_t) :: steps
+    type(witness_t), allocatable :: witnesses(:)
     real(wp) :: began
 
     call prepare(steps, problem, outcome%chosen, scene%numerics%accuracy)
@@ -116,10 +117,10 @@ contains
       call run_cycle(scene, steps, observer, outcome, journal)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
+    call collect_witnesses(outcome, witnesses)
     ! Of nothing there is no error.
-    if (size(witnesses_of(outcome)) > 0) outcome%error_estimate = estimate_locked(problem, &
-      steps%pair, high, low, outcome%chosen%resolution, steps%options%tolerance, &
-      witnesses_of(outcome), steps%cost)
+    if (size(witnesses) > 0) outcome%error_estimate = estimate_locked(problem, steps%pair, high, &
+      low, outcome%chosen%resolution, steps%options%tolerance, witnesses, steps%cost)
     steps%cost%estimate_seconds = seconds() - began
     outcome%cost = steps%cost
   end subroutine run_locked
@@ -134,6 +135,7 @@ contains
     type(journal_t), intent(inout), optional :: journal
     type(fixed_steps_t) :: steps
     type(outcome_t) :: of_cycle
+    type(witness_t), allocatable :: witnesses(:)
     real(wp) :: began
 
     call prepare(steps, problem, outcome%chosen, scene%numerics%accuracy)
@@ -148,10 +150,11 @@ contains
     call run_cycle(scene, steps, observer, of_cycle, journal)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
-    if (size(witnesses_of(of_cycle)) > 0) then
+    call collect_witnesses(of_cycle, witnesses)
+    if (size(witnesses) > 0) then
       of_cycle%error_estimate = estimate_fixed(problem, steps%mesh, &
         fixed_mesh(companion(outcome%chosen), problem, low), steps%options%tolerance, &
-        witnesses_of(of_cycle), steps%cost)
+        witnesses, steps%cost)
       if (allocated(outcome%error_estimate)) &
         of_cycle%error_estimate = max(outcome%error_estimate, of_cycle%error_estimate)
       outcome%error_estimate = of_cycle%error_estimate
@@ -162,25 +165,32 @@ contains
     call move_alloc(of_cycle%unloading, outcome%unloading)
   end subroutine run_fixed
 
-  !> The witnesses of all that an outcome holds.
-  function witnesses_of(outcome) result(witnesses)
+  !> The witnesses of all that an outcome holds. (Not a function: what is deep in the result of one
+  !> that is only asked for its size would leak in gfortran.)
+  subroutine collect_witnesses(outcome, witnesses)
     type(outcome_t), intent(in) :: outcome
-    type(witness_t), allocatable :: witnesses(:)
+    type(witness_t), allocatable, intent(out) :: witnesses(:)
     integer :: k
 
     allocate (witnesses(0))
-    if (allocated(outcome%path)) then
-      if (allocated(outcome%path%witness)) witnesses = [witnesses, outcome%path%witness]
-    end if
-    if (allocated(outcome%stepped_path)) witnesses = [witnesses, outcome%stepped_path%witness]
-    if (allocated(outcome%loading)) witnesses = [witnesses, outcome%loading%witness]
+    if (allocated(outcome%path)) call add(outcome%path%witness)
+    if (allocated(outcome%stepped_path)) call add(outcome%stepped_path%witness)
+    if (allocated(outcome%loading)) call add(outcome%loading%witness)
     if (allocated(outcome%unloading)) then
       do k = 1, size(outcome%unloading)
-        if (allocated(outcome%unloading(k)%witness)) &
-          witnesses = [witnesses, outcome%unloading(k)%witness]
+        call add(outcome%unloading(k)%witness)
       end do
     end if
-  end function witnesses_of
+
+  contains
+
+    subroutine add(more)
+      type(witness_t), allocatable, intent(in) :: more(:)
+
+      if (allocated(more)) witnesses = [witnesses, more]
+    end subroutine add
+
+  end subroutine collect_witnesses
 
   !> What both kinds of steps are told.
   subroutine prepare(steps, problem, chosen, accuracy)
