@@ -98,7 +98,7 @@ contains
       if (.not. event%converged) then
         ! Shown as it is, but not a place to search from.
         call end_stretch(steps, stretch, last_h0, ended, deferred, branch)
-        if (position%state%load < 0) call lower(branch, position%state)
+        if (position%state%load < 0) call lower(branch, position%state%load, position%state%h0)
       else if (event%jumped .or. .not. stretch%open) then
         if (event%jumped) then
           last_h0 = event%jump_h0
@@ -131,16 +131,9 @@ contains
       branch%jump_h0 = event%jump_h0
       branch%jump_load = event%jump_load
       branch%jump_uncertainty = event%jump_uncertainty
-      if (event%jump_load < 0) then
-        if (.not. allocated(branch%load)) then
-          branch%load = event%jump_load
-          branch%load_h0 = event%jump_h0
-        else if (event%jump_load < branch%load) then
-          branch%load = event%jump_load
-          branch%load_h0 = event%jump_h0
-        end if
-      end if
     end if
+    ! The last state before a jump may be the branch's largest tension.
+    if (event%jumped .and. event%jump_load < 0) call lower(branch, event%jump_load, event%jump_h0)
     branch%reason = event%reason
     if (event%reason /= '') return
     branch%states = branch%states + 1
@@ -153,16 +146,16 @@ contains
       branch%worst_spacing = max(branch%worst_spacing, steps%spacing_over_neck(position))
   end subroutine note
 
-  !> Lets a state be the branch's largest tension if it is.
-  subroutine lower(branch, state)
+  !> Lets a load at h0 be the branch's largest tension if it is.
+  subroutine lower(branch, load, h0)
     type(branch_t), intent(inout) :: branch
-    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: load, h0
 
     if (allocated(branch%load)) then
-      if (state%load >= branch%load) return
+      if (load >= branch%load) return
     end if
-    branch%load = state%load
-    branch%load_h0 = state%h0
+    branch%load = load
+    branch%load_h0 = h0
   end subroutine lower
 
   !> Refines the largest tension of a stretch that ends at `finish`, or keeps it for later as
@@ -177,7 +170,7 @@ contains
     if (.not. stretch%open) return
     stretch%open = .false.
     if (stretch%lowest%state%load < 0) then
-      call lower(branch, stretch%lowest%state)
+      call lower(branch, stretch%lowest%state%load, stretch%lowest%state%h0)
     else if (.not. steps%problem%law%adhesion > 0) then
       return
     end if
@@ -230,9 +223,12 @@ contains
       trial = best
       call steps%go(next, trial, event)
       if (event%jumped .or. .not. event%converged) then
-        ! The stretch does not reach there.
+        ! The stretch does not reach there, but to the jump, where its tension may be largest.
+        if (event%jumped) next = event%jump_h0
         if (next < best%state%h0) low = next
         if (next > best%state%h0) high = next
+        if (event%jumped .and. (next - best%state%h0)*(stretch%after - stretch%before) > 0 .and. &
+          event%jump_load < 0) call lower(branch, event%jump_load, next)
         cycle
       end if
       h0 = [h0, next]
@@ -243,7 +239,7 @@ contains
       call keep_nearest(h0, load)
     end do
     if (best%state%load < 0) then
-      call lower(branch, best%state)
+      call lower(branch, best%state%load, best%state%h0)
       call add_witness(branch%witness, steps%witness(best))
     end if
   end subroutine refine

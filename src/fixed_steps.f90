@@ -4,7 +4,8 @@ module fixed_steps
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, state_from
+  use equilibrium, only: control_t, state_t, state_from, factorise_jacobian, control_derivative
+  use linear_algebra, only: solve
   use solver, only: solve_state
   use relaxation, only: relax
   use tracer, only: between
@@ -21,6 +22,9 @@ module fixed_steps
     procedure :: grid
     procedure :: spacing_over_neck
     procedure :: witness
+    procedure, private :: follow
+    procedure, private :: rate_of_change
+    procedure, private :: extrapolated
     procedure, private :: continue_to
     procedure, private :: land
     procedure, private :: paper_step
@@ -36,6 +40,8 @@ module fixed_steps
   !> With the paper's stopping rule states are not exact enough for that; this many times the
   !> change of h0 then counts as a jump.
   real(wp), parameter :: paper_jump = 5
+  !> Fraction of the distance to a foreseen fold that is left for the next step.
+  real(wp), parameter :: left_over = 0.05_wp
 
 contains
 
@@ -71,34 +77,21 @@ contains
     type(position_t), intent(inout) :: position
     type(event_t), intent(out) :: event
     type(state_t) :: state, before, landed
-    real(wp) :: step, next
-    logical :: continues
+    real(wp) :: beyond
+    logical :: continues, arrived
 
     if (self%options%stop_on_change) then
       call self%paper_step(h0, position, event)
       return
     end if
-    call self%continue_to(h0, position, state, event, continues)
+    call self%continue_to(h0, position, self%extrapolated(h0, position), state, event, continues)
     if (continues) then
       call remember(position, state, 1, .false.)
       return
     end if
+    call self%follow(h0, position, event, beyond, arrived)
+    if (arrived) return
 
-    ! The branch ends, or turns sharply, on the way: how far does it go?
-    landed = state
-    step = 0.5_wp*(h0 - position%state%h0)
-    do while (abs(step) > self%jump_tolerance)
-      next = position%state%h0 + step
-      if (abs(h0 - position%state%h0) <= 1.1_wp*abs(step)) next = h0
-      call self%continue_to(next, position, state, event, continues)
-      if (continues) then
-        call remember(position, state, 1, .false.)
-        if (abs(next - h0) <= 0.0_wp) return
-        step = 1.5_wp*step
-      else
-        step = step/3
-      end if
-    end do
     before = position%state
     call self%land(h0, before, landed, event)
     event%jumped = event%converged .and. change(before, landed) > jump
@@ -108,11 +101,108 @@ contains
       event%jumped = .true.
       event%reason = 'no stable equilibrium exists beyond this h0'
     end if
-    event%jump_h0 = before%h0 + 1.5_wp*step
+    event%jump_h0 = 0.5_wp*(before%h0 + beyond)
     event%jump_load = before%load
-    event%jump_uncertainty = abs(1.5_wp*step)
+    event%jump_uncertainty = 0.5_wp*abs(beyond - before%h0)
     call remember(position, landed, 1, event%jumped)
   end subroutine go
+
+  !> Takes the position along its branch towards h0, which one step did not reach. arrived: there it
+  !> is after all; otherwise the branch ends between the position and the h0 handed back as `beyond`.
+  !>
+  !> Where a branch ends in a fold it moves as the square root of the distance to it: the inverse
+  !> square of its rate of change falls linearly to zero at the fold, and from two states the fold is
+  !> known well enough to go nearly all the way to it, and then just past it, at once. Where that is
+  !> not borne out the steps are cut to a third, or grow.
+  subroutine follow(self, h0, position, event, beyond, arrived)
+    class(fixed_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(position_t), intent(inout) :: position
+    type(event_t), intent(inout) :: event
+    real(wp), intent(out) :: beyond
+    logical, intent(out) :: arrived
+    type(state_t) :: state, expected
+    real(wp), allocatable :: rate(:)
+    real(wp) :: step, next, distance, sense, slowness, slowness_before, h0_before
+    logical :: continues, foreseen
+
+    sense = sign(1.0_wp, h0 - position%state%h0)
+    step = 0.5_wp*abs(h0 - position%state%h0)
+    beyond = h0
+    arrived = .false.
+    foreseen = .false.
+    call self%rate_of_change(position%state, rate, slowness)
+    do while (step > self%jump_tolerance)
+      next = position%state%h0 + sense*step
+      if (abs(h0 - position%state%h0) <= 1.1_wp*step) next = h0
+      if (foreseen) then
+        expected = towards_fold(position%state, rate, next, distance)
+      else
+        expected = self%extrapolated(next, position)
+      end if
+      call self%continue_to(next, position, expected, state, event, continues)
+      if (.not. continues) then
+        beyond = next
+        step = step/3
+        foreseen = .false.
+        cycle
+      end if
+      h0_before = position%state%h0
+      slowness_before = slowness
+      call remember(position, state, 1, .false.)
+      arrived = abs(next - h0) <= 0.0_wp
+      if (arrived) return
+      step = 1.5_wp*step
+      call self%rate_of_change(state, rate, slowness)
+      foreseen = slowness > 0 .and. slowness < slowness_before
+      if (.not. foreseen) cycle
+      distance = slowness*abs(next - h0_before)/(slowness_before - slowness)
+      foreseen = distance < abs(h0 - next)
+      if (.not. foreseen) cycle
+      if (distance > 2*self%jump_tolerance) then
+        step = distance - max(left_over*distance, self%jump_tolerance)
+      else
+        step = distance + self%jump_tolerance
+      end if
+    end do
+  end subroutine follow
+
+  !> dH/dH0 along the branch at a state, and the inverse square of its largest element; 0 where it
+  !> is not to be had, which includes mixing, the iteration that does without derivatives. The
+  !> factorisation is left for the next solution.
+  subroutine rate_of_change(self, state, rate, slowness)
+    class(fixed_steps_t), intent(inout) :: self
+    type(state_t), intent(in) :: state
+    real(wp), allocatable, intent(out) :: rate(:)
+    real(wp), intent(out) :: slowness
+    type(control_t) :: control
+
+    slowness = 0
+    if (self%options%method == 'mixing') return
+    control%value = state%h0
+    call factorise_jacobian(self%problem, self%mesh, control, state, self%frozen%factors, self%cost)
+    self%frozen%control_kind = control%kind
+    self%frozen%served = 0
+    if (.not. self%frozen%factors%valid) return
+    rate = -control_derivative(self%problem, self%mesh, control, state)
+    call solve(self%frozen%factors, rate)
+    slowness = 1/max(maxval(abs(rate)), 1.0_wp)**2
+  end subroutine rate_of_change
+
+  !> The state expected at h0 on a branch that changes at `rate` and has a fold at a `distance`.
+  pure function towards_fold(state, rate, h0, distance) result(expected)
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: rate(:), h0, distance
+    type(state_t) :: expected
+    real(wp) :: way
+
+    way = min(abs(h0 - state%h0)/distance, 1.0_wp)
+    expected = state
+    expected%h0 = h0
+    expected%gap = state%gap + 2*sign(distance, h0 - state%h0)*(1 - sqrt(1 - way))*rate
+    if (minval(expected%gap) < 0.5_wp*minval(state%gap) .and. minval(state%gap) > 0) &
+      expected%gap = state%gap
+  end function towards_fold
 
   !> A step as the paper takes it: h0 changes at constant separation, and the iteration goes on
   !> until its own rule is met. A jump is a change of deformation many times that of h0, and is
@@ -135,21 +225,30 @@ contains
     call remember(position, state, 1, event%jumped)
   end subroutine paper_step
 
-  !> The state at h0 from the extrapolated past (for mixing, as in the paper, from the last state at
-  !> constant separation), and whether it continues the branch of the position.
-  subroutine continue_to(self, h0, position, state, event, continues)
-    class(fixed_steps_t), intent(inout) :: self
+  !> The state at h0 extrapolated from the position's past.
+  function extrapolated(self, h0, position) result(expected)
+    class(fixed_steps_t), intent(in) :: self
     real(wp), intent(in) :: h0
     type(position_t), intent(in) :: position
-    type(state_t), intent(out) :: state
-    type(event_t), intent(inout) :: event
-    logical, intent(out) :: continues
     type(state_t) :: expected
 
     expected = between(self%mesh, position%h0(:position%held), position%past(:position%held), h0, &
       self%mesh%nodes)
     if (position%held == 1) expected%gap = expected%gap + (h0 - position%state%h0)
     expected%h0 = h0
+  end function extrapolated
+
+  !> The state at h0 from the expected one (for mixing, as in the paper, from the last state at
+  !> constant separation), and whether it continues the branch of the position.
+  subroutine continue_to(self, h0, position, expected, state, event, continues)
+    class(fixed_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(position_t), intent(in) :: position
+    type(state_t), intent(in) :: expected
+    type(state_t), intent(out) :: state
+    type(event_t), intent(inout) :: event
+    logical, intent(out) :: continues
+
     state = expected
     ! A single state says too little about where the next is, and mixing starts as in the paper.
     if (self%options%method == 'mixing' .or. position%held == 1) state = position%state
