@@ -5,7 +5,7 @@ module fixed_steps
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, state_from, factorise_jacobian, control_derivative
-  use linear_algebra, only: solve
+  use linear_algebra, only: solve, determinant_sign, log_determinant
   use solver, only: solve_state
   use relaxation, only: relax
   use tracer, only: between
@@ -23,7 +23,7 @@ module fixed_steps
     procedure :: spacing_over_neck
     procedure :: witness
     procedure, private :: follow
-    procedure, private :: rate_of_change
+    procedure, private :: linearise
     procedure, private :: extrapolated
     procedure, private :: continue_to
     procedure, private :: land
@@ -40,6 +40,8 @@ module fixed_steps
   !> With the paper's stopping rule states are not exact enough for that; this many times the
   !> change of h0 then counts as a jump.
   real(wp), parameter :: paper_jump = 5
+  !> Fraction of a step that is tried first after the whole one has failed.
+  real(wp), parameter :: probe = 0.1_wp
   !> Fraction of the distance to a foreseen fold that is left for the next step.
   real(wp), parameter :: left_over = 0.05_wp
 
@@ -110,10 +112,10 @@ contains
   !> Takes the position along its branch towards h0, which one step did not reach. arrived: there it
   !> is after all; otherwise the branch ends between the position and the h0 handed back as `beyond`.
   !>
-  !> Where a branch ends in a fold it moves as the square root of the distance to it: the inverse
-  !> square of its rate of change falls linearly to zero at the fold, and from two states the fold is
-  !> known well enough to go nearly all the way to it, and then just past it, at once. Where that is
-  !> not borne out the steps are cut to a third, or grow.
+  !> A branch ends in a fold, where it moves as the square root of the distance to it: the square of
+  !> the Jacobian's determinant falls linearly to zero there, and from two states the fold is known
+  !> well enough to go nearly all the way to it, and then just past it, at once. Where that is not
+  !> borne out the steps are cut to a third, or grow.
   subroutine follow(self, h0, position, event, beyond, arrived)
     class(fixed_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -123,15 +125,15 @@ contains
     logical, intent(out) :: arrived
     type(state_t) :: state, expected
     real(wp), allocatable :: rate(:)
-    real(wp) :: step, next, distance, sense, slowness, slowness_before, h0_before
-    logical :: continues, foreseen
+    real(wp) :: step, next, distance, sense, left, determinant, determinant_before
+    logical :: continues, foreseen, regular
 
     sense = sign(1.0_wp, h0 - position%state%h0)
-    step = 0.5_wp*abs(h0 - position%state%h0)
+    step = probe*abs(h0 - position%state%h0)
     beyond = h0
     arrived = .false.
     foreseen = .false.
-    call self%rate_of_change(position%state, rate, slowness)
+    call self%linearise(position%state, rate, determinant, regular)
     do while (step > self%jump_tolerance)
       next = position%state%h0 + sense*step
       if (abs(h0 - position%state%h0) <= 1.1_wp*step) next = h0
@@ -141,25 +143,32 @@ contains
         expected = self%extrapolated(next, position)
       end if
       call self%continue_to(next, position, expected, state, event, continues)
+      determinant_before = determinant
+      if (continues .and. self%options%method /= 'mixing') then
+        foreseen = regular
+        call self%linearise(state, rate, determinant, regular)
+        foreseen = foreseen .and. regular
+        ! Not beyond the fold, on the unstable branch.
+        if (regular) continues = determinant_sign(self%frozen%factors) > 0
+      end if
       if (.not. continues) then
         beyond = next
         step = step/3
         foreseen = .false.
         cycle
       end if
-      h0_before = position%state%h0
-      slowness_before = slowness
+      step = abs(next - position%state%h0)
       call remember(position, state, 1, .false.)
       arrived = abs(next - h0) <= 0.0_wp
       if (arrived) return
-      step = 1.5_wp*step
-      call self%rate_of_change(state, rate, slowness)
-      foreseen = slowness > 0 .and. slowness < slowness_before
-      if (.not. foreseen) cycle
-      distance = slowness*abs(next - h0_before)/(slowness_before - slowness)
+      left = exp(2*(determinant - determinant_before))
+      foreseen = foreseen .and. left < 1
+      distance = huge(1.0_wp)
+      if (foreseen) distance = step*left/(1 - left)
       foreseen = distance < abs(h0 - next)
-      if (.not. foreseen) cycle
-      if (distance > 2*self%jump_tolerance) then
+      if (.not. foreseen) then
+        step = merge(0.5_wp*min(distance, abs(h0 - next)), 2*step, left < 1)
+      else if (distance > 2*self%jump_tolerance) then
         step = distance - max(left_over*distance, self%jump_tolerance)
       else
         step = distance + self%jump_tolerance
@@ -167,27 +176,30 @@ contains
     end do
   end subroutine follow
 
-  !> dH/dH0 along the branch at a state, and the inverse square of its largest element; 0 where it
-  !> is not to be had, which includes mixing, the iteration that does without derivatives. The
-  !> factorisation is left for the next solution.
-  subroutine rate_of_change(self, state, rate, slowness)
+  !> dH/dH0 along the branch at a state, and the logarithm of the Jacobian's determinant; regular:
+  !> there are such. Mixing, the iteration without derivatives, does without. The factorisation is
+  !> left for the next solution.
+  subroutine linearise(self, state, rate, determinant, regular)
     class(fixed_steps_t), intent(inout) :: self
     type(state_t), intent(in) :: state
     real(wp), allocatable, intent(out) :: rate(:)
-    real(wp), intent(out) :: slowness
+    real(wp), intent(out) :: determinant
+    logical, intent(out) :: regular
     type(control_t) :: control
 
-    slowness = 0
+    determinant = 0
+    regular = .false.
     if (self%options%method == 'mixing') return
     control%value = state%h0
     call factorise_jacobian(self%problem, self%mesh, control, state, self%frozen%factors, self%cost)
     self%frozen%control_kind = control%kind
     self%frozen%served = 0
-    if (.not. self%frozen%factors%valid) return
+    regular = self%frozen%factors%valid
+    if (.not. regular) return
+    determinant = log_determinant(self%frozen%factors)
     rate = -control_derivative(self%problem, self%mesh, control, state)
     call solve(self%frozen%factors, rate)
-    slowness = 1/max(maxval(abs(rate)), 1.0_wp)**2
-  end subroutine rate_of_change
+  end subroutine linearise
 
   !> The state expected at h0 on a branch that changes at `rate` and has a fold at a `distance`.
   pure function towards_fold(state, rate, h0, distance) result(expected)
