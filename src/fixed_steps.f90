@@ -4,11 +4,12 @@ module fixed_steps
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, state_from, factorise_jacobian, control_derivative
+  use equilibrium, only: control_t, state_t, state_from, factorise_jacobian, &
+    control_derivative, radius_of_gap
   use linear_algebra, only: solve, determinant_sign, log_determinant
   use solver, only: solve_state
   use relaxation, only: relax
-  use tracer, only: between
+  use prediction, only: extrapolated, moved_with_edge, towards_fold
   use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember
   implicit none
   private
@@ -24,7 +25,8 @@ module fixed_steps
     procedure :: witness
     procedure, private :: follow
     procedure, private :: linearise
-    procedure, private :: extrapolated
+    procedure, private :: expected_at
+    procedure, private :: creeps
     procedure, private :: continue_to
     procedure, private :: land
     procedure, private :: paper_step
@@ -40,6 +42,18 @@ module fixed_steps
   !> With the paper's stopping rule states are not exact enough for that; this many times the
   !> change of h0 then counts as a jump.
   real(wp), parameter :: paper_jump = 5
+  !> Where the contact edge is caught between nodes it jumps from one to the next many times; in
+  !> steps longer than this (in the law's lengths) these jumps are not located one by one.
+  real(wp), parameter :: short_step = 0.11_wp
+  !> Spacings that the edge must have crossed for that, and the largest spacing over the width of the
+  !> neck: beyond it each jump tells in the load, and there are few.
+  real(wp), parameter :: several = 1.5_wp, fine_enough = 0.75_wp
+  !> Spacing over the width of the neck up to which the edge is not caught; and the change of the
+  !> gaps, in the law's lengths, that asks for a new factorisation.
+  real(wp), parameter :: resolved = 0.25_wp, large_change = 0.2_wp
+  !> States that the end of a branch is worth: where the edge passes node after node on the way, it
+  !> is known to lie within the rest of the step.
+  integer, parameter :: most_states = 40
   !> Fraction of a step that is tried first after the whole one has failed.
   real(wp), parameter :: probe = 0.1_wp
   !> Fraction of the distance to a foreseen fold that is left for the next step.
@@ -80,22 +94,38 @@ contains
     type(event_t), intent(out) :: event
     type(state_t) :: state, before, landed
     real(wp) :: beyond
-    logical :: continues, arrived
+    logical :: continues, arrived, has_landed
 
     if (self%options%stop_on_change) then
       call self%paper_step(h0, position, event)
       return
     end if
-    call self%continue_to(h0, position, self%extrapolated(h0, position), state, event, continues)
+    call self%continue_to(h0, position, self%expected_at(h0, position), state, event, continues)
     if (continues) then
       call remember(position, state, 1, .false.)
       return
+    end if
+    has_landed = self%options%method /= 'mixing' .and. &
+      abs(h0 - position%state%h0) > short_step .and. &
+      position%state%axis_gap < self%problem%law%edge_gap .and. &
+      over_neck(self%problem, self%mesh%spacing) < fine_enough
+    if (has_landed) then
+      call self%land(h0, position%state, landed, event)
+      if (self%creeps(position%state, landed, event)) then
+        event%jump_h0 = 0.5_wp*(position%state%h0 + h0)
+        event%jump_uncertainty = 0.5_wp*abs(h0 - position%state%h0)
+        call remember(position, landed, 1, .false.)
+        return
+      end if
+      has_landed = event%converged
     end if
     call self%follow(h0, position, event, beyond, arrived)
     if (arrived) return
 
     before = position%state
-    call self%land(h0, before, landed, event)
+    ! From the end of the branch the bodies go to where they went from before it.
+    event%converged = has_landed
+    if (.not. has_landed) call self%land(h0, before, landed, event)
     event%jumped = event%converged .and. change(before, landed) > jump
     if (.not. event%converged .and. self%problem%law%adhesion > 0 .and. &
       .not. self%problem%law%edge_gap > 0) then
@@ -125,22 +155,31 @@ contains
     logical, intent(out) :: arrived
     type(state_t) :: state, expected
     real(wp), allocatable :: rate(:)
-    real(wp) :: step, next, distance, sense, left, determinant, determinant_before
-    logical :: continues, foreseen, regular
+    real(wp) :: step, next, distance, distance_before, sense, left, determinant, determinant_before
+    logical :: continues, foreseen, trusted, regular
+    integer :: states
 
     sense = sign(1.0_wp, h0 - position%state%h0)
     step = probe*abs(h0 - position%state%h0)
     beyond = h0
     arrived = .false.
     foreseen = .false.
+    trusted = .true.
+    distance_before = huge(1.0_wp)
     call self%linearise(position%state, rate, determinant, regular)
+    states = 0
     do while (step > self%jump_tolerance)
+      states = states + 1
+      if (states > most_states) then
+        beyond = h0
+        return
+      end if
       next = position%state%h0 + sense*step
       if (abs(h0 - position%state%h0) <= 1.1_wp*step) next = h0
       if (foreseen) then
         expected = towards_fold(position%state, rate, next, distance)
       else
-        expected = self%extrapolated(next, position)
+        expected = self%expected_at(next, position)
       end if
       call self%continue_to(next, position, expected, state, event, continues)
       determinant_before = determinant
@@ -155,6 +194,8 @@ contains
         beyond = next
         step = step/3
         foreseen = .false.
+        trusted = .true.
+        distance_before = huge(1.0_wp)
         cycle
       end if
       step = abs(next - position%state%h0)
@@ -165,8 +206,13 @@ contains
       foreseen = foreseen .and. left < 1
       distance = huge(1.0_wp)
       if (foreseen) distance = step*left/(1 - left)
-      foreseen = distance < abs(h0 - next)
-      if (.not. foreseen) then
+      ! A fold that recedes is none: the edge only passes a node.
+      trusted = trusted .and. distance < 0.5_wp*distance_before
+      distance_before = merge(distance, huge(1.0_wp), foreseen)
+      foreseen = trusted .and. distance < abs(h0 - next)
+      if (.not. trusted) then
+        step = 2*step
+      else if (.not. foreseen) then
         step = merge(0.5_wp*min(distance, abs(h0 - next)), 2*step, left < 1)
       else if (distance > 2*self%jump_tolerance) then
         step = distance - max(left_over*distance, self%jump_tolerance)
@@ -201,20 +247,38 @@ contains
     call solve(self%frozen%factors, rate)
   end subroutine linearise
 
-  !> The state expected at h0 on a branch that changes at `rate` and has a fold at a `distance`.
-  pure function towards_fold(state, rate, h0, distance) result(expected)
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: rate(:), h0, distance
+  !> The state that a step to h0 is expected to lead to.
+  function expected_at(self, h0, position) result(expected)
+    class(fixed_steps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(position_t), intent(in) :: position
     type(state_t) :: expected
-    real(wp) :: way
 
-    way = min(abs(h0 - state%h0)/distance, 1.0_wp)
-    expected = state
-    expected%h0 = h0
-    expected%gap = state%gap + 2*sign(distance, h0 - state%h0)*(1 - sqrt(1 - way))*rate
-    if (minval(expected%gap) < 0.5_wp*minval(state%gap) .and. minval(state%gap) > 0) &
-      expected%gap = state%gap
-  end function towards_fold
+    if (self%options%method == 'mixing' .or. &
+      .not. over_neck(self%problem, self%mesh%spacing) <= resolved) then
+      expected = extrapolated(self%mesh, position, h0)
+      return
+    end if
+    expected = moved_with_edge(self%problem%law, self%mesh, position, h0)
+    ! A factorisation from before the edge moved across a good part of the neck does not serve.
+    if (change(position%state, expected) > large_change) self%frozen%factors%valid = .false.
+  end function expected_at
+
+  !> Whether bodies that came from one state to the other by relaxation stayed in contact, its edge
+  !> having moved: whatever jump there was on the way was one of the edge, from node to node.
+  logical function creeps(self, before, after, event)
+    class(fixed_steps_t), intent(in) :: self
+    type(state_t), intent(in) :: before, after
+    type(event_t), intent(in) :: event
+    real(wp) :: from, to
+
+    creeps = .false.
+    if (.not. event%converged .or. .not. self%problem%law%edge_gap > 0) return
+    from = radius_of_gap(self%problem%law%edge_gap, self%mesh, before)
+    to = radius_of_gap(self%problem%law%edge_gap, self%mesh, after)
+    creeps = min(from, to) > 0.5_wp*max(from, to) .and. &
+      abs(to - from) > several*self%mesh%spacing
+  end function creeps
 
   !> A step as the paper takes it: h0 changes at constant separation, and the iteration goes on
   !> until its own rule is met. A jump is a change of deformation many times that of h0, and is
@@ -236,19 +300,6 @@ contains
     end associate
     call remember(position, state, 1, event%jumped)
   end subroutine paper_step
-
-  !> The state at h0 extrapolated from the position's past.
-  function extrapolated(self, h0, position) result(expected)
-    class(fixed_steps_t), intent(in) :: self
-    real(wp), intent(in) :: h0
-    type(position_t), intent(in) :: position
-    type(state_t) :: expected
-
-    expected = between(self%mesh, position%h0(:position%held), position%past(:position%held), h0, &
-      self%mesh%nodes)
-    if (position%held == 1) expected%gap = expected%gap + (h0 - position%state%h0)
-    expected%h0 = h0
-  end function extrapolated
 
   !> The state at h0 from the expected one (for mixing, as in the paper, from the last state at
   !> constant separation), and whether it continues the branch of the position.

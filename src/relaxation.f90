@@ -15,7 +15,7 @@ module relaxation
 
   !> Most pseudo-time steps; factorisations that are always allowed, and cubes of the matrix's
   !> order that all of them may amount to (some ten seconds).
-  integer, parameter :: most_steps = 2000, few_factorisations = 100
+  integer, parameter :: most_steps = 2000, few_factorisations = 500
   real(wp), parameter :: most_cubes = 1.0e11_wp
   !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth
   !> and its limits: a residual that grows, as it does while bodies come apart, is no reason for
