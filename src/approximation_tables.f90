@@ -5,7 +5,8 @@ module approximation_tables
   use kinds, only: wp
   use problem, only: problem_t
   use slow_deformation, only: by_quadrature, closed_form, attraction_only, has_form, &
-    slow_displacement, slow_load, gap_of_h0, criterion_gap, equation_37_gap, fold_gap
+    slow_displacement, slow_load
+  use slow_jumps, only: gap_of_h0, criterion_gap, equation_37_gap, fold_gap
   use scene_groups, only: range_t
   use records, only: theory_row_t
   implicit none
@@ -86,8 +87,12 @@ contains
 
     pure subroutine add_jump(jump)
       type(jump_t), allocatable, intent(in) :: jump
+      type(theory_row_t) :: row
 
-      if (allocated(jump)) rows = [rows, row_of(jump)]
+      if (.not. allocated(jump)) return
+      ! A function's result inside an array constructor would leak in gfortran.
+      row = row_of(jump)
+      rows = [rows, row]
     end subroutine add_jump
 
   end function approximation_rows

@@ -1,8 +1,8 @@
 !> How many threads the linear algebra uses. Below some size threads cost more than they bring, and
 !> on a busy machine very much more; and with one, results do not depend on their number.
 module blas_threads
-  use, intrinsic :: iso_c_binding, only: c_char, c_funptr, c_int, c_null_char, c_ptr, c_null_ptr, &
-    c_associated, c_f_procpointer
+  use, intrinsic :: iso_c_binding, only: c_funptr, c_int, c_associated, c_f_procpointer
+  use c_library, only: procedure_named
   !$ use omp_lib, only: omp_get_max_threads, omp_in_parallel
   implicit none
   private
@@ -10,15 +10,6 @@ module blas_threads
 
   !> Order of the matrix from which threads pay, even on a machine with other work.
   integer, parameter :: worthwhile = 2500
-
-  interface
-    function dlsym(handle, name) bind(c, name='dlsym') result(address)
-      import :: c_ptr, c_funptr, c_char
-      type(c_ptr), value :: handle
-      character(kind=c_char), intent(in) :: name(*)
-      type(c_funptr) :: address
-    end function dlsym
-  end interface
 
   abstract interface
     subroutine set_threads(count) bind(c)
@@ -38,7 +29,7 @@ contains
     type(c_funptr) :: address
     integer(c_int) :: count
 
-    address = dlsym(c_null_ptr, 'openblas_set_num_threads'//c_null_char)
+    address = procedure_named('openblas_set_num_threads')
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, set)
     count = 1

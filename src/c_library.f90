@@ -1,15 +1,25 @@
-!> The few procedures of the C library that files and the terminal need, and its error messages.
+!> The few procedures of the C library that files, the terminal and signals need, and its error
+!> messages.
 module c_library
-  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_funptr, c_int, c_intptr_t, c_long, &
+    c_null_char, c_null_ptr, c_ptr, c_size_t
   use failure, only: failure_t, fail, file_trouble
   implicit none
   private
-  public :: c_mkdir, c_rename, c_unlink, c_isatty, c_write, c_fopen, c_fwrite, c_fflush, c_fclose
-  public :: errno, system_failure
+  public :: c_mkdir, c_rename, c_unlink, c_isatty, c_write, c_fopen, c_fwrite, c_fread, c_fflush, &
+    c_fseek, c_fileno, c_ftruncate, c_fclose, c_opendir, c_dirfd, c_closedir, c_flock, &
+    c_signal
+  public :: errno, system_failure, text_at, procedure_named
+  public :: from_start, from_here, lock_or_fail, locked_elsewhere
 
   !> Numbers of errors, the same on every Linux.
   integer(c_int), parameter :: file_exists_already = 17, not_a_folder = 20, is_a_folder = 21, &
     file_too_large = 27, disk_full = 28, quota_used_up = 122
+
+  !> Of `c_fseek`: where offsets are counted from.
+  integer(c_int), parameter :: from_start = 0, from_here = 1
+  !> Of `c_flock`: an exclusive lock, without waiting for it; and the error where another has it.
+  integer(c_int), parameter :: lock_or_fail = 2 + 4, locked_elsewhere = 11
 
   interface
     function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
@@ -66,6 +76,39 @@ module c_library
       integer(c_size_t) :: written
     end function c_fwrite
 
+    function c_fread(text, size, count, stream) bind(c, name='fread') result(taken)
+      import :: c_char, c_ptr, c_size_t
+      implicit none
+      character(kind=c_char), intent(inout) :: text(*)
+      integer(c_size_t), value :: size, count
+      type(c_ptr), value :: stream
+      integer(c_size_t) :: taken
+    end function c_fread
+
+    function c_fseek(stream, offset, origin) bind(c, name='fseek') result(status)
+      import :: c_int, c_long, c_ptr
+      implicit none
+      type(c_ptr), value :: stream
+      integer(c_long), value :: offset
+      integer(c_int), value :: origin
+      integer(c_int) :: status
+    end function c_fseek
+
+    function c_fileno(stream) bind(c, name='fileno') result(descriptor)
+      import :: c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: stream
+      integer(c_int) :: descriptor
+    end function c_fileno
+
+    function c_ftruncate(descriptor, length) bind(c, name='ftruncate') result(status)
+      import :: c_int, c_long
+      implicit none
+      integer(c_int), value :: descriptor
+      integer(c_long), value :: length
+      integer(c_int) :: status
+    end function c_ftruncate
+
     function c_fflush(stream) bind(c, name='fflush') result(status)
       import :: c_int, c_ptr
       implicit none
@@ -79,6 +122,50 @@ module c_library
       type(c_ptr), value :: stream
       integer(c_int) :: status
     end function c_fclose
+
+    function c_opendir(path) bind(c, name='opendir') result(folder)
+      import :: c_char, c_ptr
+      implicit none
+      character(kind=c_char), intent(in) :: path(*)
+      type(c_ptr) :: folder
+    end function c_opendir
+
+    function c_dirfd(folder) bind(c, name='dirfd') result(descriptor)
+      import :: c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: folder
+      integer(c_int) :: descriptor
+    end function c_dirfd
+
+    function c_closedir(folder) bind(c, name='closedir') result(status)
+      import :: c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: folder
+      integer(c_int) :: status
+    end function c_closedir
+
+    function c_flock(descriptor, operation) bind(c, name='flock') result(status)
+      import :: c_int
+      implicit none
+      integer(c_int), value :: descriptor, operation
+      integer(c_int) :: status
+    end function c_flock
+
+    function c_signal(number, action) bind(c, name='signal') result(before)
+      import :: c_int, c_intptr_t
+      implicit none
+      integer(c_int), value :: number
+      integer(c_intptr_t), value :: action
+      integer(c_intptr_t) :: before
+    end function c_signal
+
+    function c_dlsym(handle, name) bind(c, name='dlsym') result(address)
+      import :: c_ptr, c_funptr, c_char
+      implicit none
+      type(c_ptr), value :: handle
+      character(kind=c_char), intent(in) :: name(*)
+      type(c_funptr) :: address
+    end function c_dlsym
 
     ! errno itself is a macro; this is what it stands for in glibc and musl.
     function c_errno_location() bind(c, name='__errno_location') result(place)
@@ -134,16 +221,30 @@ contains
   function reason(code) result(text)
     integer(c_int), intent(in) :: code
     character(len=:), allocatable :: text
+
+    text = text_at(c_strerror(code))
+  end function reason
+
+  !> A copy of the C string at `place`.
+  function text_at(place) result(text)
+    type(c_ptr), intent(in) :: place
+    character(len=:), allocatable :: text
     character(kind=c_char), pointer :: letters(:)
-    type(c_ptr) :: place
     integer :: i
 
-    place = c_strerror(code)
     call c_f_pointer(place, letters, [c_strlen(place)])
     allocate (character(len=size(letters)) :: text)
     do i = 1, size(letters)
       text(i:i) = letters(i)
     end do
-  end function reason
+  end function text_at
+
+  !> The address of a procedure that this process may or may not have, such as one of a particular
+  !> BLAS; null where it does not.
+  type(c_funptr) function procedure_named(name)
+    character(len=*), intent(in) :: name
+
+    procedure_named = c_dlsym(c_null_ptr, name // c_null_char)
+  end function procedure_named
 
 end module c_library

@@ -34,6 +34,7 @@ contains
     type(options_t), intent(out) :: options
     type(failure_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: argument
+    type(file_t) :: file
     logical :: only_decks
     integer :: i
 
@@ -45,7 +46,9 @@ contains
       i = i + 1
       argument = argument_at(i)
       if (only_decks .or. index(argument, '-') /= 1 .or. argument == '-') then
-        options%decks = [options%decks, file_t(argument)]
+        ! A structure constructor inside an array constructor would leak in gfortran.
+        file = file_t(argument)
+        options%decks = [options%decks, file]
         cycle
       end if
       select case (argument)
@@ -145,7 +148,7 @@ contains
       '', &
       '  --out DIR   write to DIR/<name of the deck>/ instead', &
       '  --check     validate the decks, compute nothing', &
-      '  --resume    go on where an interrupted run stopped', &
+      '  --resume    go on where an interrupted run stopped; leave finished results as they are', &
       '  --quiet     no progress on the terminal', &
       '  --keys      print every group and key a deck may hold: unit, default, meaning', &
       '  --version   print version, compiler and libraries', &

@@ -2,9 +2,10 @@
 module comparison
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp
-  use problem, only: problem_t, surface_energy
+  use problem, only: problem_t, surface_energy, largest_tension
   use classical, only: hertz_load_at_displacement, hertz_radius_at_displacement, &
     jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
+  use maugis, only: maugis_load, maugis_radius_at_displacement
   use scene_groups, only: range_t
   use records, only: theory_row_t
   implicit none
@@ -13,16 +14,17 @@ module comparison
 
 contains
 
-  !> Hertz and, for a law that attracts, JKR and DMT, at range%count values of h0 [m]. The theories
-  !> put touching bodies at no separation, so the displacement is -h0; where a theory has no state
-  !> there is no row. `from` [m] stands in for a range without a start. None for rigid bodies, which
-  !> have no displacement.
+  !> Hertz and, for a law that attracts, JKR and DMT, at range%count values of h0 [m]; for one whose
+  !> tension has a largest value, Maugis-Dugdale with that value as its strength and with the law's
+  !> surface energy. The theories put touching bodies at no separation, so the displacement is -h0;
+  !> the state is the one that is stable there, and where a theory has none there is no row. `from`
+  !> [m] stands in for a range without a start. None for rigid bodies, which have no displacement.
   function classical_rows(problem, range, from) result(rows)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
     real(wp), intent(in) :: from
     type(theory_row_t), allocatable :: rows(:)
-    real(wp) :: start, h0, delta, gamma
+    real(wp) :: start, h0, delta, gamma, strength, a
     integer :: i
 
     allocate (rows(0))
@@ -30,6 +32,7 @@ contains
     start = from
     if (allocated(range%h0_start)) start = range%h0_start
     gamma = surface_energy(problem)
+    strength = largest_tension(problem)
     associate (r => problem%radius, y => problem%stiffness)
       do i = 1, range%count
         h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
@@ -41,6 +44,10 @@ contains
           jkr_radius_at_displacement(delta, r, y, gamma))
         call add('dmt', dmt_load_at_displacement(delta, r, y, gamma), &
           hertz_radius_at_displacement(delta, r))
+        if (.not. strength > 0) cycle
+        a = maugis_radius_at_displacement(delta, r, y, gamma, strength)
+        if (.not. ieee_is_nan(a)) &
+          call add('maugis_dugdale', maugis_load(a, r, y, gamma, strength), a)
       end do
     end associate
 
@@ -49,10 +56,13 @@ contains
     subroutine add(theory, load, contact_radius)
       character(len=*), intent(in) :: theory
       real(wp), intent(in) :: load, contact_radius
+      type(theory_row_t) :: row
 
       ! A theory without a state here says NaN.
       if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
-      rows = [rows, theory_row_t(theory, h0, delta, load, contact_radius)]
+      ! A structure constructor inside an array constructor would leak in gfortran.
+      row = theory_row_t(theory, h0, delta, load, contact_radius)
+      rows = [rows, row]
     end subroutine add
 
   end function classical_rows

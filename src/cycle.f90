@@ -4,7 +4,8 @@ module cycle
   use kinds, only: wp
   use equilibrium, only: state_t
   use interpolation, only: interpolated_maximum
-  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, add_witness
+  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, add_witness, &
+    end_t, end_of
   use records, only: observer_t, record_of, stable_yes, stable_unasked
   implicit none
   private
@@ -26,6 +27,8 @@ module cycle
     !> The first jump: h0, the load just before it, and how well h0 is known.
     real(wp), allocatable :: jump_h0, jump_load
     real(wp) :: jump_uncertainty = 0
+    !> The last equilibrium; no state that did not converge counts as one.
+    type(end_t), allocatable :: finish
     real(wp) :: worst_residual = 0, worst_spacing = 0
     !> Where the reported numbers come from: the ends and the middle, the jump, the largest tension.
     type(witness_t), allocatable :: witness(:)
@@ -91,6 +94,7 @@ contains
       steps%cost%states = steps%cost%states + 1
       call note(branch, steps, position, event, plan%h0(i))
       if (event%reason /= '') exit
+      if (event%converged) branch%finish = end_of(position%state)
       call observer%take(record_of(plan%name, steps%problem, steps%grid(position), position%state, &
         merge(stable_yes, stable_unasked, plan%unique), event%converged), steps%problem, &
         steps%grid(position), position%state, plan%profile(i))

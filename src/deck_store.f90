@@ -5,7 +5,7 @@ module deck_store
   use deck_text, only: lower, quoted, brief, guess, listing, clip
   use deck_source, only: source_t
   use deck_keys, only: key_spec, group_row, real_value, integer_value, allowed, numbers_of
-  use deck_values, only: value_t, unset, assumed, given, outside, write_value
+  use deck_values, only: value_t, unset, assumed, given, outside, assignment_text
   implicit none
   private
   public :: deck_t
@@ -27,7 +27,7 @@ module deck_store
     generic :: get => get_real, get_reals, get_integer, get_logical, get_text
     procedure, private :: assume_real, assume_reals, assume_integer, assume_text
     !> `call deck%assume(group, key, value)`: the default of a key, where it follows from other
-    !> keys; it is written by `write_resolved` and gives way to what the deck says.
+    !> keys; it is written by `resolved` and gives way to what the deck says.
     generic :: assume => assume_real, assume_reals, assume_integer, assume_text
     procedure, private :: get_optional_real, get_optional_integer
     !> The same for a scalar that is allocated only where the key has a value.
@@ -36,7 +36,7 @@ module deck_store
     procedure :: set_real
     procedure :: drop_group
     procedure :: mistake
-    procedure :: write_resolved
+    procedure :: resolved
     procedure :: row_of
     procedure, private :: held, silent
     procedure, private :: place
@@ -291,28 +291,26 @@ contains
     end do
   end subroutine drop_group
 
-  !> Writes the deck as read, defaults included, so that it can be read again. Groups appear that
-  !> the deck names or whose defaults always hold. `status` is the `iostat` of the last write.
-  subroutine write_resolved(self, unit, status)
+  !> The deck as read, defaults included, so that it can be read again. Groups appear that the deck
+  !> names or whose defaults always hold.
+  pure function resolved(self) result(text)
     class(deck_t), intent(in) :: self
-    integer, intent(in) :: unit
-    integer, intent(out), optional :: status
-    integer :: i, j, trouble
+    character(len=:), allocatable :: text
+    integer :: i, j
 
-    trouble = 0
+    text = ''
     do i = 1, size(self%specs)
       if (self%specs(i)%kind /= group_row) cycle
       if (.not. (self%specs(i)%always .or. self%values(i)%status == given)) cycle
-      write (unit, '(2a)', iostat=trouble) '&', trim(self%specs(i)%group)
+      text = text // '&' // trim(self%specs(i)%group) // new_line('a')
       do j = i + 1, size(self%specs)
         if (self%specs(j)%group /= self%specs(i)%group) exit
         if (self%values(j)%status /= unset) &
-          call write_value(self%specs(j), self%values(j), unit, trouble)
+          text = text // assignment_text(self%specs(j), self%values(j))
       end do
-      write (unit, '(a)', iostat=trouble) '/'
+      text = text // '/' // new_line('a')
     end do
-    if (present(status)) status = trouble
-  end subroutine write_resolved
+  end function resolved
 
   !> Row of a key that has a value, or 0.
   pure integer function held(self, group, key) result(row)

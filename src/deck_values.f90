@@ -10,7 +10,7 @@ module deck_values
                        text_value
   implicit none
   private
-  public :: value_t, unset, assumed, given, interpret, convert, outside, write_value
+  public :: value_t, unset, assumed, given, interpret, convert, outside, assignment_text
 
   !> Where a value comes from: nowhere, the table or the program, the deck.
   integer, parameter :: unset = 0, assumed = 1, given = 2
@@ -127,37 +127,32 @@ contains
     if (spec%high_open .and. x >= spec%high) outside = .true.
   end function outside
 
-  !> Writes one assignment; long lists go on in further lines.
-  subroutine write_value(spec, value, unit, status)
+  !> One assignment, as a deck has it; long lists go on in further lines.
+  pure function assignment_text(spec, value) result(text)
     type(key_spec), intent(in) :: spec
     type(value_t), intent(in) :: value
-    integer, intent(in) :: unit
-    integer, intent(out) :: status
-    character(len=:), allocatable :: line
+    character(len=:), allocatable :: text
     character(len=12) :: number
     integer :: i
 
-    line = '  ' // trim(spec%key) // ' = '
+    text = '  ' // trim(spec%key) // ' = '
     select case (spec%kind)
     case (real_value, real_list)
       do i = 1, size(value%reals)
-        if (i > 1) line = line // ','
-        if (mod(i, 4) == 1 .and. i > 1) then
-          write (unit, '(a)', iostat=status) line
-          line = '   '
-        end if
-        if (i > 1) line = line // ' '
-        line = line // full(value%reals(i))
+        if (i > 1) text = text // ','
+        if (mod(i, 4) == 1 .and. i > 1) text = text // new_line('a') // '   '
+        if (i > 1) text = text // ' '
+        text = text // full(value%reals(i))
       end do
     case (integer_value)
       write (number, '(i0)') value%whole
-      line = line // trim(number)
+      text = text // trim(number)
     case (logical_value)
-      line = line // trim(merge('.true. ', '.false.', value%flag))
+      text = text // trim(merge('.true. ', '.false.', value%flag))
     case default
-      line = line // quoted(value%text)
+      text = text // quoted(value%text)
     end select
-    write (unit, '(a)', iostat=status) line
-  end subroutine write_value
+    text = text // new_line('a')
+  end function assignment_text
 
 end module deck_values

@@ -9,12 +9,13 @@ module locked_steps
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, state_from, radius_of_gap, at_h0_with_edge
+  use equilibrium, only: state_t, state_from
   use solver_options, only: solver_options_t
   use solver, only: solve_state
-  use edge_locked, only: mesh_pair_t, hertz_scale, approach, contact
-  use tracer, only: tracer_t, new_tracer, inward, outward, coordinate_of, move_to_mesh, &
-    between, node_count, path_control
+  use edge_locked, only: mesh_pair_t, approach, contact
+  use locked_meshes, only: change_mesh, nodes_to_use, h0_control, scale_at
+  use tracer, only: tracer_t, new_tracer, inward, outward, coordinate_of, between, &
+    node_count, path_control
   use trail, only: trail_t, extend, collapsed
   use landing, only: land_between
   use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember
@@ -84,10 +85,10 @@ contains
       end if
     end if
     associate (grid => self%pair%grid(mesh))
-      state = state_from(node_count(self%pair, mesh, scale_at(self, far)))
+      state = state_from(node_count(self%pair, mesh, scale_at(self%pair, far)))
       state%h0 = far
       state%axis_gap = far
-      state%scale = scale_at(self, far)
+      state%scale = scale_at(self%pair, far)
       state%gap = far + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2
     end associate
     call self%attempt(far, state, mesh, position, event)
@@ -116,11 +117,12 @@ contains
       return
     end if
     state = between(self%pair%grid(position%mesh), position%h0(:position%held), &
-      position%past(:position%held), h0, nodes_to_use(self, h0, position))
+      position%past(:position%held), h0, nodes_to_use(self%pair, h0, position))
     call self%attempt(h0, state, position%mesh, position, event)
     if (event%converged) then
       call remember(position, state, position%mesh, .false.)
-      if (self%pair%traceable) call change_mesh(self, position)
+      if (self%pair%traceable) call change_mesh(self%problem, self%pair, self%options, &
+        self%frozen, position, self%cost)
     else if (self%pair%traceable) then
       call self%trace(h0, position, event)
     else
@@ -148,8 +150,8 @@ contains
       state%axis_gap = position%state%axis_gap + state%gap(1) - position%state%gap(1)
       expected = coordinate_of(self%problem, mesh, state) - before
     end if
-    call solve_state(self%problem, self%pair%grid(mesh), h0_control(self, mesh, h0), self%options, &
-      self%frozen, state, event%converged, self%cost)
+    call solve_state(self%problem, self%pair%grid(mesh), h0_control(self%pair, mesh, h0), &
+      self%options, self%frozen, state, event%converged, self%cost)
     if (.not. (check .and. event%converged)) return
     moved = coordinate_of(self%problem, mesh, state) - before
     ! Along a stable branch the gap on the axis grows and the contact shrinks with h0.
@@ -210,7 +212,7 @@ contains
       return
     end if
     call remember(position, state, trail%mesh(seen), event%jumped)
-    call change_mesh(self, position)
+    call change_mesh(self%problem, self%pair, self%options, self%frozen, position, self%cost)
   end subroutine trace
 
   !> See `land_between`.
@@ -222,7 +224,7 @@ contains
     type(state_t), intent(out) :: state
     logical, intent(out) :: converged
 
-    call land_between(self%problem, self%pair, h0_control(self, trail%mesh(upper), h0), &
+    call land_between(self%problem, self%pair, h0_control(self%pair, trail%mesh(upper), h0), &
       self%options, self%frozen, trail, upper, state, converged, self%cost)
   end subroutine land
 
@@ -241,7 +243,7 @@ contains
       next = position%state%h0 + step
       if (abs(h0 - position%state%h0) <= 1.5_wp*abs(step)) next = h0
       state = between(self%pair%grid(contact), position%h0(:position%held), &
-        position%past(:position%held), next, nodes_to_use(self, next, position))
+        position%past(:position%held), next, nodes_to_use(self%pair, next, position))
       self%frozen%factors%valid = .false.
       call self%attempt(next, state, contact, position, event)
       if (event%converged) then
@@ -258,72 +260,6 @@ contains
       end if
     end do
   end subroutine creep
-
-  !> Passes to the other mesh when the contact radius has crossed the passage; a band of a fifth on
-  !> either side keeps a state near it from going back and forth.
-  subroutine change_mesh(self, position)
-    class(locked_steps_t), intent(inout) :: self
-    type(position_t), intent(inout) :: position
-    type(state_t) :: state
-    logical :: done
-    integer :: to
-
-    if (.not. self%problem%law%edge_gap > 0 .or. self%problem%rigid) return
-    if (position%mesh == approach) then
-      if (radius_of_gap(self%problem%law%edge_gap, self%pair%grid(approach), position%state) &
-        < 1.2_wp*self%pair%passage) return
-      to = contact
-    else
-      if (position%state%scale > 0.8_wp*self%pair%passage) return
-      to = approach
-    end if
-    state = position%state
-    self%frozen%factors%valid = .false.
-    call move_to_mesh(self%problem, self%pair, position%mesh, to, self%options, self%frozen, &
-      state, done, self%cost)
-    if (.not. done) return
-    ! The same contact on the other mesh is at an h0 that differs by the meshes' errors.
-    call solve_state(self%problem, self%pair%grid(to), h0_control(self, to, position%state%h0), &
-      self%options, self%frozen, state, done, self%cost)
-    if (done) call remember(position, state, to, .false.)
-  end subroutine change_mesh
-
-  !> Nodes for the next state of a position: as many as now while they reach far enough and not
-  !> four times too far, so that factorisations keep their size.
-  pure integer function nodes_to_use(self, h0, position) result(n)
-    type(locked_steps_t), intent(in) :: self
-    real(wp), intent(in) :: h0
-    type(position_t), intent(in) :: position
-    real(wp) :: c
-
-    c = position%state%scale
-    if (.not. self%pair%traceable) c = scale_at(self, h0)
-    n = size(position%state%gap)
-    if (n < node_count(self%pair, position%mesh, c) .or. &
-      n > node_count(self%pair, position%mesh, 0.25_wp*c)) &
-      n = node_count(self%pair, position%mesh, 0.5_wp*c)
-  end function nodes_to_use
-
-  !> The control that prescribes h0 on a mesh.
-  pure function h0_control(self, mesh, h0) result(control)
-    class(locked_steps_t), intent(in) :: self
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: h0
-    type(control_t) :: control
-
-    control%value = h0
-    control%scale = scale_at(self, h0)
-    if (mesh == contact .and. self%pair%traceable) control%kind = at_h0_with_edge
-  end function h0_control
-
-  !> The scale of the mesh at h0 where it is not an unknown.
-  pure real(wp) function scale_at(self, h0)
-    class(locked_steps_t), intent(in) :: self
-    real(wp), intent(in) :: h0
-
-    scale_at = 1
-    if (.not. self%pair%traceable) scale_at = hertz_scale(self%pair%level, h0)
-  end function scale_at
 
   !> The witness of a fold on a trail.
   pure function fold_witness(self, trail, i) result(witness)
@@ -344,7 +280,7 @@ contains
     type(witness_t) :: witness
 
     witness%mesh = position%mesh
-    witness%control = h0_control(self, position%mesh, position%state%h0)
+    witness%control = h0_control(self%pair, position%mesh, position%state%h0)
     witness%state = position%state
     witness%displacement = .true.
   end function witness

@@ -8,12 +8,16 @@
 !> D = delta/(pi^2 gamma^2 R/K^2)^(1/3), lambda = 2 strength (R/(pi gamma K^2))^(1/3), and for the
 !> width of the zone t = sqrt(m^2 - 1), m = c/a, which keeps its digits when m is close to one.
 module maugis
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp, pi
   implicit none
   private
   public :: lennard_jones_strength, maugis_lambda
   public :: maugis_edge_ratio, maugis_radius_at_edge_ratio
-  public :: maugis_load, maugis_displacement, maugis_pull_off
+  public :: maugis_load, maugis_displacement, maugis_radius_at_displacement, maugis_pull_off
+
+  !> Of which a least value is looked for.
+  integer, parameter :: of_load = 1, of_displacement = 2
 
 contains
 
@@ -75,43 +79,85 @@ contains
   elemental function maugis_displacement(contact_radius, radius, stiffness, surface_energy, &
     strength) result(displacement)
     real(wp), intent(in) :: contact_radius, radius, stiffness, surface_energy, strength
-    real(wp) :: displacement, a, lambda, unit
+    real(wp) :: displacement, unit
 
     unit = unit_length(radius, stiffness, surface_energy)
-    lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
-    a = contact_radius/unit
-    displacement = unit**2/radius*(a**2 - 4*lambda/3*a*zone_width(a, lambda))
+    displacement = unit**2/radius*scaled_displacement(contact_radius/unit, &
+      maugis_lambda(radius, stiffness, surface_energy, strength))
   end function maugis_displacement
 
   !> Load [N] at the pull-off under a fixed load, negative: the least load over all contact radii.
   elemental function maugis_pull_off(radius, stiffness, surface_energy, strength) result(load)
     real(wp), intent(in) :: radius, stiffness, surface_energy, strength
-    real(wp) :: load
-    real(wp), parameter :: golden = 0.6180339887498949_wp
-    ! JKR's pull-off is at A = 1.5^(1/3) = 1.145; that of a longer-ranged tension at a smaller A.
-    real(wp), parameter :: a_max = 1.5_wp
-    ! The minimum is flat: half of the digits in A give all of them in the load.
-    real(wp), parameter :: tolerance = 1e-9_wp
-    real(wp) :: lambda, left, right, inner(2), value(2)
+    real(wp) :: load, lambda, a
 
     lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
+    call find_least(of_load, lambda, a, load)
+    load = pi*surface_energy*radius*load
+  end function maugis_pull_off
+
+  !> Contact radius [m] at a displacement [m]: that of the state which is stable while the
+  !> displacement is held, the largest of those there are. NaN below the least displacement of the
+  !> bodies in contact.
+  elemental function maugis_radius_at_displacement(displacement, radius, stiffness, &
+    surface_energy, strength) result(contact_radius)
+    real(wp), intent(in) :: displacement, radius, stiffness, surface_energy, strength
+    real(wp) :: contact_radius, lambda, unit, wanted, low, high, middle, least
+
+    contact_radius = ieee_value(contact_radius, ieee_quiet_nan)
+    lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
+    unit = unit_length(radius, stiffness, surface_energy)
+    wanted = displacement*radius/unit**2
+    call find_least(of_displacement, lambda, low, least)
+    if (.not. wanted >= least) return
+    high = max(1.0_wp, 2*low)
+    do while (scaled_displacement(high, lambda) < wanted)
+      high = 2*high
+    end do
+    ! The displacement grows with the contact from its least value on.
+    do
+      middle = low + (high - low)/2
+      if (.not. (middle > low .and. middle < high)) exit
+      if (scaled_displacement(middle, lambda) < wanted) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
+    contact_radius = unit*high
+  end function maugis_radius_at_displacement
+
+  !> The least P (`of_load`) or D (`of_displacement`) over all A, and where.
+  pure subroutine find_least(quantity, lambda, a, least)
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: lambda
+    real(wp), intent(out) :: a, least
+    real(wp), parameter :: golden = 0.6180339887498949_wp
+    ! JKR's least load is at A = 1.5^(1/3) = 1.145 and its least displacement at (1/6)^(1/3); those
+    ! of a longer-ranged tension are at a smaller A.
+    real(wp), parameter :: a_max = 1.5_wp
+    ! The minimum is flat: half of the digits in A give all of them in the value.
+    real(wp), parameter :: tolerance = 1e-9_wp
+    real(wp) :: left, right, inner(2), value(2)
+
     left = 0
     right = a_max
     inner = [right - golden*(right - left), left + golden*(right - left)]
-    value = scaled_load(inner, lambda)
+    value = scaled(quantity, inner, lambda)
     do while (right - left > tolerance)
       if (value(1) <= value(2)) then
         right = inner(2)
         inner = [right - golden*(right - left), inner(1)]
-        value = [scaled_load(inner(1), lambda), value(1)]
+        value = [scaled(quantity, inner(1), lambda), value(1)]
       else
         left = inner(1)
         inner = [inner(2), left + golden*(right - left)]
-        value = [value(2), scaled_load(inner(2), lambda)]
+        value = [value(2), scaled(quantity, inner(2), lambda)]
       end if
     end do
-    load = pi*surface_energy*radius*minval(value)
-  end function maugis_pull_off
+    a = inner(minloc(value, 1))
+    least = minval(value)
+  end subroutine find_least
 
   !> Maugis' unit of contact radius [m].
   elemental function unit_length(radius, stiffness, surface_energy) result(unit)
@@ -129,6 +175,27 @@ contains
     t = zone_width(a, lambda)
     load = a**3 - lambda*a**2*(t + (1 + t**2)*atan(t))
   end function scaled_load
+
+  !> D at given A and lambda.
+  elemental function scaled_displacement(a, lambda) result(displacement)
+    real(wp), intent(in) :: a, lambda
+    real(wp) :: displacement
+
+    displacement = a**2 - 4*lambda/3*a*zone_width(a, lambda)
+  end function scaled_displacement
+
+  !> P or D at given A and lambda.
+  elemental function scaled(quantity, a, lambda) result(value)
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: a, lambda
+    real(wp) :: value
+
+    if (quantity == of_load) then
+      value = scaled_load(a, lambda)
+    else
+      value = scaled_displacement(a, lambda)
+    end if
+  end function scaled
 
   !> t at given A and lambda: the root of
   !> (lambda A^2/2) profile_term(t) + (4 lambda^2 A/3) tension_term(t) = 1.

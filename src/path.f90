@@ -8,7 +8,8 @@ module path
   use tracer, only: tracer_t, new_tracer, inward, path_control
   use trail, only: trail_t, extend, collapsed, polish_extremum, of_load
   use hysteresis, only: energy_lost
-  use quasi_static, only: position_t, event_t, witness_t, add_witness
+  use quasi_static, only: position_t, event_t, witness_t, add_witness, &
+    end_t, end_of
   use locked_steps, only: locked_steps_t, fold_witness
   use records, only: observer_t, record_of, stable_yes, stable_no
   implicit none
@@ -28,6 +29,8 @@ module path
     real(wp), allocatable :: energy_lost
     !> Largest tension, the pull-off at controlled load.
     real(wp), allocatable :: load, load_h0
+    !> The last state, if it is stable.
+    type(end_t), allocatable :: finish
     !> The folds, the largest tension and the end.
     type(witness_t), allocatable :: witness(:)
     real(wp) :: worst_residual = 0, worst_spacing = 0
@@ -125,6 +128,7 @@ contains
     finish = fold_witness(steps, trail, trail%held)
     finish%displacement = .true.
     call add_witness(path%witness, finish)
+    if (trail%unstable(trail%held) == 0) path%finish = end_of(trail%state(trail%held))
     path%unstable_after = trail%unstable(min(fold + 1, trail%held))
     if (size(fold) > 0) then
       path%jump_in_h0 = path%fold_h0(1)

@@ -10,7 +10,8 @@ module problem
   use force_law, only: force_law_t
   implicit none
   private
-  public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, surface_energy
+  public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, surface_energy, &
+    largest_tension
 
   type :: problem_t
     class(force_law_t), allocatable :: law
@@ -76,5 +77,16 @@ contains
 
     surface_energy = this%law%adhesion*this%pressure*this%length
   end function surface_energy
+
+  !> Largest tension of the law [Pa], that at the contact edge; 0 for a law without a largest one.
+  pure real(wp) function largest_tension(this)
+    type(problem_t), intent(in) :: this
+    real(wp) :: pressure(1)
+
+    largest_tension = 0
+    if (.not. this%law%edge_gap > 0) return
+    pressure = this%law%pressure([this%law%edge_gap])
+    largest_tension = -pressure(1)*this%pressure
+  end function largest_tension
 
 end module problem

@@ -5,7 +5,7 @@ module progress
   use files, only: is_terminal, write_stderr
   implicit none
   private
-  public :: progress_t
+  public :: progress_t, duration
 
   !> Seconds between two updates of the live line, and before the first: nobody needs one that is
   !> gone at once.
@@ -25,6 +25,8 @@ module progress
     character(len=:), allocatable :: name, noted
     !> Steps done, and in all; 0 where that is not known.
     integer :: done = 0, total = 0
+    !> Steps among those done that took no time.
+    integer :: given = 0
     !> Times [s]: of the start, of the first counted step's start, of the next line, between lines.
     real(wp) :: began = 0, origin = 0, next = 0, interval = 0
     !> Characters of the live line, lines written elsewhere.
@@ -32,6 +34,7 @@ module progress
   contains
     procedure :: start
     procedure :: step
+    procedure :: skip
     procedure :: note
     procedure :: finish
     procedure, private :: show
@@ -53,6 +56,7 @@ contains
     self%name = name
     self%noted = ''
     self%done = 0
+    self%given = 0
     self%total = max(total, 0)
     self%shown = 0
     self%lines = 0
@@ -71,6 +75,18 @@ contains
     self%done = self%done + 1
     call self%show(label)
   end subroutine step
+
+  !> Counts one step that an earlier run has done; the estimate of the time begins after it.
+  subroutine skip(self, label)
+    class(progress_t), intent(inout) :: self
+    character(len=*), intent(in) :: label
+
+    if (.not. self%active) return
+    self%done = self%done + 1
+    self%given = self%done
+    self%origin = seconds()
+    call self%show(label)
+  end subroutine skip
 
   !> Says what is being done without counting it. What comes before the first step is left out of
   !> the estimate of the time.
@@ -113,9 +129,9 @@ contains
       ! All done is for `finish` to say.
       write (number, '(i0)') min(99, int(100*real(self%done, wp)/self%total))
       text = text // ', ' // trim(number) // ' %'
-      if (self%done > 0 .and. self%done <= self%total .and. now - self%origin >= too_early) &
-        text = text // ', ' // duration((now - self%origin)*(self%total - self%done)/self%done) &
-          // ' left'
+      if (self%done > self%given .and. self%done <= self%total .and. &
+        now - self%origin >= too_early) text = text // ', ' // duration((now - self%origin)* &
+        (self%total - self%done)/(self%done - self%given)) // ' left'
     else if (self%done > 0) then
       write (number, '(i0)') self%done
       text = text // ', ' // trim(number) // ' states'

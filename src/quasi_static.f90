@@ -9,7 +9,8 @@ module quasi_static
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: quasi_static_t, position_t, event_t, witness_t, memory, remember, add_witness
+  public :: quasi_static_t, position_t, event_t, witness_t, end_t, memory, remember, &
+    add_witness, end_of
 
   !> States kept for extrapolation in h0.
   integer, parameter :: memory = 4
@@ -34,6 +35,11 @@ module quasi_static
     !> What to compare: the load, H0 (where the control leaves it open), the displacement.
     logical :: load = .true., h0 = .false., displacement = .false.
   end type witness_t
+
+  !> Where a branch or a path ends, in the units of `problem`.
+  type :: end_t
+    real(wp) :: h0 = 0, displacement = 0, load = 0
+  end type end_t
 
   !> What happened in a step.
   type :: event_t
@@ -116,6 +122,14 @@ contains
     if (.not. allocated(witnesses)) allocate (witnesses(0))
     witnesses = [witnesses, witness]
   end subroutine add_witness
+
+  !> A state as an end.
+  pure function end_of(state) result(finish)
+    type(state_t), intent(in) :: state
+    type(end_t) :: finish
+
+    finish = end_t(state%h0, state%axis_gap - state%h0, state%load)
+  end function end_of
 
   !> Makes `state` the position's present one; on another mesh, or after a jump, the past is
   !> forgotten.

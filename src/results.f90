@@ -2,24 +2,28 @@
 !>
 !> All of them are written to `.partial` files, the curve and the profiles row by row; `finish`
 !> gives the whole set its names. Until then the results of an earlier run stay as they are, and
-!> what an interrupted run leaves is partial by name.
+!> what an interrupted run leaves is partial by name. One run at a time has the folder; what it finds
+!> goes into a journal, so that another can go on from there.
 module results
   use kinds, only: wp
-  use failure, only: failure_t
+  use failure, only: failure_t, fail, file_trouble
   use problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t, cost_t
   use records, only: record_t, observer_t, theory_row_t
   use deck, only: deck_t
-  use files, only: make_folder, rename_file, remove_file
+  use files, only: make_folder, rename_file, remove_file, file_exists
+  use folder_lock, only: folder_lock_t
+  use journal, only: journal_t
+  use run_identity, only: difference_between
   use text_file, only: output_t, partial
   use tables, only: table_t, cells
   use profiles, only: profile_columns, write_profile
-  use summary, only: summary_t, summary_text, resolved_text, number_columns, numbers_of
+  use summary, only: summary_t, summary_text
   use progress, only: progress_t
   implicit none
   private
-  public :: results_t
+  public :: results_t, journal_of
 
   !> The files of a folder of results; the summary comes last, so that where it is all the rest is.
   character(len=*), parameter :: names(*) = [character(len=18) :: 'curve.csv', 'profiles.csv', &
@@ -33,6 +37,10 @@ module results
     !> Once started, it counts a step with every record of a cycle. The states of a path come all at
     !> once, when the work is done, and are not counted.
     type(progress_t) :: progress
+    !> What the run has found so far, and what an interrupted one had.
+    type(journal_t) :: journal
+    !> Keeps other runs out of the folder.
+    type(folder_lock_t) :: lock
     character(len=:), allocatable, private :: folder, title, version
     type(table_t), private :: curve, shapes, cases
     !> Which of `names` this run has made.
@@ -44,6 +52,8 @@ module results
     procedure :: write_theory
     procedure :: write_summary
     procedure :: finish
+    procedure, private :: claim
+    procedure, private :: publish
     procedure, private :: path_of
     procedure, private :: mark
   end type results_t
@@ -72,13 +82,16 @@ module results
 
 contains
 
-  !> Makes the folder and, as asked, begins its curve (with columns for stability or without) and
-  !> its profiles (`shapes`), so that a place where nothing can be written shows before anything is
-  !> computed.
-  subroutine open_results(self, folder, title, version, curve, shapes, stability, error)
+  !> Makes the folder, which from then on is this run's alone, opens its journal and, as asked,
+  !> begins the curve (with columns for stability or without) and the profiles (`shapes`), so that a
+  !> place where nothing can be written shows before anything is computed. `owner` is the run's
+  !> identity; resume: the journal that an interrupted run has left, if there is one, is gone on
+  !> with.
+  subroutine open_results(self, folder, title, version, curve, shapes, stability, owner, resume, &
+    error)
     class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: folder, title, version
-    logical, intent(in) :: curve, shapes, stability
+    character(len=*), intent(in) :: folder, title, version, owner
+    logical, intent(in) :: curve, shapes, stability, resume
     type(failure_t), allocatable, intent(out) :: error
 
     if (allocated(self%trouble)) deallocate (self%trouble)
@@ -87,7 +100,7 @@ contains
     self%title = title
     self%version = version
     self%made = .false.
-    call make_folder(self%folder, error)
+    call self%claim(owner, resume, error)
     if (curve .and. .not. allocated(error)) then
       call self%mark('curve.csv')
       if (stability) then
@@ -101,8 +114,41 @@ contains
       call self%mark('profiles.csv')
       call self%shapes%begin(self%path_of('profiles.csv'), title, version, profile_columns, error)
     end if
-    if (allocated(error)) self%trouble = error
+    if (.not. allocated(error)) return
+    self%trouble = error
+    call self%lock%release()
   end subroutine open_results
+
+  !> Makes the folder, keeps others out of it and opens the journal.
+  subroutine claim(self, owner, resume, error)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: owner
+    logical, intent(in) :: resume
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: path, other
+    logical :: left_over
+
+    call make_folder(self%folder, error)
+    if (.not. allocated(error)) call self%lock%take(self%folder, error)
+    if (allocated(error)) return
+    path = journal_of(self%folder)
+    left_over = file_exists(path)
+    if (.not. (resume .and. left_over)) then
+      call self%journal%begin(path, owner, error)
+      return
+    end if
+    call self%journal%go_on(path, owner, other, error)
+    if (allocated(other)) call fail(error, file_trouble, 'cannot go on: what was interrupted is ' // &
+      'of another ' // difference_between(other, owner))
+  end subroutine claim
+
+  !> Path of the journal in a folder of results.
+  pure function journal_of(folder) result(path)
+    character(len=*), intent(in) :: folder
+    character(len=:), allocatable :: path
+
+    path = folder // '/journal' // partial
+  end function journal_of
 
   !> Adds a record to the curve and, if `profile`, the state to the profiles.
   subroutine take(self, record, problem, grid, state, profile)
@@ -116,6 +162,8 @@ contains
 
     if (record%branch == 'path') then
       call self%progress%note(record%branch)
+    else if (self%journal%is_behind()) then
+      call self%progress%skip(record%branch)
     else
       call self%progress%step(record%branch)
     end if
@@ -140,25 +188,24 @@ contains
       record%local_criterion, record%axis_criterion])
   end function stability_cells
 
-  !> Adds a case of a sweep, the value of its key and what its summary has to say, to `sweep.csv`.
-  !> `key` is 'group.key'.
-  subroutine take_case(self, key, value, summary)
+  !> Adds a case of a sweep, the value of its key and its numbers, to `sweep.csv`. `key` is
+  !> 'group.key', `columns` are those of the numbers.
+  subroutine take_case(self, key, value, columns, numbers)
     class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: key
-    real(wp), intent(in) :: value
-    type(summary_t), intent(in) :: summary
-    character(len=len(number_columns)) :: columns(1 + size(number_columns))
+    character(len=*), intent(in) :: key, columns(:)
+    real(wp), intent(in) :: value, numbers(:)
+    character(len=max(len(columns), len(key) + 24)) :: header(1 + size(columns))
 
     if (allocated(self%trouble)) return
     if (.not. self%cases%has_begun()) then
       call self%mark('sweep.csv')
-      columns(1) = key // ' in the unit of the key'
-      columns(2:) = number_columns
-      call self%cases%begin(self%path_of('sweep.csv'), self%title, self%version, columns, &
+      header(1) = key // ' in the unit of the key'
+      header(2:) = columns
+      call self%cases%begin(self%path_of('sweep.csv'), self%title, self%version, header, &
         self%trouble)
     end if
     if (.not. allocated(self%trouble)) &
-      call self%cases%row(cells([value, numbers_of(summary)]), self%trouble)
+      call self%cases%row(cells([value, numbers]), self%trouble)
     if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
   end subroutine take_case
 
@@ -189,38 +236,47 @@ contains
     type(deck_t), intent(in) :: deck
     type(summary_t) :: complete
     type(output_t) :: file
-    character(len=:), allocatable :: path, text
 
     if (allocated(self%trouble)) return
     complete = summary
     if (.not. allocated(complete%title)) complete%title = self%title
     if (.not. allocated(complete%version)) complete%version = self%version
     call self%mark('summary.nml')
-    path = self%path_of('summary.nml') // partial
-    call resolved_text(deck, path, text, self%trouble)
-    if (.not. allocated(self%trouble)) call file%open(path, self%trouble)
+    call file%open(self%path_of('summary.nml') // partial, self%trouble)
     if (.not. allocated(self%trouble)) &
-      call file%put(summary_text(complete, cost) // text, self%trouble)
+      call file%put(summary_text(complete, cost) // deck%resolved(), self%trouble)
     if (.not. allocated(self%trouble)) call file%close(self%trouble)
   end subroutine write_summary
 
   !> Ends the progress and gives the files of this run their names; those of an earlier run which
-  !> this one has not made disappear. With `trouble` the partial files stay and `error` tells why.
+  !> this one has not made disappear, and so does the journal, at last. With `trouble`, the journal's
+  !> included, the partial files stay and `error` tells why. The folder is then free for others.
   subroutine finish(self, error)
     class(results_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: path
-    integer :: i
 
     call self%progress%finish()
+    call self%journal%close()
+    if (.not. allocated(self%trouble) .and. allocated(self%journal%trouble)) &
+      self%trouble = self%journal%trouble
     call end_table(self%curve, self%trouble)
     call end_table(self%shapes, self%trouble)
     call end_table(self%cases, self%trouble)
     if (allocated(self%trouble)) then
       error = self%trouble
-      return
+    else if (any(self%made)) then
+      call self%publish(error)
     end if
-    if (.not. any(self%made)) return
+    call self%lock%release()
+  end subroutine finish
+
+  !> Gives the files their names.
+  subroutine publish(self, error)
+    class(results_t), intent(inout) :: self
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: path
+    integer :: i
+
     ! No summary may stand beside results that are not its own.
     call remove_file(self%path_of('summary.nml'), error)
     do i = 1, size(names)
@@ -233,7 +289,8 @@ contains
         if (.not. allocated(error)) call remove_file(path // partial, error)
       end if
     end do
-  end subroutine finish
+    if (.not. allocated(error)) call remove_file(journal_of(self%folder), error)
+  end subroutine publish
 
   !> Closes a table; the first error stays.
   subroutine end_table(table, error)

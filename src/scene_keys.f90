@@ -85,7 +85,7 @@ contains
                otherwise='as in &loading or &equilibrium_path'), &
       integer_key('approximations', 'count', 'Number of points.', 2, 1000000, default='200'), &
       !
-      group('classical', 'Hertz, JKR and DMT beside the curve.'), &
+      group('classical', 'Hertz, JKR, DMT and Maugis-Dugdale beside the curve.'), &
       real_key('classical', 'h0_start', 'm', 'Upper end of the range of h0.', &
                otherwise='as in &loading or &equilibrium_path'), &
       real_key('classical', 'h0_end', 'm', 'Lower end of the range of h0.', &

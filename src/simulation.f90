@@ -16,8 +16,11 @@ module simulation
   use stability_records, only: stability_recorder_t
   use summarise, only: summary_of
   use summary, only: summary_t
-  use results, only: results_t
-  use files, only: write_stderr
+  use results, only: results_t, journal_of
+  use run_identity, only: identity_of
+  use finished_run, only: find_finished
+  use progress, only: duration
+  use files, only: write_stderr, file_exists
   use clock, only: seconds
   implicit none
   private
@@ -26,7 +29,9 @@ module simulation
 contains
 
   !> Computes a scene and writes its results into the folder `out_dir`. exit_code: 0 done, 1
-  !> something failed; what was computed is kept and the summary says what failed.
+  !> something failed; what was computed is kept and the summary says what failed. resume: what an
+  !> interrupted run has left in the folder is gone on with, and finished results are left as they
+  !> are.
   subroutine run_scene(scene, out_dir, quiet, resume, exit_code)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: out_dir
@@ -39,26 +44,45 @@ contains
     type(outcome_t) :: outcome
     type(summary_t) :: summary
     type(failure_t), allocatable :: error
-    character(len=:), allocatable :: name
+    character(len=:), allocatable :: name, resolved
     real(wp) :: began
     integer :: i, failed
-    logical :: curve
+    logical :: curve, left_over, finished, converged
 
     began = seconds()
     exit_code = 1
     name = out_dir(index(out_dir, '/', .true.) + 1:)
-    if (resume) then
-      call say(out_dir//': --resume is not part of this version', .false.)
-      return
+    resolved = scene%deck%resolved()
+    left_over = file_exists(journal_of(out_dir))
+    if (resume .and. .not. left_over) then
+      call find_finished(out_dir, resolved, version, finished, converged)
+      if (finished) then
+        if (converged) exit_code = 0
+        call say(out_dir//': complete since an earlier run; nothing to do', quiet)
+        if (.not. converged) call say(out_dir//': its summary says what failed then', quiet)
+        return
+      end if
+      call say(out_dir//': no interrupted run to go on with; starting from the beginning', quiet)
     end if
     problem = problem_of(scene)
     ! The cases of a sweep leave their summaries, not their curves.
     curve = .not. allocated(scene%sweep) .and. (allocated(scene%loading) .or. allocated(scene%path))
     call results%open(out_dir, scene%title, version, curve, curve .and. allocated(scene%profiles), &
-      curve .and. allocated(scene%stability), error)
+      curve .and. allocated(scene%stability), &
+      ! Each case of a sweep has one thread, however many there are.
+      identity_of(resolved, merge(0, thread_count(), allocated(scene%sweep))), resume, error)
     if (allocated(error)) then
       call say(out_dir//': '//error%message, .false.)
       return
+    end if
+    if (.not. results%lock%is_held()) call say(out_dir//': warning: folders cannot be locked here; '// &
+      'let no other run write into this one', quiet)
+    if (left_over .and. resume) then
+      call say(out_dir//': going on with what was interrupted after '// &
+        duration(results%journal%earlier), quiet)
+    else if (left_over) then
+      call say(out_dir//': starting over; --resume would have gone on with what was interrupted', &
+        quiet)
     end if
     observer => results
     if (allocated(scene%stability)) then
@@ -91,11 +115,11 @@ contains
     summary%blas = blas
     summary%build_options = options
     summary%threads = thread_count()
-    summary%wall_seconds = seconds() - began
+    summary%wall_seconds = results%journal%earlier + seconds() - began
     call results%write_summary(summary, outcome%cost, scene%deck)
     call results%finish(error)
     if (allocated(error)) then
-      call say(out_dir//': '//error%message, .false.)
+      call say(out_dir//': '//error%message//'; then go on with --resume', .false.)
       return
     end if
     if (allocated(summary%warnings)) then
@@ -108,7 +132,6 @@ contains
     call say(report(out_dir, summary, outcome), quiet)
     if (summary%converged) exit_code = 0
   end subroutine run_scene
-
 
   !> A count for a message.
   pure function number(k) result(text)

@@ -7,6 +7,7 @@ program snapin
   use deck_keys, only: write_keys
   use scene, only: scene_t, read_scene
   use scene_keys, only: keys_of_scene
+  use process, only: prepare_process
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
   use simulation, only: run_scene
   use build_info, only: version, compiler, blas, options_of_build => options
@@ -24,6 +25,7 @@ program snapin
   type(options_t) :: options
   type(failure_t), allocatable :: error
 
+  call prepare_process()
   call read_command_line(options, error)
   if (allocated(error)) then
     call print_line(error_unit, 'snapin: ' // error%message)

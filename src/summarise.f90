@@ -3,11 +3,14 @@
 module summarise
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
-  use problem, only: problem_t, tabor_parameter, surface_energy
+  use problem, only: problem_t, tabor_parameter, surface_energy, largest_tension
   use classical, only: jkr_pull_off, dmt_pull_off
+  use maugis, only: maugis_lambda, maugis_pull_off
+  use approximation_tables, only: jump_t, jumps_t, jumps_of
   use scene_groups, only: scene_t
   use deck_text, only: brief
   use experiment, only: outcome_t
+  use quasi_static, only: end_t
   use cycle, only: branch_t
   use summary, only: summary_t
   implicit none
@@ -54,6 +57,7 @@ contains
     end if
     ! The path knows the same folds exactly.
     if (allocated(outcome%path)) call take_path(problem, outcome, summary)
+    call take_end(problem, outcome, summary)
     if (.not. problem%rigid) call judge_resolution(summary)
     if (outcome%chosen%options%stop_on_change .and. outcome%chosen%options%method == 'mixing') then
       call summary%warn('the iteration was stopped on a small change of the displacement, '// &
@@ -81,7 +85,53 @@ contains
     else if (scene%force%law == 'exponential' .and. .not. problem%rigid) then
       summary%big_lambda = problem%coupling
     end if
+    if (allocated(scene%classical)) call take_maugis(problem, summary)
+    if (allocated(scene%approximations)) call estimate_jumps(problem, summary)
   end subroutine describe
+
+  !> Maugis-Dugdale theory with the law's surface energy and largest tension, where both exist.
+  subroutine take_maugis(problem, summary)
+    type(problem_t), intent(in) :: problem
+    type(summary_t), intent(inout) :: summary
+    real(wp) :: gamma, strength
+
+    gamma = surface_energy(problem)
+    strength = largest_tension(problem)
+    if (problem%rigid .or. .not. (gamma > 0 .and. strength > 0)) return
+    summary%maugis_lambda = maugis_lambda(problem%radius, problem%stiffness, gamma, strength)
+    summary%maugis_pull_off = -maugis_pull_off(problem%radius, problem%stiffness, gamma, strength)
+  end subroutine take_maugis
+
+  !> Where approaching bodies jump in the approximation of slow deformation.
+  subroutine estimate_jumps(problem, summary)
+    type(problem_t), intent(in) :: problem
+    type(summary_t), intent(inout) :: summary
+    type(jumps_t) :: jumps
+
+    jumps = jumps_of(problem)
+    call take(jumps%criterion, summary%jump_criterion_29_h0, summary%jump_criterion_29_load)
+    call take(jumps%equation_37, summary%jump_equation_37_h0, summary%jump_equation_37_load)
+    if (allocated(jumps%equation_37)) summary%jump_equation_37_gap = jumps%equation_37%gap
+    call take(jumps%fold_attraction, summary%fold_attractive_only_h0, &
+      summary%fold_attractive_only_load)
+    if (allocated(jumps%fold)) then
+      ! That of a law without a closed form has another name, in approximations.csv alone.
+      if (jumps%fold%theory == 'fold_closed_form') &
+        call take(jumps%fold, summary%fold_closed_form_h0, summary%fold_closed_form_load)
+    end if
+
+  contains
+
+    subroutine take(jump, h0, load)
+      type(jump_t), allocatable, intent(in) :: jump
+      real(wp), allocatable, intent(inout) :: h0, load
+
+      if (.not. allocated(jump)) return
+      h0 = jump%h0
+      load = jump%load
+    end subroutine take
+
+  end subroutine estimate_jumps
 
   !> Largest tension, residual and trouble of a branch of the cycle.
   subroutine take_branch(problem, name, branch, summary)
@@ -178,6 +228,26 @@ contains
       end if
     end associate
   end subroutine take_path
+
+  !> Where the loading ends or, without one, the path.
+  subroutine take_end(problem, outcome, summary)
+    type(problem_t), intent(in) :: problem
+    type(outcome_t), intent(in) :: outcome
+    type(summary_t), intent(inout) :: summary
+    type(end_t), allocatable :: at
+
+    if (allocated(outcome%loading)) then
+      if (allocated(outcome%loading%finish)) at = outcome%loading%finish
+    else if (allocated(outcome%stepped_path)) then
+      if (allocated(outcome%stepped_path%finish)) at = outcome%stepped_path%finish
+    else if (allocated(outcome%path)) then
+      if (allocated(outcome%path%finish)) at = outcome%path%finish
+    end if
+    if (.not. allocated(at)) return
+    summary%end_h0 = at%h0*problem%length
+    summary%end_displacement = at%displacement*problem%length
+    summary%end_load = at%load*problem%load
+  end subroutine take_end
 
   !> Keeps the largest tension, positive.
   subroutine raise_tension(problem, load, h0, summary)

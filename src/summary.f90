@@ -1,15 +1,12 @@
 !> The summary of a run as namelist groups: &summary, &cost, and the deck as resolved, so that the
 !> file can be run again. gfortran, f90nml and this program read it.
 module summary
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
-  use failure, only: failure_t, fail, file_trouble
-  use deck, only: deck_t
   use equilibrium, only: cost_t
   use assignments, only: line_t, assignment_of
   implicit none
   private
-  public :: summary_t, summary_text, resolved_text, number_columns, numbers_of
+  public :: summary_t, summary_text
 
   !> More warnings than this are not read.
   integer, parameter :: most_warnings = 20
@@ -22,6 +19,8 @@ module summary
     logical, allocatable :: converged
     !> Dimensionless; [J/m^2]; loads [N].
     real(wp), allocatable :: sigma, tabor, big_lambda, surface_energy, jkr_pull_off, dmt_pull_off
+    !> Maugis' parameter, and his pull-off, positive [N].
+    real(wp), allocatable :: maugis_lambda, maugis_pull_off
     !> Positive [N], and where [m].
     real(wp), allocatable :: max_tension, max_tension_h0
     !> Folds in h0 [m], the load [N] there and, from a cycle, how well h0 is known [m].
@@ -35,6 +34,13 @@ module summary
     real(wp), allocatable :: folds_h0(:), folds_load(:)
     integer, allocatable :: folds_stable(:)
     real(wp), allocatable :: load_folds_h0(:), load_folds_load(:)
+    !> The last equilibrium of the loading or, without one, of the path: [m], [m], [N].
+    real(wp), allocatable :: end_h0, end_displacement, end_load
+    !> Where approaching bodies jump in the approximation of slow deformation, by the criteria of
+    !> `jumps_t`: h0 [m], the load [N] there; and the gap (37) itself [m].
+    real(wp), allocatable :: jump_criterion_29_h0, jump_criterion_29_load, jump_equation_37_h0, &
+      jump_equation_37_load, jump_equation_37_gap, fold_closed_form_h0, fold_closed_form_load, &
+      fold_attractive_only_h0, fold_attractive_only_load
     !> In a cycle [J].
     real(wp), allocatable :: energy_lost
     !> In units of the law's length; dimensionless; whether that is fine enough; relative.
@@ -51,33 +57,13 @@ module summary
     procedure :: warn
   end type summary_t
 
-  !> What `numbers_of` returns, as columns of a table.
-  character(len=*), parameter :: number_columns(*) = [character(len=72) :: &
-    'sigma [] parameter (40) of the paper', &
-    'tabor [] Tabor parameter', &
-    'big_lambda [] parameter (39) of the paper', &
-    'surface_energy [J/m^2]', &
-    'jkr_pull_off [N]', &
-    'dmt_pull_off [N]', &
-    'max_tension [N] largest tension, positive', &
-    'max_tension_h0 [m]', &
-    'jump_in_h0 [m]', &
-    'jump_in_load [N]', &
-    'jump_out_h0 [m]', &
-    'jump_out_load [N]', &
-    'energy_lost [J] in a cycle', &
-    'worst_residual [] in units of the length of the force law', &
-    'spacing_over_neck []', &
-    'error_estimate [] relative', &
-    'resolved [] whether the mesh is fine enough, 1 or 0', &
-    'converged [] whether every equilibrium was found, 1 or 0']
-
 contains
 
   !> Adds a warning, one line; repeated ones and those beyond the twentieth are dropped.
   pure subroutine warn(self, text)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: text
+    type(line_t) :: line
     integer :: i
 
     if (.not. allocated(self%warnings)) allocate (self%warnings(0))
@@ -85,7 +71,9 @@ contains
     do i = 1, size(self%warnings)
       if (self%warnings(i)%text == text) return
     end do
-    self%warnings = [self%warnings, line_t(text)]
+    ! A structure constructor inside an array constructor would leak in gfortran.
+    line%text = text
+    self%warnings = [self%warnings, line]
     if (size(self%warnings) == most_warnings) &
       self%warnings(most_warnings)%text = 'further warnings are not shown'
   end subroutine warn
@@ -113,6 +101,8 @@ contains
       assignment_of('surface_energy', self%surface_energy) // &
       assignment_of('jkr_pull_off', self%jkr_pull_off) // &
       assignment_of('dmt_pull_off', self%dmt_pull_off) // &
+      assignment_of('maugis_lambda', self%maugis_lambda) // &
+      assignment_of('maugis_pull_off', self%maugis_pull_off) // &
       assignment_of('max_tension', self%max_tension) // &
       assignment_of('max_tension_h0', self%max_tension_h0) // &
       assignment_of('jump_in_h0', self%jump_in_h0) // &
@@ -132,6 +122,20 @@ contains
       assignment_of('load_folds_h0', self%load_folds_h0) // &
       assignment_of('load_folds_load', self%load_folds_load) // &
       assignment_of('energy_lost', self%energy_lost) // &
+      assignment_of('end_h0', self%end_h0) // &
+      assignment_of('end_displacement', self%end_displacement) // &
+      assignment_of('end_load', self%end_load)
+    text = text // &
+      assignment_of('jump_criterion_29_h0', self%jump_criterion_29_h0) // &
+      assignment_of('jump_criterion_29_load', self%jump_criterion_29_load) // &
+      assignment_of('jump_equation_37_h0', self%jump_equation_37_h0) // &
+      assignment_of('jump_equation_37_load', self%jump_equation_37_load) // &
+      assignment_of('jump_equation_37_gap', self%jump_equation_37_gap) // &
+      assignment_of('fold_closed_form_h0', self%fold_closed_form_h0) // &
+      assignment_of('fold_closed_form_load', self%fold_closed_form_load) // &
+      assignment_of('fold_attractive_only_h0', self%fold_attractive_only_h0) // &
+      assignment_of('fold_attractive_only_load', self%fold_attractive_only_load)
+    text = text // &
       assignment_of('worst_residual', self%worst_residual) // &
       assignment_of('spacing_over_neck', self%spacing_over_neck) // &
       assignment_of('resolved', self%resolved) // &
@@ -159,63 +163,5 @@ contains
       assignment_of('factorisations', cost%factorisations) // &
       assignment_of('rejected_steps', cost%rejected_steps) // '/' // nl
   end function summary_text
-
-  !> The deck with every default written out. It passes through the file `scratch`, which remains,
-  !> since a deck writes itself to a unit; a short one means that the disk was full.
-  subroutine resolved_text(deck, scratch, text, error)
-    type(deck_t), intent(in) :: deck
-    character(len=*), intent(in) :: scratch
-    character(len=:), allocatable, intent(out) :: text
-    type(failure_t), allocatable, intent(out) :: error
-    character(len=200) :: reason
-    integer :: unit, status, length
-
-    length = 1
-    reason = ''
-    open (newunit=unit, file=scratch, status='replace', action='write', access='stream', &
-      form='formatted', iostat=status, iomsg=reason)
-    if (status == 0) then
-      call deck%write_resolved(unit, status)
-      inquire (unit, pos=length)
-      close (unit, iostat=status)
-      open (newunit=unit, file=scratch, status='old', action='read', access='stream', &
-        form='unformatted', iostat=status, iomsg=reason)
-    end if
-    allocate (character(len=length - 1) :: text)
-    if (status == 0) then
-      read (unit, iostat=status, iomsg=reason) text
-      close (unit)
-      if (is_iostat_end(status)) reason = 'No space left on device'
-    end if
-    if (status /= 0) call fail(error, file_trouble, 'cannot write ' // scratch // ': ' // &
-      trim(reason) // '; make room there, or choose another folder with --out')
-  end subroutine resolved_text
-
-  !> The numbers of a summary in the order of `number_columns`; NaN for what does not exist.
-  pure function numbers_of(self) result(values)
-    type(summary_t), intent(in) :: self
-    real(wp) :: values(size(number_columns))
-
-    values = [or_nan(self%sigma), or_nan(self%tabor), or_nan(self%big_lambda), &
-      or_nan(self%surface_energy), or_nan(self%jkr_pull_off), or_nan(self%dmt_pull_off), &
-      or_nan(self%max_tension), or_nan(self%max_tension_h0), or_nan(self%jump_in_h0), &
-      or_nan(self%jump_in_load), or_nan(self%jump_out_h0), or_nan(self%jump_out_load), &
-      or_nan(self%energy_lost), or_nan(self%worst_residual), or_nan(self%spacing_over_neck), &
-      or_nan(self%error_estimate), as_number(self%resolved), as_number(self%converged)]
-  end function numbers_of
-
-  pure real(wp) function or_nan(value)
-    real(wp), intent(in), optional :: value
-
-    or_nan = ieee_value(or_nan, ieee_quiet_nan)
-    if (present(value)) or_nan = value
-  end function or_nan
-
-  pure real(wp) function as_number(value)
-    logical, intent(in), optional :: value
-
-    as_number = ieee_value(as_number, ieee_quiet_nan)
-    if (present(value)) as_number = merge(1, 0, value)
-  end function as_number
 
 end module summary

@@ -10,73 +10,149 @@ module sweeps
   use records, only: silent_observer_t
   use summarise, only: summary_of
   use summary, only: summary_t
+  use case_columns, only: columns_of, numbers_of
+  use packing, only: packed_t
+  use packed_states, only: put_cost, take_cost
   use results, only: results_t
   implicit none
   private
   public :: run_sweep
 
+  !> What is kept of one case.
+  type :: case_t
+    logical :: done = .false., converged = .false.
+    !> See `numbers_of`.
+    real(wp), allocatable :: numbers(:)
+    type(cost_t) :: cost
+  end type case_t
+
 contains
 
   !> Computes every case of scene%sweep and hands its row to `results`, in the order of the values.
-  !> A case that fails is a row that says so. failed: how many; cost: of all together.
+  !> Cases that results%journal has are complete, whatever their order; the others join them as they
+  !> end. A case that fails is a row that says so. Once results cannot be written no case begins.
+  !> failed: how many; cost: of all together.
   subroutine run_sweep(scene, results, failed, cost)
     type(scene_t), intent(in) :: scene
     type(results_t), intent(inout) :: results
     integer, intent(out) :: failed
     type(cost_t), intent(out) :: cost
-    type(summary_t), allocatable :: summaries(:)
-    logical, allocatable :: done(:)
-    type(cost_t) :: of_case
+    type(case_t), allocatable :: cases(:)
     integer :: i, written
 
-    associate (values => scene%sweep%values)
-      allocate (summaries(size(values)), done(size(values)))
-      done = .false.
-      written = 0
-      failed = 0
-      ! Each case has a thread of its own: its kernels and its linear algebra use no more.
-      !$omp parallel do schedule(dynamic, 1) private(of_case)
-      do i = 1, size(values)
-        call run_case(scene, values(i), summaries(i), of_case)
-        !$omp critical (sweep_rows)
-        done(i) = .true.
-        cost = sum_of(cost, of_case)
-        if (.not. summaries(i)%converged) failed = failed + 1
-        call results%progress%step('case')
-        do while (written < size(values))
-          if (.not. done(written + 1)) exit
-          written = written + 1
-          call results%take_case(scene%sweep%key, values(written), summaries(written))
-        end do
-        !$omp end critical (sweep_rows)
+    allocate (cases(size(scene%sweep%values)))
+    written = 0
+    failed = 0
+    call recall_cases()
+    ! Each case has a thread of its own: its kernels and its linear algebra use no more.
+    !$omp parallel do schedule(dynamic, 1)
+    do i = 1, size(cases)
+      if (.not. cases(i)%done) call complete(i)
+    end do
+    !$omp end parallel do
+
+  contains
+
+    !> Enters the cases that an interrupted run has completed.
+    subroutine recall_cases()
+      type(packed_t) :: record
+      logical :: found
+      integer :: i
+
+      do
+        call results%journal%next(record, found)
+        if (.not. found) exit
+        call record%take(i)
+        call take_case(record, cases(i))
+        call enter(cases(i))
+        call results%progress%skip('case')
       end do
-      !$omp end parallel do
-    end associate
+    end subroutine recall_cases
+
+    !> Computes case i and enters it.
+    subroutine complete(i)
+      integer, intent(in) :: i
+      type(case_t) :: fresh
+      type(packed_t) :: record
+      logical :: stopped
+
+      !$omp critical (sweep_rows)
+      stopped = allocated(results%trouble) .or. allocated(results%journal%trouble)
+      !$omp end critical (sweep_rows)
+      if (stopped) return
+      call run_case(scene, scene%sweep%values(i), fresh)
+      call record%put(i)
+      call put_case(record, fresh)
+      !$omp critical (sweep_rows)
+      call results%journal%append(record)
+      cases(i) = fresh
+      call results%progress%step('case')
+      call enter(cases(i))
+      !$omp end critical (sweep_rows)
+    end subroutine complete
+
+    !> Counts a case that is done, and writes the rows whose turn it is.
+    subroutine enter(case)
+      type(case_t), intent(in) :: case
+
+      cost = sum_of(cost, case%cost)
+      if (.not. case%converged) failed = failed + 1
+      do while (written < size(cases))
+        if (.not. cases(written + 1)%done) exit
+        written = written + 1
+        call results%take_case(scene%sweep%key, scene%sweep%values(written), columns_of(scene), &
+          cases(written)%numbers)
+      end do
+    end subroutine enter
+
   end subroutine run_sweep
 
-  !> The summary of the scene with the swept key at a value.
-  subroutine run_case(scene, value, summary, cost)
+  !> The case of the scene with the swept key at a value.
+  subroutine run_case(scene, value, case)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: value
-    type(summary_t), intent(out) :: summary
-    type(cost_t), intent(out) :: cost
+    type(case_t), intent(out) :: case
     type(scene_t) :: variant
     type(problem_t) :: problem
     type(outcome_t) :: outcome
+    type(summary_t) :: summary
     type(silent_observer_t) :: observer
     type(failure_t), allocatable :: error
 
     call swept_scene(scene, value, variant, error)
     if (allocated(error)) then
       summary%converged = .false.
-      call summary%warn(error%message)
-      return
+    else
+      problem = problem_of(variant)
+      call run_experiment(variant, problem, observer, outcome)
+      summary = summary_of(variant, problem, outcome)
     end if
-    problem = problem_of(variant)
-    call run_experiment(variant, problem, observer, outcome)
-    summary = summary_of(variant, problem, outcome)
-    cost = outcome%cost
+    case%done = .true.
+    case%converged = summary%converged
+    case%numbers = numbers_of(summary, scene)
+    case%cost = outcome%cost
   end subroutine run_case
+
+  !> Packs a case.
+  subroutine put_case(record, case)
+    type(packed_t), intent(inout) :: record
+    type(case_t), intent(in) :: case
+
+    call record%put(case%converged)
+    call record%put(case%numbers)
+    call put_cost(record, case%cost)
+  end subroutine put_case
+
+  !> Unpacks what `put_case` packed.
+  subroutine take_case(record, case)
+    type(packed_t), intent(inout) :: record
+    type(case_t), intent(out) :: case
+
+    case%done = .true.
+    call record%take(case%converged)
+    call record%take(case%numbers)
+    call take_cost(record, case%cost)
+  end subroutine take_case
 
   pure function sum_of(a, b) result(total)
     type(cost_t), intent(in) :: a, b

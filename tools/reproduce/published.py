@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import io
 import os
 import pathlib
 from typing import Union
@@ -42,10 +43,16 @@ def shown(value):
 
 def write_csv(path, rows):
     """Write the rows under one header line; the file appears whole."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    writer.writerows(row.cells() for row in rows)
+    write_whole(path, text.getvalue())
+
+
+def write_whole(path, text):
+    """Write a file that appears under its name only when it is complete."""
     path = pathlib.Path(path)
     partial = path.with_name(path.name + ".partial")
-    with partial.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        writer.writerows(row.cells() for row in rows)
+    partial.write_text(text, encoding="utf-8")
     os.replace(partial, path)

@@ -2,32 +2,87 @@
 
 import pathlib
 
-from published import COLUMNS
+import published
+from runs import path_name
+
+_INTRODUCTION = """P. Attard and J. L. Parker, *Deformation and adhesion of elastic bodies in
+contact*, Phys. Rev. A **46**, 7959 (1992): every figure drawn again from runs of snapin, and
+every number of the text beside the one computed.
+
+In the tables, **published** is what the paper prints. **Computed** is found with the paper's own
+grid and stopping rule, where there is such a run: nodes 10–100 nm apart, mixing of at most 0.2,
+stopped when the central displacement changes by less than 1e-4 nm. **Converged** is what the
+equations give, with the error estimated in each run's summary. The same rows, all together, are
+in [published_vs_computed.csv](published_vs_computed.csv).
+"""
+
+_RUNNING = """./reproduce            # all of it
+./reproduce {example}  # some of it
+./reproduce --publish  # and copy it to docs/reproduction/"""
 
 
-def write(folder, chapters, notes):
+def write(folder, chapters, runs, version, seconds):
     """Write `folder`/report.md.
 
-    `chapters` are dicts with name, title, caption, rows and problem (None if all went well);
-    `notes` are paragraphs for the end: how to run, versions, time.
+    `chapters` are dicts with name, title, picture, caption, rows and problem (None if all went
+    well).
     """
-    lines = ["# The figures and numbers of Attard and Parker (1992), computed again", ""]
+    lines = ["# The figures and numbers of Attard and Parker (1992), computed again", "",
+             _INTRODUCTION]
     for chapter in chapters:
-        lines += [f"## {chapter['title']}", ""]
-        if chapter["problem"]:
-            lines += [f"**Not drawn:** {chapter['problem']}", ""]
-            continue
-        lines += [f"![{chapter['title']}]({chapter['name']}.png)", "", chapter["caption"], ""]
-        lines += table(chapter["rows"])
-    lines += notes
-    pathlib.Path(folder, "report.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+        lines.append(f"- [{chapter['title']}](#{_anchor(chapter['title'])})")
+    lines.append("")
+    for chapter in chapters:
+        lines += _chapter(chapter)
+    lines += ["## All rows", "", *table([row for chapter in chapters for row in chapter["rows"]])]
+    lines += _ending(chapters, runs, version, seconds)
+    published.write_whole(pathlib.Path(folder, "report.md"), "\n".join(lines) + "\n")
+
+
+def _chapter(chapter):
+    lines = [f"## {chapter['title']}", ""]
+    if chapter["problem"]:
+        return [*lines, f"**Failed:** {chapter['problem']}", ""]
+    if chapter["picture"]:
+        lines += [f"![{chapter['title']}]({chapter['name']}.png)", ""]
+    return [*lines, chapter["caption"], "", *table(chapter["rows"])]
 
 
 def table(rows):
     """Return rows as the lines of a Markdown table, with an empty line after it."""
     if not rows:
         return []
-    lines = ["| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
-    lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in row.cells()) + " |"
-              for row in rows]
+    lines = ["| " + " | ".join(published.COLUMNS) + " |", "|" + "---|" * len(published.COLUMNS)]
+    lines += ["| " + " | ".join(_cell(cell) for cell in row.cells()) + " |" for row in rows]
     return [*lines, ""]
+
+
+def _cell(text):
+    """Return text that Markdown leaves alone in a table."""
+    for sign in "\\|*_<":
+        text = text.replace(sign, "\\" + sign)
+    return text
+
+
+def _anchor(title):
+    """Return the anchor that Markdown viewers make of a heading."""
+    kept = (c for c in title.lower() if c.isalnum() or c in " -_")
+    return "".join(kept).replace(" ", "-")
+
+
+def _ending(chapters, runs, version, seconds):
+    """Return how this was run: commands, versions, and the time of each deck."""
+    decks = dict.fromkeys(deck for chapter in chapters for deck in chapter["decks"])
+    lines = ["## How to run it", "", *(f"    {line}" for line in _RUNNING.format(
+        example=" ".join(chapter["name"] for chapter in chapters[:2])).split("\n")), "",
+        "Decks that have not changed are not run again.", "", "    " + version.replace(
+            "\n", "\n    "), "",
+        f"{len(decks)} decks, {seconds:.0f} s of one core together:", "",
+        "| deck | seconds | exit status |", "|---|---|---|"]
+    for deck in decks:
+        record = runs.record(deck)
+        lines.append(f"| `{path_name(deck)}` | {record.get('seconds', '')} | "
+                     f"{record.get('status', 'not run')} |")
+    lines += ["", "Exit status 1 is what decks named `_paper` may end with: they stop on the "
+              "paper's rule, and snapin does not call that converged."]
+    return lines

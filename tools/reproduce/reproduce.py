@@ -13,6 +13,8 @@ A figure is a module here with
     numbers(runs)   what these fields stand for, a dict
     draw(runs)      the picture, a matplotlib Figure
     rows(runs)      published.Row beside published.Row
+
+and so is any other chapter; one without draw has no picture.
 """
 
 import argparse
@@ -20,6 +22,7 @@ import importlib
 import os
 import pathlib
 import shutil
+import subprocess
 import sys
 import time
 import traceback
@@ -34,8 +37,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 def main():
     """Run, draw, write; exit status 1 if anything failed."""
-    names = [path.stem for path in sorted(HERE.glob("fig[0-9][0-9].py"))]
-    names += [name for name in ("history",) if (HERE / f"{name}.py").is_file()]
+    names = chapter_names()
     options = _options(names)
     folder = options.out.resolve()
     folder.mkdir(parents=True, exist_ok=True)
@@ -52,25 +54,37 @@ def main():
             problems[name] = chapters[-1]["problem"]
     rows = [row for chapter in chapters for row in chapter["rows"]]
     published.write_csv(folder / "published_vs_computed.csv", rows)
-    report.write(folder, chapters, [])
+    version = subprocess.run([str(runs.program), "--version"], check=False, capture_output=True,
+                             text=True).stdout.strip()
+    report.write(folder, chapters, runs, version,
+                 sum(runs.record(deck).get("seconds", 0) for deck in dict.fromkeys(decks)))
     _say(f"{folder}/report.md: {len(chapters)} chapters, {len(rows)} numbers, "
          f"{time.perf_counter() - began:.0f} s")
-    if options.publish:
+    if options.publish and not problems:
         _publish(folder, ROOT / "docs" / "reproduction")
     for name, problem in problems.items():
         _say(f"failed: {name}: {problem}")
     sys.exit(1 if problems else 0)
 
 
+def chapter_names():
+    """Return the modules of the report, in its order."""
+    figures = [path.stem for path in sorted(HERE.glob("fig[0-9][0-9].py"))]
+    others = ("history", "verdict", "misprints")
+    return figures + [name for name in others if (HERE / f"{name}.py").is_file()]
+
+
 def _chapter(name, module, runs, folder):
     """Return a chapter of the report, its picture drawn."""
-    chapter = {"name": name, "title": module.TITLE, "caption": "", "rows": [], "problem": None}
+    chapter = {"name": name, "title": module.TITLE, "decks": module.DECKS, "caption": "",
+               "rows": [], "picture": hasattr(module, "draw"), "problem": None}
     try:
         chapter["rows"] = module.rows(runs)
         numbers = module.numbers(runs) if hasattr(module, "numbers") else {}
         chapter["caption"] = module.CAPTION.format(**numbers)
-        style.save(module.draw(runs), folder / f"{name}.png")
-        _say(f"{name}: drawn")
+        if chapter["picture"]:
+            style.save(module.draw(runs), folder / f"{name}.png")
+        _say(f"{name}: {folder.name}/{name}.png" if chapter["picture"] else f"{name}: done")
     except Exception as problem:  # whatever it is, the other figures are still wanted
         traceback.print_exc()
         chapter["problem"] = f"{type(problem).__name__}: {problem}"
@@ -91,7 +105,7 @@ def _options(names):
         "figures, and set the published numbers beside those computed.")
     parser.add_argument("only", nargs="*", metavar="FIGURE",
                         help=f"what to reproduce: {', '.join(names)}; default: all")
-    parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count() or 1,
+    parser.add_argument("-j", "--jobs", type=int, default=len(os.sched_getaffinity(0)),
                         help="decks that run at a time; default: one a core")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "reproduction",
                         help="folder for all that is written; default: reproduction/")
@@ -102,6 +116,8 @@ def _options(names):
     unknown = [name for name in options.only if name not in names]
     if unknown:
         parser.error(f"no such figure: {', '.join(unknown)}; there are {', '.join(names)}")
+    if options.publish and options.only:
+        parser.error("--publish takes the whole report, not some of its chapters")
     return options
 
 
@@ -110,4 +126,8 @@ def _say(text):
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        _say("interrupted; the runs that were done stay, ./reproduce goes on with the others")
+        sys.exit(130)

@@ -10,12 +10,18 @@ import subprocess
 import sys
 import time
 
+import numpy as np
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INPUTS = ROOT / "inputs"
 sys.path[:0] = [str(ROOT / "pywrap" / "plots"), str(ROOT / "pywrap"),
                 str(ROOT / "build" / "pywrap")]
 
 from read_results import read_summary, read_table  # noqa: E402 (found through the line above)
+
+
+# After so many seconds without news, what runs is named.
+_HEARTBEAT = 10.0
 
 
 class RunError(Exception):
@@ -58,11 +64,21 @@ class Results:
         """The columns of sweep.csv."""
         return read_table(self.folder, "sweep.csv")
 
+    def last(self, key):
+        """Return a number of the summary; of an array, the value of the last turning point."""
+        return float(np.ravel(self.summary[key])[-1])
+
     def branch(self, name, table="curve"):
         """Return the rows of one branch, or of one theory."""
         columns = getattr(self, table)
         rows = columns["branch" if "branch" in columns else "theory"] == name
         return {column: values[rows] for column, values in columns.items()}
+
+
+def path_name(deck):
+    """Return the stem of a deck given by its stem or its path."""
+    name = pathlib.Path(deck).name
+    return name[: -len(".nml")] if name.endswith(".nml") else name
 
 
 class Runs:
@@ -113,7 +129,8 @@ class Runs:
     def is_done(self, deck):
         """Whether this deck was run to its end, well, with this program."""
         record = self.record(deck)
-        return record.get("digest") == self.digest(deck) and record.get("problem") is None
+        return (record.get("digest") == self.digest(deck) and record.get("problem") is None
+                and (self.root / self.path_of(deck).stem / "summary.nml").is_file())
 
     def execute(self, deck):
         """Run a deck now; raise RunError unless it leaves the results it should.
@@ -126,6 +143,8 @@ class Runs:
             raise RunError(f"no deck {path}")
         self.root.mkdir(parents=True, exist_ok=True)
         self._record_path(path).unlink(missing_ok=True)
+        # An earlier run's must not pass for this one's.
+        (self.root / path.stem / "summary.nml").unlink(missing_ok=True)
         self._results.pop(path.stem, None)
         digest, began = self.digest(path), time.perf_counter()
         done = subprocess.run(
@@ -153,34 +172,54 @@ class Runs:
             say(f"{len(decks) - len(waiting)} of {len(decks)} runs are there already")
         # Long ones first, so that none is left alone at the end.
         waiting.sort(key=lambda deck: -self._likely_seconds(deck))
-        problems, ended = {}, 0
-        with concurrent.futures.ThreadPoolExecutor(max(jobs, 1)) as pool:
-            futures = {pool.submit(self.execute, deck): deck for deck in waiting}
-            for future in concurrent.futures.as_completed(futures):
-                deck, ended = futures[future], ended + 1
-                try:
-                    future.result()
-                    word = f"{self.record(deck)['seconds']:.1f} s"
-                except (RunError, OSError) as problem:
-                    problems[deck] = str(problem)
-                    word = f"FAILED: {problem}"
-                say(f"run {ended} of {len(waiting)}: {deck}: {word}")
+        problems, ended, began = {}, 0, time.perf_counter()
+        pool = concurrent.futures.ThreadPoolExecutor(max(jobs, 1))
+        futures = {pool.submit(self.execute, deck): deck for deck in waiting}
+        try:
+            while futures:
+                done, _ = concurrent.futures.wait(
+                    futures, _HEARTBEAT, concurrent.futures.FIRST_COMPLETED)
+                if not done:
+                    running = [path_name(deck) for future, deck in futures.items()
+                               if future.running()]
+                    say(f"{ended} of {len(waiting)} runs done after "
+                        f"{time.perf_counter() - began:.0f} s; running: {', '.join(running)}")
+                for future in done:
+                    deck, ended = futures.pop(future), ended + 1
+                    word = self._outcome(future, deck, problems)
+                    say(f"run {ended} of {len(waiting)}: {path_name(deck)}: {word}")
+        finally:
+            pool.shutdown(cancel_futures=True)
         return problems
+
+    def _outcome(self, future, deck, problems):
+        try:
+            future.result()
+        except (RunError, OSError) as problem:
+            problems[path_name(deck)] = str(problem)
+            return f"FAILED: {problem}"
+        return f"{self.record(deck)['seconds']:.1f} s"
 
     def _is_done_or_missing(self, deck):
         return self.path_of(deck).is_file() and self.is_done(deck)
 
     def _likely_seconds(self, deck):
-        return self.record(deck).get("seconds", 1e3 if "_paper" in str(deck) else 1e2)
+        known = self.record(deck).get("seconds")
+        if known is not None or not self.path_of(deck).is_file():
+            return known or 0.0
+        # The paper's iteration is the slow one.
+        return 1e3 if "'mixing'" in self.path_of(deck).read_text(encoding="utf-8") else 1.0
 
     def _record_path(self, path):
         return self.root / f"{path.stem}.json"
 
     def _problem_of(self, path, done):
-        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
         if done.returncode == 1 and "_paper" in path.stem:
             if (self.root / path.stem / "summary.nml").is_file():
                 return None
         elif done.returncode == 0:
             return None
-        return f"snapin ended with status {done.returncode}: {last}"
+        # The first line says what is wrong; after it may come the line of the deck.
+        messages = [line for line in done.stderr.splitlines() if line and ": warning: " not in line]
+        message = messages[0] if messages else "no message"
+        return f"snapin ended with status {done.returncode}: {message}"

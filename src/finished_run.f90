@@ -1,0 +1,36 @@
+!> Whether a folder already holds all the results of a run.
+module finished_run
+  use kinds, only: long
+  implicit none
+  private
+  public :: find_finished
+
+contains
+
+  !> Whether the folder's summary is that of the deck `resolved` (as text) by this `version` of the
+  !> program; the summary is the last thing that a run writes. converged: whether all went well.
+  subroutine find_finished(folder, resolved, version, finished, converged)
+    character(len=*), intent(in) :: folder, resolved, version
+    logical, intent(out) :: finished, converged
+    character(len=:), allocatable :: text
+    integer(long) :: length
+    integer :: unit, status, start
+
+    finished = .false.
+    converged = .false.
+    open (newunit=unit, file=folder // '/summary.nml', status='old', action='read', &
+      access='stream', form='unformatted', iostat=status)
+    if (status /= 0) return
+    inquire (unit, size=length)
+    allocate (character(len=max(length, 0_long)) :: text)
+    read (unit, iostat=status) text
+    close (unit)
+    start = len(text) - len(resolved)
+    if (status /= 0 .or. start < 1) return
+    ! The groups of results, then the deck.
+    finished = text(start + 1:) == resolved .and. &
+      index(text(:start), new_line('a') // '  version = ''' // version // '''' // new_line('a')) > 0
+    converged = index(text(:start), new_line('a') // '  converged = .true.' // new_line('a')) > 0
+  end subroutine find_finished
+
+end module finished_run

@@ -1,0 +1,237 @@
+!> A file to which a run adds what it has found as it goes, so that another can go on from there
+!> after it was killed.
+!>
+!> A journal begins with a text that says whose it is; records follow. Each has its length, a
+!> checksum, and the time since the run began, and is handed to the system at once: what follows the
+!> last whole record was being written when the run was killed, and is cut off. It is written with
+!> C's streams for the reason given in `text_file`.
+module journal
+  use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_long, c_null_char, &
+    c_null_ptr, c_ptr, c_size_t
+  use kinds, only: wp, long
+  use failure, only: failure_t, fail, file_trouble
+  use c_library, only: c_fopen, c_fread, c_fwrite, c_fflush, c_fseek, c_fileno, c_ftruncate, &
+    c_fclose, from_start, from_here, errno, system_failure
+  use packing, only: packed_t, checksum
+  use clock, only: seconds
+  implicit none
+  private
+  public :: journal_t
+
+  !> Not to be copied while it is open. After the first thing that goes wrong, which is kept in
+  !> `trouble`, nothing more is written.
+  type :: journal_t
+    type(failure_t), allocatable :: trouble
+    !> Whole records that an earlier run has left, and the time [s] it took until the last of them.
+    integer :: inherited = 0
+    real(wp) :: earlier = 0
+    character(len=:), allocatable, private :: path
+    type(c_ptr), private :: stream = c_null_ptr
+    !> Records of the earlier run that are still to be handed out.
+    integer, private :: waiting = 0
+    !> Words in the file when it was opened.
+    integer(long), private :: room = 0
+    real(wp), private :: began = 0
+  contains
+    procedure :: begin
+    procedure :: go_on
+    procedure :: is_open
+    procedure :: is_behind
+    procedure :: next
+    procedure :: append
+    procedure :: close => close_journal
+    procedure, private :: read_frame
+  end type journal_t
+
+  !> Words before the packed ones: how many these are, the checksum of all else, the time.
+  integer, parameter :: frame = 3, word = storage_size(0_long)/8
+
+contains
+
+  !> Creates the journal `path`, or empties it; `owner` says whose it is.
+  subroutine begin(self, path, owner, error)
+    class(journal_t), intent(inout) :: self
+    character(len=*), intent(in) :: path, owner
+    type(failure_t), allocatable, intent(out) :: error
+    type(packed_t) :: heading
+
+    call start(self, path, 'w+b', error)
+    if (allocated(error)) return
+    call heading%put(owner)
+    call self%append(heading)
+    if (allocated(self%trouble)) error = self%trouble
+  end subroutine begin
+
+  !> Opens the journal `path` that an earlier run has left: `next` hands out its records, then
+  !> `append` goes on. Where its owner is not `owner`, the journal stays as it is and closed, and
+  !> `other` is the owner; one that ends within its heading is begun anew.
+  subroutine go_on(self, path, owner, other, error)
+    class(journal_t), intent(inout) :: self
+    character(len=*), intent(in) :: path, owner
+    character(len=:), allocatable, intent(out) :: other
+    type(failure_t), allocatable, intent(out) :: error
+    type(packed_t) :: record
+    integer(c_long) :: whole, first
+    logical :: found
+
+    call start(self, path, 'r+b', error)
+    if (allocated(error)) return
+    whole = 0
+    call self%read_frame(record, whole, found)
+    if (.not. found) then
+      call self%close()
+      call self%begin(path, owner, error)
+      return
+    end if
+    call record%take(other)
+    if (other /= owner) then
+      call self%close()
+      return
+    end if
+    deallocate (other)
+    first = whole
+    do
+      call self%read_frame(record, whole, found)
+      if (.not. found) exit
+      self%inherited = self%inherited + 1
+    end do
+    self%waiting = self%inherited
+    if (c_ftruncate(c_fileno(self%stream), whole) /= 0) then
+      call system_failure('cannot write ' // path, errno(), error)
+      call self%close()
+      return
+    end if
+    if (c_fseek(self%stream, first, from_start) /= 0) then
+      call system_failure('cannot read ' // path, errno(), error)
+      call self%close()
+    end if
+  end subroutine go_on
+
+  !> Opens the file and forgets what was before.
+  subroutine start(self, path, mode, error)
+    class(journal_t), intent(inout) :: self
+    character(len=*), intent(in) :: path, mode
+    type(failure_t), allocatable, intent(out) :: error
+
+    call self%close()
+    if (allocated(self%trouble)) deallocate (self%trouble)
+    self%inherited = 0
+    self%earlier = 0
+    self%waiting = 0
+    self%began = seconds()
+    self%path = path
+    self%stream = c_fopen(path // c_null_char, mode // c_null_char)
+    if (.not. self%is_open()) then
+      call system_failure('cannot write ' // path, errno(), error)
+      return
+    end if
+    inquire (file=path, size=self%room)
+    self%room = self%room/word
+  end subroutine start
+
+  !> Whether records can be read or added.
+  pure logical function is_open(self)
+    class(journal_t), intent(in) :: self
+
+    is_open = c_associated(self%stream)
+  end function is_open
+
+  !> Whether records of the earlier run are still to be handed out.
+  pure logical function is_behind(self)
+    class(journal_t), intent(in) :: self
+
+    is_behind = self%waiting > 0 .and. self%is_open()
+  end function is_behind
+
+  !> The next record of the earlier run; not found: there are no more, and `append` may begin.
+  subroutine next(self, record, found)
+    class(journal_t), intent(inout) :: self
+    type(packed_t), intent(inout) :: record
+    logical, intent(out) :: found
+    integer(c_long) :: whole
+    integer(c_int) :: status
+
+    found = .false.
+    if (.not. self%is_behind()) return
+    whole = 0
+    call self%read_frame(record, whole, found)
+    self%waiting = self%waiting - 1
+    ! It was there when the journal was opened.
+    if (.not. found) then
+      call fail(self%trouble, file_trouble, 'cannot read ' // self%path)
+      call self%close()
+      return
+    end if
+    ! Between reading and writing C asks for a change of position.
+    if (self%waiting == 0) status = c_fseek(self%stream, 0_c_long, from_here)
+  end subroutine next
+
+  !> Adds a record and hands it to the system, so that it survives this process. Not before `next`
+  !> has handed out all there were.
+  subroutine append(self, record)
+    class(journal_t), intent(inout) :: self
+    type(packed_t), intent(in) :: record
+    integer(long) :: words(frame + record%held)
+    character :: bytes(word*size(words))
+
+    if (.not. self%is_open()) return
+    words(1) = record%held
+    words(2) = 0
+    words(3) = transfer(self%earlier + seconds() - self%began, 0_long)
+    words(frame + 1:) = record%words(:record%held)
+    words(2) = checksum(words)
+    bytes = transfer(words, bytes)
+    if (c_fwrite(bytes, 1_c_size_t, size(bytes, kind=c_size_t), self%stream) == size(bytes)) then
+      if (c_fflush(self%stream) == 0) return
+    end if
+    call system_failure('cannot write ' // self%path, errno(), self%trouble)
+    call self%close()
+  end subroutine append
+
+  !> Closes it; nothing is done where none is open.
+  subroutine close_journal(self)
+    class(journal_t), intent(inout) :: self
+    integer(c_int) :: status
+
+    ! Every record has been flushed: what closing could say has been said.
+    if (self%is_open()) status = c_fclose(self%stream)
+    self%stream = c_null_ptr
+  end subroutine close_journal
+
+  !> Reads the record at the present place and moves `whole` [bytes] to its end; not found where the
+  !> file ends or what is there is not a whole record.
+  subroutine read_frame(self, record, whole, found)
+    class(journal_t), intent(inout) :: self
+    type(packed_t), intent(inout) :: record
+    integer(c_long), intent(inout) :: whole
+    logical, intent(out) :: found
+    integer(long) :: head(frame)
+    integer(long), allocatable :: words(:)
+
+    found = .false.
+    call record%clear()
+    if (.not. read_words(self%stream, head)) return
+    if (head(1) < 0 .or. head(1) > self%room) return
+    allocate (words(frame + head(1)))
+    words(:frame) = head
+    words(2) = 0
+    if (.not. read_words(self%stream, words(frame + 1:))) return
+    if (checksum(words) /= head(2)) return
+    record%words = words(frame + 1:)
+    record%held = int(head(1))
+    self%earlier = transfer(head(3), self%earlier)
+    whole = whole + size(words)*word
+    found = .true.
+  end subroutine read_frame
+
+  !> Reads words; .false. where the file ends before.
+  logical function read_words(stream, words) result(complete)
+    type(c_ptr), intent(in) :: stream
+    integer(long), intent(out) :: words(:)
+    character :: bytes(word*size(words))
+
+    complete = c_fread(bytes, 1_c_size_t, size(bytes, kind=c_size_t), stream) == size(bytes)
+    if (complete) words = transfer(bytes, words)
+  end function read_words
+
+end module journal
