@@ -38,8 +38,9 @@ module cycle
     character(len=160) :: reason = ''
   end type branch_t
 
-  !> A stretch of a branch without a jump: its state of largest tension so far, the one before it, and the
-  !> values of h0 between which the largest tension of all lies (the neighbours of that state, or a jump).
+  !> A stretch of a branch without a jump: its state of largest tension so far, the one before it,
+  !> and the values of h0 between which the largest tension of all lies (the neighbours of that
+  !> state, or a jump).
   type :: stretch_t
     type(position_t) :: lowest, previous
     real(wp) :: before = 0, after = 0

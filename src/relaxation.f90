@@ -13,8 +13,9 @@ module relaxation
   private
   public :: relax
 
-  !> Most pseudo-time steps; factorisations that are always allowed, and cubes of the matrix's
-  !> order that all of them may amount to (some ten seconds).
+  !> Most pseudo-time steps; factorisations that are always allowed (a contact edge that runs across
+  !> a hundred widths of the neck takes some 200), and cubes of the matrix's order that more may
+  !> amount to (some ten seconds).
   integer, parameter :: most_steps = 2000, few_factorisations = 500
   real(wp), parameter :: most_cubes = 1.0e11_wp
   !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth
