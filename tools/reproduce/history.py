@@ -11,12 +11,13 @@ _CASES = (("a", "1.7", (0.0, -2e-9, -5e-9)),
           ("b", "4.4", (0.0, -2e-9, -5e-9)),
           ("c", "8.7", (1e-9, -2e-9, -4e-9, -10e-9)))
 _RULES = ("paper", "residual")
-# The finest grid for sigma = 8.7 takes as long as all others: it has a deck of its own.
+# The decks of each case, those that take longest first. The finest grid for sigma = 8.7 takes as
+# long as all others: it has a deck of its own.
 _SWEEPS = {(letter, rule): (f"history_{letter}_{rule}",)
-           for rule in _RULES for letter, *_ in _CASES}
+           for letter, *_ in reversed(_CASES) for rule in _RULES}
 _SWEEPS["c", "residual"] = ("history_c_residual_finest", "history_c_residual")
-DECKS = tuple(deck for decks in _SWEEPS.values() for deck in decks) + tuple(
-    f"fig10{letter}_converged" for letter, *_ in _CASES)
+DECKS = (*(deck for decks in _SWEEPS.values() for deck in decks),
+         *(f"fig10{letter}_converged" for letter, *_ in _CASES))
 TITLE = "The memory of the penetration: the grid, or the stopping rule?"
 CAPTION = """Largest tension of the cycles of Fig. 10 against the spacing of a uniform grid, in
 widths of the neck, σ = 1.7 (a), 4.4 (b), 8.7 (c). Above, the paper's rule stops the iteration;
@@ -31,12 +32,13 @@ value; left of the thin line the grid resolves the neck.
 from different penetrations differs by up to {spread_coarse:.0f} % at 4 widths, {spread_two:.1g} %
 at 2, {spread_one:.1g} % at 1 and {spread_fine:.1g} % on grids that resolve the neck.
 
-**The stopping rule** makes the pull-off depend on the penetration on every grid. On the finest,
-where it stops up to {left_a:.0f}, {left_b:.0f} and {left_c:.0f} z0 from equilibrium, pull-off is
-{rule_a} of JKR's for σ = 1.7 and {rule_b} for 4.4 (from h0 = {turns_b} nm), {rule_c} for 8.7 (from
-{turns_c} nm). In {grows} of {cases} cycles the deepest penetration gives a larger one than the
-shallowest, {factor:.1f} times as large in the median. Refining the grid does not help; solving the
-equations does.
+**The stopping rule** makes the pull-off depend on the penetration on every grid. On the finest
+({rule_finest_a:.2g}, {rule_finest_b:.2g} and {rule_finest_c:.2g} widths), where it stops up to
+{left_a:.0f}, {left_b:.0f} and {left_c:.0f} z0 from equilibrium, pull-off is {rule_a} of JKR's for
+σ = 1.7 and {rule_b} for 4.4 (from h0 = {turns_b} nm), {rule_c} for 8.7 (from {turns_c} nm). In
+{grows} of {cases} cycles the deepest penetration gives a larger one than the shallowest,
+{factor:.1f} times as large in the median. Refining the grid does not help; solving the equations
+does.
 
 **Shown:** a pull-off that grows with the penetration, and one that is too large, come out of this
 model by pinning the contact edge and by stopping early, and are gone when both are: the model has
@@ -96,13 +98,14 @@ def numbers(runs):
             spread.append(_percent(pulls[:, [_at(spacing, width)]]))
         fine.append(_percent(pulls[:, spacing < 1.05 * _RESOLVED]))
         stopped = joined(runs, letter, "paper")
-        _, by_rule = ratios(stopped, turns)
+        stopped_spacing, by_rule = ratios(stopped, turns)
         factors.extend(by_rule[-1] / by_rule[0])
         found.update({
             f"coarse_{letter}": pulls[-1, _at(spacing, 4)],
             f"one_{letter}": pulls[-1, _at(spacing, 1)],
             f"fine_{letter}": pulls[-1, 0], "finest": spacing[0],
             f"true_{letter}": _true(runs, letter),
+            f"rule_finest_{letter}": stopped_spacing[0],
             f"left_{letter}": stopped["worst_residual"][0],
             f"rule_{letter}": _listed(by_rule[:, 0])})
     return {**found, "spread_coarse": max(coarse), "spread_two": max(two), "spread_one": max(one),
@@ -156,14 +159,15 @@ def rows(runs):
     for letter, sigma, turns in _CASES:
         stopped = joined(runs, letter, "paper")
         spacing, solved = ratios(joined(runs, letter, "residual"), turns)
-        _, by_rule = ratios(stopped, turns)
-        one = _at(spacing, 1)
+        stopped_spacing, by_rule = ratios(stopped, turns)
+        # Side by side: the finest grid that both were computed on.
+        both, one = _at(spacing, stopped_spacing[0]), _at(spacing, 1)
         found.append(Row(
-            f"Fig. 10({letter}) with nodes {spacing[0]:.2g} neck widths apart, largest tension "
+            f"Fig. 10({letter}) with nodes {spacing[both]:.2g} neck widths apart, largest tension "
             f"over JKR, sigma = {sigma}", words[letter], _listed(by_rule[:, 0]),
-            _listed(solved[:, 0], 4), "",
+            _listed(solved[:, both], 4), "",
             f"unloading from h0 = {_named(turns)} nm. Computed: the paper's rule, up to "
             f"{stopped['worst_residual'][0]:.0f} z0 from equilibrium; converged: the same grid, "
-            f"solved. Nodes {spacing[one]:.2g} neck width apart: {_listed(by_rule[:, one])} and "
-            f"{_listed(solved[:, one], 4)}"))
+            f"solved. Nodes {spacing[one]:.2g} neck width apart: "
+            f"{_listed(by_rule[:, _at(stopped_spacing, 1)])} and {_listed(solved[:, one], 4)}"))
     return found
