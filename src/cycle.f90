@@ -38,12 +38,15 @@ module cycle
     character(len=160) :: reason = ''
   end type branch_t
 
-  !> A stretch of a branch without a jump: its state of largest tension so far, and the values of h0
-  !> between which the largest tension of all lies (the neighbours of that state, or a jump).
+  !> A stretch of a branch without a jump: its state of largest tension so far, the one before it,
+  !> and the values of h0 between which the largest tension of all lies (the neighbours of that
+  !> state, or a jump).
   type :: stretch_t
-    type(position_t) :: lowest
+    type(position_t) :: lowest, previous
     real(wp) :: before = 0, after = 0
     logical :: open = .false.
+    !> The contact edge jumped from node to node on the way, or may have.
+    logical :: jagged = .false.
   end type stretch_t
 
   !> Stretches of a branch that are searched at once; of what an unresolved contact edge, jumping
@@ -57,6 +60,8 @@ module cycle
   real(wp), parameter :: load_tolerance = 1.0e-10_wp, enough = 1.0e-3_wp
   !> Smallest bracket that is searched, relative or in the law's lengths.
   real(wp), parameter :: closest = 1.0e-9_wp
+  !> Steps short enough for every jump of the contact edge to be located, in the law's lengths.
+  real(wp), parameter :: short_step = 0.1_wp
 
 contains
 
@@ -73,6 +78,7 @@ contains
     type(position_t), intent(out) :: kept(:)
     type(branch_t), intent(out) :: branch
     type(stretch_t) :: stretch, deferred
+    type(position_t) :: previous
     type(event_t) :: event
     real(wp) :: last_h0
     integer :: i, k, ended
@@ -82,6 +88,7 @@ contains
     last_h0 = plan%h0(1)
     if (.not. fresh) last_h0 = position%state%h0
     do i = 1, size(plan%h0)
+      previous = position
       if (fresh .and. i == 1) then
         call steps%begin(plan%h0(i), position, event)
       else
@@ -113,12 +120,13 @@ contains
             stretch%open = event%jump_load >= stretch%lowest%state%load
         end if
         call end_stretch(steps, stretch, last_h0, ended, deferred, branch)
-        stretch = stretch_t(position, last_h0, plan%h0(i), .true.)
+        stretch = stretch_t(position, previous, last_h0, plan%h0(i), .true.)
       else if (position%state%load < stretch%lowest%state%load) then
-        stretch = stretch_t(position, last_h0, plan%h0(i), .true.)
+        stretch = stretch_t(position, previous, last_h0, plan%h0(i), .true., stretch%jagged)
       else if (abs(stretch%after - stretch%lowest%state%h0) <= 0.0_wp) then
         stretch%after = plan%h0(i)
       end if
+      if (.not. event%jumped .and. event%jump_uncertainty > 0) stretch%jagged = .true.
       last_h0 = plan%h0(i)
     end do
     call end_stretch(steps, stretch, last_h0, ended, deferred, branch)
@@ -145,16 +153,9 @@ contains
       branch%jump_h0 = event%jump_h0
       branch%jump_load = event%jump_load
       branch%jump_uncertainty = event%jump_uncertainty
-      if (event%jump_load < 0) then
-        if (.not. allocated(branch%load)) then
-          branch%load = event%jump_load
-          branch%load_h0 = event%jump_h0
-        else if (event%jump_load < branch%load) then
-          branch%load = event%jump_load
-          branch%load_h0 = event%jump_h0
-        end if
-      end if
     end if
+    ! The last state before a jump may be the branch's largest tension.
+    if (event%jumped .and. event%jump_load < 0) call lower(branch, event%jump_load, event%jump_h0)
     branch%reason = event%reason
     if (event%reason /= '') return
     branch%states = branch%states + 1
@@ -167,16 +168,16 @@ contains
       branch%worst_spacing = max(branch%worst_spacing, steps%spacing_over_neck(position))
   end subroutine note
 
-  !> Lets a state be the branch's largest tension if it is.
-  subroutine lower(branch, state)
+  !> Lets a load at h0 be the branch's largest tension if it is.
+  subroutine lower(branch, load, h0)
     type(branch_t), intent(inout) :: branch
-    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: load, h0
 
     if (allocated(branch%load)) then
-      if (state%load >= branch%load) return
+      if (load >= branch%load) return
     end if
-    branch%load = state%load
-    branch%load_h0 = state%h0
+    branch%load = load
+    branch%load_h0 = h0
   end subroutine lower
 
   !> Refines the largest tension of a stretch that ends at `finish`, or keeps it for later as
@@ -191,7 +192,7 @@ contains
     if (.not. stretch%open) return
     stretch%open = .false.
     if (stretch%lowest%state%load < 0) then
-      call lower(branch, stretch%lowest%state)
+      call lower(branch, stretch%lowest%state%load, stretch%lowest%state%h0)
     else if (.not. steps%problem%law%adhesion > 0) then
       return
     end if
@@ -230,6 +231,10 @@ contains
     width = high - low
     ! Between steps as close as this there is nothing to find that rounding would not hide.
     if (.not. width > closest*max(1.0_wp, abs(low), abs(high))) return
+    if (stretch%jagged) then
+      call search_jump_by_jump(steps, stretch, branch)
+      return
+    end if
     do round = 1, most_rounds
       left = max(low, maxval([low, pack(h0, h0 < best%state%h0)]))
       right = min(high, minval([high, pack(h0, h0 > best%state%h0)]))
@@ -245,9 +250,12 @@ contains
       trial = best
       call steps%go(next, trial, event)
       if (event%jumped .or. .not. event%converged) then
-        ! The stretch does not reach there.
+        ! The stretch does not reach there, but to the jump, where its tension may be largest.
+        if (event%jumped) next = event%jump_h0
         if (next < best%state%h0) low = next
         if (next > best%state%h0) high = next
+        if (event%jumped .and. (next - best%state%h0)*(stretch%after - stretch%before) > 0 .and. &
+          event%jump_load < 0) call lower(branch, event%jump_load, next)
         cycle
       end if
       h0 = [h0, next]
@@ -258,10 +266,41 @@ contains
       call keep_nearest(h0, load)
     end do
     if (best%state%load < 0) then
-      call lower(branch, best%state)
+      call lower(branch, best%state%load, best%state%h0)
       call add_witness(branch%witness, steps%witness(best))
     end if
   end subroutine refine
+
+  !> Goes once more from stretch%before to stretch%after, or from the lowest state where a jump came
+  !> before it, with every jump of the contact edge located: the tension is largest just before one.
+  subroutine search_jump_by_jump(steps, stretch, branch)
+    class(quasi_static_t), intent(inout) :: steps
+    type(stretch_t), intent(in) :: stretch
+    type(branch_t), intent(inout) :: branch
+    type(position_t) :: position, best
+    type(event_t) :: event
+    real(wp) :: start
+    integer :: i, count
+
+    best = stretch%lowest
+    position = stretch%lowest
+    if (allocated(stretch%previous%state%gap)) then
+      if (abs(stretch%previous%state%h0 - stretch%before) <= 0.0_wp) position = stretch%previous
+    end if
+    start = position%state%h0
+    count = ceiling(abs(stretch%after - start)/short_step)
+    do i = 1, count
+      call steps%go(start + (stretch%after - start)*i/count, position, event)
+      if (.not. event%converged .or. event%reason /= '') exit
+      if (event%jumped .and. event%jump_load < 0) &
+        call lower(branch, event%jump_load, event%jump_h0)
+      if (position%state%load < best%state%load) best = position
+    end do
+    if (best%state%load < 0) then
+      call lower(branch, best%state%load, best%state%h0)
+      call add_witness(branch%witness, steps%witness(best))
+    end if
+  end subroutine search_jump_by_jump
 
   !> Drops values until the five nearest to the lowest load are left.
   pure subroutine keep_nearest(h0, load)

@@ -4,30 +4,27 @@ module fixed_steps
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, state_from, residual_floor
+  use equilibrium, only: control_t, state_t, state_from, residual_floor, radius_of_gap
   use solver_options, only: solver_options_t
   use solver, only: solve_state
   use relaxation, only: relax
-  use tracer, only: between
-  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember, &
-    touching
+  use fixed_branch, only: fixed_branch_t, change, jump
+  use quasi_static, only: position_t, event_t, witness_t, remember, touching
   implicit none
   private
   public :: fixed_steps_t
 
-  type, extends(quasi_static_t) :: fixed_steps_t
-    type(discretisation_t) :: mesh
+  type, extends(fixed_branch_t) :: fixed_steps_t
   contains
     procedure :: begin
     procedure :: go
     procedure :: grid
     procedure :: spacing_over_neck
     procedure :: witness
-    procedure, private :: continue_to
+    procedure, private :: stays
     procedure, private :: land
     procedure, private :: goes_on
     procedure, private :: paper_step
-    procedure, private :: solve_at
   end type fixed_steps_t
 
   !> Steps of the approach from afar, in the law's lengths, and the most of them: where the way is
@@ -38,13 +35,15 @@ module fixed_steps
   integer, parameter :: newton_iterations = 12
   !> How often Newton's method may help the iteration on in a step before that is said to fail.
   integer, parameter :: most_rescues = 5
-  !> A state continues the branch that was extrapolated to it if it lies no farther from the
-  !> extrapolation than half the extrapolated change plus this many of the law's lengths. Where even
-  !> the smallest step leads farther the bodies jump.
-  real(wp), parameter :: jump = 0.05_wp
-  !> With the paper's stopping rule states are not exact enough for that; this many times the
-  !> change of h0 then counts as a jump.
+  !> With the paper's stopping rule states are not exact enough for `jump`; this many times the
+  !> change of h0 then counts as one.
   real(wp), parameter :: paper_jump = 5
+  !> Where the contact edge is caught between nodes it jumps from one to the next many times; in
+  !> steps longer than this (in the law's lengths) these jumps are not located one by one.
+  real(wp), parameter :: short_step = 0.11_wp
+  !> The largest spacing over the width of the neck for that: beyond it each jump tells in the
+  !> load, and there are few.
+  real(wp), parameter :: fine_enough = 0.4_wp
 
 contains
 
@@ -79,14 +78,14 @@ contains
     event%jumped = .false.
   end subroutine begin
 
-  subroutine go(self, h0, position, event)
+  recursive subroutine go(self, h0, position, event)
     class(fixed_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(position_t), intent(inout) :: position
     type(event_t), intent(out) :: event
     type(state_t) :: state, before, landed
-    real(wp) :: step, next
-    logical :: continues, stalled
+    real(wp) :: beyond, jump_h0, jump_uncertainty
+    logical :: continues, stalled, arrived, at_fold, has_landed
     integer :: rescues
 
     if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
@@ -97,43 +96,66 @@ contains
       call self%paper_step(h0, position, event)
       return
     end if
-    call self%continue_to(h0, position, state, event, continues)
+    call self%continue_to(h0, position, self%expected_at(h0, position), state, event, continues)
     if (continues) then
       call remember(position, state, 1, .false.)
       return
     end if
-
-    ! The branch ends, or turns sharply, on the way: how far does it go?
-    landed = state
-    step = 0.5_wp*(h0 - position%state%h0)
+    has_landed = self%options%method /= 'mixing' .and. &
+      abs(h0 - position%state%h0) > short_step .and. &
+      position%state%axis_gap < self%problem%law%edge_gap .and. &
+      over_neck(self%problem, self%mesh%spacing) < fine_enough
+    if (has_landed) then
+      call self%land(h0, position%state, landed, event)
+      if (self%stays(position%state, landed, event)) then
+        event%jump_h0 = 0.5_wp*(position%state%h0 + h0)
+        event%jump_uncertainty = 0.5_wp*abs(h0 - position%state%h0)
+        call remember(position, landed, 1, .false.)
+        return
+      end if
+      has_landed = event%converged
+    end if
     do rescues = 0, most_rescues
-      do while (abs(step) > self%jump_tolerance)
-        next = position%state%h0 + step
-        if (abs(h0 - position%state%h0) <= 1.1_wp*abs(step)) next = h0
-        call self%continue_to(next, position, state, event, continues)
-        if (continues) then
-          call remember(position, state, 1, .false.)
-          if (abs(next - h0) <= 0.0_wp) return
-          step = 1.5_wp*step
-        else
-          step = step/3
-        end if
-      end do
-      stalled = self%goes_on(position%state%h0 + 1.5_wp*step, position%state, state)
+      call self%follow(h0, position, event, beyond, arrived, at_fold)
+      if (arrived) return
+      stalled = .false.
+      if (.not. at_fold) stalled = self%goes_on(beyond, position%state, state)
       if (.not. stalled) exit
       ! Near its end a branch turns sharply, and is worth another try.
       call remember(position, state, 1, .false.)
-      step = sign(min(2*self%jump_tolerance, abs(h0 - state%h0)), step)
+      event%converged = .true.
+      if (abs(beyond - h0) <= 0.0_wp) return
     end do
+
     before = position%state
-    call self%land(h0, before, landed, event)
     if (stalled) then
       ! The iteration does not follow the branch, and no jump has been seen: whether what is found
       ! at h0 is on this branch nobody knows.
+      call self%land(h0, before, landed, event)
       event%converged = .false.
       call remember(position, landed, 1, .true.)
       return
     end if
+    if (.not. has_landed .and. before%axis_gap < self%problem%law%edge_gap .and. &
+      self%options%method /= 'mixing') then
+      ! Held by the next nodes the edge may come to rest before h0, and the tension grow again.
+      call self%land(beyond, before, landed, event)
+      if (self%stays(before, landed, event) .and. abs(beyond - h0) > 0.0_wp) then
+        jump_h0 = 0.5_wp*(before%h0 + beyond)
+        jump_uncertainty = 0.5_wp*abs(beyond - before%h0)
+        call remember(position, landed, 1, .true.)
+        call self%go(h0, position, event)
+        if (event%jumped .and. event%jump_load < before%load) return
+        event%jumped = .true.
+        event%jump_h0 = jump_h0
+        event%jump_load = before%load
+        event%jump_uncertainty = jump_uncertainty
+        return
+      end if
+    end if
+    ! From the end of the branch the bodies go to where they went from before it.
+    event%converged = has_landed
+    if (.not. has_landed) call self%land(h0, before, landed, event)
     ! From where there was no equilibrium nothing jumps.
     event%jumped = event%converged .and. change(before, landed) > jump .and. &
       before%residual <= max(self%options%tolerance, residual_floor(self%problem, before))
@@ -143,9 +165,9 @@ contains
       event%jumped = .true.
       event%reason = 'no stable equilibrium exists beyond this h0'
     end if
-    event%jump_h0 = before%h0 + 1.5_wp*step
+    event%jump_h0 = 0.5_wp*(before%h0 + beyond)
     event%jump_load = before%load
-    event%jump_uncertainty = abs(1.5_wp*step)
+    event%jump_uncertainty = 0.5_wp*abs(beyond - before%h0)
     call remember(position, landed, 1, event%jumped)
   end subroutine go
 
@@ -173,6 +195,21 @@ contains
     goes_on = goes_on .and. change(before, state) <= jump
   end function goes_on
 
+  !> Whether bodies that came from one state to the other by relaxation stayed in contact:
+  !> whatever jump there was on the way was one of the edge, from node to node.
+  logical function stays(self, before, after, event)
+    class(fixed_steps_t), intent(in) :: self
+    type(state_t), intent(in) :: before, after
+    type(event_t), intent(in) :: event
+    real(wp) :: from, to
+
+    stays = .false.
+    if (.not. event%converged .or. .not. self%problem%law%edge_gap > 0) return
+    from = radius_of_gap(self%problem%law%edge_gap, self%mesh, before)
+    to = radius_of_gap(self%problem%law%edge_gap, self%mesh, after)
+    stays = min(from, to) > 0.5_wp*max(from, to)
+  end function stays
+
   !> A step as the paper takes it: h0 changes at constant separation, and the iteration goes on
   !> until its own rule is met. A jump is a change of deformation many times that of h0, and is
   !> known only to have happened within the step.
@@ -195,31 +232,6 @@ contains
     call remember(position, state, 1, event%jumped)
   end subroutine paper_step
 
-  !> The state at h0 from the extrapolated past (for mixing, as in the paper, from the last state at
-  !> constant separation), and whether it continues the branch of the position.
-  subroutine continue_to(self, h0, position, state, event, continues)
-    class(fixed_steps_t), intent(inout) :: self
-    real(wp), intent(in) :: h0
-    type(position_t), intent(in) :: position
-    type(state_t), intent(out) :: state
-    type(event_t), intent(inout) :: event
-    logical, intent(out) :: continues
-    type(state_t) :: expected
-
-    expected = between(self%mesh, position%h0(:position%held), position%past(:position%held), h0, &
-      self%mesh%nodes)
-    if (position%held == 1) expected%gap = expected%gap + (h0 - position%state%h0)
-    expected%h0 = h0
-    state = expected
-    ! A single state says too little about where the next is, and mixing starts as in the paper.
-    if (self%options%method == 'mixing' .or. position%held == 1) state = position%state
-    call self%solve_at(h0, state, event)
-    continues = event%converged .and. change(expected, state) <= &
-      0.5_wp*change(position%state, expected) + jump + merge(abs(h0 - position%state%h0), 0.0_wp, &
-      position%held == 1)
-    if (self%problem%rigid) continues = .true.
-  end subroutine continue_to
-
   !> Where the bodies go from the state `before` when h0 is changed to a value at which its branch
   !> has ended. Mixing relaxes by itself.
   subroutine land(self, h0, before, state, event)
@@ -239,26 +251,6 @@ contains
     call relax(self%problem, self%mesh, control, self%options, state, event%converged, self%cost)
     self%frozen%factors%valid = .false.
   end subroutine land
-
-  !> Solves at h0 from the guess `state`.
-  subroutine solve_at(self, h0, state, event)
-    class(fixed_steps_t), intent(inout) :: self
-    real(wp), intent(in) :: h0
-    type(state_t), intent(inout) :: state
-    type(event_t), intent(inout) :: event
-    type(control_t) :: control
-
-    control%value = h0
-    call solve_state(self%problem, self%mesh, control, self%options, self%frozen, state, &
-      event%converged, self%cost)
-  end subroutine solve_at
-
-  !> Largest difference between the deformations of two states.
-  pure real(wp) function change(a, b)
-    type(state_t), intent(in) :: a, b
-
-    change = maxval(abs((b%gap - b%h0) - (a%gap - a%h0)))
-  end function change
 
   function grid(self, position)
     class(fixed_steps_t), intent(in), target :: self

@@ -3,7 +3,8 @@ module linear_algebra
   use kinds, only: wp
   implicit none
   private
-  public :: multiply, factorisation_t, factorise, solve, determinant_sign
+  public :: multiply, factorisation_t, factorise, solve, determinant_sign, &
+    log_determinant
 
   !> LU factors of a square matrix, from `factorise`.
   type :: factorisation_t
@@ -90,5 +91,16 @@ contains
       if (factors%lu(i, i) < 0) determinant_sign = -determinant_sign
     end do
   end function determinant_sign
+
+  !> Logarithm of the absolute value of the determinant.
+  pure real(wp) function log_determinant(factors)
+    type(factorisation_t), intent(in) :: factors
+    integer :: i
+
+    log_determinant = 0
+    do i = 1, size(factors%pivot)
+      log_determinant = log_determinant + log(abs(factors%lu(i, i)))
+    end do
+  end function log_determinant
 
 end module linear_algebra

@@ -13,9 +13,10 @@ module relaxation
   private
   public :: relax
 
-  !> Most pseudo-time steps; factorisations that are always allowed, and cubes of the matrix's
-  !> order that all of them may amount to (some ten seconds).
-  integer, parameter :: most_steps = 2000, few_factorisations = 100
+  !> Most pseudo-time steps; factorisations that are always allowed (a contact edge that runs across
+  !> a hundred widths of the neck takes some 200), and cubes of the matrix's order that more may
+  !> amount to (some ten seconds).
+  integer, parameter :: most_steps = 2000, few_factorisations = 500
   real(wp), parameter :: most_cubes = 1.0e11_wp
   !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth
   !> and its limits: a residual that grows, as it does while bodies come apart, is no reason for
@@ -26,6 +27,8 @@ module relaxation
   !> Stands for a residual before the first; and the gap below which bodies that nothing keeps
   !> apart have fallen onto each other, in the law's lengths.
   real(wp), parameter :: unknown = 1.0e100_wp, fallen = 0.01_wp
+  !> Change of the gaps in one step that follows the fall well enough, in the law's lengths.
+  real(wp), parameter :: travel = 0.3_wp
 
 contains
 
@@ -40,7 +43,7 @@ contains
     type(cost_t), intent(inout) :: cost
     type(factorisation_t) :: factors
     real(wp), allocatable :: z(:), g(:), dz(:)
-    real(wp) :: dtau, before
+    real(wp) :: dtau, before, moved
     integer :: step, began, allowed
 
     converged = .false.
@@ -49,6 +52,7 @@ contains
     allocate (g(size(z)))
     dtau = first_step
     before = unknown
+    moved = unknown
     began = int(cost%factorisations)
     allowed = max(few_factorisations, int(min(most_cubes/real(size(z), wp)**3, 1.0e6_wp)))
     do step = 1, most_steps
@@ -70,7 +74,7 @@ contains
         before = unknown
         cycle
       end if
-      dtau = dtau*min(growth, before/max(state%residual, before/(2*growth)))
+      dtau = dtau*min(growth, max(before/state%residual, travel/moved))
       dtau = min(max(dtau, usual_step), longest_step)
       before = state%residual
       do
@@ -82,7 +86,9 @@ contains
       end do
       dz = -g
       call solve(factors, dz)
-      z = z + largest_step(this, control, z, dz)*dz
+      dz = largest_step(this, control, z, dz)*dz
+      z = z + dz
+      moved = max(maxval(abs(dz)), tiny(1.0_wp)/epsilon(1.0_wp))
     end do
   end subroutine relax
 
