@@ -94,6 +94,31 @@ def test_what_was_interrupted_or_removed_is_run_again(tools, snapin_path, tmp_pa
     assert not runs.is_done(deck)
 
 
+def test_an_interrupted_run_goes_on_or_starts_over_where_it_cannot(tools, snapin_path, tmp_path):
+    from runs import Runs
+
+    program, log = counting(snapin_path, tmp_path)
+    text = program.read_text().replace("echo run", 'echo "$2"')
+    program.write_text(text)
+    deck = tmp_path / "rigid.nml"
+    deck.write_text(DECK)
+    runs = Runs(tmp_path / "runs", program)
+    left = tmp_path / "runs" / "rigid" / "journal.partial"
+    left.parent.mkdir(parents=True)
+
+    def options_used():
+        left.touch()
+        log.unlink(missing_ok=True)
+        runs.execute(deck)
+        assert runs.is_done(deck)
+        return log.read_text().split()
+
+    assert options_used() == ["--resume"]
+    # As the program does with a journal of another deck.
+    program.write_text(text.replace("exec", '[ "$2" = --resume ] && exit 1\nexec'))
+    assert options_used() == ["--resume", "--out"]
+
+
 def test_a_failing_deck_is_named_and_the_others_are_run(tools, snapin_path, tmp_path):
     from runs import Runs
 

@@ -85,7 +85,7 @@ class Runs:
     """The runs of many decks, each in `root`/<stem of the deck>/.
 
     Beside the folder lies <stem>.json: a digest of deck and program, the exit status, the time
-    taken. It is written last and removed first, so that what was interrupted is run again.
+    taken. It is written last and removed first, so that what was interrupted is gone on with.
     """
 
     def __init__(self, root, program=None):
@@ -147,11 +147,11 @@ class Runs:
         (self.root / path.stem / "summary.nml").unlink(missing_ok=True)
         self._results.pop(path.stem, None)
         digest, began = self.digest(path), time.perf_counter()
-        done = subprocess.run(
-            [str(self.program), "--quiet", "--out", str(self.root), str(path)],
-            env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
-            stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
-            check=False)
+        interrupted = (self.root / path.stem / "journal.partial").is_file()
+        done = self._call(path, *(["--resume"] if interrupted else []))
+        if interrupted and not (self.root / path.stem / "summary.nml").is_file():
+            # What is left is of another deck or program.
+            done = self._call(path)
         seconds = time.perf_counter() - began
         problem = self._problem_of(path, done)
         self._record_path(path).write_text(json.dumps(
@@ -160,6 +160,13 @@ class Runs:
             encoding="utf-8")
         if problem is not None:
             raise RunError(problem)
+
+    def _call(self, path, *options):
+        return subprocess.run(
+            [str(self.program), "--quiet", *options, "--out", str(self.root), str(path)],
+            env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+            stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
+            check=False)
 
     def run_all(self, decks, jobs, say):
         """Run decks, `jobs` at a time, going on where one fails; return {stem: problem}.
