@@ -5,7 +5,7 @@ module c_library
   implicit none
   private
   public :: c_mkdir, c_rename, c_unlink, c_isatty, c_write, c_fopen, c_fwrite, c_fflush, c_fclose
-  public :: errno, system_failure
+  public :: c_fread, c_ferror, errno, reason, system_failure
 
   !> Numbers of errors, the same on every Linux.
   integer(c_int), parameter :: file_exists_already = 17, not_a_folder = 20, is_a_folder = 21, &
@@ -65,6 +65,22 @@ module c_library
       type(c_ptr), value :: stream
       integer(c_size_t) :: written
     end function c_fwrite
+
+    function c_fread(text, size, count, stream) bind(c, name='fread') result(taken)
+      import :: c_char, c_ptr, c_size_t
+      implicit none
+      character(kind=c_char), intent(inout) :: text(*)
+      integer(c_size_t), value :: size, count
+      type(c_ptr), value :: stream
+      integer(c_size_t) :: taken
+    end function c_fread
+
+    function c_ferror(stream) bind(c, name='ferror') result(status)
+      import :: c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: stream
+      integer(c_int) :: status
+    end function c_ferror
 
     function c_fflush(stream) bind(c, name='fflush') result(status)
       import :: c_int, c_ptr

@@ -1,5 +1,7 @@
 """The command line: options, exit status, and that a wrong deck leaves nothing behind."""
 
+import resource
+
 import pytest
 
 # The cheapest thing the program can do.
@@ -139,6 +141,33 @@ def test_deck_name_may_hold_blanks_and_further_points(snapin, decks):
     done = snapin("--quiet", "my deck.v2.nml", "--out", "out put", cwd=decks)
     assert done.returncode == 0, done.stderr
     assert (decks / "out put" / "my deck.v2" / "summary.nml").is_file()
+
+
+@pytest.mark.parametrize("name", ["..nml", "...nml", ".nml"])
+def test_results_stay_inside_the_folder_whatever_the_deck_is_called(snapin, decks, name):
+    (decks / name).write_text(DECK)
+    done = snapin("--quiet", name, "--out", "here/there", cwd=decks)
+    assert done.returncode == 0, done.stderr
+    assert (decks / "here" / "there" / name / "summary.nml").is_file()
+    assert files_in(decks / "here") == ["there"] + sorted(
+        f"there/{name}{file}" for file in ["", "/classical.csv", "/summary.nml"])
+
+
+@pytest.mark.parametrize("name", ["a\nb.nml", "q'\".nml", "\u00e9\u221e.nml", "*.nml", "a\\b.nml"])
+def test_a_deck_may_be_called_anything(snapin, decks, name):
+    (decks / name).write_text(DECK)
+    done = snapin("--quiet", name, cwd=decks)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (decks / "results" / name.removesuffix(".nml") / "summary.nml").is_file()
+
+
+def test_a_thousand_decks_are_checked_in_little_memory(snapin, decks):
+    names = [f"d{i}.nml" for i in range(1000)]
+    for name in names:
+        (decks / name).write_text(DECK)
+    done = snapin("--check", *names, cwd=decks, preexec_fn=lambda: resource.setrlimit(
+        resource.RLIMIT_AS, (2**29, 2**29)))
+    assert (done.returncode, done.stdout.count(": ok\n")) == (0, 1000), done.stderr
 
 
 def test_quiet_says_nothing(snapin, decks):
