@@ -9,7 +9,7 @@ module c_library
   public :: c_mkdir, c_rename, c_unlink, c_isatty, c_write, c_fopen, c_fwrite, c_fread, c_fflush, &
     c_fseek, c_fileno, c_ftruncate, c_fclose, c_opendir, c_dirfd, c_closedir, c_flock, &
     c_signal
-  public :: errno, system_failure, text_at, procedure_named
+  public :: c_ferror, errno, reason, system_failure, text_at, procedure_named
   public :: from_start, from_here, lock_or_fail, locked_elsewhere
 
   !> Numbers of errors, the same on every Linux.
@@ -108,6 +108,13 @@ module c_library
       integer(c_long), value :: length
       integer(c_int) :: status
     end function c_ftruncate
+
+    function c_ferror(stream) bind(c, name='ferror') result(status)
+      import :: c_int, c_ptr
+      implicit none
+      type(c_ptr), value :: stream
+      integer(c_int) :: status
+    end function c_ferror
 
     function c_fflush(stream) bind(c, name='fflush') result(status)
       import :: c_int, c_ptr

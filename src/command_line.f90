@@ -1,7 +1,7 @@
 !> The command line: options, decks, help.
 module command_line
   use failure, only: failure_t, fail, bad_input
-  use deck_text, only: guess
+  use deck_text, only: guess, printable
   implicit none
   private
   public :: options_t, file_t, read_command_line, stem_of, write_help, write_usage
@@ -76,7 +76,7 @@ contains
           options%out = argument(7:)
           if (len_trim(options%out) == 0) call fail(error, bad_input, '--out needs a folder')
         else
-          call fail(error, bad_input, 'unknown option "' // argument // '"' // &
+          call fail(error, bad_input, 'unknown option "' // printable(argument) // '"' // &
                     guess(argument, known, ''))
         end if
       end select
@@ -99,15 +99,17 @@ contains
     do i = 2, size(decks)
       do j = 1, i - 1
         if (stem_of(decks(i)%name) /= stem_of(decks(j)%name)) cycle
-        call fail(error, bad_input, decks(j)%name // ' and ' // decks(i)%name // &
-                  ' would both write to the folder ' // stem_of(decks(i)%name) // &
+        call fail(error, bad_input, printable(decks(j)%name) // ' and ' // &
+                  printable(decks(i)%name) // ' would both write to the folder ' // &
+                  printable(stem_of(decks(i)%name)) // &
                   '; rename one, or run them one by one with --out')
         return
       end do
     end do
   end subroutine check_stems
 
-  !> The file name of `path` without folders and without its last extension.
+  !> The file name of `path` without folders and without its last extension. A name like `...nml`
+  !> stays whole: its stem would be a folder above the results.
   pure function stem_of(path) result(stem)
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: stem
@@ -115,7 +117,7 @@ contains
 
     stem = path(index(path, '/', back=.true.) + 1:)
     dot = index(stem, '.', back=.true.)
-    if (dot > 1) stem = stem(:dot - 1)
+    if (verify(stem(:dot), '.') > 0) stem = stem(:dot - 1)
   end function stem_of
 
   !> Argument `i` in full length.

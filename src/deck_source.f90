@@ -1,6 +1,12 @@
 !> The text of a deck as one string, and messages that point into it.
+!>
+!> Files are read with C's streams: a Fortran `open` passes over blanks at the end of a name and so
+!> finds another file.
 module deck_source
+  use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_char, c_ptr, c_size_t
   use failure, only: failure_t, fail, bad_input, file_trouble
+  use c_library, only: c_fopen, c_fread, c_ferror, c_fclose, errno, reason
+  use deck_text, only: printable
   implicit none
   private
   public :: source_t, load_source
@@ -8,9 +14,12 @@ module deck_source
   character(len=*), parameter :: newline = new_line('a')
   !> Ten thousand sweep values take a quarter of this; anything larger is not a deck.
   integer, parameter :: largest_deck = 1048576
+  !> The C library's number for it, the same on every Linux.
+  integer(c_int), parameter :: no_such_file = 2
 
   !> A deck's text, line ends made uniform.
   type :: source_t
+    !> Name of the file, fit for a message.
     character(len=:), allocatable :: file
     character(len=:), allocatable :: text
   contains
@@ -28,43 +37,35 @@ contains
     type(source_t), intent(out) :: source
     type(failure_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: bytes
-    character(len=200) :: reason
-    character(len=1) :: byte
-    logical :: exists
-    integer :: unit, status, n
+    type(c_ptr) :: stream
+    integer(c_int) :: trouble, status
+    integer :: n
 
-    source%file = file
+    source%file = printable(file)
     source%text = ''
     if (len_trim(file) == 0) then
       call fail(error, file_trouble, 'a deck needs a file name')
       return
     end if
-    inquire (file=file, exist=exists)
-    if (.not. exists) then
-      call fail(error, file_trouble, file // ': no such file')
+    stream = c_fopen(file // c_null_char, 'r' // c_null_char)
+    if (.not. c_associated(stream)) then
+      trouble = errno()
+      if (trouble == no_such_file) then
+        call fail(error, file_trouble, source%file // ': no such file')
+      else
+        call fail(error, file_trouble, source%file // ': cannot be opened: ' // reason(trouble))
+      end if
       return
     end if
-    open (newunit=unit, file=file, status='old', action='read', access='stream', &
-          form='unformatted', iostat=status, iomsg=reason)
-    if (status /= 0) then
-      call fail(error, file_trouble, file // ': cannot be opened: ' // trim(reason))
-      return
-    end if
-    ! Byte by byte, since a pipe has no size to ask for.
-    allocate (character(len=largest_deck) :: bytes)
-    n = 0
-    do
-      read (unit, iostat=status, iomsg=reason) byte
-      if (status /= 0) exit
-      n = n + 1
-      if (n > largest_deck) exit
-      bytes(n:n) = byte
-    end do
-    close (unit)
-    if (n > largest_deck) then
-      call fail(error, bad_input, file // ': larger than 1 MiB, so not a deck')
-    else if (.not. is_iostat_end(status)) then
-      call fail(error, file_trouble, file // ': cannot be read: ' // trim(reason))
+    allocate (character(len=largest_deck + 1) :: bytes)
+    n = int(c_fread(bytes, 1_c_size_t, int(len(bytes), c_size_t), stream))
+    trouble = 0
+    if (c_ferror(stream) /= 0) trouble = errno()
+    status = c_fclose(stream)
+    if (trouble /= 0) then
+      call fail(error, file_trouble, source%file // ': cannot be read: ' // reason(trouble))
+    else if (n > largest_deck) then
+      call fail(error, bad_input, source%file // ': larger than 1 MiB, so not a deck')
     else
       call straighten(bytes(:n), source%text)
       n = index(source%text, achar(0))

@@ -2,8 +2,8 @@
 !> table, and written again.
 module deck_values
   use kinds, only: wp
-  use deck_text, only: lower, quoted, unquoted, full, guess, clip, parse_real, parse_integer, &
-                       parse_logical
+  use deck_text, only: lower, quoted, unquoted, full, guess, clip
+  use deck_number, only: parse_real, parse_integer, parse_logical
   use deck_source, only: source_t
   use deck_scan, only: span_t
   use deck_keys, only: key_spec, real_value, real_list, integer_value, logical_value, word_value, &
@@ -93,7 +93,7 @@ contains
       else if (spec%kind == real_value) then
         if (star > 0) what = clip(token) // ' is a list of repeated values where one is expected'
         value%reals = [x]
-      else if (size(value%reals) + times > spec%most) then
+      else if (times > spec%most - size(value%reals)) then
         what = 'too many values'
       else
         value%reals = [value%reals, [(x, i=1, times)]]

@@ -24,9 +24,10 @@ module relaxation
   !> law's lengths.
   real(wp), parameter :: first_step = 1, growth = 3, usual_step = 0.3_wp, &
     shortest_step = 1.0e-3_wp, longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
-  !> Stands for a residual before the first; and the gap below which bodies that nothing keeps
-  !> apart have fallen onto each other, in the law's lengths.
-  real(wp), parameter :: unknown = 1.0e100_wp, fallen = 0.01_wp
+  !> Stands for a residual before the first; and the fraction of the smallest gap below which bodies
+  !> that nothing keeps apart have fallen onto each other: the attraction then grows by more than an
+  !> order, and no deformation answers that.
+  real(wp), parameter :: unknown = 1.0e100_wp, fallen = 0.3_wp
   !> Change of the gaps in one step that follows the fall well enough, in the law's lengths.
   real(wp), parameter :: travel = 0.3_wp
 
@@ -43,12 +44,13 @@ contains
     type(cost_t), intent(inout) :: cost
     type(factorisation_t) :: factors
     real(wp), allocatable :: z(:), g(:), dz(:)
-    real(wp) :: dtau, before, moved
+    real(wp) :: dtau, before, moved, apart
     integer :: step, began, allowed
 
     converged = .false.
     if (control%kind /= at_h0) return
     z = state%gap
+    apart = minval(z)
     allocate (g(size(z)))
     dtau = first_step
     before = unknown
@@ -61,7 +63,8 @@ contains
       cost%iterations = cost%iterations + 1
       state%iterations = step
       if (.not. state%residual < huge(1.0_wp)) return
-      if (this%law%adhesion > 0 .and. .not. this%law%edge_gap > 0 .and. minval(z) < fallen) return
+      if (this%law%adhesion > 0 .and. .not. this%law%edge_gap > 0 .and. &
+        minval(z) < fallen*apart) return
       if (state%residual <= max(options%tolerance, residual_floor(this, state))) then
         call factorise_jacobian(this, grid, control, state, factors, cost)
         if (.not. factors%valid) return

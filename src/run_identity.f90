@@ -5,7 +5,8 @@ module run_identity
   use kinds, only: wp, long
   use build_info, only: version, compiler, blas, options
   use c_library, only: procedure_named, text_at
-  use deck_text, only: brief, parse_real
+  use deck_text, only: brief
+  use deck_number, only: parse_real
   use packing, only: checksum
   implicit none
   private

@@ -1,5 +1,8 @@
 """The command line: options, exit status, and that a wrong deck leaves nothing behind."""
 
+import os
+import subprocess
+
 import pytest
 
 # The cheapest thing the program can do.
@@ -139,6 +142,54 @@ def test_deck_name_may_hold_blanks_and_further_points(snapin, decks):
     done = snapin("--quiet", "my deck.v2.nml", "--out", "out put", cwd=decks)
     assert done.returncode == 0, done.stderr
     assert (decks / "out put" / "my deck.v2" / "summary.nml").is_file()
+
+
+@pytest.mark.parametrize("name", ["..nml", "...nml", ".nml"])
+def test_results_stay_inside_the_folder_whatever_the_deck_is_called(snapin, decks, name):
+    (decks / name).write_text(DECK)
+    done = snapin("--quiet", name, "--out", "here/there", cwd=decks)
+    assert done.returncode == 0, done.stderr
+    assert (decks / "here" / "there" / name / "summary.nml").is_file()
+    assert files_in(decks / "here") == ["there"] + sorted(
+        f"there/{name}{file}" for file in ["", "/classical.csv", "/summary.nml"])
+
+
+@pytest.mark.parametrize("name", ["a\nb.nml", "q'\".nml", "\u00e9\u221e.nml", "*.nml", "a\\b.nml"])
+def test_a_deck_may_be_called_anything(snapin, decks, name):
+    (decks / name).write_text(DECK)
+    done = snapin("--quiet", name, cwd=decks)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (decks / "results" / name.removesuffix(".nml") / "summary.nml").is_file()
+
+
+def memory(program, *args, cwd):
+    """Exit status and most memory [bytes] of a run."""
+    process = subprocess.Popen([program, *args], cwd=cwd, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, used.ru_maxrss * 1024
+
+
+def test_a_thousand_decks_are_checked_in_little_memory(snapin_path, decks):
+    names = [f"d{i}.nml" for i in range(1000)]
+    for name in names:
+        (decks / name).write_text(DECK)
+    _, alone = memory(snapin_path, "--check", names[0], cwd=decks)
+    status, used = memory(snapin_path, "--check", *names, cwd=decks)
+    assert status == 0
+    # A deck is its text and one value a key.
+    assert used < alone + 1000 * 100e3
+
+
+def test_no_more_of_an_endless_file_is_read_than_a_deck_may_hold(snapin_path, decks):
+    with open(decks / "large.nml", "wb") as file:
+        file.truncate(100_000_000)
+    _, alone = memory(snapin_path, "--check", "good.nml", cwd=decks)
+    for name in ["large.nml", "/dev/zero"]:
+        status, used = memory(snapin_path, "--check", name, cwd=decks)
+        assert status == 2
+        assert used < alone + 10e6
 
 
 def test_quiet_says_nothing(snapin, decks):
