@@ -138,7 +138,9 @@ contains
     integer, intent(in) :: k
 
     item = ieee_value(item, ieee_quiet_nan)
-    if (present(values)) item = values(k)
+    if (.not. present(values)) return
+    ! A case may have fewer turning points than the deck.
+    if (k <= size(values)) item = values(k)
   end function item
 
 end module case_columns

@@ -7,7 +7,7 @@ module deck_keys
   public :: key_spec, group_row, ignored_group
   public :: real_value, real_list, integer_value, logical_value, word_value, text_value
   public :: group, real_key, list_key, integer_key, logical_key, word_key, text_key
-  public :: allowed, names_of, numbers_of, write_keys
+  public :: allowed, names_of, write_keys
 
   !> Kinds of row: a group, a group that is skipped when met, and six kinds of key.
   integer, parameter :: group_row = 0, ignored_group = 1
@@ -265,18 +265,5 @@ contains
       names = trim(names)
     end do
   end function names_of
-
-  !> Blank-separated 'group.key' of every key that holds one number.
-  pure function numbers_of(specs) result(names)
-    type(key_spec), intent(in) :: specs(:)
-    character(len=:), allocatable :: names
-    integer :: i
-
-    names = ''
-    do i = 1, size(specs)
-      if (specs(i)%kind == real_value .or. specs(i)%kind == integer_value) &
-        names = names // ' ' // trim(specs(i)%group) // '.' // trim(specs(i)%key)
-    end do
-  end function numbers_of
 
 end module deck_keys

@@ -4,11 +4,14 @@ module deck_store
   use failure, only: failure_t, fail, bad_input
   use deck_text, only: lower, quoted, brief, guess, listing, clip
   use deck_source, only: source_t
-  use deck_keys, only: key_spec, group_row, real_value, integer_value, allowed, numbers_of
+  use deck_keys, only: key_spec, group_row, real_value, real_list, integer_value, allowed
   use deck_values, only: value_t, unset, assumed, given, outside, assignment_text
   implicit none
   private
   public :: deck_t
+
+  !> Kinds of keys that a sweep may vary.
+  integer, parameter :: numeric(3) = [real_value, real_list, integer_value]
 
   !> A deck that has been read. The components are `read_deck`'s to fill; use the procedures.
   type :: deck_t
@@ -222,16 +225,16 @@ contains
     self%values(row)%status = assumed
   end subroutine assume_text
 
-  !> Row of the key `path` ("force.hamaker"). Fails where the table has no such key, the key is not
-  !> one number or the deck lacks its group; `error` then says so without a place in the file, which
-  !> is the caller's to add.
+  !> Row of the key `path` ("force.hamaker"). Fails where the table has no such key, the key does not
+  !> hold numbers or the deck lacks its group; `error` then says so without a place in the file,
+  !> which is the caller's to add.
   subroutine find_number(self, path, row, error)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: path
     integer, intent(out) :: row
     type(failure_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: name, group
-    integer :: dot, group_at
+    integer :: dot
 
     name = trim(lower(path))
     dot = index(name // '.', '.')
@@ -239,20 +242,40 @@ contains
     row = 0
     if (dot < len(name)) row = self%row_of(group, name(dot + 1:))
     if (row > 0) then
-      if (all(self%specs(row)%kind /= [real_value, integer_value])) row = 0
+      if (all(self%specs(row)%kind /= numeric)) row = 0
     end if
     if (row == 0) then
-      call fail(error, bad_input, quoted(clip(path)) // ' is not a key that holds one number' // &
-                guess(name, numbers_of(self%specs), '') // '; allowed: ' // &
-                listing(numbers_of(self%specs), '', ''))
-      return
-    end if
-    group_at = self%row_of(group, '')
-    if (.not. (self%has_group(group) .or. self%specs(group_at)%always)) &
+      call fail(error, bad_input, quoted(clip(path)) // ' is not a key that holds a number' // &
+                guess(name, numbers_of(self), '') // '; allowed: ' // &
+                listing(numbers_of(self), '', ''))
+    else if (.not. in_use(self, group)) then
       call fail(error, bad_input, 'the deck has no &' // group // ' for ' // quoted(name))
+    end if
   end subroutine find_number
 
-  !> Gives the key `path` another value, as if the deck said so. Fails as `find_number` does and
+  !> Whether the deck has a group or its defaults always hold.
+  pure logical function in_use(self, group)
+    type(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group
+
+    in_use = self%has_group(group) .or. self%specs(self%row_of(group, ''))%always
+  end function in_use
+
+  !> Blank-separated 'group.key' of every key that holds numbers, of the groups in use.
+  pure function numbers_of(self) result(names)
+    type(deck_t), intent(in) :: self
+    character(len=:), allocatable :: names
+    integer :: i
+
+    names = ''
+    do i = 1, size(self%specs)
+      if (all(self%specs(i)%kind /= numeric)) cycle
+      if (.not. in_use(self, trim(self%specs(i)%group))) cycle
+      names = names // ' ' // trim(self%specs(i)%group) // '.' // trim(self%specs(i)%key)
+    end do
+  end function numbers_of
+
+  !> Gives the key `path` another value (a list: this one value), as if the deck said so. Fails as `find_number` does and
   !> where the value is out of range.
   subroutine set_real(self, path, value, error)
     class(deck_t), intent(inout) :: self
@@ -275,7 +298,7 @@ contains
         return
       end if
       if (spec%kind == integer_value) stored%whole = nint(value)
-      if (spec%kind == real_value) stored%reals = [value]
+      if (spec%kind /= integer_value) stored%reals = [value]
       stored%status = given
     end associate
   end subroutine set_real

@@ -194,3 +194,15 @@ def test_a_case_that_fails_has_its_end_and_nan_for_what_it_did_not_reach(run):
     assert rows["unload_max_tension_1"][0] > 0
     assert np.isnan(rows["unload_max_tension_1"][1])
     assert np.isnan(rows["unload_jump_out_h0_1"]).all()
+
+
+def test_a_sweep_of_a_list_gives_each_case_the_one_value(run):
+    # Where the deck has two turning points the case has one, and nothing stands for the other.
+    sweep = {"key": "unloading.from", "values": [2.5, -2.0]}
+    swept = run(adhesive(sweep=sweep)).table("sweep.csv")
+    single = run(adhesive()).summary
+    np.testing.assert_allclose(
+        swept["unload_max_tension_1"], several(single["unload_max_tension"])[::-1], rtol=1e-6
+    )
+    assert np.isnan(swept["unload_max_tension_2"]).all()
+    assert np.isnan(swept["unload_jump_out_h0_2"]).all()
