@@ -286,9 +286,12 @@ def test_the_command_writes_report_table_and_picture_and_fails_on_a_bad_name(sna
     assert "run 1 of 1: fig03" in done.stderr
     picture = (tmp_path / "fig03.png").read_bytes()
     assert picture[:4] == b"\x89PNG" and len(picture) < 150_000
-    report = (tmp_path / "report.md").read_text(encoding="utf-8")
+    report = (tmp_path / "report_part.md").read_text(encoding="utf-8")
+    assert not (tmp_path / "report.md").exists()
     assert "](fig03.png)" in report and "{" not in report and str(ROOT) not in report
     assert "13.70 %" in report
-    assert "Lambda = 1e4" in (tmp_path / "published_vs_computed.csv").read_text(encoding="utf-8")
+    assert "Lambda = 1e4" in (tmp_path / "published_vs_computed_part.csv").read_text(
+        encoding="utf-8")
     assert "1 of 1 runs are there already" in run("fig03").stderr
     assert run("fig99").returncode == 2
+    assert run("-j", "0", "fig03").returncode == 2

@@ -1,7 +1,5 @@
 """Puts pictures, captions and tables together: report.md."""
 
-import pathlib
-
 import published
 from runs import path_name
 
@@ -13,7 +11,7 @@ In the tables, **published** is what the paper prints. **Computed** is found wit
 grid and stopping rule, where there is such a run: nodes 10–100 nm apart, mixing of at most 0.2,
 stopped when the central displacement changes by less than 1e-4 nm. **Converged** is what the
 equations give, with the error estimated in each run's summary. The same rows, all together, are
-in [published_vs_computed.csv](published_vs_computed.csv).
+in [{table}]({table}).
 """
 
 _RUNNING = """./reproduce            # all of it
@@ -21,14 +19,14 @@ _RUNNING = """./reproduce            # all of it
 ./reproduce --publish  # and copy it to docs/reproduction/"""
 
 
-def write(folder, chapters, runs, version, seconds):
-    """Write `folder`/report.md.
+def write(path, csv_name, chapters, runs, version, seconds):
+    """Write the report to `path`, beside the file `csv_name` with its rows.
 
     `chapters` are dicts with name, title, picture, caption, rows and problem (None if all went
     well).
     """
     lines = ["# The figures and numbers of Attard and Parker (1992), computed again", "",
-             _INTRODUCTION]
+             _INTRODUCTION.format(table=csv_name)]
     for chapter in chapters:
         lines.append(f"- [{chapter['title']}](#{_anchor(chapter['title'])})")
     lines.append("")
@@ -36,7 +34,7 @@ def write(folder, chapters, runs, version, seconds):
         lines += _chapter(chapter)
     lines += ["## All rows", "", *table([row for chapter in chapters for row in chapter["rows"]])]
     lines += _ending(chapters, runs, version, seconds)
-    published.write_whole(pathlib.Path(folder, "report.md"), "\n".join(lines) + "\n")
+    published.write_whole(path, "\n".join(lines) + "\n")
 
 
 def _chapter(chapter):

@@ -2,7 +2,7 @@
 """Run the paper's decks, draw its figures, and set its numbers beside those computed.
 
     ./reproduce                 everything, into reproduction/
-    ./reproduce fig03 fig07     these figures alone
+    ./reproduce fig03 fig07     these figures alone, into report_part.md
     ./reproduce --publish       and copy report, table and pictures to docs/reproduction/
 
 A figure is a module here with
@@ -53,12 +53,15 @@ def main():
         if chapters[-1]["problem"]:
             problems[name] = chapters[-1]["problem"]
     rows = [row for chapter in chapters for row in chapter["rows"]]
-    published.write_csv(folder / "published_vs_computed.csv", rows)
+    # Some chapters do not take the place of the whole report.
+    part = "_part" if options.only else ""
+    csv_name, text = f"published_vs_computed{part}.csv", folder / f"report{part}.md"
+    published.write_csv(folder / csv_name, rows)
     version = subprocess.run([str(runs.program), "--version"], check=False, capture_output=True,
                              text=True).stdout.strip()
-    report.write(folder, chapters, runs, version,
+    report.write(text, csv_name, chapters, runs, version,
                  sum(runs.record(deck).get("seconds", 0) for deck in dict.fromkeys(decks)))
-    _say(f"{folder}/report.md: {len(chapters)} chapters, {len(rows)} numbers, "
+    _say(f"{text}: {len(chapters)} chapters, {len(rows)} numbers, "
          f"{time.perf_counter() - began:.0f} s")
     if options.publish and not problems:
         _publish(folder, ROOT / "docs" / "reproduction")
@@ -113,6 +116,10 @@ def _options(names):
     parser.add_argument("--publish", action="store_true",
                         help="copy report, table and pictures to docs/reproduction/")
     options = parser.parse_args()
+    if options.jobs < 1:
+        parser.error("-j takes a number of decks, 1 or more")
+    if options.program and not options.program.is_file():
+        parser.error(f"no program {options.program}")
     unknown = [name for name in options.only if name not in names]
     if unknown:
         parser.error(f"no such figure: {', '.join(unknown)}; there are {', '.join(names)}")
