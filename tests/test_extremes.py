@@ -58,6 +58,12 @@ def test_numbers_whose_powers_would_overflow_are_refused(run, key, value):
     assert not result.folder.exists()
 
 
+def test_a_modulus_whose_powers_would_overflow_is_refused(run):
+    scene = lennard_jones(1.0, loading=loading(3, 1, 1))
+    result = run(scene.replace("stiffness = 1.0", "young = 1e-200, 1.0, poisson = 0.3, 0.3"), status=2)
+    assert 'key "young"' in result.stderr and "beyond all measure" in result.stderr
+
+
 def test_units_that_would_overflow_together_are_refused(run):
     """Each number is moderate; the pressure A/(16 pi z0^3) is not."""
     scene = deck(
@@ -82,6 +88,26 @@ def test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding(run, sig
         assert result.summary["max_tension"] / sigma == pytest.approx(2 * np.pi, rel=1e-6)
     else:
         assert "rounding hides the force law" in run(scene, status=1).warnings[0]
+
+
+@pytest.mark.parametrize("method", ["anderson", "newton"])
+def test_adhesion_beyond_rounding_is_refused_at_once_on_a_fixed_grid_too(run, method):
+    """Before, every step of the approach was tried for seconds, and there are hundreds."""
+    numerics = {"grid": "uniform", "nodes": 120, "method": method}
+    scene = lennard_jones(1e13, loading=loading(1.5, -98, 10), numerics=numerics)
+    result = run(scene, status=1, timeout=30)
+    assert "rounding hides the force law" in result.warnings[0]
+
+
+def test_no_residual_above_a_thousandth_is_put_down_to_rounding(run):
+    """At depths of a million million lengths rounding leaves a hundredth, too much for a state."""
+    for scene in (
+        lennard_jones(1, loading=loading(6, -1e12, 1e12)),
+        exponential(1, loading=loading(0, -1e13, 1e13)),
+    ):
+        result = run(scene, status=1)
+        assert (result.curve["residual"][result.curve["converged"] == 1] <= 1e-3).all()
+        assert any("ended early" in text for text in result.warnings)
 
 
 @pytest.mark.parametrize("nodes", [2, 3])
