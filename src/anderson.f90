@@ -9,8 +9,9 @@ module anderson
   use kinds, only: wp
   use problem, only: problem_t
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, cost_t, residual, factorise_jacobian, largest_step, &
-    state_from, unknowns_of, residual_floor, at_h0, at_h0_with_edge
+  use equilibrium, only: control_t, state_t, cost_t, residual, largest_step, state_from, &
+    unknowns_of, residual_floor, at_h0, at_h0_with_edge
+  use jacobian, only: factorise_jacobian
   use linear_algebra, only: factorisation_t, solve
   use solver_options, only: solver_options_t
   implicit none

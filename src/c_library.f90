@@ -6,7 +6,7 @@ module c_library
   use failure, only: failure_t, fail, file_trouble
   implicit none
   private
-  public :: c_mkdir, c_rename, c_unlink, c_isatty, c_write, c_fopen, c_fwrite, c_fread, c_fflush, &
+  public :: c_mkdir, c_faccessat, c_renameat, c_unlinkat, c_isatty, c_write, c_fopen, c_fwrite, c_fread, c_fflush, &
     c_fseek, c_fileno, c_ftruncate, c_fclose, c_opendir, c_dirfd, c_closedir, c_flock, &
     c_signal
   public :: c_ferror, errno, reason, system_failure, text_at, procedure_named
@@ -30,19 +30,29 @@ module c_library
       integer(c_int) :: status
     end function c_mkdir
 
-    function c_rename(from, to) bind(c, name='rename') result(status)
+    function c_faccessat(folder, name, mode, flags) bind(c, name='faccessat') result(status)
       import :: c_char, c_int
       implicit none
+      integer(c_int), value :: folder, mode, flags
+      character(kind=c_char), intent(in) :: name(*)
+      integer(c_int) :: status
+    end function c_faccessat
+
+    function c_renameat(folder, from, new_folder, to) bind(c, name='renameat') result(status)
+      import :: c_char, c_int
+      implicit none
+      integer(c_int), value :: folder, new_folder
       character(kind=c_char), intent(in) :: from(*), to(*)
       integer(c_int) :: status
-    end function c_rename
+    end function c_renameat
 
-    function c_unlink(path) bind(c, name='unlink') result(status)
+    function c_unlinkat(folder, name, flags) bind(c, name='unlinkat') result(status)
       import :: c_char, c_int
       implicit none
-      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: folder, flags
+      character(kind=c_char), intent(in) :: name(*)
       integer(c_int) :: status
-    end function c_unlink
+    end function c_unlinkat
 
     function c_isatty(descriptor) bind(c, name='isatty') result(yes)
       import :: c_int

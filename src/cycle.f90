@@ -66,8 +66,8 @@ module cycle
 contains
 
   !> Goes through plan%h0. A new experiment (fresh) begins by an approach from afar at the first
-  !> value; otherwise it goes on from `position`. Positions at the values `keep` (ascending or
-  !> descending like plan%h0) are handed back in `kept`.
+  !> value; otherwise it goes on from `position`. Positions at the steps nearest to the values `keep`
+  !> are handed back in `kept`: a plan takes values that differ by a rounded step for the same.
   subroutine run_branch(steps, plan, fresh, position, observer, keep, kept, branch)
     class(quasi_static_t), intent(inout) :: steps
     type(plan_t), intent(in) :: plan
@@ -81,9 +81,12 @@ contains
     type(position_t) :: previous
     type(event_t) :: event
     real(wp) :: last_h0
-    integer :: i, k, ended
+    integer :: i, k, ended, place(size(keep))
 
     ended = 0
+    do k = 1, size(keep)
+      place(k) = minloc(abs(plan%h0 - keep(k)), 1)
+    end do
     allocate (branch%witness(0))
     last_h0 = plan%h0(1)
     if (.not. fresh) last_h0 = position%state%h0
@@ -106,7 +109,7 @@ contains
         call add_witness(branch%witness, steps%witness(position))
       if (allocated(event%fold)) call add_witness(branch%witness, event%fold)
       do k = 1, size(keep)
-        if (abs(keep(k) - plan%h0(i)) <= 1.0e-9_wp*max(1.0_wp, abs(keep(k)))) kept(k) = position
+        if (place(k) == i) kept(k) = position
       end do
 
       if (.not. event%converged) then
@@ -231,6 +234,9 @@ contains
     width = high - low
     ! Between steps as close as this there is nothing to find that rounding would not hide.
     if (.not. width > closest*max(1.0_wp, abs(low), abs(high))) return
+    ! Nor between states that the paper's rule has stopped anywhere: what is computed there is one
+    ! more of them, and not of this experiment.
+    if (steps%options%stop_on_change .and. steps%options%method == 'mixing') return
     if (stretch%jagged) then
       call search_jump_by_jump(steps, stretch, branch)
       return

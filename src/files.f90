@@ -1,12 +1,12 @@
-!> Folders, files as a whole, and standard error.
+!> Folders, whether files exist, and standard error.
 module files
   use, intrinsic :: iso_c_binding, only: c_int, c_null_char, c_size_t
   use, intrinsic :: iso_fortran_env, only: error_unit
   use failure, only: failure_t
-  use c_library, only: c_mkdir, c_rename, c_unlink, c_isatty, c_write, errno, system_failure
+  use c_library, only: c_mkdir, c_isatty, c_write, errno, system_failure
   implicit none
   private
-  public :: make_folder, rename_file, remove_file, file_exists, is_terminal, write_stderr
+  public :: make_folder, file_exists, is_terminal, write_stderr
 
   !> Number of standard error.
   integer(c_int), parameter :: standard_error = 2
@@ -35,26 +35,6 @@ contains
       return
     end do
   end subroutine make_folder
-
-  !> Gives the file `from` the name `to`, replacing a file of that name at one stroke.
-  subroutine rename_file(from, to, error)
-    character(len=*), intent(in) :: from, to
-    type(failure_t), allocatable, intent(out) :: error
-
-    if (c_rename(from // c_null_char, to // c_null_char) /= 0) &
-      call system_failure('cannot rename ' // from // ' to ' // to, errno(), error)
-  end subroutine rename_file
-
-  !> Removes the file `path`; that it does not exist is no error.
-  subroutine remove_file(path, error)
-    character(len=*), intent(in) :: path
-    type(failure_t), allocatable, intent(out) :: error
-    integer(c_int) :: code
-
-    if (c_unlink(path // c_null_char) == 0) return
-    code = errno()
-    if (file_exists(path)) call system_failure('cannot remove ' // path, code, error)
-  end subroutine remove_file
 
   !> Whether there is a file or folder `path`.
   logical function file_exists(path)

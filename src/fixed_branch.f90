@@ -3,7 +3,8 @@ module fixed_branch
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, factorise_jacobian, control_derivative
+  use equilibrium, only: control_t, state_t
+  use jacobian, only: factorise_jacobian, control_derivative
   use linear_algebra, only: solve, determinant_sign, log_determinant
   use solver, only: solve_state
   use prediction, only: extrapolated, moved_with_edge, towards_fold

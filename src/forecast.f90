@@ -24,7 +24,8 @@ module forecast
   real(wp), parameter :: product_rate = 4.0e9_wp, factor_rate = 1.0e10_wp, overhead = 2.0e-5_wp
   !> Iterations a state, and states that a factorisation serves, in steps of the law's length or
   !> so, and in steps so fine (law's lengths) that a state is known before it is computed; the
-  !> jumps, which take many, are few. Mixing's iterations a state may be a tenth of this or ten times it.
+  !> jumps, which take many, are few. Mixing's iterations a state may be a tenth of this or ten
+  !> times it.
   real(wp), parameter :: iterations = 5, served = 8, fine = 0.01_wp, fine_iterations = 1.5_wp, &
     fine_served = 100, mixed = 500
   !> States of a path.

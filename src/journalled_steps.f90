@@ -4,7 +4,8 @@
 module journalled_steps
   use kinds, only: wp
   use discretisation, only: discretisation_t
-  use equilibrium, only: cost_t, factorise_again
+  use equilibrium, only: cost_t
+  use jacobian, only: factorise_again
   use quasi_static, only: quasi_static_t, position_t, event_t, witness_t
   use journal, only: journal_t
   use packing, only: packed_t

@@ -147,8 +147,12 @@ contains
       if (path%unstable_after(size(fold)) == 0) then
         path%jump_out_h0 = path%fold_h0(size(fold))
         path%jump_out_load = path%fold_load(size(fold))
-        path%energy_lost = 0
-        call energy_lost(trail, path%energy_lost, path%energy_uncertainty, path%energy_turned_over)
+        ! A path that ends above the jump in lacks a part of the retreat.
+        if (trail%state(trail%held)%h0 <= path%jump_in_h0) then
+          path%energy_lost = 0
+          call energy_lost(trail, path%energy_lost, path%energy_uncertainty, &
+            path%energy_turned_over)
+        end if
       end if
     end if
     allocate (path%extremum_h0(0), path%extremum_load(0))

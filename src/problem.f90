@@ -10,8 +10,8 @@ module problem
   use force_law, only: force_law_t
   implicit none
   private
-  public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, surface_energy, &
-    largest_tension
+  public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
+    surface_energy, largest_tension
 
   type :: problem_t
     class(force_law_t), allocatable :: law

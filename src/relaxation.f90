@@ -5,8 +5,9 @@ module relaxation
   use kinds, only: wp
   use problem, only: problem_t
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, cost_t, residual, factorise_jacobian, largest_step, &
-    residual_floor, at_h0
+  use equilibrium, only: control_t, state_t, cost_t, residual, largest_step, residual_floor, &
+    at_h0
+  use jacobian, only: factorise_jacobian
   use linear_algebra, only: factorisation_t, solve, determinant_sign
   use solver_options, only: solver_options_t
   implicit none

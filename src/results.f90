@@ -12,7 +12,7 @@ module results
   use equilibrium, only: state_t, cost_t
   use records, only: record_t, observer_t, theory_row_t
   use deck, only: deck_t
-  use files, only: make_folder, rename_file, remove_file, file_exists
+  use files, only: make_folder, file_exists
   use folder_lock, only: folder_lock_t
   use journal, only: journal_t
   use run_identity, only: difference_between
@@ -28,6 +28,8 @@ module results
   !> The files of a folder of results; the summary comes last, so that where it is all the rest is.
   character(len=*), parameter :: names(*) = [character(len=18) :: 'curve.csv', 'profiles.csv', &
     'approximations.csv', 'classical.csv', 'sweep.csv', 'summary.nml']
+
+  character(len=*), parameter :: journal_name = 'journal' // partial
 
   !> Takes what a run has to show, between `open` and `finish`. The first thing that goes wrong is
   !> kept in `trouble`; after it nothing more is written. Not to be copied while files are open.
@@ -54,6 +56,7 @@ module results
     procedure :: finish
     procedure, private :: claim
     procedure, private :: publish
+    procedure, private :: check_presence
     procedure, private :: path_of
     procedure, private :: mark
   end type results_t
@@ -148,7 +151,7 @@ contains
     character(len=*), intent(in) :: folder
     character(len=:), allocatable :: path
 
-    path = folder // '/journal' // partial
+    path = folder // '/' // journal_name
   end function journal_of
 
   !> Adds a record to the curve and, if `profile`, the state to the profiles.
@@ -238,11 +241,18 @@ contains
     type(deck_t), intent(in) :: deck
     type(summary_t) :: complete
     type(output_t) :: file
+    type(failure_t), allocatable :: missing
 
     if (allocated(self%trouble)) return
     complete = summary
     if (.not. allocated(complete%title)) complete%title = self%title
     if (.not. allocated(complete%version)) complete%version = self%version
+    ! A folder that has taken the name of this run's may hold another's summary.
+    call self%check_presence(missing)
+    if (allocated(missing)) then
+      call move_alloc(missing, self%trouble)
+      return
+    end if
     call self%mark('summary.nml')
     call file%open(self%path_of('summary.nml') // partial, self%trouble)
     if (.not. allocated(self%trouble)) &
@@ -276,23 +286,49 @@ contains
   subroutine publish(self, error)
     class(results_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: path
+    character(len=:), allocatable :: name
     integer :: i
 
+    call self%check_presence(error)
     ! No summary may stand beside results that are not its own.
-    call remove_file(self%path_of('summary.nml'), error)
+    if (.not. allocated(error)) call self%lock%remove_file('summary.nml', error)
     do i = 1, size(names)
       if (allocated(error)) return
-      path = self%path_of(trim(names(i)))
+      name = trim(names(i))
       if (self%made(i)) then
-        call rename_file(path // partial, path, error)
+        call self%lock%rename_file(name // partial, name, error)
       else
-        call remove_file(path, error)
-        if (.not. allocated(error)) call remove_file(path // partial, error)
+        call self%lock%remove_file(name, error)
+        if (.not. allocated(error)) call self%lock%remove_file(name // partial, error)
       end if
     end do
-    if (.not. allocated(error)) call remove_file(journal_of(self%folder), error)
+    if (.not. allocated(error)) call self%lock%remove_file(journal_name, error)
   end subroutine publish
+
+  !> Fails where a file that this run has begun is no longer in the folder it was begun in.
+  subroutine check_presence(self, error)
+    class(results_t), intent(in) :: self
+    type(failure_t), allocatable, intent(inout) :: error
+    integer :: i
+
+    if (.not. self%lock%contains_file(journal_name)) call complain(journal_name)
+    do i = 1, size(names)
+      if (allocated(error)) return
+      if (.not. self%made(i)) cycle
+      if (.not. self%lock%contains_file(trim(names(i)) // partial)) &
+        call complain(trim(names(i)) // partial)
+    end do
+
+  contains
+
+    subroutine complain(name)
+      character(len=*), intent(in) :: name
+
+      call fail(error, file_trouble, self%path_of(name) // ' was removed or moved away during ' // &
+        'the run; see that nothing does so')
+    end subroutine complain
+
+  end subroutine check_presence
 
   !> Closes a table; the first error stays.
   subroutine end_table(table, error)

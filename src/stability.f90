@@ -4,7 +4,8 @@ module stability
   use kinds, only: wp
   use problem, only: problem_t
   use discretisation, only: discretisation_t, first_node
-  use equilibrium, only: control_t, state_t, cost_t, factorise_jacobian
+  use equilibrium, only: control_t, state_t, cost_t
+  use jacobian, only: factorise_jacobian
   use linear_algebra, only: factorisation_t, solve
   implicit none
   private

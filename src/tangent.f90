@@ -3,8 +3,8 @@ module tangent
   use kinds, only: wp, pi
   use problem, only: problem_t
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, cost_t, factorise_jacobian, control_derivative, &
-    at_edge_radius, load_reach
+  use equilibrium, only: control_t, state_t, cost_t, at_edge_radius, load_reach
+  use jacobian, only: factorise_jacobian, control_derivative
   use linear_algebra, only: solve
   use anderson, only: frozen_t
   implicit none

@@ -192,6 +192,19 @@ def test_turning_points_may_come_in_any_order(run):
     assert several(other.summary["unload_from"]) == [turning[k] for k in [2, 0, 3, 1]]
 
 
+def test_a_turning_point_beside_a_rounded_step_is_a_turning_point(run):
+    turning = [0.0, -2.0, -1.99999991]
+    # 24 of these steps end 8e-8 above 0.
+    result = run(
+        lennard_jones(WEAK, loading=loading(8, -2, 0.33333333), unloading={"from_": turning})
+    )
+    for place, value in enumerate(turning, start=1):
+        assert result.curve.rows(f"unloading_{place}")["h0"][0] == value
+    np.testing.assert_allclose(
+        several(result.summary["unload_max_tension"]), 1.07953786 * JKR * WEAK, rtol=1e-6
+    )
+
+
 def test_start_in_contact_is_what_an_approach_arrives_at(run):
     whole = run(lennard_jones(STRONG, loading=loading(13, -4, 0.5), unloading={})).curve
     part = run(lennard_jones(STRONG, loading=loading(1, -4, 0.5), unloading={"h0_end": 13.0}))

@@ -176,6 +176,18 @@ def test_pull_off_goes_from_dmt_to_jkr(run):
     assert all(1 < value < 4 / 3 for value in pull_off)
 
 
+def test_energy_lost_is_that_of_the_whole_cycle_or_is_not_given(run):
+    lost = run(path(0.87)).summary["energy_lost"]
+    # The jumps are at 3.0886872 and 3.4834324.
+    deeper = run(path(0.87, h0_end=3.0)).summary
+    assert deeper["energy_lost"] == pytest.approx(lost, rel=1e-5)
+    for end in (3.1, 3.3):
+        summary = run(path(0.87, h0_end=end)).summary
+        assert summary["jump_out_h0"] == pytest.approx(3.4834324, rel=1e-6)
+        assert "energy_lost" not in summary
+        assert "energy_lost_uncertainty" not in summary
+
+
 def test_summary_has_the_extrema_of_the_load(run):
     summary = run(path(8.7)).summary
     h0, load = several(summary["load_folds_h0"]), several(summary["load_folds_load"])

@@ -4,6 +4,7 @@ import fcntl
 import os
 import random
 import resource
+import shutil
 import signal
 import struct
 import subprocess
@@ -335,6 +336,49 @@ def test_a_second_run_is_refused_and_touches_nothing(sweep, options):
     assert after == before
     # The lock is gone with its holder.
     assert sweep.run("cut", *options).returncode == 0
+
+
+@pytest.mark.parametrize("away", ["removed", "moved", "a file removed"])
+def test_a_run_whose_folder_is_gone_publishes_nothing_and_touches_no_other(
+    snapin_path, tmp_path, away
+):
+    (tmp_path / "deck.nml").write_text(lennard_jones(0.87, loading=loading(9, -3, 0.002)))
+    folder = tmp_path / "results/deck"
+    folder.mkdir(parents=True)
+    (folder / "summary.nml").write_text("of an earlier run")
+    with subprocess.Popen([snapin_path, "deck.nml"], cwd=tmp_path, env=environment(1),
+                          stderr=subprocess.PIPE, text=True) as process:
+        while not (folder / "curve.csv.partial").exists():
+            time.sleep(0.001)
+        process.send_signal(signal.SIGSTOP)
+        assert (folder / "journal.partial").exists()
+        if away == "moved":
+            folder.rename(tmp_path / "elsewhere")
+        elif away == "removed":
+            shutil.rmtree(folder)
+        else:
+            (folder / "curve.csv.partial").unlink()
+        # Another run begins there.
+        folder.mkdir(exist_ok=True)
+        others = {"curve.csv.partial": "x", "summary.nml.partial": "y", "journal.partial": "z",
+                  "classical.csv": "t"}
+        if away == "a file removed":
+            others = {"summary.nml": "of an earlier run"}
+        for name, text in others.items():
+            (folder / name).write_text(text)
+        process.send_signal(signal.SIGCONT)
+        message = process.communicate()[1]
+    assert process.returncode == 1
+    if away != "moved":
+        assert "was removed or moved away during the run" in message
+        assert {name: (folder / name).read_text() for name in others} == others
+    else:
+        # The summary had to be opened by name; nothing got its name.
+        del others["summary.nml.partial"]
+        assert {name: (folder / name).read_text() for name in others} == others
+        assert all(p.name == "summary.nml" or p.name.endswith(".partial")
+                   for p in (tmp_path / "elsewhere").iterdir())
+        assert (tmp_path / "elsewhere/summary.nml").read_text() == "of an earlier run"
 
 
 # --- Cycles

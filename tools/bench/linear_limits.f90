@@ -11,7 +11,8 @@ program linear_limits
   use problem, only: problem_t, new_problem
   use discretisation, only: discretisation_t, first_node
   use uniform_grid, only: new_uniform_grid
-  use equilibrium, only: control_t, state_t, cost_t, state_from, residual, factorise_jacobian
+  use equilibrium, only: control_t, state_t, cost_t, state_from, residual
+  use jacobian, only: factorise_jacobian
   use linear_algebra, only: multiply, factorisation_t, factorise, solve
   use mixing, only: solve_mixing
   use anderson, only: frozen_t, solve_anderson

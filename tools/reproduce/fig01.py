@@ -109,7 +109,7 @@ def rows(runs):
         Row("Fig. 1, largest negative load", -59, -grid["max_tension"] * factor,
             -summary["max_tension"] * 1e6, "µN",
             f"computed: nodes 50 nm apart, equations solved (fig06_uniform: the same sigma). "
-            f"Stopped by the paper's rule to the letter the retreat gives "
+            f"Stopped by the paper's rule the retreat gives "
             f"{-runs['fig06_paper'].last('unload_max_tension') * factor:.1f} µN with a residual of "
             f"{rule['worst_residual']:.1f} z0. Stepping h0 by {_window(runs) * 1e9:.2f} nm or "
             "more can miss the maximum and give 59"),

@@ -170,6 +170,13 @@ def rows(runs):
             "penetration"),
         Row("Fig. 7, large sigma", "neither theory particularly appropriate", None, ratio[-1], "",
             f"over JKR at sigma = {sigma[-1]:.0f}: JKR theory becomes exact"),
+        Row("section III D, sigma of mica in air (Horn et al.)", "about 1e3", None, _mica(), "",
+            "(40) with the paper's A, z0, gamma, R, E. It finds JKR theory probably not valid "
+            f"there; converged, its pull-off is {100 * (ratio[-1] - 1):.2g} % off"),
+        Row("(12), JKR pull-off at fixed displacement over that at fixed load", "5/9", None,
+            f"{_apart(runs):.5f}", "",
+            f"load at the jump apart over JKR's pull-off, at sigma = {sigma[-1]:.0f}. The paper is "
+            "right"),
         Row("Fig. 7, largest departure of the pull-off from linearity in gamma",
             "clearly breaks down at larger sigma", None, _steepest(sigma, ratio), "",
             f"d ln(pull-off)/d ln(gamma) there, at sigma = "
@@ -183,6 +190,18 @@ def rows(runs):
               for (number, mine, value), error in zip(
                   known, runs["fig07_exact_sigma"].sweep["error_estimate"])]
     return found
+
+
+def _mica():
+    """Return sigma of the paper's figures for mica: gamma 0.1 J/m^2, E 1e10 Pa, R 1e-2 m, z0 0.1
+    nm."""
+    return 0.1 / 1e10 * np.sqrt(1e-2 / 1e-10**3)
+
+
+def _apart(runs):
+    """Return the tension at the jump apart over JKR's pull-off, at the largest sigma."""
+    columns = runs["fig07_converged"].sweep
+    return float(-columns["jump_out_load"][-1] / columns["jkr_pull_off"][-1])
 
 
 def _slopes(sigma, ratio):

@@ -32,17 +32,19 @@ value; left of the thin line the grid resolves the neck.
 from different penetrations differs by up to {spread_coarse:.0f} % at 4 widths, {spread_two:.1g} %
 at 2, {spread_one:.1g} % at 1 and {spread_fine:.1g} % on grids that resolve the neck.
 
-**The stopping rule** makes the pull-off depend on the penetration on every grid. On the finest
+**The stopping rule** gives another pull-off on every grid. On the finest
 ({rule_finest_a:.2g}, {rule_finest_b:.2g} and {rule_finest_c:.2g} widths), where it stops up to
 {left_a:.0f}, {left_b:.0f} and {left_c:.0f} z0 from equilibrium, pull-off is {rule_a} of JKR's for
 σ = 1.7 and {rule_b} for 4.4 (from h0 = {turns_b} nm), {rule_c} for 8.7 (from {turns_c} nm). In
 {grows} of {cases} cycles the deepest penetration gives a larger one than the shallowest,
-{factor:.1f} times as large in the median. Refining the grid does not help; solving the equations
-does.
+{factor:.1f} times as large in the median. That is scatter rather than memory: each value is the
+largest of many states stopped anywhere, of which a deeper retreat has more, and A changed in its
+twelfth digit gives other values. Refining the grid does not help; solving the equations does.
 
-**Shown:** a pull-off that grows with the penetration, and one that is too large, come out of this
-model by pinning the contact edge and by stopping early, and are gone when both are: the model has
-one contact branch and no memory of the penetration. **Not shown:** which of the two the authors'
+**Shown:** a pull-off that is too large comes out of this model by pinning the contact edge and by
+stopping early, and one that differs with the penetration by pinning on grids much coarser than the
+neck and, as scatter, by stopping early. All are gone when both are: the model has one contact
+branch and no memory of the penetration. **Not shown:** which of the two the authors'
 own program suffered from. That depends on how its mixing ratio adapted, on its steps of h0 (here
 0.25 nm) and on how its kernel was integrated, which the paper does not say."""
 

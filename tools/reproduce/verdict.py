@@ -22,9 +22,9 @@ is solved; loading and unloading then run apart in loops, with JKR theory betwee
 describes. The pull-off is still the same after every turning point, to {uniform_spread:.0e}; on
 grids several necks coarse it is not.
 
-**Its stopping rule**, read to the letter, makes the pull-off depend on the penetration on every
-grid. Stopped on a small change of the displacement, Fig. 10(c)'s retreats from h0 = 1, −2, −4 and
-−10 nm pull off at {paper} of JKR's, up to {residual:.0f} z0 from equilibrium; converged they
+**Its stopping rule**, as read here, makes the pull-off scatter on every grid, and the more the
+longer the retreat. Stopped on a small change of the displacement, Fig. 10(c)'s retreats from
+h0 = 1, −2, −4 and −10 nm pull off at {paper} of JKR's, up to {residual:.0f} z0 from equilibrium; converged they
 agree to {converged_spread:.0e}: one contact branch, one pull-off. The hysteresis between the jump
 in and the jump out is real, the memory of the penetration is not. Which of the two shaped the
 paper's own curves its text does not tell: how far the iteration stops depends on how the mixing
