@@ -19,19 +19,17 @@ module deck_store
     type(key_spec), allocatable :: specs(:)
     type(value_t), allocatable :: values(:)
   contains
-    procedure :: file
     procedure :: has_group
     procedure :: is_set
-    procedure :: line_of
     procedure, private :: get_real, get_reals, get_integer, get_logical, get_text
     !> `call deck%get(group, key, value)`: the value the deck gives, or the default. Without either
     !> a scalar keeps what it had, a list is empty and a text ''. `value` is a real, an allocatable
     !> list of reals, an integer, a logical or an allocatable text, as the table has it.
     generic :: get => get_real, get_reals, get_integer, get_logical, get_text
-    procedure, private :: assume_real, assume_reals, assume_integer, assume_text
+    procedure, private :: assume_real, assume_reals, assume_text
     !> `call deck%assume(group, key, value)`: the default of a key, where it follows from other
     !> keys; it is written by `resolved` and gives way to what the deck says.
-    generic :: assume => assume_real, assume_reals, assume_integer, assume_text
+    generic :: assume => assume_real, assume_reals, assume_text
     procedure, private :: get_optional_real, get_optional_integer
     !> The same for a scalar that is allocated only where the key has a value.
     generic :: get_optional => get_optional_real, get_optional_integer
@@ -46,14 +44,6 @@ module deck_store
   end type deck_t
 
 contains
-
-  !> Name of the file the deck was read from.
-  pure function file(self) result(name)
-    class(deck_t), intent(in) :: self
-    character(len=:), allocatable :: name
-
-    name = self%source%file
-  end function file
 
   !> Whether the deck holds `&group`.
   pure logical function has_group(self, group)
@@ -77,15 +67,8 @@ contains
     if (row > 0) is_set = self%values(row)%status == given
   end function is_set
 
-  !> Line of the key, or of the group where the deck does not give the key or `key` is '', or 1.
-  pure integer function line_of(self, group, key)
-    class(deck_t), intent(in) :: self
-    character(len=*), intent(in) :: group, key
-
-    line_of = self%source%line_at(self%place(group, key))
-  end function line_of
-
-  !> Position in the text that `line_of` tells the line of.
+  !> Position in the text of the key, or of the group where the deck does not give the key or
+  !> `key` is ''; 0 where it gives neither.
   pure integer function place(self, group, key)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
@@ -201,18 +184,6 @@ contains
     self%values(row)%reals = value
     self%values(row)%status = assumed
   end subroutine assume_reals
-
-  pure subroutine assume_integer(self, group, key, value)
-    class(deck_t), intent(inout) :: self
-    character(len=*), intent(in) :: group, key
-    integer, intent(in) :: value
-    integer :: row
-
-    row = self%silent(group, key)
-    if (row == 0) return
-    self%values(row)%whole = value
-    self%values(row)%status = assumed
-  end subroutine assume_integer
 
   pure subroutine assume_text(self, group, key, value)
     class(deck_t), intent(inout) :: self

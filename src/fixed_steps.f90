@@ -4,12 +4,14 @@ module fixed_steps
   use kinds, only: wp
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, state_from, residual_floor, radius_of_gap
+  use equilibrium, only: control_t, state_t, state_from, residual_floor, radius_of_gap, &
+    lost_in_rounding
   use solver_options, only: solver_options_t
   use solver, only: solve_state
   use relaxation, only: relax
   use fixed_branch, only: fixed_branch_t, change, jump
-  use quasi_static, only: position_t, event_t, witness_t, remember, touching
+  use edge_locked, only: largest_radius
+  use quasi_static, only: position_t, event_t, witness_t, remember, touching, beyond_rounding
   implicit none
   private
   public :: fixed_steps_t
@@ -31,6 +33,8 @@ module fixed_steps
   !> long they are longer.
   real(wp), parameter :: approach_step = 0.5_wp
   integer, parameter :: most_approach = 400
+  !> Steps of the approach in a row that may fail; after them what is left of the way is one step.
+  integer, parameter :: most_lost = 3
   !> Newton's method needs few iterations, or is not going to arrive.
   integer, parameter :: newton_iterations = 12
   !> How often Newton's method may help the iteration on in a step before that is said to fail.
@@ -54,7 +58,7 @@ contains
     type(event_t), intent(out) :: event
     type(state_t) :: state
     real(wp) :: far
-    integer :: i, steps
+    integer :: i, steps, lost
 
     if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
       event%reason = touching
@@ -71,9 +75,11 @@ contains
     call self%solve_at(far, state, event)
     call remember(position, state, 1, .false.)
     steps = ceiling(min((far - h0)/approach_step, real(most_approach, wp)))
+    lost = 0
     do i = 1, steps
-      call self%go(far - (far - h0)*i/steps, position, event)
-      if (event%reason /= '') exit
+      call self%go(merge(h0, far - (far - h0)*i/steps, lost > most_lost), position, event)
+      if (event%reason /= '' .or. lost > most_lost) exit
+      lost = merge(0, lost + 1, event%converged)
     end do
     event%jumped = .false.
   end subroutine begin
@@ -99,6 +105,12 @@ contains
     call self%continue_to(h0, position, self%expected_at(h0, position), state, event, continues)
     if (continues) then
       call remember(position, state, 1, .false.)
+      return
+    end if
+    ! No contact is larger than the mesh.
+    if (self%problem%law%adhesion > 0 .and. lost_in_rounding(self%problem, &
+      min(largest_radius(self%problem, h0, 0.0_wp), self%mesh%end_of(self%mesh%nodes)))) then
+      event%reason = beyond_rounding
       return
     end if
     has_landed = self%options%method /= 'mixing' .and. &

@@ -18,11 +18,11 @@ module locked_steps
     node_count, path_control
   use trail, only: trail_t, extend, collapsed
   use landing, only: land_between
-  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember, &
-    touching
+  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t, remember, touching, &
+    beyond_rounding
   implicit none
   private
-  public :: locked_steps_t, fold_witness, beyond_rounding
+  public :: locked_steps_t, fold_witness
 
   type, extends(quasi_static_t) :: locked_steps_t
     type(mesh_pair_t) :: pair
@@ -49,9 +49,6 @@ module locked_steps
   real(wp), parameter :: walking_tolerance = 1.0e-6_wp
   !> Smallest step in h0, in the law's lengths, that is tried.
   real(wp), parameter :: smallest_creep = 1.0e-6_wp
-
-  character(len=*), parameter :: beyond_rounding = &
-    'adhesion is so strong that rounding hides the force law once the bodies are in contact'
 
 contains
 

@@ -9,48 +9,14 @@ module magnitudes
   use scene_groups, only: scene_t
   implicit none
   private
-  public :: check_given, check_derived
+  public :: check_derived
 
-  !> Decades, either way, that a number of the deck may have, and the units and the coupling.
-  integer, parameter :: most_given = 100, most_derived = 100
+  !> Decades, either way, that the units and the coupling may have.
+  integer, parameter :: most_derived = 100
   !> Values of h0 in the law's lengths: beyond this many, rounding is longer than the law.
   integer, parameter :: most_lengths = 15
 
-  !> Group and key of the numbers of which powers are taken.
-  character(len=12), parameter :: positive(2, 7) = reshape([character(len=12) :: &
-    'bodies', 'radius', 'bodies', 'stiffness', 'force', 'hamaker', 'force', 'z0', 'force', 'p0', &
-    'force', 'decay_length', 'numerics', 'r_max'], [2, 7])
-
 contains
-
-  !> Refuses numbers of the deck whose powers would overflow or vanish; before anything is made of
-  !> them.
-  subroutine check_given(deck, error)
-    type(deck_t), intent(in) :: deck
-    type(failure_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: group, key
-    real(wp), allocatable :: several(:)
-    real(wp) :: value
-    integer :: i
-
-    do i = 1, size(positive, 2)
-      group = trim(positive(1, i))
-      key = trim(positive(2, i))
-      value = 1
-      call deck%get(group, key, value)
-      if (.not. within(value)) call deck%mistake(group, key, brief(value)//' is beyond all '// &
-        'measure; allowed: from 1e-100 to 1e100', error)
-    end do
-    call deck%get('bodies', 'young', several)
-    if (.not. all(within(several))) call deck%mistake('bodies', 'young', 'a modulus beyond all '// &
-      'measure; allowed: from 1e-100 to 1e100 Pa', error)
-  end subroutine check_given
-
-  elemental logical function within(value)
-    real(wp), intent(in) :: value
-
-    within = value >= 10.0_wp**(-most_given) .and. value <= 10.0_wp**most_given
-  end function within
 
   !> Refuses a scene whose units, coupling or h0 are out of range. Sums of logarithms cannot
   !> overflow.

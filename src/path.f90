@@ -8,8 +8,9 @@ module path
   use tracer, only: tracer_t, new_tracer, inward, path_control
   use trail, only: trail_t, extend, collapsed, polish_extremum, of_load
   use hysteresis, only: energy_lost
-  use quasi_static, only: position_t, event_t, witness_t, add_witness, end_t, end_of
-  use locked_steps, only: locked_steps_t, fold_witness, beyond_rounding
+  use quasi_static, only: position_t, event_t, witness_t, add_witness, end_t, end_of, &
+    beyond_rounding
+  use locked_steps, only: locked_steps_t, fold_witness
   use records, only: observer_t, record_of, stable_yes, stable_no
   implicit none
   private

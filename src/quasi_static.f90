@@ -10,11 +10,15 @@ module quasi_static
   implicit none
   private
   public :: quasi_static_t, position_t, event_t, witness_t, end_t, memory, remember, &
-    add_witness, end_of, touching
+    add_witness, end_of, touching, beyond_rounding
 
   !> Why rigid bodies have no state below the smallest gap of their law.
   character(len=*), parameter :: touching = &
     'rigid bodies would touch: so near (h0 <= 0, or far below it) this law has no pressure'
+
+  !> Why there is no state after a jump into contact under adhesion beyond all matter.
+  character(len=*), parameter :: beyond_rounding = &
+    'adhesion is so strong that rounding hides the force law once the bodies are in contact'
 
   !> States kept for extrapolation in h0.
   integer, parameter :: memory = 4

@@ -11,7 +11,7 @@ module scene
   use scene_ranges, only: take_loading, take_unloading, take_path, take_profiles, take_range, &
                           take_stability
   use scene_sweep, only: take_sweep
-  use magnitudes, only: check_given, check_derived
+  use magnitudes, only: check_derived
   implicit none
   private
   public :: scene_t, bodies_t, force_t, loading_t, unloading_t, path_t, profiles_t, range_t, &
@@ -46,7 +46,6 @@ contains
 
     scene%deck = deck
     call deck%get('scene', 'title', scene%title)
-    call check_given(deck, error)
     if (allocated(error)) return
     call take_bodies(scene, error)
     call take_force(scene, error)

@@ -5,6 +5,7 @@ import pathlib
 import subprocess
 
 import pytest
+from decks import RUNTIME_ERROR
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -45,5 +46,19 @@ def snapin(snapin_path):
             check=False,
             **kwargs,
         )
+
+    return run
+
+
+@pytest.fixture
+def check(snapin, tmp_path):
+    """check(text or bytes) -> (exit status, stdout, stderr) for a deck called d.nml."""
+
+    def run(text):
+        data = text if isinstance(text, bytes) else text.encode()
+        (tmp_path / "d.nml").write_bytes(data)
+        done = snapin("--check", "d.nml", cwd=tmp_path)
+        assert not RUNTIME_ERROR.search(done.stderr + done.stdout), done.stderr
+        return done.returncode, done.stdout, done.stderr
 
     return run

@@ -9,7 +9,7 @@ import re
 
 import f90nml
 import pytest
-from test_deck import ACCEPTED, FULL, GOOD, RUNTIME_ERROR
+from decks import ACCEPTED, FULL, GOOD, RUNTIME_ERROR
 
 INPUTS = pathlib.Path(__file__).resolve().parent.parent / "inputs"
 SOURCES = [path.read_bytes() for path in sorted(INPUTS.glob("*.nml"))] + [

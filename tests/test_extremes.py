@@ -84,6 +84,26 @@ def test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding(run, sig
         assert "rounding hides the force law" in run(scene, status=1).warnings[0]
 
 
+@pytest.mark.parametrize("method", ["anderson", "newton"])
+def test_adhesion_beyond_rounding_is_refused_at_once_on_a_fixed_grid_too(run, method):
+    """Before, every step of the approach was tried for seconds, and there are hundreds."""
+    numerics = {"grid": "uniform", "nodes": 120, "method": method}
+    scene = lennard_jones(1e13, loading=loading(1.5, -98, 10), numerics=numerics)
+    result = run(scene, status=1, timeout=30)
+    assert "rounding hides the force law" in result.warnings[0]
+
+
+def test_no_residual_above_a_thousandth_is_put_down_to_rounding(run):
+    """At depths of a million million lengths rounding leaves a hundredth, too much for a state."""
+    for scene in (
+        lennard_jones(1, loading=loading(6, -1e12, 1e12)),
+        exponential(1, loading=loading(0, -1e13, 1e13)),
+    ):
+        result = run(scene, status=1)
+        assert (result.curve["residual"][result.curve["converged"] == 1] <= 1e-3).all()
+        assert any("ended early" in text for text in result.warnings)
+
+
 @pytest.mark.parametrize("nodes", [2, 3])
 @pytest.mark.parametrize("method", ["anderson", "newton", "mixing"])
 def test_two_nodes_are_a_grid_and_told_to_be_a_bad_one(run, method, nodes):
@@ -194,6 +214,15 @@ def test_what_does_not_converge_says_so_and_invents_nothing(run, scene, numerics
         assert summary["max_tension"] <= 1.01 * max(0, *-curve["load"][equilibria])
     else:
         assert not (curve["load"][equilibria] < 0).any()
+
+
+@pytest.mark.parametrize("name", ["anderson, uniform", "mixing"])
+def test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable(run, name):
+    curve = run(
+        lennard_jones(0.87, **CYCLE, stability={}, numerics=STARVED[name]), status=1
+    ).curve
+    assert (curve["converged"] == 0).any()
+    assert (curve["stable"][curve["converged"] == 0] == -1).all()
 
 
 def test_what_came_before_the_fall_is_kept(run):

@@ -1,6 +1,7 @@
 """Claims about the files of results: names, columns, contents, and what a failure leaves."""
 
 import re
+import resource
 
 import f90nml
 import pytest
@@ -252,6 +253,21 @@ def test_one_failure_does_not_stop_the_other_decks(snapin, tmp_path):
     for name in ("bad", "good"):
         assert (tmp_path / "results" / name / "summary.nml").is_file()
     assert not list(tmp_path.rglob("*.partial"))
+
+
+@pytest.mark.parametrize("count", [8, 1000], ids=["lost in closing", "lost in writing"])
+def test_a_table_that_cannot_be_written_leaves_no_results(snapin, tmp_path, count):
+    """A deck of theories alone has no states for a journal, and a summary of 1500 bytes."""
+    classical = {"h0_start": 1.0, "h0_end": -1.0, "count": count}
+    (tmp_path / "d.nml").write_text(lennard_jones(1.0, classical=classical))
+
+    def limited():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2200, 2200))
+
+    done = snapin("d.nml", cwd=tmp_path, preexec_fn=limited)
+    assert done.returncode == 1
+    assert "classical.csv.partial: File too large" in done.stderr
+    assert not [p for p in (tmp_path / "results/d").iterdir() if not p.name.endswith(".partial")]
 
 
 def test_quiet_says_nothing_when_all_is_well(snapin, tmp_path):

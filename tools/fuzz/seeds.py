@@ -1,6 +1,6 @@
 """Writes what a campaign starts from: seeds.py SNAPIN FOLDER
 
-FOLDER/seeds/ gets every deck of inputs/ and every small deck text of tests/test_deck.py,
+FOLDER/seeds/ gets every deck of inputs/ and every small deck text of tests/decks.py and of the tests of bad decks,
 FOLDER/words.dict the groups, keys and choices of `snapin --keys` and what is awkward in namelists.
 """
 
@@ -12,7 +12,9 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 
+import decks  # noqa: E402
 import test_deck  # noqa: E402
+import test_deck_scene  # noqa: E402
 
 LARGEST = 2000
 AWKWARD = ["NaN", "-Inf", "infinity", "1e999", "1d-308", "9.9e300", "2147483647", "-2147483648",
@@ -30,8 +32,9 @@ def main(snapin, folder):
     seeds = folder / "seeds"
     seeds.mkdir(parents=True, exist_ok=True)
     texts = [path.read_bytes() for path in sorted((ROOT / "inputs").glob("*.nml"))]
-    texts += list(test_deck.ACCEPTED.values())
-    texts += [case[0] for case in test_deck.REFUSED.values()]
+    texts += list(decks.ACCEPTED.values())
+    for module in (test_deck, test_deck_scene):
+        texts += [case[0] for case in module.REFUSED.values()]
     for i, text in enumerate(texts):
         data = text if isinstance(text, bytes) else text.encode()
         if len(data) <= LARGEST:

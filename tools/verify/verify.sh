@@ -6,8 +6,13 @@
 #              operation, overflow, index out of bounds or use of an unset real number
 #   memory     valgrind over tools/verify/decks: no leak, no use of memory that was not set
 #   coverage   which lines of src/ the tests reach; those that they do not are listed
+#   levels     builds at -O0, -O2, -O3 and -march=native, 1, 2 and 4 threads: how far results differ
+#   extremes   decks drawn at random from the far ends, on the build of `traps`
+#   guards     guards are taken out one at a time, and a test has to fail
+#   fuzz       a coverage-led search for decks that the reader misreads (needs AFL++)
 #
-# Without a stage: all of them, about half an hour on two cores. Ends with status 1 where one fails.
+# Without a stage: all of them, about an hour and a half on two cores. Ends with status 1 where one
+# fails. EXTREMES (200) is the number of decks, FIRST (5000) the first of them, FUZZ (240) seconds.
 set -u
 here=$(dirname -- "$(readlink -f -- "$0")")
 top=$(dirname -- "$(dirname -- "$here")")
@@ -16,6 +21,9 @@ prepare
 cd "$top" || exit
 meson="$venv/bin/meson"
 python="$venv/bin/python"
+# Ninja may be there alone.
+PATH=$venv/bin:$PATH
+export PATH
 
 # builds FOLDER OPTION...: another build beside the usual one.
 builds() {
@@ -27,8 +35,11 @@ builds() {
 
 long() { "$python" -m pytest -q --long; }
 
+build_traps() { builds build-traps --buildtype=debug -Dtraps=true -Dpython=disabled; }
+
 traps() {
-  builds build-traps --buildtype=debug -Dtraps=true -Dpython=disabled || return
+  build_traps || return
+  # shellcheck disable=SC2046 # a list of files is meant
   SNAPIN=$top/build-traps/snapin "$python" -m pytest -q --long \
     $(grep -l 'snapin' tests/test_*.py | grep -v 'wrapper\|bench')
 }
@@ -55,24 +66,58 @@ memory() {
   return $errors
 }
 
-# gcovr merges what gcov counts and writes the report.
+# gcovr merges what gcov counts and writes the report. gcov takes counts of more than 2^32 for
+# mistakes, and `end module` for a line, where the compiler puts copies of types.
 coverage() {
   "$python" -c 'import gcovr' 2> /dev/null ||
     "$python" -m pip install --quiet --disable-pip-version-check gcovr==8.3 || return
   builds build-coverage --buildtype=debug -Db_coverage=true -Dpython=enabled || return
   find build-coverage -name '*.gcda' -delete
   SNAPIN=$top/build-coverage/snapin "$python" -m pytest -q --long \
-    -o pythonpath='pywrap build-coverage/pywrap tests' || return
+    -o pythonpath='pywrap build-coverage/pywrap tests'
+  tested=$?
   "$python" -m gcovr -r "$top" --filter src/ --sort uncovered-percent --print-summary \
-    --txt build-coverage/coverage.txt --csv build-coverage/coverage.csv build-coverage
+    --gcov-ignore-parse-errors=all --exclude-lines-by-pattern '\s*end module.*' \
+    --txt build-coverage/coverage.txt --csv build-coverage/coverage.csv build-coverage \
+    2> build-coverage/gcovr.log || return
   cat build-coverage/coverage.txt
+  return $tested
+}
+
+levels() {
+  builds build-O0 -Dpython=disabled -Doptimization=0 -Ddebug=false &&
+    builds build-O2 -Dpython=disabled -Doptimization=2 -Ddebug=false &&
+    builds build-native -Dpython=disabled -Dnative=true || return
+  "$python" "$here/levels.py" "$build/snapin" O0=build-O0/snapin O2=build-O2/snapin \
+    native=build-native/snapin
+}
+
+extremes() {
+  build_traps || return
+  scratch=$(mktemp -d)
+  SNAPIN=$top/build-traps/snapin "$python" tests/extremes.py --first "${FIRST:-5000}" \
+    --count "${EXTREMES:-200}" --seconds 300 --out "$scratch"
+  status=$?
+  [ $status != 0 ] || rm -rf "$scratch"
+  [ $status = 0 ] || say "the decks are in $scratch"
+  return $status
+}
+
+guards() { "$python" "$here/guards.py"; }
+
+fuzz() {
+  has afl-fuzz || { say 'AFL++ is missing: apt-get install afl++'; return 1; }
+  "$top/tools/fuzz/campaign.sh" "${FUZZ:-240}" "$top/build-fuzz" || return
+  found=$(find "$top"/build-fuzz/found/*/crashes "$top"/build-fuzz/found/*/hangs -name 'id:*')
+  [ -z "$found" ] || { printf '%s\n' "$found"; return 1; }
 }
 
 failed=
-for stage in ${*:-long traps memory coverage}; do
-  case $stage in
-    long | traps | memory | coverage) ;;
-    *) give_up "no stage called $stage; there are long, traps, memory, coverage" ;;
+stages='long traps memory coverage levels extremes guards fuzz'
+for stage in ${*:-$stages}; do
+  case " $stages " in
+    *" $stage "*) ;;
+    *) give_up "no stage called $stage; there are: $stages" ;;
   esac
   say "verifying: $stage"
   $stage || failed="$failed $stage"

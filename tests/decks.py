@@ -1,0 +1,97 @@
+"""Decks for the tests of the deck reader: good ones, and the beginnings of bad ones."""
+
+import re
+
+BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
+FORCE = "&force law = 'lennard_jones', hamaker = 1.0e-19, z0 = 0.5e-9 /\n"
+LOADING = "&loading h0_start = 7e-9, h0_end = -2e-9, h0_step = 0.05e-9 /\n"
+GOOD = BODIES + FORCE + LOADING
+
+FULL = """! every group at once
+&scene  title = 'Fig. 10(c), it''s "full"' /
+&bodies radius = 1.5e-2, young = 70e9, 3e6, poisson = 0.3, 0.5 /
+&force  law = 'lennard_jones', hamaker = 1.0e-19, z0 = 0.5e-9, part = 'full' /
+&loading   h0_start = 7e-9, h0_end = -2e-9, h0_step = 0.05e-9 /
+&unloading from = 1e-9, -2e-9, h0_end = 7e-9, h0_step = 0.05e-9 /
+&equilibrium_path h0_start = 6e-9, h0_end = -2e-9 /
+&profiles  h0 = 4.3e-9, 3.6e-9 /
+&approximations count = 50 /
+&classical /
+&stability /
+&sweep     key = 'force.hamaker', from = 1e-21, to = 1e-19, count = 20, scale = 'log' /
+&numerics  method = 'anderson', accuracy = 1e-6, nodes = 400, r_max = 1e-6 /
+"""
+
+RUNTIME_ERROR = re.compile(r"fortran runtime error|backtrace|sigsegv|at line \d+ of file", re.I)
+
+ACCEPTED = {
+    "one line a group": GOOD,
+    "comment at the end": GOOD + "! the end",
+    "comment right after a value": GOOD.replace("1.0e10 /", "1.0e10! soft\n/"),
+    "quote and slash in a comment": "! don't / stop &here\n" + GOOD,
+    "no final newline": GOOD.rstrip("\n"),
+    "slash right after a value": GOOD.replace("1.0e10 /", "1.0e10/"),
+    "crlf": GOOD.replace("\n", "\r\n"),
+    "old mac line ends": GOOD.replace("\n", "\r"),
+    "tabs": GOOD.replace(" ", "\t"),
+    "byte-order mark": b"\xef\xbb\xbf" + GOOD.encode(),
+    "accents in a comment": "! Müller, σ = 1\n" + GOOD,
+    "&end": GOOD.replace("/", "&end"),
+    "&END at the end of the file": BODIES + FORCE + LOADING.replace("/\n", "&END"),
+    "all groups on one line": GOOD.replace("\n", " "),
+    "blanks for commas": GOOD.replace(",", " "),
+    "a comma after the last value": GOOD.replace("1.0e10", "1.0e10,"),
+    "a key a line": GOOD.replace(", ", "\n   "),
+    "value on the line after =": GOOD.replace("radius = ", "radius =\n ! here\n "),
+    "no blanks": GOOD.replace(" = ", "="),
+    "capitals": GOOD.upper().replace("LENNARD_JONES", "lennard_jones"),
+    "capitals in a choice": GOOD.replace("lennard_jones", "Lennard_Jones"),
+    "double quotes": GOOD.replace("'", '"'),
+    "doubled quotes": "&scene title = 'it''s' /\n" + GOOD,
+    "the other quote inside": "&scene title = \"it's / & ! = ,\" /\n" + GOOD,
+    "empty title": "&scene title = '' /\n" + GOOD,
+    "empty group": "&scene /\n" + GOOD,
+    "keyless groups": GOOD + "&stability /\n&classical /\n",
+    "fortran exponents": GOOD.replace("1.0e10", "1d10").replace("1.5e-2", "1.5D-2"),
+    "plain number forms": GOOD.replace("1.0e10", "5").replace("1.5e-2", ".5"),
+    "the largest and smallest numbers": GOOD.replace("1.0e10", "9.9e50").replace("1.5e-2", "1e-50"),
+    "a trailing point": GOOD.replace("1.0e10", "5.").replace("1.5e-2", "+5.e-1"),
+    "list over several lines": GOOD + "&profiles h0 = 1e-9,\n  2e-9\n  3e-9 /\n",
+    "a long line": GOOD + "&profiles h0 = " + ", ".join(["1.00000e-9"] * 1000) + " /\n",
+    "a long comment": "!" + "x" * 100000 + "\n" + GOOD,
+    "repeat count in a list": GOOD.replace("stiffness = 1.0e10", "young = 2*1e9, poisson = 2*0.3"),
+    "rigid": GOOD.replace("stiffness = 1.0e10", "rigid = .true."),
+    "rigid false beside stiffness": GOOD.replace("stiffness", "rigid = F, stiffness"),
+    "one value for both bodies": GOOD.replace("stiffness = 1.0e10", "young = 1e9, poisson = 0.3"),
+    "one body far stiffer": GOOD.replace("stiffness = 1.0e10", "young = 1e6 1e30 poisson = 0.5 0"),
+    "exponential law": BODIES + "&force law = 'exponential', p0 = 2.5e8, decay_length = 2e-10 /\n"
+    + LOADING,
+    "defaults of unloading": GOOD + "&unloading /\n",
+    "path alone": BODIES + FORCE + "&equilibrium_path h0_end = -2e-9 /\n",
+    "path beside loading": GOOD + "&equilibrium_path /\n",
+    "classical with the range of a path": BODIES + FORCE
+    + "&equilibrium_path h0_end = -2e-9 / &classical /\n",
+    "classical alone": BODIES + FORCE + "&classical h0_start = 1e-9, h0_end = -1e-9 /\n",
+    "approximations alone": BODIES + FORCE + "&approximations h0_start = 2e-9, h0_end = 1e-9 /\n",
+    "profiles on a path": BODIES + FORCE
+    + "&equilibrium_path h0_end = -2e-9 / &profiles h0 = 1e-9 /\n",
+    "sweep by values": GOOD + "&sweep key = 'bodies.radius', values = 1e-3, 2e-3, 1e-2 /\n",
+    "sweep of a default": GOOD + "&sweep key = 'numerics.accuracy' from = 1e-8 to = 1e-3 "
+    "count = 6 scale = 'log' /\n",
+    "sweep of a whole number": GOOD + "&sweep key = 'numerics.nodes' from = 100 to = 1600 "
+    "count = 5 scale = 'log' /\n",
+    "downward sweep": GOOD + "&sweep key = 'bodies.radius', from = 2, to = 1, count = 3 /\n",
+    "every group": FULL,
+    "a summary as a deck": "&summary title = 'a', sigma = NaN, unload_from = 1, 3, odd = 1e999 /\n"
+    "&cost wall_seconds = 1.0 /\n" + GOOD,
+}
+
+
+def with_bodies(text):
+    """A deck whose first line is `&bodies text`, with all else in order."""
+    return f"&bodies {text}\n" + FORCE + LOADING
+
+
+def with_extra(text):
+    """A good deck and `text` from line 4 on."""
+    return GOOD + text

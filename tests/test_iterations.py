@@ -1,0 +1,103 @@
+"""Claims about iterations that end without an equilibrium: they say so, and never pass as one.
+
+Dimensionless and on one mesh, as in test_solvers.py.
+"""
+
+import math
+
+import _snapin
+import numpy as np
+import pytest
+import snapin
+from test_solvers import MESH, PRESSURE, TOLERANCE, equations, every_method, solved
+
+
+@every_method
+def test_a_state_that_did_not_converge_says_so_and_how_far_it_is(method):
+    state = snapin.equilibrium(
+        "lennard_jones", MESH, -2.0, 0.87, method=method, most_iterations=3
+    )
+    residual, *_ = equations("lennard_jones", 0.87, -2.0, state)
+    assert not state.converged
+    assert state.residual > TOLERANCE
+    assert state.residual == pytest.approx(residual, rel=1e-9)
+
+
+def flat_state(start, method, stop_on_change, law, coupling=0.87):
+    """Return residual and converged from the flat layer, which takes any start."""
+    mesh = snapin.panel_mesh([0.0, 1.0, 3.0], 4)
+    physics = (law, "full", coupling, mesh.kind, mesh.centre, mesh.ends, mesh.order, 1.0, 0.0)
+    options = (method, 1e-8, 50, 5, 8, 0.2, stop_on_change, 1.0)
+    values = _snapin.flat_numerics.equilibrium_state(*physics, start, *options)
+    return values[4], values[5]
+
+
+@every_method
+@pytest.mark.parametrize("law", PRESSURE)
+@pytest.mark.parametrize("stop_on_change", [0, 1])
+@pytest.mark.parametrize("where", [0, 5, slice(None)])
+def test_nan_never_passes_as_converged(law, method, stop_on_change, where):
+    start = np.ones(8)
+    start[where] = math.nan
+    residual, converged = flat_state(start, method, stop_on_change, law)
+    assert not converged
+    assert not residual < 1e300
+
+
+@every_method
+@pytest.mark.parametrize("stop_on_change", [0, 1])
+@pytest.mark.parametrize(
+    ("law", "gap", "coupling"),
+    [
+        ("lennard_jones", 0.0, 0.87),
+        ("lennard_jones", 1e-200, 0.87),
+        ("exponential", -1e3, 1e8),
+        ("lennard_jones", math.inf, 0.87),
+        ("exponential", math.inf, 0.87),
+    ],
+)
+def test_infinity_never_passes_as_converged(law, gap, coupling, method, stop_on_change):
+    residual, converged = flat_state(np.full(8, gap), method, stop_on_change, law, coupling)
+    assert not converged
+    assert not residual < 1e300
+
+
+@every_method
+def test_infinite_pressure_is_not_taken_for_none(method):
+    # The undeformed gaps at h0 = 0 touch on the axis, where the pressure is then infinite; without
+    # it they would be an equilibrium.
+    mesh = snapin.uniform_mesh(5, 4.0)
+    start = np.maximum(mesh.x**2 / 2, 1e-40)
+    state = snapin.equilibrium("lennard_jones", mesh, 0.0, 0.87, method=method, start=start)
+    assert not state.converged
+
+
+def by_the_papers_rule(coupling, h0, displacement_tolerance):
+    """Return the state at which mixing stops on a small change of the displacement."""
+    return snapin.equilibrium(
+        "lennard_jones",
+        MESH,
+        h0,
+        coupling,
+        method="mixing",
+        displacement_tolerance=displacement_tolerance,
+        most_iterations=20000,
+    )
+
+
+@pytest.mark.parametrize("coupling", [0.87, 8.7])
+def test_the_papers_rule_stops_far_from_equilibrium_in_a_stiff_contact_and_says_so(coupling):
+    # 1e-4 nm where z0 is 0.5 nm.
+    state = by_the_papers_rule(coupling, -2.0, 2e-4)
+    residual, *_ = equations("lennard_jones", coupling, -2.0, state)
+    assert state.converged
+    assert state.residual == pytest.approx(residual, rel=1e-9)
+    # The change that was asked for says nothing: the equations are off by many times as much.
+    assert state.residual > 10 * 2e-4
+
+
+def test_the_papers_rule_is_harmless_before_contact():
+    state = by_the_papers_rule(0.17, 5.0, 1e-9)
+    exact = solved("lennard_jones", 0.17, 5.0, "newton")
+    assert state.converged
+    assert state.load == pytest.approx(exact.load, rel=1e-7)

@@ -1,0 +1,275 @@
+"""Takes guards out of the program, one at a time, and names the test that then fails.
+
+    guards.py [NAME ...]
+
+works on a copy of src/ with a build of its own; `meson` and the tests are this checkout's. Prints a
+table, and ends with status 1 where a guard can go without any test of its list failing.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from typing import NamedTuple
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+MESON = ROOT / ".venv" / "bin" / "meson"
+
+
+NOT_PASSED = "test_iterations.py"
+EXTREMES = "test_extremes.py::test_"
+STARVED = "test_extremes.py::test_what_does_not_converge_says_so_and_invents_nothing"
+
+
+class Guard(NamedTuple):
+    """A line of src/ and what takes its place, and the tests that know it."""
+
+    what: str
+    file: str
+    old: str
+    new: str
+    tests: tuple
+    traps: bool = False
+    # Where a second line would do for the first: what else goes.
+    also: tuple = ()
+
+
+GUARDS = {
+    "smallest_gap": Guard(
+        "gaps that the law is not asked for",
+        "equilibrium.f90",
+        "if (defined) defined = all(state%gap >= this%law%smallest_gap)",
+        "",
+        ("test_extremes.py::test_what_came_before_the_fall_is_kept",),
+        traps=True,
+    ),
+    "defined": Guard(
+        "what is outside the law's domain has no residual",
+        "equilibrium.f90",
+        "if (.not. defined(this, z, state)) then",
+        "if (.false.) then",
+        (NOT_PASSED,),
+        also=("if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)", ""),
+    ),
+    "largest_step": Guard(
+        "a step keeps every gap within the law's closure limit",
+        "equilibrium.f90",
+        "limit = min(1.0_wp, minval(",
+        "limit = max(1.0_wp, minval(",
+        ("test_hard_cases.py::test_cycle_at_any_sigma_is_solved_and_agrees_with_the_path",),
+    ),
+    "largest_floor": Guard(
+        "rounding excuses residuals only up to 1e-3",
+        "equilibrium.f90",
+        "residual_floor = min(residual_floor, largest_floor)",
+        "",
+        ("test_extremes.py::test_no_residual_above_a_thousandth_is_put_down_to_rounding",),
+    ),
+    "lost_in_rounding": Guard(
+        "adhesion beyond rounding is refused",
+        "equilibrium.f90",
+        "c > largest_floor",
+        "c > huge(1.0_wp)",
+        ("test_extremes.py::test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding",),
+    ),
+    "anderson_nan": Guard(
+        "Anderson's convergence is a comparison that NaN fails",
+        "anderson.f90",
+        "converged = state%residual <= max(options%tolerance, residual_floor(this, state))\n"
+        "      if (converged",
+        "converged = .not. state%residual > max(options%tolerance, residual_floor(this, state)) "
+        "&\n        .or. state%residual >= huge(1.0_wp)\n      if (converged",
+        (NOT_PASSED,),
+    ),
+    "hidden_folds": Guard(
+        "folds that a step passes over are looked for",
+        "hidden_folds.f90",
+        "if (n < 4) return",
+        "if (n > 0) return",
+        ("test_extremes.py::test_folds_however_close_are_found",),
+    ),
+    "converged_column": Guard(
+        "a row that is no equilibrium says so",
+        "results.f90",
+        "merge(',1', ',0', record%converged)",
+        "',1'",
+        (STARVED,),
+    ),
+    "unconverged_stable": Guard(
+        "a row that is no equilibrium is not stable",
+        "stability_records.f90",
+        "if (record%converged) completed%stable",
+        "completed%stable",
+        ("test_extremes.py::test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable",),
+    ),
+    "failed_case": Guard(
+        "a case of a sweep that fails is counted",
+        "sweeps.f90",
+        "if (.not. case%converged) failed = failed + 1",
+        "",
+        ("test_sweep_columns.py", "test_results.py"),
+    ),
+    "memory": Guard(
+        "matrices larger than the memory are refused",
+        "outlook.f90",
+        "if (expected%bytes > available) then",
+        "if (.false.) then",
+        (EXTREMES + "matrices_larger_than_the_memory_are_refused_with_the_size_needed",),
+    ),
+    "under_resolved": Guard(
+        "under-resolved meshes are warned of",
+        "judgement.f90",
+        "call summary%warn('under-resolved: nodes are '",
+        "if (.false.) call summary%warn('under-resolved: nodes are '",
+        ("test_cycle_grids.py",),
+    ),
+    "folder_lock": Guard(
+        "one run at a time in a folder",
+        "folder_lock.f90",
+        "if (errno() /= locked_elsewhere) return",
+        "return",
+        ("test_resume.py::test_a_second_run_is_refused_and_touches_nothing",),
+    ),
+    "checksum": Guard(
+        "a damaged record of the journal does not count",
+        "journal.f90",
+        "if (checksum(words) /= head(2)) return",
+        "",
+        ("test_resume.py::test_a_damaged_record_is_computed_again",),
+    ),
+    "owner": Guard(
+        "a journal of another deck or program is not gone on with",
+        "journal.f90",
+        "if (other /= owner) then",
+        "if (.false.) then",
+        ("test_resume.py::test_another_deck_is_refused_and_told_apart",),
+    ),
+    "torn": Guard(
+        "what was torn is cut off the journal",
+        "journal.f90",
+        "if (c_ftruncate(c_fileno(self%stream), whole) /= 0) then",
+        "if (.false.) then",
+        ("test_resume.py::test_what_was_torn_is_cut_off",),
+    ),
+    "journal_flush": Guard(
+        "a record of the journal that the system could not write stops the run",
+        "journal.f90",
+        "if (c_fflush(self%stream) == 0) return",
+        "if (c_fflush(self%stream) <= 0) return",
+        ("test_resume.py::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on",),
+    ),
+    "table_flush": Guard(
+        "a table that the system could not write is an error",
+        "text_file.f90",
+        "if (c_fclose(stream) /= 0) call system_failure(",
+        "if (c_fclose(stream) > 0) call system_failure(",
+        ("test_results.py", "test_resume.py"),
+    ),
+    "duplicate_key": Guard(
+        "a key given twice is a mistake",
+        "deck.f90",
+        "what = 'given twice; the first is on line ' // trim(line)",
+        "",
+        ("test_deck.py::test_bad_deck_is_refused_by_line_group_and_key",),
+    ),
+    "magnitudes": Guard(
+        "units that would overflow are refused",
+        "magnitudes.f90",
+        "if (.not. abs(decades) <= most_derived)",
+        "if (.false.)",
+        ("test_extremes.py::test_units_that_would_overflow_together_are_refused",),
+    ),
+    "order": Guard(
+        "numbers beyond 1e50 are refused",
+        "deck_number.f90",
+        "largest_order = 50",
+        "largest_order = 300",
+        ("test_deck.py", "test_extremes.py"),
+    ),
+}
+
+
+def compiled(copy, build):
+    """The program of a copy of the sources."""
+    done = subprocess.run(
+        [MESON, "compile", "-C", copy / build], capture_output=True, text=True, check=False
+    )
+    if done.returncode:
+        sys.exit(done.stdout[-2000:])
+    return copy / build / "snapin"
+
+
+def first_failure(program, tests):
+    """The name of the first test that fails, or None."""
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
+        + ["-o", f"pythonpath=pywrap {program.parent}/pywrap tests"]
+        + [f"tests/{test}" for test in tests],
+        cwd=ROOT,
+        env={**os.environ, "SNAPIN": str(program)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode == 0:
+        return None
+    found = re.search(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", done.stdout, re.MULTILINE)
+    if found is None:
+        sys.exit(done.stdout[-2000:] + done.stderr[-2000:])
+    return found.group(1).removeprefix("tests/")
+
+
+def without(copy, guard):
+    """The first test that fails without a guard, or None."""
+    path = copy / "src" / guard.file
+    text = path.read_text()
+    changed = text
+    for old, new in filter(None, ((guard.old, guard.new), guard.also)):
+        if text.count(old) != 1:
+            sys.exit(f"{guard.file} no longer has, once: {old}")
+        changed = changed.replace(old, new)
+    path.write_text(changed)
+    try:
+        program = compiled(copy, "traps" if guard.traps else "plain")
+        return first_failure(program, guard.tests)
+    finally:
+        path.write_text(text)
+
+
+def main():
+    names = sys.argv[1:] or list(GUARDS)
+    alone = []
+    with tempfile.TemporaryDirectory() as folder:
+        copy = pathlib.Path(folder)
+        for name in ("src", "pywrap", "tools"):
+            shutil.copytree(ROOT / name, copy / name)
+        for name in ("meson.build", "meson.options"):
+            shutil.copy(ROOT / name, copy)
+        for build, options in (
+            ("plain", ["-Dpython=enabled"]),
+            ("traps", ["-Dpython=disabled", "--buildtype=debug", "-Dtraps=true"]),
+        ):
+            subprocess.run(
+                [MESON, "setup", copy / build, copy, *options],
+                capture_output=True,
+                check=True,
+            )
+        print("| guard removed | where | test that fails |")
+        print("|---|---|---|", flush=True)
+        for name in names:
+            guard = GUARDS[name]
+            test = without(copy, guard)
+            if test is None:
+                alone.append(name)
+            cell = f"`{test}`" if test else "none"
+            print(f"| {guard.what} | `{guard.file}` | {cell} |", flush=True)
+    for name in alone:
+        print(f"no test fails without {name}")
+    return 1 if alone else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,192 @@
+"""How far results depend on compiler options and on the number of threads.
+
+    levels.py REFERENCE NAME=PROGRAM ...
+
+runs the decks below with the program REFERENCE on one thread, then with every other PROGRAM on one
+thread and with REFERENCE on 1, 2 and 4, twice, and prints a table: the largest difference of a
+column over the column's largest value, that of loads and displacements over the value itself, that
+of the summary's numbers, and rows whose iterations are not as many. Ends with status 1 where loads
+or displacements differ by more than the deck's limit, or where a run repeated gives other bytes.
+"""
+
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+from typing import NamedTuple
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "tests"))
+
+from scenes import Run, exponential, lennard_jones, loading, several  # noqa: E402
+
+# Of loads and displacements, over the largest value of the column. EXACT is what is promised of
+# Newton's method and of a residual_tolerance of 1e-12. Anderson acceleration stops anywhere below
+# its tolerance, 1e-8 by default, and after eight or ten products, as at strong adhesion beside a
+# jump, rounding decides where: then the states agree to WITHIN. Mixing stops where its last change
+# of the ratio leaves it, perhaps an iteration sooner or later: to a part of the tolerance.
+EXACT, WITHIN, STOPPED = 1e-12, 1e-10, 1e-8
+PROMISED = ("load", "displacement")
+SHOWN = ("h_centre", "displacement", "load", "contact_radius")
+NUMBERS = ("max_tension", "jump_in_h0", "jump_in_load", "jump_out_h0", "jump_out_load", "folds_h0")
+THREADS = (1, 2, 4)
+
+CYCLE = {"loading": loading(6, -2, 0.25), "unloading": {}}
+FIXED = {"grid": "uniform", "nodes": 300}
+# Matrices from 2500 nodes on are given to more than one thread.
+THREADED = {"grid": "uniform", "nodes": 2600, "r_max": 20.0}
+STRONG = {"loading": loading(13, -4, 0.25), "unloading": {"from_": [2.0, -4.0]}}
+STRONGER = {"loading": loading(80, -4, 2), "unloading": {"from_": [2.0, -4.0]}}
+CLOSE = {"residual_tolerance": 1e-12}
+
+# Deck, and what is promised of it.
+DECKS = {
+    "cycle, sigma 0.17": (lennard_jones(0.17, **CYCLE), EXACT),
+    "cycle, sigma 0.87": (lennard_jones(0.87, **CYCLE, stability={}), EXACT),
+    "cycle, sigma 8.7": (lennard_jones(8.7, **STRONG), WITHIN),
+    "cycle, sigma 8.7, closer": (lennard_jones(8.7, **STRONG, numerics=CLOSE), EXACT),
+    "cycle, sigma 8.7, Newton": (
+        lennard_jones(8.7, **STRONG, numerics={"method": "newton"}),
+        EXACT,
+    ),
+    "cycle, sigma 100": (lennard_jones(100.0, **STRONGER), WITHIN),
+    "cycle, sigma 100, closer": (lennard_jones(100.0, **STRONGER, numerics=CLOSE), EXACT),
+    "path, sigma 8.7": (lennard_jones(8.7, equilibrium_path={"h0_end": -4.0}), WITHIN),
+    "path, sigma 1000": (lennard_jones(1000.0, equilibrium_path={"h0_end": -4.0}), WITHIN),
+    "repulsion": (exponential(100, loading=loading(6, -20, 0.5), unloading={}), EXACT),
+    "uniform grid": (lennard_jones(0.87, **CYCLE, numerics=FIXED), EXACT),
+    "uniform grid, Newton": (
+        lennard_jones(0.87, **CYCLE, numerics={**FIXED, "method": "newton"}),
+        EXACT,
+    ),
+    "2600 nodes": (lennard_jones(0.2, loading=loading(3, 1, 1), numerics=THREADED), EXACT),
+    "mixing": (
+        lennard_jones(
+            0.17, loading=loading(6, 0, 0.5), numerics={"method": "mixing", "nodes": 100}
+        ),
+        STOPPED,
+    ),
+}
+
+
+class Difference(NamedTuple):
+    """Of two runs of a deck; see above."""
+
+    columns: dict
+    by_value: dict
+    numbers: float
+    iterations: int
+    rows: int
+
+
+def run(program, name, text, threads, folder):
+    """The results of a deck."""
+    folder.mkdir(parents=True)
+    (folder / "deck.nml").write_text(text)
+    environment = dict(os.environ, OMP_NUM_THREADS=str(threads), OPENBLAS_NUM_THREADS=str(threads))
+    done = subprocess.run(
+        [program, "--quiet", "deck.nml"],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode:
+        sys.exit(f"{name}: status {done.returncode}\n{done.stderr}")
+    return Run(done.returncode, done.stderr, folder / "results" / "deck")
+
+
+def difference(one, other):
+    """How far `other` is from `one`; None where they have not the same rows."""
+    a, b = one.curve, other.curve
+    if list(a["branch"]) != list(b["branch"]) or (a["converged"] != b["converged"]).any():
+        return None
+    columns, by_value = {}, {}
+    for name in SHOWN:
+        apart = abs(b[name] - a[name])
+        columns[name] = float(apart.max() / max(abs(a[name]).max(), np.finfo(float).tiny))
+        some = a[name] != 0
+        by_value[name] = float((apart[some] / abs(a[name][some])).max(initial=0.0))
+    numbers = 0.0
+    for key in NUMBERS:
+        if (key in one.summary) != (key in other.summary):
+            return None
+        if key in one.summary:
+            mine, theirs = (np.array(several(r.summary[key])) for r in (one, other))
+            if mine.shape != theirs.shape:
+                return None
+            numbers = max(numbers, float((abs(theirs - mine) / abs(mine).max()).max()))
+    iterations = int((a["iterations"] != b["iterations"]).sum())
+    return Difference(columns, by_value, numbers, iterations, len(a))
+
+
+def row(name, deck, found):
+    """A row of the table."""
+    if found is None:
+        return f"| {name} | {deck} | other rows | | | | | |"
+    cells = [f"{found.columns[column]:.0e}" for column in SHOWN]
+    by_value = max(found.by_value[column] for column in PROMISED)
+    return (
+        f"| {name} | {deck} | "
+        + " | ".join(cells)
+        + f" | {by_value:.0e} | {found.numbers:.0e} | {found.iterations} of {found.rows} |"
+    )
+
+
+def compare(reference, programs, folder):
+    """Runs all; prints the table; what is broken of the promises."""
+    broken = []
+    variants = [(name, program, 1) for name, program in programs.items()]
+    variants += [(f"threads: {threads}", reference, threads) for threads in THREADS]
+    print(f"| build | deck | {' | '.join(SHOWN)} | by value | summary | other counts |")
+    print("|---|---|" + "---|" * (len(SHOWN) + 3))
+    worst = {}
+    for number, (deck, (text, limit)) in enumerate(DECKS.items()):
+        one = run(reference, deck, text, 1, folder / f"{number}")
+        for index, (name, program, threads) in enumerate(variants):
+            other = run(program, deck, text, threads, folder / f"{number}-{index}")
+            found = difference(one, other)
+            print(row(name, deck, found), flush=True)
+            if program == reference:
+                again = run(reference, deck, text, threads, folder / f"{number}-{index}-again")
+                tables = [(r.folder / "curve.csv").read_bytes() for r in (other, again)]
+                if tables[0] != tables[1]:
+                    broken.append(f"{deck}, {name}: the same run twice gives other bytes")
+            if found is None:
+                broken.append(f"{deck}, {name}: other rows or other numbers of the summary")
+                continue
+            for column in PROMISED:
+                size = found.columns[column]
+                worst[name, limit] = max(worst.get((name, limit), 0.0), size)
+                if not size <= limit:
+                    broken.append(f"{deck}, {name}: {column} differs by {size:.1e}")
+    print()
+    for (name, limit), size in worst.items():
+        print(f"largest difference, {name}, of decks held to {limit:.0e}: {size:.1e}")
+    return broken
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("reference")
+    parser.add_argument("programs", nargs="*", metavar="NAME=PROGRAM")
+    arguments = parser.parse_args()
+    programs = dict(pair.split("=", 1) for pair in arguments.programs)
+    with tempfile.TemporaryDirectory() as folder:
+        broken = compare(
+            os.path.abspath(arguments.reference),
+            {name: os.path.abspath(path) for name, path in programs.items()},
+            pathlib.Path(folder),
+        )
+    for text in broken:
+        print(f"broken: {text}")
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
