@@ -31,8 +31,9 @@ contains
       call check_message(error, file)
       return
     end if
-    open (newunit=unit, file=file // '.resolved', status='replace', action='write')
-    call scene%deck%write_resolved(unit)
+    open (newunit=unit, file=file // '.resolved', status='replace', action='write', &
+      access='stream', form='unformatted')
+    write (unit) scene%deck%resolved()
     close (unit)
     call read_scene(file // '.resolved', again, error)
     if (allocated(error)) then
