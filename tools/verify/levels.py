@@ -26,10 +26,10 @@ from scenes import Run, exponential, lennard_jones, loading, several  # noqa: E4
 
 # Of loads and displacements, over the largest value of the column. EXACT is what is promised of
 # Newton's method and of a residual_tolerance of 1e-12. Anderson acceleration stops anywhere below
-# its tolerance, 1e-8 by default, and after eight or ten products, as at strong adhesion beside a
+# its tolerance, 1e-10 by default, and after eight or ten products, as at strong adhesion beside a
 # jump, rounding decides where: then the states agree to WITHIN. Mixing stops where its last change
 # of the ratio leaves it, perhaps an iteration sooner or later: to a part of the tolerance.
-EXACT, WITHIN, STOPPED = 1e-12, 1e-10, 1e-8
+EXACT, WITHIN, STOPPED = 1e-12, 1e-11, 1e-8
 PROMISED = ("load", "displacement")
 SHOWN = ("h_centre", "displacement", "load", "contact_radius")
 NUMBERS = ("max_tension", "jump_in_h0", "jump_in_load", "jump_out_h0", "jump_out_load", "folds_h0")
