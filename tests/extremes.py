@@ -2,7 +2,7 @@
 
 As a command it tries more of them than the suite does, and keeps those that break a claim:
 
-    SNAPIN=build-traps/snapin .venv/bin/python tests/extremes.py --first 0 --count 2000 --out /tmp/x
+    SNAPIN=build-traps/snapin .venv/bin/python tests/extremes.py --first 0 --count 2000 --out FOLDER
 
 Deck number k is always the same deck.
 """

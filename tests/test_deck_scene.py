@@ -104,6 +104,8 @@ REFUSED = {
                         "sweep", "from", "not together with values"),
     "scale beside values": (with_extra("&sweep key = 'bodies.radius', values = 1 scale = 'log' /"),
                             4, "sweep", "scale", "not together with values"),
+    "log sweep to zero": (with_extra("&sweep key = 'bodies.radius', from = 1, to = 0, count = 3,"
+                                     " scale = 'log' /"), 4, "sweep", "to", "> 0"),
     "log sweep from zero": (with_extra("&sweep key = 'bodies.radius', from = 0, to = 1, count = 3,"
                                        " scale = 'log' /"), 4, "sweep", "from", "> 0"),
     "sweep of one value": (with_extra("&sweep key = 'bodies.radius' from = 1 to = 1 count = 3 /"),

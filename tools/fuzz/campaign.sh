@@ -81,12 +81,12 @@ find "$work/decks" -name '*.nml' -print0 | xargs -0 "$folder/traps/driver"
 find "$folder/lines" -name '*.gcda' -delete
 find "$folder/found" -path '*/queue/id:*' -print0 |
   xargs -0 -n 500 "$folder/lines/snapin" --check > "$folder/check.log" 2>&1 || true
-cd "$folder/lines/libsnapin.a.p"
-gcov -b ./*deck*.gcda ./*scene*.gcda 2>/dev/null > "$folder/coverage.txt"
+cd "$folder/lines"
+gcov libsnapin.a.p/*deck*.gcda libsnapin.a.p/*scene*.gcda 2>/dev/null > "$folder/coverage.txt"
 for name in traps sanitizers; do
   echo "$name:"
   grep -E 'run_time|execs_done|corpus_count|edges_found|saved_crashes|saved_hangs' \
     "$folder/found/$name/fuzzer_stats"
 done
 tail -n 1 "$folder/compare.txt"
-grep -A4 -E "File '.*src/(deck|scene)" "$folder/coverage.txt"
+grep -A1 -E "File '.*src/(deck|scene)" "$folder/coverage.txt"
