@@ -22,18 +22,20 @@ contains
   subroutine force_curve(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
     method, grid, accuracy, nodes, r_max, h0, states, jumps, jump_count, highest, error_estimate, &
     reached, reason, warnings, stat, message, n)
-    use choice, only: choose, companion, fixed_mesh
+    use choice, only: choose, fixed_mesh
     use collector, only: collector_t
-    use cycle, only: branch_t
+    use stepped_branch, only: branch_t
     use edge_locked, only: new_mesh_pair
-    use error_estimate, only: estimate_fixed, estimate_locked
-    use experiment, only: outcome_t, prepare, problem_of
+    use experiment, only: prepare, problem_of
+    use outcome, only: outcome_t
+    use outcome_errors, only: judge_fixed, judge_locked
     use failure, only: bad_input
     use fixed_steps, only: fixed_steps_t
-    use locked_steps, only: locked_steps_t
+    use locked_steps, only: has_path, locked_steps_t
+    use path_steps, only: path_steps_t
+    use unique_steps, only: unique_steps_t
     use blas_threads, only: use_threads_for
     use problem, only: problem_t
-    use quasi_static, only: witness_t
     use scene_groups, only: scene_t
     use summarise, only: summary_of
     character(len=*), intent(in) :: law, part, method, grid
@@ -48,10 +50,11 @@ contains
     type(problem_t) :: problem
     type(collector_t) :: rows
     type(outcome_t) :: outcome
-    type(locked_steps_t) :: locked
+    type(path_steps_t), target :: along_path
+    type(unique_steps_t), target :: one_by_one
+    class(locked_steps_t), pointer :: locked
     type(fixed_steps_t) :: fixed
     type(branch_t), allocatable :: stretch(:)
-    type(witness_t), allocatable :: witnesses(:)
     real(c_double) :: low, high
     integer :: k
 
@@ -77,28 +80,36 @@ contains
         call rows%give(states, reached)
         return
       end if
+      ! Not allocatable: gfortran 12 frees what a polymorphic one of these types never had.
+      if (has_path(problem)) then
+        locked => along_path
+      else
+        locked => one_by_one
+      end if
       call prepare(locked, problem, outcome%chosen, accuracy)
       locked%pair = new_mesh_pair(problem, high, low, outcome%chosen%resolution)
       call use_threads_for(maxval(locked%pair%grid%nodes))
+      select type (locked)
+      class is (path_steps_t)
+        call locked%know_path(high, low, .false.)
+      end select
       call run_stretches(locked, h0/problem%length, rows, stretch)
-      witnesses = [(stretch(k)%witness, k=1, size(stretch))]
-      if (rows%held > 0) outcome%error_estimate = estimate_locked(problem, locked%pair, &
-        high, low, outcome%chosen%resolution, locked%options%tolerance, witnesses, locked%cost)
+      outcome%unloading = stretch
+      call judge_locked(locked, high, low, outcome)
     else
       call prepare(fixed, problem, outcome%chosen, accuracy)
       fixed%mesh = fixed_mesh(outcome%chosen, problem, low)
       call use_threads_for(fixed%mesh%nodes)
       call run_stretches(fixed, h0/problem%length, rows, stretch)
-      witnesses = [(stretch(k)%witness, k=1, size(stretch))]
-      if (rows%held > 0) outcome%error_estimate = estimate_fixed(problem, fixed%mesh, &
-        fixed_mesh(companion(outcome%chosen), problem, low), fixed%options%tolerance, witnesses, &
-        fixed%cost)
+      outcome%unloading = stretch
+      call judge_fixed(fixed, low, outcome)
     end if
+    call move_alloc(outcome%unloading, stretch)
 
     do k = 1, size(stretch)
-      if (.not. allocated(stretch(k)%jump_h0)) cycle
+      if (.not. allocated(stretch(k)%jump)) cycle
       jump_count = jump_count + 1_c_int
-      jumps(jump_count, :) = [stretch(k)%jump_h0*problem%length, stretch(k)%jump_load*problem%load]
+      jumps(jump_count, :) = [stretch(k)%jump%h0*problem%length, stretch(k)%jump%load*problem%load]
     end do
     reason = stretch(size(stretch))%reason
     call rows%give(states, reached)
@@ -113,8 +124,9 @@ contains
     accuracy, h0_start, given, h0_end, states, folds, fold_count, highest, error_estimate, &
     reached, reason, warnings, stat, message, n)
     use collector, only: collector_t
-    use experiment, only: outcome_t, problem_of, run_experiment
+    use experiment, only: problem_of, run_experiment
     use failure, only: no_convergence
+    use outcome, only: outcome_t
     use problem, only: problem_t
     use scene_groups, only: scene_t
     use summarise, only: summary_of
@@ -164,7 +176,7 @@ contains
   !> one way, and a value that repeats the one before begins another. After one that ends early
   !> there is none.
   subroutine run_stretches(steps, h0, observer, stretch)
-    use cycle, only: branch_t, plan_t, run_branch
+    use stepped_branch, only: branch_t, plan_t, run_branch
     use quasi_static, only: position_t, quasi_static_t
     use records, only: observer_t
     class(quasi_static_t), intent(inout) :: steps
@@ -212,7 +224,7 @@ contains
   !> What stretches showed, for the summary. States that did not converge, and an early end, are
   !> told from the rows.
   pure function as_one(stretch) result(branch)
-    use cycle, only: branch_t
+    use stepped_branch, only: branch_t
     type(branch_t), intent(in) :: stretch(:)
     type(branch_t) :: branch
     integer :: k
@@ -221,12 +233,11 @@ contains
     branch%worst_residual = maxval(stretch%worst_residual)
     branch%worst_spacing = maxval(stretch%worst_spacing)
     do k = 1, size(stretch)
-      if (.not. allocated(stretch(k)%load)) cycle
-      if (allocated(branch%load)) then
-        if (stretch(k)%load >= branch%load) cycle
+      if (.not. allocated(stretch(k)%lowest)) cycle
+      if (allocated(branch%lowest)) then
+        if (stretch(k)%lowest%load >= branch%lowest%load) cycle
       end if
-      branch%load = stretch(k)%load
-      branch%load_h0 = stretch(k)%load_h0
+      branch%lowest = stretch(k)%lowest
     end do
   end function as_one
 

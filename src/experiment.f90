@@ -6,35 +6,27 @@ module experiment
   use force_law, only: force_law_t
   use laws, only: law_parameters_t, new_law
   use scene_groups, only: scene_t
-  use choice, only: choice_t, choose, fixed_mesh, companion
+  use choice, only: choice_t, choose, fixed_mesh
   use edge_locked, only: new_mesh_pair, beyond_contact
-  use quasi_static, only: quasi_static_t, position_t, witness_t
-  use locked_steps, only: locked_steps_t
+  use quasi_static, only: quasi_static_t, position_t
+  use locked_steps, only: locked_steps_t, has_path
+  use path_steps, only: path_steps_t
+  use unique_steps, only: unique_steps_t
   use fixed_steps, only: fixed_steps_t
   use journalled_steps, only: journalled_steps_t, new_journalled_steps
   use journal, only: journal_t
-  use cycle, only: plan_t, branch_t, run_branch
+  use stepped_branch, only: plan_t, run_branch
   use plans, only: plan_of
-  use error_estimate, only: estimate_locked, estimate_fixed
-  use path, only: path_t, trace_path
+  use outcome, only: outcome_t
+  use outcome_errors, only: judge_locked, judge_fixed
+  use path, only: follow_path
   use records, only: observer_t
   use equilibrium, only: cost_t
   use clock, only: seconds
   use blas_threads, only: use_threads_for
   implicit none
   private
-  public :: outcome_t, run_experiment, problem_of, path_start, prepare, range_of
-
-  !> Everything in the units of `problem`.
-  type :: outcome_t
-    type(choice_t) :: chosen
-    type(path_t), allocatable :: path
-    type(branch_t), allocatable :: stepped_path, loading, unloading(:)
-    type(cost_t) :: cost
-    integer :: nodes = 0
-    !> Estimated relative error of loads and displacements.
-    real(wp), allocatable :: error_estimate
-  end type outcome_t
+  public :: run_experiment, problem_of, path_start, prepare, range_of
 
   !> States of a stepped path.
   integer, parameter :: path_states = 100
@@ -92,10 +84,17 @@ contains
     class(observer_t), intent(inout) :: observer
     type(outcome_t), intent(inout) :: outcome
     type(journal_t), intent(inout), optional :: journal
-    type(locked_steps_t) :: steps
-    type(witness_t), allocatable :: witnesses(:)
+    type(path_steps_t), target :: along_path
+    type(unique_steps_t), target :: one_by_one
+    class(locked_steps_t), pointer :: steps
     real(wp) :: began
 
+    ! Not allocatable: gfortran 12 frees what a polymorphic one of these types never had.
+    if (has_path(problem)) then
+      steps => along_path
+    else
+      steps => one_by_one
+    end if
     call prepare(steps, problem, outcome%chosen, scene%numerics%accuracy)
     ! The path has no use for mixing.
     if (steps%options%method == 'mixing') steps%options%method = 'anderson'
@@ -106,21 +105,18 @@ contains
     outcome%nodes = sum(steps%pair%grid%nodes)
     call use_threads_for(maxval(steps%pair%grid%nodes))
     began = seconds()
-    if (allocated(scene%path)) then
-      if (problem%law%adhesion > 0 .and. .not. problem%rigid) then
-        call run_path(scene, steps, observer, outcome)
-      else
-        call run_stepped_path(scene, steps, observer, outcome)
-      end if
-    end if
+    select type (steps)
+    class is (path_steps_t)
+      call steps%know_path(high, low, allocated(scene%path))
+      if (allocated(scene%path)) call run_path(scene, steps, observer, outcome)
+    class is (unique_steps_t)
+      if (allocated(scene%path)) call run_stepped_path(scene, steps, observer, outcome)
+    end select
     if (allocated(scene%loading) .and. with_cycle) &
       call run_cycle(scene, steps, observer, outcome, journal)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
-    call collect_witnesses(outcome, witnesses)
-    ! Of nothing there is no error.
-    if (size(witnesses) > 0) outcome%error_estimate = estimate_locked(problem, steps%pair, high, &
-      low, outcome%chosen%resolution, steps%options%tolerance, witnesses, steps%cost)
+    call judge_locked(steps, high, low, outcome)
     steps%cost%estimate_seconds = seconds() - began
     outcome%cost = steps%cost
   end subroutine run_locked
@@ -134,8 +130,6 @@ contains
     type(outcome_t), intent(inout) :: outcome
     type(journal_t), intent(inout), optional :: journal
     type(fixed_steps_t) :: steps
-    type(outcome_t) :: of_cycle
-    type(witness_t), allocatable :: witnesses(:)
     real(wp) :: began
 
     call prepare(steps, problem, outcome%chosen, scene%numerics%accuracy)
@@ -147,50 +141,13 @@ contains
     outcome%nodes = outcome%nodes + steps%mesh%nodes
     call use_threads_for(steps%mesh%nodes)
     began = seconds()
-    call run_cycle(scene, steps, observer, of_cycle, journal)
+    call run_cycle(scene, steps, observer, outcome, journal)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
-    call collect_witnesses(of_cycle, witnesses)
-    if (size(witnesses) > 0) then
-      of_cycle%error_estimate = estimate_fixed(problem, steps%mesh, &
-        fixed_mesh(companion(outcome%chosen), problem, low), steps%options%tolerance, &
-        witnesses, steps%cost)
-      if (allocated(outcome%error_estimate)) &
-        of_cycle%error_estimate = max(outcome%error_estimate, of_cycle%error_estimate)
-      outcome%error_estimate = of_cycle%error_estimate
-    end if
+    call judge_fixed(steps, low, outcome)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     outcome%cost = steps%cost
-    call move_alloc(of_cycle%loading, outcome%loading)
-    call move_alloc(of_cycle%unloading, outcome%unloading)
   end subroutine run_fixed
-
-  !> The witnesses of all that an outcome holds. (Not a function: what is deep in the result of one
-  !> that is only asked for its size would leak in gfortran.)
-  subroutine collect_witnesses(outcome, witnesses)
-    type(outcome_t), intent(in) :: outcome
-    type(witness_t), allocatable, intent(out) :: witnesses(:)
-    integer :: k
-
-    allocate (witnesses(0))
-    if (allocated(outcome%path)) call add(outcome%path%witness)
-    if (allocated(outcome%stepped_path)) call add(outcome%stepped_path%witness)
-    if (allocated(outcome%loading)) call add(outcome%loading%witness)
-    if (allocated(outcome%unloading)) then
-      do k = 1, size(outcome%unloading)
-        call add(outcome%unloading(k)%witness)
-      end do
-    end if
-
-  contains
-
-    subroutine add(more)
-      type(witness_t), allocatable, intent(in) :: more(:)
-
-      if (allocated(more)) witnesses = [witnesses, more]
-    end subroutine add
-
-  end subroutine collect_witnesses
 
   !> What both kinds of steps are told.
   subroutine prepare(steps, problem, chosen, accuracy)
@@ -207,7 +164,7 @@ contains
 
   subroutine run_path(scene, steps, observer, outcome)
     type(scene_t), intent(in) :: scene
-    type(locked_steps_t), intent(inout) :: steps
+    class(path_steps_t), intent(inout) :: steps
     class(observer_t), intent(inout) :: observer
     type(outcome_t), intent(inout) :: outcome
     real(wp), allocatable :: profiles(:)
@@ -216,12 +173,16 @@ contains
       allocate (profiles(0))
       if (allocated(scene%profiles)) profiles = scene%profiles%h0/length
       allocate (outcome%path)
-      call trace_path(steps, path_start(scene, steps%problem)/length, scene%path%h0_end/length, &
-        profiles, observer, outcome%path)
+      if (allocated(scene%path%h0_start)) then
+        call follow_path(steps, scene%path%h0_end/length, profiles, observer, outcome%path, &
+          scene%path%h0_start/length)
+      else
+        call follow_path(steps, scene%path%h0_end/length, profiles, observer, outcome%path)
+      end if
     end associate
   end subroutine run_path
 
-  !> The h0 [m] from which a path is traced: beyond any contact, or farther if the scene says so.
+  !> The h0 [m] from which a path is shown: beyond any contact, or as the scene says.
   function path_start(scene, problem) result(start)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -229,14 +190,14 @@ contains
 
     start = beyond_contact(problem)*problem%length
     if (.not. allocated(scene%path)) return
-    if (allocated(scene%path%h0_start)) start = max(start, scene%path%h0_start)
+    if (allocated(scene%path%h0_start)) start = scene%path%h0_start
   end function path_start
 
   !> The path of a law that does not attract, or of rigid bodies: one state for every h0, so that
   !> stepping h0 gives it.
   subroutine run_stepped_path(scene, steps, observer, outcome)
     type(scene_t), intent(in) :: scene
-    type(locked_steps_t), intent(inout) :: steps
+    class(unique_steps_t), intent(inout) :: steps
     class(observer_t), intent(inout) :: observer
     type(outcome_t), intent(inout) :: outcome
     type(position_t) :: position, none(0)

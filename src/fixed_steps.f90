@@ -5,13 +5,14 @@ module fixed_steps
   use problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, state_from, residual_floor, radius_of_gap, &
-    lost_in_rounding
+    lost_in_rounding, beyond_rounding
   use solver_options, only: solver_options_t
   use solver, only: solve_state
   use relaxation, only: relax
   use fixed_branch, only: fixed_branch_t, change, jump
   use edge_locked, only: largest_radius
-  use quasi_static, only: position_t, event_t, witness_t, remember, touching, beyond_rounding
+  use quasi_static, only: position_t, event_t, remember, touching
+  use reported, only: witness_t
   implicit none
   private
   public :: fixed_steps_t
@@ -288,7 +289,6 @@ contains
 
     witness%control%value = position%state%h0
     witness%state = position%state
-    witness%displacement = .true.
   end function witness
 
 end module fixed_steps

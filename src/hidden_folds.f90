@@ -9,18 +9,12 @@ module hidden_folds
   use anderson, only: frozen_t
   use edge_locked, only: mesh_pair_t
   use interpolation, only: polynomial_slope
+  use extremum, only: extremum_t
   use tangent, only: path_slopes
   use tracer, only: state_at, path_control
   implicit none
   private
-  public :: fold_t, find_hidden_folds
-
-  !> A fold: its place, its state, and the sign of dF/ds there.
-  type :: fold_t
-    real(wp) :: coordinate = 0
-    type(state_t) :: state
-    real(wp) :: load_slope = 0
-  end type fold_t
+  public :: find_hidden_folds
 
   !> The derivative, interpolated, must somewhere fall to this part of the mean one for folds to be
   !> looked for, and is evaluated at so many places.
@@ -42,10 +36,10 @@ contains
     real(wp), intent(in) :: coordinate(:)
     type(state_t), intent(in) :: states(:)
     type(solver_options_t), intent(in) :: options
-    type(fold_t), allocatable, intent(out) :: folds(:)
+    type(extremum_t), allocatable, intent(out) :: folds(:)
     type(cost_t), intent(inout) :: cost
     type(frozen_t) :: frozen
-    type(fold_t) :: first, second
+    type(extremum_t) :: first, second
     real(wp) :: begin, finish, sense, mean, s, least, value, width, middle, beside(2)
     integer :: n, k, round
     logical :: lost
@@ -101,6 +95,9 @@ contains
     if (lost) return
     deallocate (folds)
     allocate (folds(2))
+    ! Along the way h0 first turns against its course, then back to it.
+    first%sense = merge(1, -1, states(n)%h0 > states(n - 2)%h0)
+    second%sense = -first%sense
     folds(1) = first
     folds(2) = second
 
@@ -110,7 +107,7 @@ contains
     !> positive factor, and with the state it is of.
     real(wp) function derivative(s, fold)
       real(wp), intent(in) :: s
-      type(fold_t), intent(out), optional :: fold
+      type(extremum_t), intent(out), optional :: fold
       type(state_t) :: state
       real(wp) :: h0_slope, load_slope
       logical :: fine
@@ -132,7 +129,7 @@ contains
     !> false position in which an end that stays counts half.
     subroutine locate(outside, inside, fold)
       real(wp), intent(in) :: outside, inside
-      type(fold_t), intent(out) :: fold
+      type(extremum_t), intent(out) :: fold
       real(wp) :: a, b, at_a, at_b, s, value
       integer :: step, side
 

@@ -6,7 +6,8 @@ module journalled_steps
   use discretisation, only: discretisation_t
   use equilibrium, only: cost_t
   use jacobian, only: factorise_again
-  use quasi_static, only: quasi_static_t, position_t, event_t, witness_t
+  use quasi_static, only: quasi_static_t, position_t, event_t
+  use reported, only: witness_t
   use journal, only: journal_t
   use packing, only: packed_t
   use packed_states, only: put_cost, take_cost, put_position, take_position, put_event, &
@@ -104,7 +105,7 @@ contains
       call record%take(kept_h0)
       fits = abs(kept_h0 - h0) <= 0
       call take_position(record, self%problem%law, before, position)
-      call take_event(record, self%problem%law, event)
+      call take_event(record, event)
       call take_frozen(record, self%solver%frozen)
       call take_cost(record, cost)
       self%earlier_seconds = cost%solve_seconds
@@ -149,7 +150,7 @@ contains
     call record%put(mark)
     call record%put(h0)
     call put_position(record, self%problem%law, before, position)
-    call put_event(record, self%problem%law, event)
+    call put_event(record, event)
     call put_frozen(record, self%solver%frozen, self%known == self%solver%frozen%factors%made)
     self%known = self%solver%frozen%factors%made
     self%own_seconds = self%own_seconds + seconds() - began

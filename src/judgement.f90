@@ -3,7 +3,7 @@
 module judgement
   use kinds, only: wp
   use scene_groups, only: scene_t
-  use experiment, only: outcome_t
+  use outcome, only: outcome_t
   use summary, only: summary_t
   implicit none
   private

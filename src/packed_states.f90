@@ -6,8 +6,8 @@
 module packed_states
   use kinds, only: wp, long
   use force_law, only: force_law_t
-  use equilibrium, only: control_t, state_t, cost_t
-  use quasi_static, only: position_t, event_t, witness_t
+  use equilibrium, only: state_t, cost_t
+  use quasi_static, only: position_t, event_t
   use anderson, only: frozen_t
   use packing, only: packed_t
   implicit none
@@ -28,6 +28,7 @@ contains
     integer :: k, place
 
     call record%put(position%mesh)
+    call record%put(position%piece)
     call record%put(position%held)
     do k = 1, position%held
       call record%put(position%h0(k))
@@ -70,6 +71,7 @@ contains
     integer :: k, place
 
     call record%take(position%mesh)
+    call record%take(position%piece)
     call record%take(position%held)
     position%held = min(max(position%held, 0), size(position%past))
     do k = 1, position%held
@@ -173,9 +175,8 @@ contains
   end subroutine take_state
 
   !> Packs what happened in a step.
-  subroutine put_event(record, law, event)
+  subroutine put_event(record, event)
     type(packed_t), intent(inout) :: record
-    class(force_law_t), intent(in) :: law
     type(event_t), intent(in) :: event
 
     call record%put(event%converged)
@@ -184,24 +185,21 @@ contains
     call record%put(event%jump_load)
     call record%put(event%jump_uncertainty)
     call record%put(trim(event%reason))
-    call record%put(allocated(event%fold))
-    if (.not. allocated(event%fold)) return
-    call record%put(event%fold%mesh)
-    call put_control(record, event%fold%control)
-    call put_state(record, law, event%fold%state)
-    call record%put(event%fold%load)
-    call record%put(event%fold%h0)
-    call record%put(event%fold%displacement)
+    call record%put(event%fold)
+    call record%put(allocated(event%lowest))
+    if (.not. allocated(event%lowest)) return
+    call record%put(event%lowest%load)
+    call record%put(event%lowest%h0)
+    call record%put(event%lowest%point)
+    call record%put(event%lowest%landing)
   end subroutine put_event
 
   !> Unpacks what `put_event` packed.
-  subroutine take_event(record, law, event)
+  subroutine take_event(record, event)
     type(packed_t), intent(inout) :: record
-    class(force_law_t), intent(in) :: law
     type(event_t), intent(out) :: event
     character(len=:), allocatable :: reason
-    logical :: folded
-    integer :: what
+    logical :: known
 
     call record%take(event%converged)
     call record%take(event%jumped)
@@ -210,16 +208,14 @@ contains
     call record%take(event%jump_uncertainty)
     call record%take(reason)
     event%reason = reason
-    call record%take(folded)
-    if (.not. folded) return
-    allocate (event%fold)
-    call record%take(event%fold%mesh)
-    call take_control(record, event%fold%control)
-    call record%take(what)
-    if (what == new_state) call take_state(record, law, event%fold%state)
-    call record%take(event%fold%load)
-    call record%take(event%fold%h0)
-    call record%take(event%fold%displacement)
+    call record%take(event%fold)
+    call record%take(known)
+    if (.not. known) return
+    allocate (event%lowest)
+    call record%take(event%lowest%load)
+    call record%take(event%lowest%h0)
+    call record%take(event%lowest%point)
+    call record%take(event%lowest%landing)
   end subroutine take_event
 
   !> Packs a factorisation as what it was made from; known: the records before have that.
@@ -248,24 +244,6 @@ contains
     call record%take(known)
     if (.not. known) call record%take(frozen%factors%origin)
   end subroutine take_frozen
-
-  subroutine put_control(record, control)
-    type(packed_t), intent(inout) :: record
-    type(control_t), intent(in) :: control
-
-    call record%put(control%kind)
-    call record%put(control%value)
-    call record%put(control%scale)
-  end subroutine put_control
-
-  subroutine take_control(record, control)
-    type(packed_t), intent(inout) :: record
-    type(control_t), intent(out) :: control
-
-    call record%take(control%kind)
-    call record%take(control%value)
-    call record%take(control%scale)
-  end subroutine take_control
 
   !> Packs what was spent.
   subroutine put_cost(record, cost)

@@ -1,40 +1,31 @@
-!> The whole equilibrium path, from bodies far apart to a contact at a given h0: stable and unstable
-!> states, every fold in h0, every extremum of the load.
+!> What the equilibrium path shows from bodies far apart, or a given h0, to a contact at a given h0:
+!> stable and unstable states, every fold in h0, every extremum of the load.
 module path
   use kinds, only: wp
   use problem, only: spacing_over_neck
-  use equilibrium, only: state_t, lost_in_rounding
-  use edge_locked, only: contact, largest_radius
-  use tracer, only: tracer_t, new_tracer, inward, path_control
-  use trail, only: trail_t, extend, collapsed, polish_extremum, of_load
-  use hysteresis, only: energy_lost
-  use quasi_static, only: position_t, event_t, witness_t, add_witness, end_t, end_of, &
-    beyond_rounding
-  use locked_steps, only: locked_steps_t, fold_witness
+  use equilibrium, only: state_t
+  use edge_locked, only: contact
+  use traced_path, only: traced_path_t
+  use known_path, only: known_path_t, interval_at
+  use locked_meshes, only: h0_control
+  use path_steps, only: path_steps_t
+  use reported, only: reported_t, reported_state, witness_t, add_reported
   use records, only: observer_t, record_of, stable_yes, stable_no
   implicit none
   private
-  public :: path_t, trace_path
+  public :: path_t, follow_path
 
-  !> What the path shows, in the units of `problem`, in the order from afar inward.
+  !> In the units of `problem`, in the order from afar inward.
   type :: path_t
     integer :: states = 0
     !> Folds in h0, and the number of unstable modes after each; extrema of the load.
-    real(wp), allocatable :: fold_h0(:), fold_load(:)
+    type(reported_t), allocatable :: fold(:), extremum(:)
     integer, allocatable :: unstable_after(:)
-    real(wp), allocatable :: extremum_h0(:), extremum_load(:)
-    !> Where the bodies jump at controlled h0; unallocated where they do not.
-    real(wp), allocatable :: jump_in_h0, jump_in_load, jump_out_h0, jump_out_load
-    !> Lost in a cycle of approach and separation at controlled h0; unallocated without jumps.
-    real(wp), allocatable :: energy_lost
-    !> What its integration leaves open, and the work that it is a difference of.
-    real(wp) :: energy_uncertainty = 0, energy_turned_over = 0
-    !> Largest tension, the pull-off at controlled load.
-    real(wp), allocatable :: load, load_h0
-    !> The last state, if it is stable.
-    type(end_t), allocatable :: finish
-    !> The folds, the largest tension and the end.
-    type(witness_t), allocatable :: witness(:)
+    !> Largest tension, the pull-off at controlled load; the last state, if it is stable; the states
+    !> whose profiles were asked for, in the order of the path.
+    type(reported_t), allocatable :: lowest, finish, profile(:)
+    !> The stable pieces on which it begins and ends; 0 where that is unstable.
+    integer :: first_piece = 0, last_piece = 0
     real(wp) :: worst_residual = 0, worst_spacing = 0
     !> Whether it ends in the fall of bodies that nothing keeps apart.
     logical :: fallen = .false.
@@ -42,203 +33,198 @@ module path
     character(len=160) :: reason = ''
   end type path_t
 
-  !> Relative change of the path's coordinate in a step; small enough for a smooth curve.
-  real(wp), parameter :: path_step = 0.12_wp
-  integer, parameter :: longest = 5000
+  !> One row: its state and mesh, the point of the path that it is (0: none), its unstable modes, and
+  !> whether it is solved.
+  type :: row_t
+    type(state_t) :: state
+    integer :: mesh = 1, point = 0, modes = 0
+    logical :: converged = .true.
+  end type row_t
 
 contains
 
-  !> Traces from h0_start or from where the bodies hardly deform, whichever is farther, to the
-  !> contact at h0_end. Profiles are handed to the observer where the path crosses the values
-  !> `profiles`.
-  subroutine trace_path(steps, h0_start, h0_end, profiles, observer, path)
-    class(locked_steps_t), intent(inout) :: steps
-    real(wp), intent(in) :: h0_start, h0_end, profiles(:)
+  !> The part of the path that `steps` knows from h0_start, or where that is absent from its
+  !> beginning, to the contact at h0_end. States go to the observer, and profiles where the path
+  !> crosses the values `profiles`.
+  subroutine follow_path(steps, h0_end, profiles, observer, path, h0_start)
+    class(path_steps_t), intent(inout) :: steps
+    real(wp), intent(in) :: h0_end, profiles(:)
     class(observer_t), intent(inout) :: observer
     type(path_t), intent(out) :: path
-    type(tracer_t) :: walker
-    type(trail_t) :: trail
-    type(position_t) :: position
-    type(event_t) :: event
-    logical :: lost
+    real(wp), intent(in), optional :: h0_start
+    type(row_t) :: row
+    real(wp), allocatable :: stops(:)
+    real(wp) :: from, until
+    integer :: i, k, first, last
+    logical :: ends_between
 
-    if (lost_in_rounding(steps%problem, &
-      largest_radius(steps%problem, h0_end, steps%pair%level))) then
-      path%reason = beyond_rounding
-      return
-    end if
-    call steps%begin_afar(h0_start, position, event)
-    if (event%reason /= '') then
-      path%reason = event%reason
-      return
-    end if
-    walker = new_tracer(steps%problem, position%state, position%mesh, inward, path_step)
-    do
-      call extend(trail, walker, steps%problem, steps%pair, steps%options, steps%options, lost, &
-        steps%cost)
-      if (lost) path%reason = 'the equilibrium path was lost: no step, however small, converged'
-      if (lost .or. trail%held >= longest) exit
-      ! Without repulsion the path ends in the bodies' collapse onto each other.
-      path%fallen = collapsed(steps%problem, trail)
-      if (path%fallen) exit
-      associate (last => trail%held)
-        if (trail%mesh(last) == contact .and. trail%unstable(last) == 0 .and. &
-          trail%state(last)%h0 <= h0_end) exit
-      end associate
-    end do
-    if (path%reason == '' .and. steps%problem%law%edge_gap > 0) &
-      call end_at(steps, h0_end, trail)
-    call collect(steps, trail, path)
-    call hand_over(steps, trail, profiles, observer, path)
-    path%states = trail%held
-    steps%cost%states = steps%cost%states + trail%held
-  end subroutine trace_path
-
-  !> Replaces the last states, beyond h0_end, by the one at h0_end.
-  subroutine end_at(steps, h0_end, trail)
-    class(locked_steps_t), intent(inout) :: steps
-    real(wp), intent(in) :: h0_end
-    type(trail_t), intent(inout) :: trail
-    type(state_t) :: state
-    logical :: converged
-    integer :: last
-
-    last = trail%held
-    do while (last > 1)
-      if (trail%state(last - 1)%h0 >= h0_end .or. trail%unstable(last - 1) > 0 .or. &
-        trail%fold(last - 1) .or. trail%mesh(last - 1) /= trail%mesh(last)) exit
-      last = last - 1
-    end do
-    if (trail%state(last - 1)%h0 < h0_end .or. trail%state(last)%h0 > h0_end) return
-    call steps%land(h0_end, trail, last, state, converged)
-    if (.not. converged) return
-    trail%held = last
-    trail%state(last) = state
-    trail%coordinate(last) = log(state%scale)
-  end subroutine end_at
-
-  !> Folds, extrema of the load and jumps of a trail.
-  subroutine collect(steps, trail, path)
-    class(locked_steps_t), intent(inout) :: steps
-    type(trail_t), intent(in) :: trail
-    type(path_t), intent(inout) :: path
-    type(state_t) :: state
-    type(witness_t) :: lowest, finish
-    integer, allocatable :: fold(:)
-    real(wp) :: s
-    integer :: i, j, first
-    logical :: lost
-
-    fold = pack([(j, j=1, trail%held)], trail%fold(:trail%held))
-    path%fold_h0 = trail%state(fold)%h0
-    path%fold_load = trail%state(fold)%load
-    do j = 1, size(fold)
-      call add_witness(path%witness, fold_witness(steps, trail, fold(j)))
-    end do
-    finish = fold_witness(steps, trail, trail%held)
-    finish%displacement = .true.
-    ! How a fall ends is of no interest and on no mesh.
-    if (.not. path%fallen) call add_witness(path%witness, finish)
-    if (trail%unstable(trail%held) == 0) path%finish = end_of(trail%state(trail%held))
-    path%unstable_after = trail%unstable(min(fold + 1, trail%held))
-    if (size(fold) > 0) then
-      path%jump_in_h0 = path%fold_h0(1)
-      path%jump_in_load = path%fold_load(1)
-      if (path%unstable_after(size(fold)) == 0) then
-        path%jump_out_h0 = path%fold_h0(size(fold))
-        path%jump_out_load = path%fold_load(size(fold))
-        ! A path that ends above the jump in lacks a part of the retreat.
-        if (trail%state(trail%held)%h0 <= path%jump_in_h0) then
-          path%energy_lost = 0
-          call energy_lost(trail, path%energy_lost, path%energy_uncertainty, &
-            path%energy_turned_over)
-        end if
-      end if
-    end if
-    allocate (path%extremum_h0(0), path%extremum_load(0))
-    do i = 2, trail%held - 1
-      associate (load => trail%state(i - 1:i + 1)%load)
-        if ((load(2) - load(1))*(load(3) - load(2)) >= 0) cycle
-      end associate
-      if (any(trail%mesh(i - 1:i + 1) /= trail%mesh(i))) cycle
-      first = i - 1
-      do while (first > max(1, i - 3))
-        if (trail%mesh(first - 1) /= trail%mesh(i)) exit
-        first = first - 1
+    allocate (path%fold(0), path%extremum(0), path%unstable_after(0), path%profile(0))
+    path%fallen = steps%known%fallen
+    if (.not. path%fallen) path%reason = steps%known%ends_because
+    first = 1
+    if (present(h0_start)) first = first_crossing(steps%known%path, h0_start)
+    call find_end(steps%known, h0_end, last, ends_between)
+    do i = first, last
+      row = row_of_point(steps, i)
+      if (i == first .and. present(h0_start)) row = row_between(steps, i, h0_start)
+      if (i == first) path%first_piece = piece_of(steps%known, i)
+      call take(steps, row, any(abs(profiles - row%state%h0) <= 0), observer, path)
+      if (i == last .and. .not. ends_between) exit
+      from = row%state%h0
+      until = h0_end
+      if (i < last) until = steps%known%path%point(i + 1)%state%h0
+      stops = along(pack(profiles, (profiles - from)*(profiles - until) < 0), from)
+      do k = 1, size(stops)
+        call take(steps, row_between(steps, i, stops(k)), .true., observer, path)
       end do
-      call polish_extremum(steps%problem, steps%pair, trail%mesh(i), of_load, &
-        trail%coordinate(first:i + 1), trail%state(first:i + 1), steps%options, s, state, lost, &
-        steps%cost)
-      if (lost) cycle
-      path%extremum_h0 = [path%extremum_h0, state%h0]
-      if (all(state%load < path%extremum_load)) lowest = witness_t(mesh=trail%mesh(i), &
-        control=path_control(steps%problem, trail%mesh(i), s), state=state)
-      path%extremum_load = [path%extremum_load, state%load]
+      if (i < last) cycle
+      row = row_between(steps, i, h0_end)
+      call take(steps, row, any(abs(profiles - h0_end) <= 0), observer, path)
     end do
-    i = minloc(trail%state(:trail%held)%load, 1)
-    path%load = trail%state(i)%load
-    path%load_h0 = trail%state(i)%h0
-    if (size(path%extremum_load) > 0) then
-      i = minloc(path%extremum_load, 1)
-      if (path%extremum_load(i) <= path%load) then
-        path%load = path%extremum_load(i)
-        path%load_h0 = path%extremum_h0(i)
-        call add_witness(path%witness, lowest)
-      end if
-    end if
-    path%worst_residual = maxval(trail%state(:trail%held)%residual)
-    do i = 1, trail%held
-      if (trail%mesh(i) == contact) path%worst_spacing = max(path%worst_spacing, &
-        spacing_over_neck(steps%problem, trail%state(i)%scale*steps%pair%grid(contact)%spacing))
-    end do
-  end subroutine collect
+    if (path%states == 0) return
+    path%last_piece = piece_of(steps%known, last)
+    if (row%modes == 0 .and. row%converged) path%finish = reported_row(steps, row)
+    steps%cost%states = steps%cost%states + path%states
+  end subroutine follow_path
 
-  !> Gives all states to the observer, and the profiles where pieces of the path cross their h0.
-  subroutine hand_over(steps, trail, profiles, observer, path)
-    class(locked_steps_t), intent(inout) :: steps
-    type(trail_t), intent(in) :: trail
-    real(wp), intent(in) :: profiles(:)
+  !> The first point after which the path comes to h0; behind the last where it never does.
+  pure integer function first_crossing(path, h0) result(i)
+    type(traced_path_t), intent(in) :: path
+    real(wp), intent(in) :: h0
+
+    do i = 1, path%held - 1
+      if (path%point(i)%state%h0 >= h0 .and. path%point(i + 1)%state%h0 <= h0) return
+    end do
+    i = path%held + 1
+  end function first_crossing
+
+  !> The last point before the contact at h0_end; ends_between: the end is between that and the
+  !> next. A contact that exists only below h0_end ends behind its fold.
+  pure subroutine find_end(known, h0_end, last, ends_between)
+    type(known_path_t), intent(in) :: known
+    real(wp), intent(in) :: h0_end
+    integer, intent(out) :: last
+    logical, intent(out) :: ends_between
+
+    last = known%path%held
+    ends_between = .false.
+    if (known%ends_because /= '' .or. size(known%piece) == 0) return
+    associate (piece => known%piece(size(known%piece)))
+      ends_between = h0_end <= piece%high
+      last = min(piece%first + 1, piece%last)
+    end associate
+    if (ends_between) last = interval_at(known, size(known%piece), h0_end)
+  end subroutine find_end
+
+  !> Values in the order in which h0 passes them from `start`, all on one side of it.
+  pure function along(values, start) result(sorted)
+    real(wp), intent(in) :: values(:), start
+    real(wp), allocatable :: sorted(:)
+    real(wp) :: value
+    integer :: i, j
+
+    sorted = values
+    do i = 2, size(sorted)
+      value = sorted(i)
+      do j = i - 1, 1, -1
+        if (abs(sorted(j) - start) <= abs(value - start)) exit
+        sorted(j + 1) = sorted(j)
+      end do
+      sorted(j + 1) = value
+    end do
+  end function along
+
+  !> The stable piece on which the path goes on from point i; 0 where it is unstable.
+  pure integer function piece_of(known, i) result(k)
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: i
+
+    do k = size(known%piece), 1, -1
+      if (i >= known%piece(k)%first .and. i <= known%piece(k)%last) return
+    end do
+  end function piece_of
+
+  function row_of_point(steps, i) result(row)
+    type(path_steps_t), intent(in) :: steps
+    integer, intent(in) :: i
+    type(row_t) :: row
+
+    row%point = i
+    row%modes = steps%known%path%modes_at(i)
+    row%mesh = steps%known%path%point(i)%mesh
+    row%state = steps%known%path%point(i)%state
+  end function row_of_point
+
+  !> The row at h0 between point i and the next.
+  function row_between(steps, i, h0) result(row)
+    class(path_steps_t), intent(inout) :: steps
+    integer, intent(in) :: i
+    real(wp), intent(in) :: h0
+    type(row_t) :: row
+
+    row%modes = steps%known%path%point(i)%modes
+    call steps%state_at_h0(i, h0, row%mesh, row%state, row%converged)
+  end function row_between
+
+  !> A row as one that is reported.
+  function reported_row(steps, row) result(reported)
+    type(path_steps_t), intent(in) :: steps
+    type(row_t), intent(in) :: row
+    type(reported_t) :: reported
+    type(witness_t) :: witness
+
+    witness%mesh = row%mesh
+    witness%control = h0_control(steps%pair, row%mesh, row%state%h0)
+    witness%state = row%state
+    reported = reported_state(witness)
+    if (row%point == 0) return
+    associate (point => steps%known%path%point(row%point))
+      if (point%fold .or. point%load_extremum) reported%point = row%point
+    end associate
+  end function reported_row
+
+  !> Gives a row to the observer and keeps what is reported of it.
+  subroutine take(steps, row, profile, observer, path)
+    type(path_steps_t), intent(in) :: steps
+    type(row_t), intent(in) :: row
+    logical, intent(in) :: profile
     class(observer_t), intent(inout) :: observer
     type(path_t), intent(inout) :: path
-    type(state_t) :: state
-    real(wp), allocatable :: crossed(:)
-    integer :: i, k
-    logical :: converged
+    type(reported_t) :: reported
 
-    do i = 1, trail%held
-      if (i > 1) then
-        associate (a => trail%state(i - 1)%h0, b => trail%state(i)%h0)
-          crossed = pack(profiles, (profiles - a)*(profiles - b) < 0)
-        end associate
-        do k = 1, size(crossed)
-          call steps%land(crossed(k), trail, i, state, converged)
-          path%worst_residual = max(path%worst_residual, state%residual)
-          if (.not. converged .and. path%reason == '') &
-            path%reason = 'a state whose profile is asked for did not converge'
-          call give(trail%mesh(i), state, stability(i), converged, .true.)
-        end do
-      end if
-      call give(trail%mesh(i), trail%state(i), stability(i), .true., &
-        any(profiles == trail%state(i)%h0))
-    end do
+    associate (grid => steps%pair%grid(row%mesh), state => row%state)
+      call observer%take(record_of('path', steps%problem, grid, state, &
+        merge(stable_yes, stable_no, row%modes == 0), row%converged), steps%problem, grid, state, &
+        profile)
+      path%states = path%states + 1
+      path%worst_residual = max(path%worst_residual, state%residual)
+      if (row%mesh == contact) path%worst_spacing = max(path%worst_spacing, &
+        spacing_over_neck(steps%problem, state%scale*grid%spacing))
+    end associate
+    if (.not. row%converged) then
+      if (path%reason == '') path%reason = 'a state at a given h0 did not converge'
+      return
+    end if
+    reported = reported_row(steps, row)
+    if (profile) call add_reported(path%profile, reported)
+    if (lowers(path%lowest)) path%lowest = reported
+    if (row%point == 0) return
+    associate (point => steps%known%path%point(row%point))
+      if (point%load_extremum) call add_reported(path%extremum, reported)
+      if (.not. point%fold) return
+      call add_reported(path%fold, reported)
+      path%unstable_after = [path%unstable_after, point%modes]
+    end associate
 
   contains
 
-    integer function stability(i)
-      integer, intent(in) :: i
+    logical function lowers(lowest)
+      type(reported_t), allocatable, intent(in) :: lowest
 
-      stability = merge(stable_yes, stable_no, trail%unstable(i) == 0 .and. .not. trail%fold(i))
-    end function stability
+      lowers = .true.
+      if (allocated(lowest)) lowers = reported%load < lowest%load
+    end function lowers
 
-    subroutine give(mesh, state, stable, converged, profile)
-      integer, intent(in) :: mesh, stable
-      type(state_t), intent(in) :: state
-      logical, intent(in) :: converged, profile
-
-      call observer%take(record_of('path', steps%problem, steps%pair%grid(mesh), state, stable, &
-        converged), steps%problem, steps%pair%grid(mesh), state, profile)
-    end subroutine give
-
-  end subroutine hand_over
+  end subroutine take
 
 end module path

@@ -2,7 +2,7 @@
 module plans
   use kinds, only: wp
   use scene_groups, only: scene_t
-  use cycle, only: plan_t
+  use stepped_branch, only: plan_t
   implicit none
   private
   public :: plan_of, states_planned

@@ -4,21 +4,17 @@ module quasi_static
   use kinds, only: wp
   use problem, only: problem_t
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, cost_t
+  use equilibrium, only: state_t, cost_t
+  use reported, only: witness_t
   use anderson, only: frozen_t
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: quasi_static_t, position_t, event_t, witness_t, end_t, memory, remember, &
-    add_witness, end_of, touching, beyond_rounding
+  public :: quasi_static_t, position_t, event_t, extreme_t, memory, remember, touching
 
   !> Why rigid bodies have no state below the smallest gap of their law.
   character(len=*), parameter :: touching = &
     'rigid bodies would touch: so near (h0 <= 0, or far below it) this law has no pressure'
-
-  !> Why there is no state after a jump into contact under adhesion beyond all matter.
-  character(len=*), parameter :: beyond_rounding = &
-    'adhesion is so strong that rounding hides the force law once the bodies are in contact'
 
   !> States kept for extrapolation in h0.
   integer, parameter :: memory = 4
@@ -27,27 +23,21 @@ module quasi_static
   !> Copied to come back to it (turning points, refinements), and packed whole by `packed_states`.
   type :: position_t
     type(state_t) :: state
-    !> Which of the solver's meshes the state lives on.
-    integer :: mesh = 1
+    !> Which of the solver's meshes the state lives on, and which stable piece of the path, where
+    !> that is known.
+    integer :: mesh = 1, piece = 0
     integer :: held = 0
     real(wp) :: h0(memory) = 0
     type(state_t) :: past(memory)
   end type position_t
 
-  !> A state that reported numbers come from, and what was prescribed there; solved again on a
-  !> finer mesh, it tells the error of these numbers.
-  type :: witness_t
-    integer :: mesh = 1
-    type(control_t) :: control
-    type(state_t) :: state
-    !> What to compare: the load, H0 (where the control leaves it open), the displacement.
-    logical :: load = .true., h0 = .false., displacement = .false.
-  end type witness_t
-
-  !> Where a branch or a path ends, in the units of `problem`.
-  type :: end_t
-    real(wp) :: h0 = 0, displacement = 0, load = 0
-  end type end_t
+  !> The largest tension of a step: the load, where, and the point of the path that it belongs to, or
+  !> whose landing it belongs to; 0 for the state that the step ends in.
+  type :: extreme_t
+    real(wp) :: load = 0, h0 = 0
+    integer :: point = 0
+    logical :: landing = .false.
+  end type extreme_t
 
   !> What happened in a step; packed whole by `packed_states`.
   type :: event_t
@@ -55,8 +45,10 @@ module quasi_static
     !> The state jumped; from where (h0, and the load just before), and how well that is known.
     logical :: jumped = .false.
     real(wp) :: jump_h0 = 0, jump_load = 0, jump_uncertainty = 0
-    !> The fold that the jump starts from, where it is known.
-    type(witness_t), allocatable :: fold
+    !> The fold that the first jump starts from, as a point of the path; 0 where that is not known.
+    integer :: fold = 0
+    !> The largest tension on the way, where the path that the step follows is known.
+    type(extreme_t), allocatable :: lowest
     !> Why there is no state, for the user; empty otherwise.
     character(len=160) :: reason = ''
   end type event_t
@@ -131,23 +123,6 @@ contains
 
     mesh_of = 1
   end function mesh_of
-
-  !> Appends a witness. (An array constructor around a function's result would leak in gfortran.)
-  subroutine add_witness(witnesses, witness)
-    type(witness_t), allocatable, intent(inout) :: witnesses(:)
-    type(witness_t), intent(in) :: witness
-
-    if (.not. allocated(witnesses)) allocate (witnesses(0))
-    witnesses = [witnesses, witness]
-  end subroutine add_witness
-
-  !> A state as an end.
-  pure function end_of(state) result(finish)
-    type(state_t), intent(in) :: state
-    type(end_t) :: finish
-
-    finish = end_t(state%h0, state%axis_gap - state%h0, state%load)
-  end function end_of
 
   !> Makes `state` the position's present one; on another mesh, or after a jump, the past is
   !> forgotten.

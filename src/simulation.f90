@@ -6,7 +6,8 @@ module simulation
   use problem, only: problem_t
   use scene_groups, only: scene_t
   use deck_text, only: brief
-  use experiment, only: outcome_t, run_experiment, problem_of, path_start
+  use outcome, only: outcome_t
+  use experiment, only: run_experiment, problem_of, path_start
   use plans, only: states_planned
   use sweeps, only: run_sweep
   use outlook, only: outlook_t, outlook_of

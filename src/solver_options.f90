@@ -3,7 +3,10 @@ module solver_options
   use kinds, only: wp
   implicit none
   private
-  public :: solver_options_t
+  public :: solver_options_t, tightened
+
+  !> Well above the rounding of equations whose terms are hundreds of the law's lengths.
+  real(wp), parameter :: tight_tolerance = 1.0e-12_wp
 
   type :: solver_options_t
     !> 'mixing', 'anderson' or 'newton'.
@@ -21,5 +24,18 @@ module solver_options
     logical :: stop_on_change = .false.
     real(wp) :: displacement_tolerance = 0
   end type solver_options_t
+
+contains
+
+  !> The same options with a tolerance near rounding: for the few states whose place on the path, not
+  !> only whose load, must be exact. Where rounding allows no better its floor counts
+  !> (`residual_floor`).
+  pure function tightened(options) result(tight)
+    type(solver_options_t), intent(in) :: options
+    type(solver_options_t) :: tight
+
+    tight = options
+    tight%tolerance = min(options%tolerance, tight_tolerance)
+  end function tightened
 
 end module solver_options

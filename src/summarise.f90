@@ -9,9 +9,9 @@ module summarise
   use approximation_tables, only: jump_t, jumps_t, jumps_of
   use scene_groups, only: scene_t
   use deck_text, only: brief
-  use experiment, only: outcome_t
-  use quasi_static, only: end_t
-  use cycle, only: branch_t
+  use outcome, only: outcome_t
+  use reported, only: reported_t
+  use stepped_branch, only: branch_t
   use summary, only: summary_t
   use judgement, only: judge_resolution, judge_accuracy, about
   implicit none
@@ -43,8 +43,8 @@ contains
       call take_branch(problem, 'path', outcome%stepped_path, summary)
     if (allocated(outcome%loading)) then
       call take_branch(problem, 'loading', outcome%loading, summary)
-      call take_jump(problem, outcome%loading, summary%jump_in_h0, summary%jump_in_load, &
-        summary%jump_in_uncertainty)
+      if (allocated(outcome%loading%jump)) call take_jump_in(problem, outcome%loading%jump, &
+        summary, outcome%loading%jump_uncertainty)
     end if
     if (allocated(outcome%unloading)) then
       do k = 1, size(outcome%unloading)
@@ -54,6 +54,7 @@ contains
     end if
     ! The path knows the same folds exactly.
     if (allocated(outcome%path)) call take_path(problem, outcome, summary)
+    call take_energy(problem, outcome, summary)
     call take_end(problem, outcome, summary)
     if (.not. problem%rigid) call judge_resolution(summary)
     if (allocated(outcome%chosen%grid)) call judge_accuracy(scene, outcome, summary)
@@ -150,7 +151,8 @@ contains
     type(branch_t), intent(in) :: branch
     type(summary_t), intent(inout) :: summary
 
-    if (allocated(branch%load)) call raise_tension(problem, branch%load, branch%load_h0, summary)
+    if (allocated(branch%lowest)) call raise_tension(problem, branch%lowest, summary)
+    if (allocated(branch%profile)) call take_profiles(branch%profile, summary)
     summary%worst_residual = max(summary%worst_residual, branch%worst_residual)
     call widen_spacing(summary, branch%worst_spacing)
     if (branch%unconverged > 0) then
@@ -177,31 +179,76 @@ contains
     nothing = ieee_value(nothing, ieee_quiet_nan)
     summary%unload_from = scene%unloading%from
     allocate (summary%unload_max_tension(size(branches)), source=nothing)
-    allocate (summary%unload_max_tension_h0(size(branches)), source=nothing)
-    allocate (summary%unload_jump_out_h0(size(branches)), source=nothing)
+    summary%unload_max_tension_h0 = summary%unload_max_tension
+    summary%unload_jump_out_h0 = summary%unload_max_tension
+    summary%unload_max_tension_error = summary%unload_max_tension
+    summary%unload_max_tension_h0_error = summary%unload_max_tension
+    summary%unload_jump_out_h0_error = summary%unload_max_tension
     do k = 1, size(branches)
-      if (allocated(branches(k)%load)) then
-        summary%unload_max_tension(k) = -branches(k)%load*problem%load
-        summary%unload_max_tension_h0(k) = branches(k)%load_h0*problem%length
+      if (allocated(branches(k)%lowest)) then
+        associate (lowest => branches(k)%lowest)
+          summary%unload_max_tension(k) = -lowest%load*problem%load
+          summary%unload_max_tension_h0(k) = lowest%h0*problem%length
+          if (allocated(lowest%error)) then
+            summary%unload_max_tension_error(k) = lowest%error%load*problem%load
+            summary%unload_max_tension_h0_error(k) = lowest%error%h0*problem%length
+          end if
+        end associate
       end if
-      if (.not. allocated(branches(k)%jump_h0)) cycle
-      summary%unload_jump_out_h0(k) = branches(k)%jump_h0*problem%length
-      if (.not. allocated(summary%jump_out_h0)) call take_jump(problem, branches(k), &
-        summary%jump_out_h0, summary%jump_out_load, summary%jump_out_uncertainty)
+      if (.not. allocated(branches(k)%jump)) cycle
+      associate (jump => branches(k)%jump)
+        summary%unload_jump_out_h0(k) = jump%h0*problem%length
+        if (allocated(jump%error)) &
+          summary%unload_jump_out_h0_error(k) = jump%error%h0*problem%length
+      end associate
+      if (.not. allocated(summary%jump_out_h0)) &
+        call take_jump_out(problem, branches(k)%jump, summary, branches(k)%jump_uncertainty)
     end do
   end subroutine take_unloading
 
-  !> The jump of a branch, if it has one.
-  subroutine take_jump(problem, branch, h0, load, uncertainty)
+  !> A jump into contact; uncertainty: how well its h0 is known where it was bracketed.
+  subroutine take_jump_in(problem, jump, summary, uncertainty)
     type(problem_t), intent(in) :: problem
-    type(branch_t), intent(in) :: branch
-    real(wp), allocatable, intent(inout) :: h0, load, uncertainty
+    type(reported_t), intent(in) :: jump
+    type(summary_t), intent(inout) :: summary
+    real(wp), intent(in) :: uncertainty
 
-    if (.not. allocated(branch%jump_h0)) return
-    h0 = branch%jump_h0*problem%length
-    load = branch%jump_load*problem%load
-    if (branch%jump_uncertainty > 0) uncertainty = branch%jump_uncertainty*problem%length
-  end subroutine take_jump
+    summary%jump_in_h0 = jump%h0*problem%length
+    summary%jump_in_load = jump%load*problem%load
+    if (uncertainty > 0) summary%jump_in_uncertainty = uncertainty*problem%length
+    if (.not. allocated(jump%error)) return
+    summary%jump_in_h0_error = jump%error%h0*problem%length
+    summary%jump_in_load_error = jump%error%load*problem%load
+  end subroutine take_jump_in
+
+  !> The same for a jump out of contact.
+  subroutine take_jump_out(problem, jump, summary, uncertainty)
+    type(problem_t), intent(in) :: problem
+    type(reported_t), intent(in) :: jump
+    type(summary_t), intent(inout) :: summary
+    real(wp), intent(in) :: uncertainty
+
+    summary%jump_out_h0 = jump%h0*problem%length
+    summary%jump_out_load = jump%load*problem%load
+    if (uncertainty > 0) summary%jump_out_uncertainty = uncertainty*problem%length
+    if (.not. allocated(jump%error)) return
+    summary%jump_out_h0_error = jump%error%h0*problem%length
+    summary%jump_out_load_error = jump%error%load*problem%load
+  end subroutine take_jump_out
+
+  !> Errors of profiles, added to those of other branches.
+  subroutine take_profiles(profile, summary)
+    type(reported_t), intent(in) :: profile(:)
+    type(summary_t), intent(inout) :: summary
+    integer :: k
+
+    if (.not. allocated(summary%profiles_error)) allocate (summary%profiles_error(0))
+    do k = 1, size(profile)
+      if (allocated(profile(k)%error)) &
+        summary%profiles_error = [summary%profiles_error, profile(k)%error%profile]
+    end do
+    if (size(summary%profiles_error) == 0) deallocate (summary%profiles_error)
+  end subroutine take_profiles
 
   subroutine take_path(problem, outcome, summary)
     type(problem_t), intent(in) :: problem
@@ -217,41 +264,61 @@ contains
       end if
       if (path%fallen) call summary%warn('path: nothing keeps the bodies apart under this law: '// &
         'the path ends in their fall onto each other, and there is no state in contact')
-      if (allocated(path%load)) then
-        if (path%load < 0) call raise_tension(problem, path%load, path%load_h0, summary)
+      if (allocated(path%lowest)) then
+        if (path%lowest%load < 0) call raise_tension(problem, path%lowest, summary)
       end if
-      if (.not. allocated(path%fold_h0)) return
-      summary%folds_h0 = path%fold_h0*problem%length
-      summary%folds_load = path%fold_load*problem%load
+      call take_profiles(path%profile, summary)
+      summary%folds_h0 = path%fold%h0*problem%length
+      summary%folds_load = path%fold%load*problem%load
       summary%folds_stable = merge(1, 0, path%unstable_after == 0)
-      summary%load_folds_h0 = path%extremum_h0*problem%length
-      summary%load_folds_load = path%extremum_load*problem%load
-      if (allocated(path%energy_lost)) then
-        summary%energy_lost = path%energy_lost*problem%load*problem%length
-        summary%energy_lost_uncertainty = path%energy_uncertainty*problem%load*problem%length
-        if (allocated(summary%error_estimate)) summary%energy_lost_uncertainty = &
-          summary%energy_lost_uncertainty + &
-          summary%error_estimate*path%energy_turned_over*problem%load*problem%length
-      end if
-      if (allocated(path%jump_in_h0)) then
-        summary%jump_in_h0 = path%jump_in_h0*problem%length
-        summary%jump_in_load = path%jump_in_load*problem%load
-        if (allocated(summary%jump_in_uncertainty)) deallocate (summary%jump_in_uncertainty)
-      end if
-      if (allocated(path%jump_out_h0)) then
-        summary%jump_out_h0 = path%jump_out_h0*problem%length
-        summary%jump_out_load = path%jump_out_load*problem%load
-        if (allocated(summary%jump_out_uncertainty)) deallocate (summary%jump_out_uncertainty)
-      end if
+      summary%load_folds_h0 = path%extremum%h0*problem%length
+      summary%load_folds_load = path%extremum%load*problem%load
+      allocate (summary%folds_h0_error(0), summary%folds_load_error(0), &
+        summary%load_folds_h0_error(0), summary%load_folds_load_error(0))
+      call add_errors(path%fold, summary%folds_h0_error, summary%folds_load_error)
+      call add_errors(path%extremum, summary%load_folds_h0_error, summary%load_folds_load_error)
+      associate (n => size(path%fold))
+        if (n == 0) return
+        ! What a stretch of the path begins with may be another fold.
+        if (path%first_piece == 1) call take_jump_in(problem, path%fold(1), summary, 0.0_wp)
+        if (path%unstable_after(n) == 0) &
+          call take_jump_out(problem, path%fold(n), summary, 0.0_wp)
+      end associate
     end associate
+
+  contains
+
+    subroutine add_errors(list, h0_error, load_error)
+      type(reported_t), intent(in) :: list(:)
+      real(wp), allocatable, intent(inout) :: h0_error(:), load_error(:)
+      integer :: k
+
+      do k = 1, size(list)
+        if (.not. allocated(list(k)%error)) cycle
+        h0_error = [h0_error, list(k)%error%h0*problem%length]
+        load_error = [load_error, list(k)%error%load*problem%load]
+      end do
+    end subroutine add_errors
+
   end subroutine take_path
+
+  !> The energy lost in the cycle.
+  subroutine take_energy(problem, outcome, summary)
+    type(problem_t), intent(in) :: problem
+    type(outcome_t), intent(in) :: outcome
+    type(summary_t), intent(inout) :: summary
+
+    if (.not. allocated(outcome%energy_lost)) return
+    summary%energy_lost = outcome%energy_lost*problem%load*problem%length
+    summary%energy_lost_uncertainty = outcome%energy_uncertainty*problem%load*problem%length
+  end subroutine take_energy
 
   !> Where the loading ends or, without one, the path.
   subroutine take_end(problem, outcome, summary)
     type(problem_t), intent(in) :: problem
     type(outcome_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
-    type(end_t), allocatable :: at
+    type(reported_t), allocatable :: at
 
     if (allocated(outcome%loading)) then
       if (allocated(outcome%loading%finish)) at = outcome%loading%finish
@@ -264,19 +331,27 @@ contains
     summary%end_h0 = at%h0*problem%length
     summary%end_displacement = at%displacement*problem%length
     summary%end_load = at%load*problem%load
+    if (.not. allocated(at%error)) return
+    summary%end_displacement_error = at%error%displacement*problem%length
+    summary%end_load_error = at%error%load*problem%load
   end subroutine take_end
 
   !> Keeps the largest tension, positive.
-  subroutine raise_tension(problem, load, h0, summary)
+  subroutine raise_tension(problem, lowest, summary)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: load, h0
+    type(reported_t), intent(in) :: lowest
     type(summary_t), intent(inout) :: summary
 
     if (allocated(summary%max_tension)) then
-      if (-load*problem%load <= summary%max_tension) return
+      if (-lowest%load*problem%load <= summary%max_tension) return
+      if (allocated(summary%max_tension_error)) &
+        deallocate (summary%max_tension_error, summary%max_tension_h0_error)
     end if
-    summary%max_tension = -load*problem%load
-    summary%max_tension_h0 = h0*problem%length
+    summary%max_tension = -lowest%load*problem%load
+    summary%max_tension_h0 = lowest%h0*problem%length
+    if (.not. allocated(lowest%error)) return
+    summary%max_tension_error = lowest%error%load*problem%load
+    summary%max_tension_h0_error = lowest%error%h0*problem%length
   end subroutine raise_tension
 
   subroutine widen_spacing(summary, spacing)

@@ -21,21 +21,29 @@ module summary
     real(wp), allocatable :: sigma, tabor, big_lambda, surface_energy, jkr_pull_off, dmt_pull_off
     !> Maugis' parameter, and his pull-off, positive [N].
     real(wp), allocatable :: maugis_lambda, maugis_pull_off
-    !> Positive [N], and where [m].
-    real(wp), allocatable :: max_tension, max_tension_h0
+    !> Positive [N], and where [m]. What ends in _error is the estimated error of the number before.
+    real(wp), allocatable :: max_tension, max_tension_h0, max_tension_error, max_tension_h0_error
     !> Folds in h0 [m], the load [N] there and, from a cycle, how well h0 is known [m].
-    real(wp), allocatable :: jump_in_h0, jump_in_load, jump_in_uncertainty
-    real(wp), allocatable :: jump_out_h0, jump_out_load, jump_out_uncertainty
+    real(wp), allocatable :: jump_in_h0, jump_in_load, jump_in_uncertainty, jump_in_h0_error, &
+      jump_in_load_error
+    real(wp), allocatable :: jump_out_h0, jump_out_load, jump_out_uncertainty, &
+      jump_out_h0_error, jump_out_load_error
     !> One a turning point: [m], [N], [m], [m].
     real(wp), allocatable :: unload_from(:), unload_max_tension(:), unload_max_tension_h0(:), &
-      unload_jump_out_h0(:)
+      unload_jump_out_h0(:), unload_max_tension_error(:), unload_max_tension_h0_error(:), &
+      unload_jump_out_h0_error(:)
     !> All folds in h0 along the path ([m], [N], whether what follows is stable: 1 or 0), and all
     !> extrema of the load.
-    real(wp), allocatable :: folds_h0(:), folds_load(:)
+    real(wp), allocatable :: folds_h0(:), folds_load(:), folds_h0_error(:), folds_load_error(:)
     integer, allocatable :: folds_stable(:)
-    real(wp), allocatable :: load_folds_h0(:), load_folds_load(:)
+    real(wp), allocatable :: load_folds_h0(:), load_folds_load(:), load_folds_h0_error(:), &
+      load_folds_load_error(:)
     !> The last equilibrium of the loading or, without one, of the path: [m], [m], [N].
-    real(wp), allocatable :: end_h0, end_displacement, end_load
+    real(wp), allocatable :: end_h0, end_displacement, end_load, end_displacement_error, &
+      end_load_error
+    !> Of each profile, in the order in which they were computed: of gaps in the law's lengths, or of
+    !> pressures over the largest, whichever is larger.
+    real(wp), allocatable :: profiles_error(:)
     !> Where approaching bodies jump in the approximation of slow deformation, by the criteria of
     !> `jumps_t`: h0 [m], the load [N] there; and the gap (37) itself [m].
     real(wp), allocatable :: jump_criterion_29_h0, jump_criterion_29_load, jump_equation_37_h0, &
@@ -105,27 +113,43 @@ contains
       assignment_of('maugis_pull_off', self%maugis_pull_off) // &
       assignment_of('max_tension', self%max_tension) // &
       assignment_of('max_tension_h0', self%max_tension_h0) // &
+      assignment_of('max_tension_error', self%max_tension_error) // &
+      assignment_of('max_tension_h0_error', self%max_tension_h0_error) // &
       assignment_of('jump_in_h0', self%jump_in_h0) // &
       assignment_of('jump_in_load', self%jump_in_load) // &
+      assignment_of('jump_in_h0_error', self%jump_in_h0_error) // &
+      assignment_of('jump_in_load_error', self%jump_in_load_error) // &
       assignment_of('jump_in_uncertainty', self%jump_in_uncertainty) // &
       assignment_of('jump_out_h0', self%jump_out_h0) // &
       assignment_of('jump_out_load', self%jump_out_load) // &
+      assignment_of('jump_out_h0_error', self%jump_out_h0_error) // &
+      assignment_of('jump_out_load_error', self%jump_out_load_error) // &
       assignment_of('jump_out_uncertainty', self%jump_out_uncertainty)
     text = text // &
       assignment_of('unload_from', self%unload_from) // &
       assignment_of('unload_max_tension', self%unload_max_tension) // &
       assignment_of('unload_max_tension_h0', self%unload_max_tension_h0) // &
       assignment_of('unload_jump_out_h0', self%unload_jump_out_h0) // &
+      assignment_of('unload_max_tension_error', self%unload_max_tension_error) // &
+      assignment_of('unload_max_tension_h0_error', self%unload_max_tension_h0_error) // &
+      assignment_of('unload_jump_out_h0_error', self%unload_jump_out_h0_error) // &
       assignment_of('folds_h0', self%folds_h0) // &
       assignment_of('folds_load', self%folds_load) // &
       assignment_of('folds_stable', self%folds_stable) // &
+      assignment_of('folds_h0_error', self%folds_h0_error) // &
+      assignment_of('folds_load_error', self%folds_load_error) // &
       assignment_of('load_folds_h0', self%load_folds_h0) // &
       assignment_of('load_folds_load', self%load_folds_load) // &
+      assignment_of('load_folds_h0_error', self%load_folds_h0_error) // &
+      assignment_of('load_folds_load_error', self%load_folds_load_error) // &
       assignment_of('energy_lost', self%energy_lost) // &
       assignment_of('energy_lost_uncertainty', self%energy_lost_uncertainty) // &
       assignment_of('end_h0', self%end_h0) // &
       assignment_of('end_displacement', self%end_displacement) // &
-      assignment_of('end_load', self%end_load)
+      assignment_of('end_load', self%end_load) // &
+      assignment_of('end_displacement_error', self%end_displacement_error) // &
+      assignment_of('end_load_error', self%end_load_error) // &
+      assignment_of('profiles_error', self%profiles_error)
     text = text // &
       assignment_of('jump_criterion_29_h0', self%jump_criterion_29_h0) // &
       assignment_of('jump_criterion_29_load', self%jump_criterion_29_load) // &

@@ -5,7 +5,8 @@ module sweeps
   use problem, only: problem_t
   use scene_groups, only: scene_t
   use scene, only: swept_scene
-  use experiment, only: outcome_t, run_experiment, problem_of
+  use outcome, only: outcome_t
+  use experiment, only: run_experiment, problem_of
   use equilibrium, only: cost_t
   use records, only: silent_observer_t
   use summarise, only: summary_of

@@ -1,5 +1,6 @@
-!> Follows the equilibrium path, stable and unstable, in coordinates in which it has no folds: the
-!> gap on the axis before contact, the contact radius in contact (`edge_locked`). Each step is
+!> Follows the equilibrium path from afar into contact, stable and unstable, in coordinates in which
+!> it has no folds: the gap on the axis before contact, the contact radius in contact
+!> (`edge_locked`). Each step is
 !> extrapolated from the last states and corrected by the accelerated iteration.
 module tracer
   use kinds, only: wp
@@ -13,19 +14,16 @@ module tracer
   use edge_locked, only: mesh_pair_t, regrid, approach, contact
   implicit none
   private
-  public :: tracer_t, new_tracer, inward, outward, path_control, coordinate_of, &
-    move_to_mesh, state_at, between, node_count
+  public :: tracer_t, new_tracer, path_control, coordinate_of, move_to_mesh, state_at, between, &
+    node_count
 
-  !> Towards contact and larger contact radius, and back.
-  integer, parameter :: inward = 1, outward = -1
   !> States kept for the extrapolation, and limits of a step (relative change of the coordinate).
   integer, parameter :: memory = 4
   real(wp), parameter :: smallest_step = 1.0e-6_wp
 
   type :: tracer_t
-    !> The mesh in use, `approach` or `contact`, and the sense of travel.
+    !> The mesh in use, `approach` or `contact`.
     integer :: mesh = approach
-    integer :: direction = inward
     real(wp) :: step = 0.05_wp, largest_step = 0.15_wp
     type(frozen_t) :: frozen
     !> The last states on this mesh and their coordinates, newest last.
@@ -36,52 +34,30 @@ module tracer
     procedure :: advance
     procedure, private :: remember
     procedure :: change_mesh
-    procedure :: look_back
   end type tracer_t
 
 contains
 
   !> A tracer that starts from an equilibrium on one of the meshes.
-  function new_tracer(this, state, mesh, direction, largest_step) result(tracer)
+  function new_tracer(this, state, mesh, largest_step) result(tracer)
     type(problem_t), intent(in) :: this
     type(state_t), intent(in) :: state
-    integer, intent(in) :: mesh, direction
+    integer, intent(in) :: mesh
     real(wp), intent(in) :: largest_step
     type(tracer_t) :: tracer
 
     tracer%mesh = mesh
-    tracer%direction = direction
     tracer%largest_step = largest_step
     tracer%step = 0.3_wp*largest_step
     call tracer%remember(this, state)
   end function new_tracer
 
-  !> Gives a tracer that has just begun a state behind its first, so that a fold right ahead of the
-  !> first is surrounded by three states too.
-  subroutine look_back(self, this, pair, options, cost)
-    class(tracer_t), intent(inout) :: self
-    type(problem_t), intent(in) :: this
-    type(mesh_pair_t), intent(in) :: pair
-    type(solver_options_t), intent(in) :: options
-    type(cost_t), intent(inout) :: cost
-    type(state_t) :: first, behind
-    logical :: converged
-
-    first = self%past(1)
-    call state_at(this, pair, self%mesh, self%coordinate(1) - sense_of(self)*0.5_wp*self%step, &
-      self%coordinate(:1), self%past(:1), options, self%frozen, behind, converged, cost)
-    if (.not. converged) return
-    self%held = 0
-    call self%remember(this, behind)
-    call self%remember(this, first)
-  end subroutine look_back
-
-  !> Whether the coordinate grows along the way: inward the gap on the axis shrinks, the contact
-  !> radius grows.
+  !> Whether the coordinate grows along the way towards contact: the gap on the axis shrinks, the
+  !> contact radius grows.
   pure integer function sense_of(self)
     class(tracer_t), intent(in) :: self
 
-    sense_of = merge(-self%direction, self%direction, self%mesh == approach)
+    sense_of = merge(-1, 1, self%mesh == approach)
   end function sense_of
 
   !> The next state of the path, on the same mesh. lost: no step, however small, converged.
@@ -248,7 +224,7 @@ contains
     self%coordinate(self%held) = coordinate_of(this, self%mesh, state)
   end subroutine remember
 
-  !> Passes to the other mesh once the contact radius has crossed the passage (to be called after
+  !> Passes to the mesh for contact once the contact radius has crossed the passage (to be called after
   !> each `advance`), taking the last two states along, so that three neighbours on one mesh
   !> surround every fold.
   subroutine change_mesh(self, this, pair, options, lost, cost)
@@ -259,31 +235,22 @@ contains
     logical, intent(out) :: lost
     type(cost_t), intent(inout) :: cost
     type(state_t) :: taken(2)
-    integer :: to, j
+    integer :: j
     logical :: done(2)
 
     lost = .false.
-    if (.not. this%law%edge_gap > 0) return
-    associate (newest => self%past(self%held))
-      if (self%mesh == approach .and. self%direction == inward) then
-        if (radius_of_gap(this%law%edge_gap, pair%grid(approach), newest) < pair%passage) return
-        to = contact
-      else if (self%mesh == contact .and. self%direction == outward) then
-        if (newest%scale > pair%passage) return
-        to = approach
-      else
-        return
-      end if
-    end associate
+    if (.not. this%law%edge_gap > 0 .or. self%mesh == contact) return
+    if (radius_of_gap(this%law%edge_gap, pair%grid(approach), self%past(self%held)) &
+      < pair%passage) return
     self%frozen%factors%valid = .false.
     done(1) = .false.
     do j = max(1, self%held - 1), self%held
       taken(2 - self%held + j) = self%past(j)
-      call move_to_mesh(this, pair, self%mesh, to, options, self%frozen, taken(2 - self%held + j), &
-        done(2 - self%held + j), cost)
+      call move_to_mesh(this, pair, approach, contact, options, self%frozen, &
+        taken(2 - self%held + j), done(2 - self%held + j), cost)
     end do
     lost = .not. done(2)
-    self%mesh = to
+    self%mesh = contact
     self%held = 0
     do j = 1, 2
       if (done(j)) call self%remember(this, taken(j))

@@ -82,15 +82,21 @@ def test_an_absent_group_leaves_no_file_and_no_column(run):
     assert list(result.groups) == groups
 
 
-@pytest.mark.parametrize(
-    ("group", "file"),
-    [({"classical": {}}, "classical.csv"), ({"profiles": {"h0": [1.0, -2.0]}}, "profiles.csv")],
-    ids=["classical", "profiles"],
-)
-def test_theories_and_profiles_on_the_steps_cost_no_equilibrium(run, group, file):
-    plain, more = run(lennard_jones(1.0, **PLAIN)), run(lennard_jones(1.0, **PLAIN, **group))
-    assert more.files == sorted([*plain.files, file])
+def test_theories_cost_no_equilibrium(run):
+    plain, more = run(lennard_jones(1.0, **PLAIN)), run(lennard_jones(1.0, **PLAIN, classical={}))
+    assert more.files == sorted([*plain.files, "classical.csv"])
     assert counts(more) == counts(plain)
+    plain_rows, rows = ((r.folder / "curve.csv").read_bytes() for r in (plain, more))
+    assert rows == plain_rows
+
+
+def test_profiles_on_the_steps_cost_their_error_estimate_alone(run):
+    plain = run(lennard_jones(1.0, **PLAIN))
+    more = run(lennard_jones(1.0, **PLAIN, profiles={"h0": [1.0, -2.0]}))
+    assert more.files == sorted([*plain.files, "profiles.csv"])
+    assert more.cost["states"] == plain.cost["states"]
+    assert more.cost["kernel_entries"] == plain.cost["kernel_entries"]
+    assert more.cost["operator_products"] <= plain.cost["operator_products"] + 2 * 12
     # The same digits, too.
     plain_rows, rows = ((r.folder / "curve.csv").read_bytes() for r in (plain, more))
     assert rows == plain_rows

@@ -35,7 +35,7 @@ def test_what_cases_do_at_the_same_time_keeps_no_string_length_in_static_storage
     together = uses("experiment") - {
         name for name in SOURCES if name.startswith(("deck", "scene")) or name == "c_library"
     }
-    assert {"cycle", "path", "anderson", "error_estimate"} <= together
+    assert {"stepped_branch", "path", "anderson", "error_estimate"} <= together
     guilty = []
     for module in sorted(together):
         for file in objects.glob(f"*_{module}.f90.o"):
