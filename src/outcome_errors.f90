@@ -4,7 +4,6 @@ module outcome_errors
   use discretisation, only: discretisation_t
   use choice, only: fixed_mesh, companion
   use edge_locked, only: mesh_pair_t, new_mesh_pair, resolution_t
-  use tracer, only: node_count
   use fixed_steps, only: fixed_steps_t
   use locked_steps, only: locked_steps_t
   use path_steps, only: path_steps_t
@@ -12,7 +11,7 @@ module outcome_errors
   use hysteresis, only: lost_energy_t, energy_lost
   use reported, only: reported_t, relative_error
   use error_estimate, only: judge_at_h0, rounding
-  use path_errors, only: judge_on_path
+  use path_errors, only: judge_on_path, finer_nodes
   use stepped_branch, only: branch_t
   use path, only: path_t
   use outcome, only: outcome_t
@@ -20,10 +19,10 @@ module outcome_errors
   private
   public :: judge_locked, judge_fixed
 
-  !> Panels: nodes that the finer mesh has more in each, and its reach over the mesh's; the error
-  !> of the reach falls with its fifth power.
+  !> Panels: nodes that the finer mesh has more in each, and its reach over the mesh's. States take
+  !> whole panels, so that theirs may be up to twice that of the mesh; `finer_nodes` goes beyond it.
   integer, parameter :: more_nodes = 2
-  real(wp), parameter :: farther = 1.6_wp
+  real(wp), parameter :: farther = 4
   !> Differences are raised by this much for the error of the finer mesh: a tenth or less for
   !> panels, a third for a uniform grid, which is of second order and of lower order in places; and
   !> because other states may be somewhat worse than those compared. Against a grid twice as coarse
@@ -170,7 +169,7 @@ contains
       class is (locked_steps_t)
         associate (mesh => reported%witness%mesh)
           call judge_at_h0(steps%problem, steps%pair%grid(mesh), fine%grid(mesh), &
-            node_count(fine, mesh, reported%witness%state%scale), margin, &
+            finer_nodes(steps%pair, fine, mesh, reported%witness%state), margin, &
             steps%options%tolerance, reported, steps%cost)
         end associate
       class is (fixed_steps_t)

@@ -8,9 +8,9 @@ module path_errors
   use kinds, only: wp
   use problem, only: problem_t
   use edge_locked, only: mesh_pair_t, regrid
-  use equilibrium, only: state_t, cost_t
+  use equilibrium, only: state_t, cost_t, load_reach
   use anderson, only: frozen_t, solve_anderson
-  use tracer, only: path_control, coordinate_of, node_count
+  use tracer, only: path_control, coordinate_of
   use tangent, only: path_slopes
   use potential_energy, only: energy_of
   use known_path, only: known_path_t, landing_t, landing_over
@@ -18,7 +18,7 @@ module path_errors
   use error_estimate, only: to_rounding, unknown_error, profile_error, nearly_solved, rounding
   implicit none
   private
-  public :: judge_on_path
+  public :: judge_on_path, finer_nodes
 
   !> Value, slope and second derivative by the path's coordinate.
   type :: parabola_t
@@ -40,6 +40,8 @@ module path_errors
   !> move, and how often it may.
   real(wp), parameter :: apart = 1.0e-4_wp, believed = 1.0e-3_wp, farthest = 0.1_wp
   integer, parameter :: most_moves = 8
+  !> Reach of a state on the finer mesh over its own.
+  real(wp), parameter :: farther = 1.6_wp
   !> Tolerance of states that are looked for along the path (law's lengths).
   real(wp), parameter :: tight = 1.0e-12_wp
 
@@ -78,6 +80,17 @@ contains
       end associate
     end if
   end subroutine judge_on_path
+
+  !> Nodes of the finer mesh for a state: they go beyond those that it has, for the error of the
+  !> reach, which falls with its fifth power, must show.
+  pure integer function finer_nodes(pair, fine, mesh, state)
+    type(mesh_pair_t), intent(in) :: pair, fine
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+
+    finer_nodes = fine%grid(mesh)%nodes_within( &
+      farther*load_reach(pair%grid(mesh), state)/state%scale)
+  end function finer_nodes
 
   !> Errors of a fold or an extremum of the load, kept in the path.
   subroutine judge_point(this, pair, fine, margin, known, i, cost)
@@ -146,7 +159,7 @@ contains
     on_fine%energy = energy_of(this, pair%grid(mesh), state)
     near%s = coordinate_of(this, mesh, state)
     near%state = regrid(state, pair%grid(mesh), fine%grid(mesh), state%scale, &
-      node_count(fine, mesh, state%scale))
+      finer_nodes(pair, fine, mesh, state))
     do move = 1, most_moves
       call expand(this, fine, mesh, near, found, cost)
       if (.not. found) return
