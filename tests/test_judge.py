@@ -1,4 +1,4 @@
-"""Samples of the studies of tools/verify/judge.py: the program against the independent reference."""
+"""Samples of the studies of tools/verify/judge.py: the program against another solution."""
 
 import math
 

@@ -32,7 +32,7 @@ def barycentric(count):
 
 
 def lagrange(u, count):
-    """Values at u (any shape) of the polynomials that are 1 at one Gauss point: shape + (count,)."""
+    """Values at u of the polynomials that are 1 at one Gauss point; the last axis counts them."""
     distance = u[..., None] - gauss(count)[0]
     distance[distance == 0] = 1e-300
     terms = barycentric(count) / distance

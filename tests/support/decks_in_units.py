@@ -33,6 +33,12 @@ class Report(NamedTuple):
     rows: object
 
 
+def said(found):
+    """The status of a run that failed, and why."""
+    reasons = " | ".join([found.stderr.strip()[-120:], *found.warnings])
+    return f"status {found.status}: {reasons[:200]}"
+
+
 def program_path():
     """The executable that is judged: $SNAPIN, else build/snapin of this checkout."""
     root = pathlib.Path(__file__).resolve().parent.parent.parent

@@ -1,7 +1,7 @@
 """What an experiment that steps h0 must report, read off the reference path.
 
-The bodies stay on a stable branch to its end and then jump to the other: how long the steps are makes
-no difference. Units: z0 for h0, gamma R for loads.
+The bodies stay on a stable branch to its end and then jump to the other: how long the steps are
+makes no difference. Units: z0 for h0, gamma R for loads.
 """
 
 import math
@@ -64,7 +64,7 @@ def withdrawal(path, start, turn, retreat):
 
 
 def largest_tension(path, legs):
-    """The point of largest tension that a branch passes, or nothing where all loads are positive."""
+    """The point of largest tension that a branch passes; nothing where all loads are positive."""
     passed = [point for leg in legs for point in path.swept(leg.first, leg.last)]
     lowest = min(passed, key=lambda point: point.load)
     return lowest if lowest.load < 0 else None

@@ -1,10 +1,10 @@
 """An independent solution of the Lennard-Jones problem, to hold the program against.
 
-Nothing here is the program's way of doing it: the kernel is two Abel transforms (`abel`), the unknown
-is the logarithm of the gap (`states`), and the path is a chain of Chebyshev series in its parameter:
-the gap on the axis before contact, the radius where the gap is EDGE in contact. Folds, extrema, states
-at given h0 and areas are those of the series. Their joints, where meshes change, and a second
-resolution say how good they are. Units: z0 for h0, gamma R for loads.
+Nothing here is the program's way of doing it: the kernel is two Abel transforms (`abel`), the
+unknown is the logarithm of the gap (`states`), and the path is a chain of Chebyshev series
+(`series`) in its parameter: the gap on the axis before contact, then the radius of the contact.
+Folds, extrema, states at given h0 and areas are those of the series. Their joints, where meshes
+change, and a second resolution say how good they are. Units: z0 for h0, gamma R for loads.
 """
 
 import functools

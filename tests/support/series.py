@@ -59,8 +59,8 @@ def stretch(sigma, mesh, parameter, limits, state, resolution):
     else:
         columns = [[getattr(s, name) for _, s in known] for name in ("h0", "load", "axis")]
         found = [series(column) for column in columns]
-        sizes = [max(1.0, abs(c).max()) for c in found[:1]] + [abs(found[1]).max()]
-        rest = max(abs(c[-2:]).max() / size for c, size in zip(found[:2], sizes))
+        sizes = max(1.0, abs(found[0]).max()), abs(found[1]).max()
+        rest = max(abs(c[-2:]).max() / size for c, size in zip(found, sizes))
         if rest <= resolution.tail or abs(limits[1] - limits[0]) < 0.02:
             return [Piece(*found, *limits, known[-1][1])]
     middle = sum(limits) / 2

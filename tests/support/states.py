@@ -4,8 +4,8 @@ In units of z0 (gaps), sqrt(R z0) (radii), gamma/z0 (pressures) and gamma R (loa
 
     H(r) = H0 + r^2/2 + 2 sigma Int P(H(t)) k(r,t) t dt,   P(H) = (8/3) (H^-9 - H^-3)
 
-On a mesh around the axis the parameter is the gap there; on one around the edge of the contact it is
-the edge's radius c, with the gap EDGE at it. With r = c x the operator is multiplied by c.
+On a mesh around the axis the parameter is the gap there; on one around the edge of the contact it
+is the edge's radius c, with the gap EDGE at it. With r = c x the operator is multiplied by c.
 """
 
 import math
@@ -62,7 +62,7 @@ class Lost(ArithmeticError):
 
 
 def solve(sigma, mesh, value, log_gap, h0):
-    """The equilibrium with the parameter `value`: c on a mesh in contact, else the gap on the axis."""
+    """The equilibrium with the parameter `value`: c on a mesh in contact, else the axis' gap."""
     contact = mesh.centre > 0
     c = value if contact else 1.0
     coupling, row = 2 * sigma * c, mesh.edge if contact else mesh.axis

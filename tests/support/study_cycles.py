@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from scenes import loading
 from support.comparison import deviations, missing
-from support.decks_in_units import report
+from support.decks_in_units import report, said
 from support.experiment import cycle, reported
 from support.reference import Path
 
@@ -138,7 +138,7 @@ def judged(path, sigma, expected, found, deck, text):
     numbers = reported(expected)
     wrong = {}
     if found.status != 0:
-        wrong["status"] = f"{found.status} {found.stderr.strip()[-200:]}"
+        wrong["status"] = said(found)
         return Finding(sigma, deck, wrong, [], text)
     for line in missing(found, numbers):
         wrong.setdefault(line.split(" has ")[0].split()[0] + " missing or invented", line)

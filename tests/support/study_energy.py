@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from support.decks_in_units import report
+from support.decks_in_units import report, said
 from support.reference import CUSP, Path
 
 ACCURACIES = (1e-3, 1e-4, 1e-6, 1e-8)
@@ -48,7 +48,7 @@ def examined(job, true, accuracy):
     groups = {"equilibrium_path": {"h0_end": DEPTH}, "numerics": {"accuracy": accuracy}}
     found = report(job.sigma, groups, job.folder, f"energy{accuracy:g}")
     if found.status != 0 or "energy_lost" not in found.numbers:
-        return Finding(job.sigma, accuracy, true, 1.0, 0.0, f"status {found.status}, no energy")
+        return Finding(job.sigma, accuracy, true, 1.0, 0.0, f"{said(found)}, no energy")
     error = abs(found.numbers["energy_lost"] - true)
     allowed = found.errors.get("energy_lost", 0.0)
     ratio = error / allowed if allowed else float("inf")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scenes import loading
 from support.comparison import KNOWN, deviations, missing
-from support.decks_in_units import report
+from support.decks_in_units import report, said
 from support.experiment import cycle, reported, reported_of_path
 from support.reference import Path
 
@@ -58,7 +58,7 @@ def examine(job):
             found = report(job.sigma, {**groups, "numerics": numerics}, job.folder, name)
             wrong = missing(found, expected)
             if found.status != 0:
-                wrong.append(f"status {found.status}: {found.stderr.strip()[-200:]}")
+                wrong.append(said(found))
             off = deviations(found, expected, path.pull_off.load)
             findings.append(Finding(job.sigma, kind, accuracy, off, wrong))
     return findings
@@ -85,13 +85,16 @@ def table(findings):
             by_key[f.kind, one.key].append((one, f))
     lines = [
         f"{'true error over estimated':<34} {'own':>4} {'number':>6} {'least':>8} {'median':>8} "
-        f"{'largest':>8} {'above 1':>8} {'below .01':>9} {'strictly':>9}   largest at; error above accuracy"
+        f"{'largest':>8} {'above 1':>8} {'below .01':>9} {'strictly':>9}"
+        "   largest at; errors above the accuracy"
     ]
     for (kind, key), ones in sorted(by_key.items()):
         lines.append(row(kind, key, ones))
     wrong = [f for f in findings if f.wrong]
-    lines.append(f"decks {len(findings)}, with numbers missing or invented, or failed: {len(wrong)}")
-    lines += [f"  sigma {f.sigma:g} {f.kind} {f.accuracy:g}: {'; '.join(f.wrong)}" for f in wrong[:12]]
+    lines.append(f"decks {len(findings)}, failed or with a number missing or invented {len(wrong)}")
+    lines += [
+        f"  sigma {f.sigma:g} {f.kind} {f.accuracy:g}: {'; '.join(f.wrong)}" for f in wrong[:12]
+    ]
     return lines
 
 
@@ -108,5 +111,6 @@ def row(kind, key, ones):
     low, high = sum(r < 0.01 for r in ratios), sum(r > 1 for r in ratios)
     return (
         f"{head} {min(ratios):8.1e} {statistics.median(ratios):8.1e} {largest[0]:8.1e} {high:8d} "
-        f"{low:9d} {strictest:9.1e}   sigma {largest[2].sigma:g} accuracy {largest[2].accuracy:g}; {above}"
+        f"{low:9d} {strictest:9.1e}   "
+        f"sigma {largest[2].sigma:g} accuracy {largest[2].accuracy:g}; {above}"
     )

@@ -1,7 +1,7 @@
 """States a hair before and beyond a fold: before it none may jump, beyond it every one must.
 
-The distance is kept from the program's own fold, which a first run of the same range reports, and in
-the reference from its own: the folds themselves differ by the error of the program's mesh.
+The distance is kept from the program's own fold, which a first run of the same range reports, and
+in the reference from its own: the folds themselves differ by the error of the program's mesh.
 """
 
 import collections
@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scenes import loading
 from support.comparison import deviations, missing
-from support.decks_in_units import report
+from support.decks_in_units import report, said
 from support.experiment import cycle, reported
 from support.reference import Path
 
@@ -107,11 +107,6 @@ def look_at_path(job, path, groups, fold, way, place, true, far):
     return ["load of a state beside the fold"] if any(off) else []
 
 
-def said(found):
-    """The status of a run that failed, and why."""
-    return f"status {found.status}: {' | '.join([found.stderr.strip()[-120:], *found.warnings])[:200]}"
-
-
 def limit_of(path, fold, load, accuracy):
     """By how much a load beside a fold may be wrong."""
     at = path.jump_in.load if fold == "in" else path.jump_out.load
@@ -167,7 +162,8 @@ def table(findings):
     lines = [f"decks {len(findings)}, wrong {sum(bool(f.wrong) for f in findings)}"]
     kinds = collections.defaultdict(list)
     for f in findings:
-        kinds[f.experiment, f.fold, f.way, "before" if (f.side > 0) == (f.fold == "in") else "beyond"].append(f)
+        side = "before" if (f.side > 0) == (f.fold == "in") else "beyond"
+        kinds[f.experiment, f.fold, f.way, side].append(f)
     for name, ones in sorted(kinds.items()):
         bad = [f for f in ones if f.wrong]
         by_power = collections.Counter(f.power for f in bad)

@@ -1,6 +1,6 @@
 """Holds the program against the independent reference of tests/support: studies with tables.
 
-    .venv/bin/python tools/verify/judge.py [STUDY ...] [--count N] [--seed N] [--workers 2] [--out FILE]
+    .venv/bin/python tools/verify/judge.py [STUDY ...] [--count N] [--seed N] [--out FILE]
 
     estimates   true error over estimated error of every number of the summary
     cycles      random cycles: jumps, tensions, ends, rows, whatever the steps
