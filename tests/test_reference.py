@@ -29,7 +29,7 @@ def test_two_abel_transforms_are_the_elastic_kernel(centre, d, finer):
 
 
 def test_hertz_pressure_flattens_a_parabola():
-    """sqrt(1 - t^2) has a deformation of (pi/4)(2 - r^2) inside, whether an edge is a node or no."""
+    """sqrt(1 - t^2) has a deformation of (pi/4)(2 - r^2) inside, wherever its edge is."""
     mesh = Mesh(1.0, 1e-4, 50.0, FINE)
     p = np.sqrt(np.maximum(1 - mesh.x**2, 0))
     inside = mesh.x < 1

@@ -142,7 +142,7 @@ def judged(path, sigma, expected, found, deck, text):
         return Finding(sigma, deck, wrong, [], text)
     for line in missing(found, numbers):
         wrong.setdefault(line.split(" has ")[0].split()[0] + " missing or invented", line)
-    off = deviations(found, numbers, path.pull_off.load)
+    off = deviations(found, numbers, path)
     for one in off:
         limit = WRONG_PLACE if "tension_h0" in one.key else WRONG
         if not one.relative <= limit:

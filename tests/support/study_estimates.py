@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scenes import loading
-from support.comparison import KNOWN, deviations, missing
+from support.comparison import deviations, missing
 from support.decks_in_units import report, said
 from support.experiment import cycle, reported, reported_of_path
 from support.reference import Path
@@ -59,7 +59,7 @@ def examine(job):
             wrong = missing(found, expected)
             if found.status != 0:
                 wrong.append(said(found))
-            off = deviations(found, expected, path.pull_off.load)
+            off = deviations(found, expected, path)
             findings.append(Finding(job.sigma, kind, accuracy, off, wrong))
     return findings
 
@@ -69,7 +69,7 @@ def ratio(one, strict=False):
 
     strict: both relative to the value itself, so that an estimate for all says nothing of scales.
     """
-    if one.relative <= KNOWN:
+    if not one.known:
         return None
     if strict and not one.own:
         scale = one.error / one.relative

@@ -137,7 +137,7 @@ def cycle_off(job, path, expected, found, fold, branch, place, true):
     """What is wrong: keys, numbers, the state at h0 itself."""
     numbers = reported(expected)
     wrong = missing(found, numbers)
-    for one in deviations(found, numbers, path.pull_off.load):
+    for one in deviations(found, numbers, path):
         limit = max(WRONG, 10 * job.accuracy)
         if one.key == "unload_max_tension":
             limit = limit_of(path, fold, one.value, job.accuracy) / abs(path.pull_off.load)
