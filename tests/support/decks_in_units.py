@@ -1,5 +1,6 @@
 """Lennard-Jones decks in units of z0 and gamma R, run by the program and read back in them."""
 
+import math
 import os
 import pathlib
 import shutil
@@ -7,17 +8,51 @@ import subprocess
 from typing import NamedTuple
 
 import f90nml
-from scenes import lennard_jones, read_table, several
+from scenes import deck, read_table, several
 
-# In a deck with R = z0 = E/(1-nu^2) = 1 a load in units of gamma R is to be multiplied by sigma.
 LOADS = (
     "max_tension", "jump_in_load", "jump_out_load", "folds_load", "load_folds_load", "end_load",
-    "unload_max_tension", "energy_lost",
+    "unload_max_tension",
 )  # fmt: skip
 LENGTHS = (
     "max_tension_h0", "jump_in_h0", "jump_out_h0", "folds_h0", "load_folds_h0", "end_h0",
     "end_displacement", "unload_max_tension_h0", "unload_jump_out_h0",
 )  # fmt: skip
+# Groups whose keys are all lengths.
+RANGES = ("loading", "unloading", "equilibrium_path", "profiles")
+
+
+class Units(NamedTuple):
+    """Radius [m], E/(1-nu^2) [Pa] and z0 [m] of a deck."""
+
+    radius: float
+    stiffness: float
+    z0: float
+
+    def load(self, sigma):
+        """gamma R [N]."""
+        return sigma * self.stiffness * math.sqrt(self.radius * self.z0**3)
+
+    def deck(self, sigma, groups):
+        """The deck whose groups are given in units of z0."""
+        gamma = self.load(sigma) / self.radius
+        hamaker = 16 * math.pi * gamma * self.z0**2
+        force = {"law": "lennard_jones", "hamaker": hamaker, "z0": self.z0}
+        bodies = {"radius": self.radius, "stiffness": self.stiffness}
+        scaled = dict(groups)
+        for name in RANGES:
+            if name in groups:
+                scaled[name] = {key: self.metres(value) for key, value in groups[name].items()}
+        return deck(bodies=bodies, force=force, **scaled)
+
+    def metres(self, value):
+        """A length or several."""
+        return [x * self.z0 for x in value] if isinstance(value, list) else value * self.z0
+
+
+# With these h0 is in z0 and loads are in sigma; and crossed cylinders in air.
+PLAIN = Units(1.0, 1.0, 1.0)
+REAL = Units(1.5e-2, 1.0e10, 0.5e-9)
 
 
 class Report(NamedTuple):
@@ -45,10 +80,10 @@ def program_path():
     return pathlib.Path(os.environ.get("SNAPIN", root / "build" / "snapin")).resolve()
 
 
-def report(sigma, groups, folder, name="deck", *, rows=False, seconds=120, text=None):
-    """Runs a deck of these groups (or the one given) in a folder and reads what it reports."""
+def report(sigma, groups, folder, name="deck", *, rows=False, seconds=120, units=PLAIN):
+    """Runs a deck of these groups in a folder and reads what it reports, in z0 and gamma R."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{name}.nml").write_text(text or lennard_jones(sigma, **groups))
+    (folder / f"{name}.nml").write_text(units.deck(sigma, groups))
     environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
     command = [str(program_path()), "--quiet", f"{name}.nml"]
     try:
@@ -63,10 +98,14 @@ def report(sigma, groups, folder, name="deck", *, rows=False, seconds=120, text=
         return Report(done.returncode, {}, {}, 0.0, [], done.stderr, None)
     summary = f90nml.read(results / "summary.nml")["summary"]
     table = read_table(results / "curve.csv") if rows else None
+    if rows:
+        table.columns["h0"] /= units.z0
+        table.columns["load"] /= units.load(sigma)
     shutil.rmtree(results)
     numbers, errors = {}, {}
-    for key in (*LOADS, *LENGTHS):
-        unit = sigma if key in LOADS else 1.0
+    for key in (*LOADS, *LENGTHS, "energy_lost"):
+        unit = units.load(sigma) if key in LOADS else units.z0
+        unit = units.load(sigma) * units.z0 if key == "energy_lost" else unit
         names = [(numbers, key), (errors, f"{key}_uncertainty"), (errors, f"{key}_error")]
         for found, name_of in names:
             if name_of in summary:

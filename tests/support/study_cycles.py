@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from scenes import loading
 from support.comparison import deviations, missing
-from support.decks_in_units import report, said
+from support.decks_in_units import PLAIN, REAL, report, said
 from support.experiment import cycle, reported
 from support.reference import Path
 
@@ -116,7 +116,7 @@ def examine(job):
 
 
 def examined(path, scene, folder, deck=0):
-    """One deck against its path."""
+    """One deck against its path; odd ones are posed in metres."""
     sigma = path.sigma
     start, end, step, turning, retreat, back = scene
     groups = {"loading": loading(start, end, step)}
@@ -125,7 +125,8 @@ def examined(path, scene, folder, deck=0):
             "from_": [float(x) for x in turning], "h0_end": float(retreat), "h0_step": float(back),
         }  # fmt: skip
     expected = cycle(path, start, end, turning, retreat)
-    found = report(sigma, groups, folder, f"deck{deck}", rows=True)
+    units = REAL if deck % 2 else PLAIN
+    found = report(sigma, groups, folder, f"deck{deck}", rows=True, units=units)
     text = f"loading {start:.6g} to {end:.6g} by {step:.3g}, from {[f'{x:.6g}' for x in turning]}"
     text += f" to {retreat:.6g} by {back:.3g}" if turning else ""
     if ambiguous(path, [start, end, *turning, *([retreat] if turning else [])]):
@@ -147,13 +148,13 @@ def judged(path, sigma, expected, found, deck, text):
         limit = WRONG_PLACE if "tension_h0" in one.key else WRONG
         if not one.relative <= limit:
             wrong.setdefault(one.key, f"off by {one.relative:.1e}, should be {one.value:.9g}")
-    line = rows_off(path, sigma, expected, found.rows)
+    line = rows_off(path, expected, found.rows)
     if line:
         wrong["rows"] = line
     return Finding(sigma, deck, wrong, off, text)
 
 
-def rows_off(path, sigma, expected, table):
+def rows_off(path, expected, table):
     """The first, middle and last states of each branch: whether they are on the right branch."""
     branches = [("loading", expected.loading)]
     branches += [(f"unloading_{k + 1}", legs) for k, legs in enumerate(expected.unloadings)]
@@ -162,7 +163,7 @@ def rows_off(path, sigma, expected, table):
         if len(rows) == 0:
             return f"{name} has no rows"
         for i in sorted({0, len(rows) // 3, len(rows) // 2, len(rows) - 1}):
-            h0, load = rows["h0"][i], rows["load"][i] / sigma
+            h0, load = rows["h0"][i], rows["load"][i]
             loads = [true_load(path, leg, h0) for leg in legs]
             near = [abs(load - x) for x in loads if x is not None]
             if not near or not min(near) <= WRONG * max(abs(load), abs(path.pull_off.load)):

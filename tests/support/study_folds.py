@@ -102,7 +102,7 @@ def look_at_path(job, path, groups, fold, way, place, true, far):
         return [f"{len(loads)} states at h0, not {len(wanted)}"]
     limits = [limit_of(path, fold, load, job.accuracy) for load in wanted]
     off = [
-        abs(mine / job.sigma - load) > limit for mine, load, limit in zip(loads, wanted, limits)
+        abs(mine - load) > limit for mine, load, limit in zip(loads, wanted, limits)
     ]
     return ["load of a state beside the fold"] if any(off) else []
 
@@ -150,7 +150,7 @@ def cycle_off(job, path, expected, found, fold, branch, place, true):
     beyond = true < path.jump_in.h0 if fold == "in" else true > path.jump_out.h0
     on_contact = beyond if fold == "in" else not beyond
     load = path.on(path.contact_branch if on_contact else path.far_branch, true).load
-    mine = rows["load"][here[0]] / job.sigma
+    mine = rows["load"][here[0]]
     if not abs(mine - load) <= limit_of(path, fold, load, job.accuracy):
         word = "has not jumped" if beyond else "has jumped or is elsewhere"
         wrong.append(f"state {word}: load {mine:.8g}, not {load:.8g}")

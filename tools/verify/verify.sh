@@ -13,7 +13,7 @@
 #   guards     guards are taken out one at a time, and a test has to fail
 #   fuzz       a coverage-led search for decks that the reader misreads (needs AFL++)
 #
-# Without a stage: all of them, about an hour and a half on two cores. Ends with status 1 where one
+# Without a stage: all of them, about two hours on two cores. Ends with status 1 where one
 # fails. EXTREMES (200) is the number of decks, FIRST (5000) the first of them, FUZZ (240) seconds,
 # SEED (1) that of the judge's random decks.
 set -u
