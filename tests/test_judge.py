@@ -4,6 +4,8 @@ import math
 
 import pytest
 from support import study_cycles, study_energy, study_estimates, study_folds
+from support.comparison import deviations
+from support.decks_in_units import Report
 from support.reference import Path
 
 # sigma, then start, end, step, turning points, end and step of the retreat, in z0.
@@ -91,6 +93,18 @@ def test_a_study_notices_a_wrong_number(tmp_path):
     path.sigma = 0.88
     wrong = study_cycles.examined(path, scene, tmp_path).wrong
     assert {"max_tension", "jump_in_h0", "jump_out_load", "end_load", "rows"} <= set(wrong)
+
+
+def test_an_estimate_of_a_number_goes_before_the_one_for_all():
+    path = Path(0.87, -1.0, 8.0)
+    numbers = {"jump_in_h0": path.jump_in.h0 + 1e-6, "max_tension": 5.0, "folds_h0": [3.0, 3.5]}
+    errors = {"jump_in_h0": 4e-6, "folds_h0": [0.1, 0.2]}
+    found = Report(0, numbers, errors, 1e-3, [], "", None)
+    expected = {"jump_in_h0": path.jump_in.h0, "max_tension": 5.1, "folds_h0": [3.1, 3.4]}
+    one, all_, first, second = deviations(found, expected, path)
+    assert (one.own, all_.own, first.own, second.own) == (True, False, True, True)
+    ratios = [study_estimates.ratio(d) for d in (one, all_, first, second)]
+    assert ratios == pytest.approx([0.25, 0.1 / 5.1e-3, 1.0, 0.5], rel=1e-3)
 
 
 def test_decks_of_a_study_are_always_the_same(tmp_path):
