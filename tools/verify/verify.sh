@@ -8,11 +8,14 @@
 #   coverage   which lines of src/ the tests reach; those that they do not are listed
 #   levels     builds at -O0, -O2, -O3 and -march=native, 1, 2 and 4 threads: how far results differ
 #   extremes   decks drawn at random from the far ends, on the build of `traps`
+#   judge      the program against an independent solution of the Lennard-Jones problem: studies of
+#              every reported number, of cycles, folds and the energy lost (tools/verify/judge.py)
 #   guards     guards are taken out one at a time, and a test has to fail
 #   fuzz       a coverage-led search for decks that the reader misreads (needs AFL++)
 #
-# Without a stage: all of them, about an hour and a half on two cores. Ends with status 1 where one
-# fails. EXTREMES (200) is the number of decks, FIRST (5000) the first of them, FUZZ (240) seconds.
+# Without a stage: all of them, about two hours on two cores. Ends with status 1 where one
+# fails. EXTREMES (200) is the number of decks, FIRST (5000) the first of them, FUZZ (240) seconds,
+# SEED (1) that of the judge's random decks.
 set -u
 here=$(dirname -- "$(readlink -f -- "$0")")
 top=$(dirname -- "$(dirname -- "$here")")
@@ -103,6 +106,8 @@ extremes() {
   return $status
 }
 
+judge() { "$python" "$here/judge.py" --seed "${SEED:-1}"; }
+
 guards() { "$python" "$here/guards.py"; }
 
 fuzz() {
@@ -113,7 +118,7 @@ fuzz() {
 }
 
 failed=
-stages='long traps memory coverage levels extremes guards fuzz'
+stages='long traps memory coverage levels extremes judge guards fuzz'
 for stage in ${*:-$stages}; do
   case " $stages " in
     *" $stage "*) ;;

@@ -1,0 +1,1 @@
+"""What tests and studies share and the program knows nothing of."""

@@ -1,0 +1,27 @@
+"""Jobs over a few processes, one thread each, with progress."""
+
+import concurrent.futures
+import sys
+import time
+
+
+def spread(function, jobs, *, workers=2, name="jobs"):
+    """function(job) for every job, a list of results in order; progress goes to standard error."""
+    began, results = time.monotonic(), {}
+    if workers == 1:
+        for i, job in enumerate(jobs):
+            results[i] = function(job)
+            tell(name, len(results), len(jobs), began)
+    else:
+        with concurrent.futures.ProcessPoolExecutor(workers) as pool:
+            waiting = {pool.submit(function, job): i for i, job in enumerate(jobs)}
+            for done in concurrent.futures.as_completed(waiting):
+                results[waiting[done]] = done.result()
+                tell(name, len(results), len(jobs), began)
+    return [results[i] for i in range(len(jobs))]
+
+
+def tell(name, done, count, began):
+    if done % max(1, count // 10) == 0 or done == count:
+        seconds = time.monotonic() - began
+        print(f"{name}: {done} of {count}, {seconds:.0f} s", file=sys.stderr, flush=True)

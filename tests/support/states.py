@@ -1,0 +1,122 @@
+"""One equilibrium of the Lennard-Jones problem, by Newton's method for the logarithm of the gap.
+
+In units of z0 (gaps), sqrt(R z0) (radii), gamma/z0 (pressures) and gamma R (loads):
+
+    H(r) = H0 + r^2/2 + 2 sigma Int P(H(t)) k(r,t) t dt,   P(H) = (8/3) (H^-9 - H^-3)
+
+On a mesh around the axis the parameter is the gap there; on one around the edge of the contact it
+is the edge's radius c, with the gap EDGE at it. With r = c x the operator is multiplied by c.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from support.abel import Mesh
+
+# The gap that says where the edge is.
+EDGE = 1.25
+
+# --- The law
+
+
+def pressure(gap):
+    """Lennard-Jones pressure in units of gamma/z0."""
+    return (8 / 3) * gap**-3 * (gap**-6 - 1)
+
+
+def slope(gap):
+    """Its derivative by the gap."""
+    return 8 * gap**-4 * (1 - 3 * gap**-6)
+
+
+def energy(gap):
+    """The integral of the pressure from the gap to infinity."""
+    return (gap**-8 - 4 * gap**-2) / 3
+
+
+# --- One equilibrium
+
+
+class State(NamedTuple):
+    """An equilibrium: gaps at the nodes of a mesh that is scaled by c."""
+
+    mesh: Mesh
+    c: float
+    gap: np.ndarray
+    h0: float
+    axis: float
+    load: float
+
+    def at(self, r):
+        """The gap at radii r; beyond the mesh the deformation falls like 1/r."""
+        end = self.c * self.mesh.x[-1]
+        deformation = self.gap - self.h0 - (self.c * self.mesh.x) ** 2 / 2
+        inside = np.minimum(r, end)
+        found = self.mesh.interpolate(deformation, inside / self.c)
+        return self.h0 + r**2 / 2 + found * inside / r
+
+
+class Lost(ArithmeticError):
+    """Newton's method did not arrive."""
+
+
+def solve(sigma, mesh, value, log_gap, h0):
+    """The equilibrium with the parameter `value`: c on a mesh in contact, else the axis' gap."""
+    contact = mesh.centre > 0
+    c = value if contact else 1.0
+    coupling, row = 2 * sigma * c, mesh.edge if contact else mesh.axis
+    wanted, shape = (EDGE - c**2 / 2, (c * mesh.x) ** 2 / 2) if contact else (value, mesh.x**2 / 2)
+    n = len(log_gap)
+    matrix = np.empty((n + 1, n + 1))
+    for _ in range(60):
+        gap = np.exp(log_gap)
+        p = pressure(gap)
+        residual = np.append(
+            gap - h0 - shape - coupling * (mesh.operator @ p), wanted - h0 - coupling * (row @ p)
+        )
+        change = coupling * slope(gap) * gap
+        matrix[:n, :n] = -mesh.operator * change
+        matrix[np.arange(n), np.arange(n)] += gap
+        matrix[n, :n] = -row * change
+        matrix[:, n] = -1
+        step = np.linalg.solve(matrix, -residual)
+        largest = abs(step[:n]).max()
+        if not np.isfinite(largest):
+            break
+        step *= min(1.0, 0.5 / largest)
+        log_gap, h0 = log_gap + step[:n], h0 + step[n]
+        if largest < 1e-9 and abs(step[n]) < 1e-9 * (1 + abs(h0)):
+            return finished(sigma, mesh, c, np.exp(log_gap), h0)
+    raise Lost(f"sigma {sigma}, parameter {value}")
+
+
+def finished(sigma, mesh, c, gap, h0):
+    """The state with its load, what is beyond the mesh included."""
+    p = pressure(gap)
+    axis = h0 + 2 * sigma * c * (mesh.axis @ p)
+    end = h0 + (c * float(mesh.position(mesh.ends[-1]))) ** 2 / 2
+    load = 2 * math.pi * (c**2 * (mesh.area @ p) + energy(end))
+    return State(mesh, c, gap, h0, axis, load)
+
+
+def neck(sigma, c):
+    """The finest length at the edge: of the neck, or of Hertz's edge between large bodies."""
+    return min(0.375 / sigma, 0.5 * max(c, 1.0) ** (-1 / 3))
+
+
+def edge_radius(state):
+    """Where the gap is EDGE."""
+    low, high = 0.0, 10.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if state.at(np.array([middle]))[0] < EDGE else (low, middle)
+    return (low + high) / 2
+
+
+def jkr_radius(sigma, h0):
+    """Radius of JKR's contact at h0 (of the pull-off where that is larger)."""
+    c = 1.0
+    for _ in range(200):
+        c = math.sqrt(max(1 - h0, 1.0) + math.sqrt(4 * math.pi * sigma * c))
+    return c

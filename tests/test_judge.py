@@ -1,0 +1,115 @@
+"""Samples of the studies of tools/verify/judge.py: the program against another solution."""
+
+import math
+
+import pytest
+from support import study_cycles, study_energy, study_estimates, study_folds
+from support.comparison import deviations
+from support.decks_in_units import Report
+from support.reference import Path
+
+# sigma, then start, end, step, turning points, end and step of the retreat, in z0.
+KNOWN = {
+    "steps of a hundred lengths past the largest tension": (
+        0.01, (14.0, -5000.0, 100.0, [-5000.0], 14.0, 100.0),
+    ),
+    "a retreat in steps that pass over the tension and the jump": (
+        0.3487, (6.0, -4.8, 1.0, [-4.8], 6.0, 2.4),
+    ),
+    "a jump in as small as the jump out": (0.35, (3.0, -2.0, 0.2, [-2.0], 3.0, 0.2)),
+    "one step from beyond the jump to the depth": (
+        0.464958, (1.37434, -9.79577, 12.8, [-9.79577], 6.43518, 12.8),
+    ),
+    "a retreat in one step to just short of the jump": (
+        4.51542, (11.847, -89.2249, 22.5, [-89.2249, -78.9868], 10.6847, 146.0),
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def judged_program(snapin_path):
+    """Fails early where there is no program."""
+    return snapin_path
+
+
+def wrong_in(findings):
+    return [(f.sigma, f.text, f.wrong) for f in findings if f.wrong]
+
+
+@pytest.mark.parametrize("case", KNOWN)
+def test_a_cycle_reports_the_path_whatever_its_steps(tmp_path, case):
+    sigma, scene = KNOWN[case]
+    path = Path(sigma, scene[1] - 1, 20.0)
+    # In units of z0, and in metres.
+    assert not wrong_in([study_cycles.examined(path, scene, tmp_path, k) for k in range(2)])
+
+
+def test_random_cycles_report_the_path(tmp_path):
+    jobs = study_cycles.jobs(24, tmp_path, seed=2)
+    assert not wrong_in(f for job in jobs for f in study_cycles.examine(job))
+
+
+def test_cycles_about_the_cusp_jump_both_ways_or_neither(tmp_path):
+    jobs = study_cycles.jobs(24, tmp_path, seed=2, low=0.28, high=0.45)
+    assert not wrong_in(f for job in jobs for f in study_cycles.examine(job))
+
+
+@pytest.mark.parametrize("experiment", ["cycle", "path"])
+@pytest.mark.parametrize("sigma", [0.87, 8.7])
+def test_a_hair_before_a_fold_nothing_has_jumped_and_a_hair_beyond_all_has(
+    tmp_path, sigma, experiment
+):
+    job = study_folds.Job(sigma, 1e-6, experiment, (2, 5, 8), tmp_path)
+    wrong = [finding[3:] for finding in study_folds.examine(job) if finding.wrong]
+    assert not wrong
+
+
+@pytest.mark.parametrize("sigma", [0.35, 0.45, 0.87, 30.0])
+def test_the_uncertainty_of_the_energy_lost_covers_its_error(tmp_path, sigma):
+    job = study_energy.Job(sigma, (1e-4, 1e-6), tmp_path)
+    for finding in study_energy.examine(job):
+        assert not finding.wrong
+        assert finding.ratio <= 1, finding
+
+
+@pytest.mark.parametrize("sigma", [0.01, 0.14251, 0.492388, 2.57191, 30.7029])
+def test_each_number_is_as_good_as_its_estimate_says(tmp_path, sigma):
+    job = study_estimates.Job(sigma, (1e-4, 1e-8), tmp_path)
+    for finding in study_estimates.examine(job):
+        assert not finding.wrong
+        for one in finding.deviations:
+            ratio = study_estimates.ratio(one)
+            assert ratio is None or ratio <= 1, (finding.kind, finding.accuracy, one, ratio)
+
+
+# --- The studies themselves
+
+
+def test_a_study_notices_a_wrong_number(tmp_path):
+    """A deck of another strength than the reference's: everything is off, and said to be."""
+    scene = (6.0, -2.0, 0.5, [-2.0], 6.0, 0.5)
+    path = Path(0.87, -3.0, 8.0)
+    assert not study_cycles.examined(path, scene, tmp_path).wrong
+    path.sigma = 0.88
+    wrong = study_cycles.examined(path, scene, tmp_path).wrong
+    assert {"max_tension", "jump_in_h0", "jump_out_load", "end_load", "rows"} <= set(wrong)
+
+
+def test_an_estimate_of_a_number_goes_before_the_one_for_all():
+    path = Path(0.87, -1.0, 8.0)
+    numbers = {"jump_in_h0": path.jump_in.h0 + 1e-6, "max_tension": 5.0, "folds_h0": [3.0, 3.5]}
+    errors = {"jump_in_h0": 4e-6, "folds_h0": [0.1, 0.2]}
+    found = Report(0, numbers, errors, 1e-3, [], "", None)
+    expected = {"jump_in_h0": path.jump_in.h0, "max_tension": 5.1, "folds_h0": [3.1, 3.4]}
+    one, all_, first, second = deviations(found, expected, path)
+    assert (one.own, all_.own, first.own, second.own) == (True, False, True, True)
+    ratios = [study_estimates.ratio(d) for d in (one, all_, first, second)]
+    assert ratios == pytest.approx([0.25, 0.1 / 5.1e-3, 1.0, 0.5], rel=1e-3)
+
+
+def test_decks_of_a_study_are_always_the_same(tmp_path):
+    first, again = (study_cycles.jobs(16, tmp_path, seed=3) for _ in range(2))
+    assert first == again
+    drawn = [study_cycles.drawn(j.sigma, j.deepest, k, 3) for j in first for k in j.decks]
+    assert drawn == [study_cycles.drawn(j.sigma, j.deepest, k, 3) for j in again for k in j.decks]
+    assert all(math.isfinite(scene[2]) and scene[0] > scene[1] for scene in drawn)

@@ -1,0 +1,89 @@
+"""Holds the program against the independent reference of tests/support: studies with tables.
+
+    .venv/bin/python tools/verify/judge.py [STUDY ...] [--count N] [--seed N] [--out FILE]
+
+    estimates   true error over estimated error of every number of the summary
+    cycles      random cycles: jumps, tensions, ends, rows, whatever the steps
+    cusp        the same where jumps begin to exist, sigma 0.28 to 0.45
+    folds       states a hair before and beyond the folds
+    energy      the energy lost and its uncertainty
+
+The program is $SNAPIN, else build/snapin. Ends with status 1 where a study finds something wrong.
+"""
+
+import argparse
+import os
+import pathlib
+import sys
+import tempfile
+
+# Before NumPy is imported: one thread a process.
+os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "tests"))
+
+from support import study_cycles, study_energy, study_estimates, study_folds  # noqa: E402
+from support.decks_in_units import program_path  # noqa: E402
+from support.spread import spread  # noqa: E402
+
+
+def bad_estimate(finding):
+    """A number that is missing, or an error that the estimate does not cover."""
+    ratios = (study_estimates.ratio(one) for one in finding.deviations)
+    return finding.wrong or any(ratio is not None and ratio > 1 for ratio in ratios)
+
+
+def cusp_jobs(count, folder, *, seed):
+    """Cycles about and above the cusp."""
+    return study_cycles.jobs(count, folder, seed=seed, low=0.28, high=0.45)
+
+
+# Module, jobs, number of them (decks for cycles, strengths for others), and what is bad.
+STUDIES = {
+    "estimates": (study_estimates, study_estimates.jobs, 40, bad_estimate),
+    "cycles": (study_cycles, study_cycles.jobs, 1000, lambda finding: finding.wrong),
+    "cusp": (study_cycles, cusp_jobs, 1000, lambda finding: finding.wrong),
+    "folds": (study_folds, study_folds.jobs, 10, lambda finding: finding.wrong),
+    "energy": (study_energy, study_energy.jobs, 40, lambda f: f.wrong or f.ratio > 1),
+}
+SEEDED = ("cycles", "cusp")
+
+
+def study(name, arguments, folder):
+    """Runs a study; its table, and how many findings are bad."""
+    module, make, count, bad = STUDIES[name]
+    seeded = {"seed": arguments.seed} if name in SEEDED else {}
+    jobs = make(arguments.count or count, folder / name, **seeded)
+    parts = spread(module.examine, jobs, workers=arguments.workers, name=name)
+    findings = [finding for part in parts for finding in part]
+    return module.table(findings), sum(bool(bad(finding)) for finding in findings)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("studies", nargs="*", default=list(STUDIES), metavar="STUDY")
+    parser.add_argument("--count", type=int, help="decks (cycles, cusp) or strengths (others)")
+    parser.add_argument("--seed", type=int, default=1, help="of the random decks")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--out", type=pathlib.Path, help="a file that the tables go to as well")
+    arguments = parser.parse_args()
+    unknown = [name for name in arguments.studies if name not in STUDIES]
+    if unknown:
+        parser.error(f"no study called {unknown[0]}; there are: {', '.join(STUDIES)}")
+    if not program_path().is_file():
+        parser.error("no executable: build the program first, or set SNAPIN")
+    total, lines = 0, []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in arguments.studies:
+            table, bad = study(name, arguments, pathlib.Path(folder))
+            lines = [f"{name}: {bad} findings", *table, ""]
+            print("\n".join(lines), flush=True)
+            if arguments.out:
+                with arguments.out.open("a") as file:
+                    file.write("\n".join(lines) + "\n")
+            total += bad
+    return 1 if total else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
