@@ -90,6 +90,7 @@ contains
     if (allocated(scene%stability)) then
       recorder%next => results
       recorder%journal => results%journal
+      recorder%accuracy = scene%numerics%accuracy
       observer => recorder
     end if
     failed = 0

@@ -13,8 +13,8 @@ module stability
   private
   public :: smallest_eigenvalue, local_criterion, axis_criterion, unknown
 
-  !> What bounds an eigenvalue lambda, as a part of 1 - lambda and of the largest |1 - lambda| of
-  !> the operator, whose rounding no method escapes.
+  !> What bounds an eigenvalue lambda, as a part of 1 - lambda and of the operator's largest number,
+  !> 1 or |1 - lambda|, whose rounding no method escapes.
   type :: margin_t
     real(wp) :: relative, rounding
   end type margin_t
@@ -58,8 +58,8 @@ contains
     certain = .true.
     n = size(state%gap)
     factor = 2*this%coupling*state%scale*this%law%slope(state%gap)
-    ! Rigid bodies, or so far apart that nothing acts.
-    if (.not. maxval(abs(factor)) > 0) return
+    ! Rigid bodies, or none that attract: repulsion raises eigenvalues, which accumulate at 1.
+    if (.not. maxval(factor) > 0) return
     root = sqrt(grid%weight(:n))
     allocate (matrix(n, n))
     do j = 1, n
@@ -71,8 +71,8 @@ contains
       widest = maxval(abs(part))
       call refine(this, grid, state, factor, widest, eigenvalue, certain, cost)
     end if
-    if (certain) certain = none_below(grid, factor, root, min(eigenvalue, 1.0_wp) - &
-      room(lower, eigenvalue, widest), matrix, cost)
+    if (certain) certain = none_below(grid, factor, root, &
+      eigenvalue - room(lower, eigenvalue, widest), matrix, cost)
     if (.not. certain) eigenvalue = unknown()
   end subroutine smallest_eigenvalue
 
@@ -160,7 +160,7 @@ contains
     type(margin_t), intent(in) :: margin
     real(wp), intent(in) :: eigenvalue, widest
 
-    room = margin%relative*abs(1 - eigenvalue) + margin%rounding*widest
+    room = margin%relative*abs(1 - eigenvalue) + margin%rounding*max(1.0_wp, widest)
   end function room
 
   !> What stands for a number that there is not.
