@@ -34,8 +34,8 @@ module stability_records
 
   !> What a record of an eigenvalue begins with.
   character(len=*), parameter :: mark = 'eigenvalue'
-  !> An eigenvalue that contradicts nothing, over the accuracy: at a fold it is zero but for what the
-  !> mesh leaves, 7e-6 at most where 1e-4 was asked for.
+  !> An eigenvalue that contradicts nothing, over the accuracy: at a fold it is zero but for what
+  !> the mesh leaves, 7e-6 at most where 1e-4 was asked for.
   real(wp), parameter :: zero = 100
 
 contains
