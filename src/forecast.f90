@@ -28,6 +28,9 @@ module forecast
   !> times it.
   real(wp), parameter :: iterations = 5, served = 8, fine = 0.01_wp, fine_iterations = 1.5_wp, &
     fine_served = 100, mixed = 500
+  !> Operations of a verified eigenvalue over the cube of the nodes, at the rate of factorisations,
+  !> and the matrices that it needs.
+  real(wp), parameter :: eigenvalue_work = 6, eigenvalue_matrices = 2
   !> States of a path.
   real(wp), parameter :: of_path = 100
 
@@ -61,12 +64,13 @@ contains
       pair = new_mesh_pair(problem, high, low, chosen%resolution, shape_only=.true.)
       expected%nodes = maxval(pair%grid%nodes)
       n = expected%nodes
-      ! Both kernels, one factorisation and another for stability or a fold, and about half as much
+      ! Both kernels, one factorisation and another for a fold, and about half as much
       ! again on the finer mesh of the error estimate, whose kernels are held beside them.
       square = sum(real(pair%grid%nodes, wp)**2) + 2*n**2
       square = square + 1.6_wp*(sum(real(pair%grid%nodes, wp)**2) + n**2)
     end if
-    of_state = anderson_seconds(n, 1.0_wp)
+    if (has_eigenvalues(scene)) square = square + eigenvalue_matrices*n**2
+    of_state = anderson_seconds(n, 1.0_wp) + eigenvalue_seconds(scene, n)
     if (allocated(scene%path)) expected%seconds = of_path*of_state
     if (chosen%grid /= 'edge_locked') then
       n = chosen%nodes
@@ -75,13 +79,15 @@ contains
       ! The kernel, the factors in use, and those with which a jump is followed.
       matrices = 3
       if (chosen%options%method == 'mixing') matrices = 1
+      if (has_eigenvalues(scene)) matrices = matrices + eigenvalue_matrices
       square = max(square, matrices*n**2 + 2*real(other%nodes, wp)**2)
     end if
     if (allocated(scene%loading)) then
       of_state = anderson_seconds(n, scene%loading%h0_step/problem%length)
       if (chosen%options%method == 'mixing') of_state = overhead + &
         min(mixed, real(chosen%options%most_iterations, wp))*2*n**2/product_rate
-      expected%seconds = expected%seconds + states_planned(scene)*of_state
+      expected%seconds = expected%seconds + &
+        states_planned(scene)*(of_state + eigenvalue_seconds(scene, n))
     end if
     expected%seconds = expected%seconds*cases/copies
     if (.not. problem%rigid) expected%bytes = 8*square*copies
@@ -94,5 +100,21 @@ contains
     seconds = overhead + 4*n**2*merge(fine_iterations, iterations, step < fine)/product_rate + &
       n**3*2/3/merge(fine_served, served, step < fine)/factor_rate
   end function anderson_seconds
+
+  !> Whether eigenvalues are computed: cases of a sweep leave none.
+  pure logical function has_eigenvalues(scene)
+    type(scene_t), intent(in) :: scene
+
+    has_eigenvalues = allocated(scene%stability) .and. .not. allocated(scene%sweep)
+  end function has_eigenvalues
+
+  !> Seconds for the eigenvalue of a state on n nodes.
+  pure real(wp) function eigenvalue_seconds(scene, n) result(seconds)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: n
+
+    seconds = 0
+    if (has_eigenvalues(scene)) seconds = eigenvalue_work*n**3/factor_rate
+  end function eigenvalue_seconds
 
 end module forecast

@@ -4,7 +4,7 @@ module linear_algebra
   implicit none
   private
   public :: multiply, factorisation_t, factorise, solve, determinant_sign, &
-    log_determinant
+    log_determinant, eigenvalues, positive_definite, positive_eigenvalues
 
   !> LU factors of a square matrix, from `factorise`.
   type :: factorisation_t
@@ -39,6 +39,29 @@ module linear_algebra
       real(wp), intent(inout) :: b(ldb, *)
       integer, intent(out) :: info
     end subroutine dgetrs
+    subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, info)
+      import :: wp
+      character, intent(in) :: jobvl, jobvr
+      integer, intent(in) :: n, lda, ldvl, ldvr, lwork
+      real(wp), intent(inout) :: a(lda, *)
+      real(wp), intent(out) :: wr(*), wi(*), vl(ldvl, *), vr(ldvr, *), work(*)
+      integer, intent(out) :: info
+    end subroutine dgeev
+    subroutine dpotrf(uplo, n, a, lda, info)
+      import :: wp
+      character, intent(in) :: uplo
+      integer, intent(in) :: n, lda
+      real(wp), intent(inout) :: a(lda, *)
+      integer, intent(out) :: info
+    end subroutine dpotrf
+    subroutine dsytrf(uplo, n, a, lda, ipiv, work, lwork, info)
+      import :: wp
+      character, intent(in) :: uplo
+      integer, intent(in) :: n, lda, lwork
+      real(wp), intent(inout) :: a(lda, *)
+      integer, intent(out) :: ipiv(*), info
+      real(wp), intent(out) :: work(*)
+    end subroutine dsytrf
   end interface
 
 contains
@@ -102,5 +125,60 @@ contains
       log_determinant = log_determinant + log(abs(factors%lu(i, i)))
     end do
   end function log_determinant
+
+  !> The real parts of all eigenvalues of the square matrix a, which is overwritten. found = .false.
+  !> where LAPACK has not found them all.
+  subroutine eigenvalues(a, real_part, found)
+    real(wp), intent(inout), contiguous :: a(:, :)
+    real(wp), intent(out) :: real_part(:)
+    logical, intent(out) :: found
+    real(wp) :: imaginary_part(size(real_part)), left(1, 1), right(1, 1), best(1)
+    real(wp), allocatable :: work(:)
+    integer :: n, info
+
+    n = size(real_part)
+    call dgeev('n', 'n', n, a, n, real_part, imaginary_part, left, 1, right, 1, best, -1, info)
+    allocate (work(nint(best(1))))
+    call dgeev('n', 'n', n, a, n, real_part, imaginary_part, left, 1, right, 1, work, &
+      size(work), info)
+    found = info == 0
+  end subroutine eigenvalues
+
+  !> Whether the symmetric matrix whose lower triangle is that of a is positive definite. The lower
+  !> triangle and the diagonal are overwritten.
+  logical function positive_definite(a)
+    real(wp), intent(inout), contiguous :: a(:, :)
+    integer :: n, info
+
+    n = size(a, 1)
+    call dpotrf('l', n, a, n, info)
+    positive_definite = info == 0
+  end function positive_definite
+
+  !> Number of positive eigenvalues of the symmetric matrix whose upper triangle is that of a, which
+  !> is overwritten: by Sylvester's law of inertia that of the pivots of its LDL factors.
+  integer function positive_eigenvalues(a) result(positive)
+    real(wp), intent(inout), contiguous :: a(:, :)
+    real(wp) :: best(1)
+    real(wp), allocatable :: work(:)
+    integer :: pivot(size(a, 1)), n, i, info
+
+    n = size(a, 1)
+    call dsytrf('u', n, a, n, pivot, best, -1, info)
+    allocate (work(nint(best(1))))
+    call dsytrf('u', n, a, n, pivot, work, size(work), info)
+    positive = 0
+    i = 1
+    do while (i <= n)
+      if (pivot(i) > 0) then
+        if (a(i, i) > 0) positive = positive + 1
+        i = i + 1
+      else
+        ! A pivot of two rows has an eigenvalue of each sign: Bunch and Kaufman take no other.
+        positive = positive + 1
+        i = i + 2
+      end if
+    end do
+  end function positive_eigenvalues
 
 end module linear_algebra

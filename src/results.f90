@@ -75,8 +75,8 @@ module results
   !> Added by &stability.
   character(len=*), parameter :: stability_columns(*) = [character(len=96) :: &
     'smallest_eigenvalue [] of the operator at fixed h0; negative: unstable', &
-    'criterion_28 [] largest |2 u p''/p|; above 1: unstable by (28)', &
-    'criterion_29 [] 2 p'' u/p on the axis; below -1: unstable by (29)']
+    'criterion_28 [] largest |2 u p''/p| where surfaces attract; above 1: unstable by (28)', &
+    'criterion_29 [] 2 p'' u/p on an axis that attracts; below -1: unstable by (29)']
   character(len=*), parameter :: theory_columns(*) = [character(len=96) :: &
     'theory [] where the row comes from', &
     'h0 [m] separation that undeformed bodies would have on the axis', &

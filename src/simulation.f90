@@ -91,6 +91,7 @@ contains
     if (allocated(scene%stability)) then
       recorder%next => results
       recorder%journal => results%journal
+      recorder%accuracy = scene%numerics%accuracy
       observer => recorder
     end if
     failed = 0
@@ -120,6 +121,10 @@ contains
       call summary%warn(number(failed)//' of '//number(size(scene%sweep%values))// &
         ' cases failed: their rows in sweep.csv say converged = 0')
     end if
+    if (recorder%uncertain > 0) call summary%warn('the smallest eigenvalue of '// &
+      number(recorder%uncertain)//' states could not be verified: their rows have NaN')
+    if (recorder%contradicted > 0) call summary%warn('the eigenvalue of '// &
+      number(recorder%contradicted)//' states contradicts their column stable')
     summary%version = version
     summary%compiler = compiler
     summary%blas = blas
