@@ -18,6 +18,7 @@ module simulation
   use summarise, only: summary_of
   use summary, only: summary_t
   use results, only: results_t, journal_of
+  use publication, only: mend
   use run_identity, only: identity_of
   use finished_run, only: find_finished
   use progress, only: duration
@@ -49,12 +50,19 @@ contains
     type(outlook_t) :: expected
     real(wp) :: began
     integer :: i, failed
-    logical :: curve, left_over, finished, converged
+    logical :: curve, left_over, finished, converged, mended
 
     began = seconds()
     exit_code = 1
     name = out_dir(index(out_dir, '/', .true.) + 1:)
     resolved = scene%deck%resolved()
+    call mend(out_dir, mended, error)
+    if (allocated(error)) then
+      call say(out_dir//': '//error%message, .false.)
+      return
+    end if
+    if (mended) call say(out_dir//': put results in place that an interrupted run had completed', &
+      quiet)
     left_over = file_exists(journal_of(out_dir))
     if (resume .and. .not. left_over) then
       call find_finished(out_dir, resolved, version, finished, converged)
