@@ -29,9 +29,12 @@ contains
       if (path(i:i) == '/') cycle
       if (file_exists(path(:i) // '/.')) cycle
       status = c_make_folder(path(:i) // c_null_char)
-      if (status == 0) call sync_parent(path(:i))
+      if (status == 0) then
+        call sync_parent(path(:i))
+        cycle
+      end if
       ! Another process may have made it meanwhile.
-      if (status == 0 .or. file_exists(path(:i) // '/.')) cycle
+      if (file_exists(path(:i) // '/.')) cycle
       call system_failure('cannot make the folder ' // path(:i), status, error)
       return
     end do

@@ -8,6 +8,7 @@
 #   coverage   which lines of src/ the tests reach; those that they do not are listed
 #   levels     builds at -O0, -O2, -O3 and -march=native, 1, 2 and 4 threads: how far results differ
 #   extremes   decks drawn at random from the far ends, on the build of `traps`
+#   faults     every system call on results fails, kills the run, or is the last before the power does
 #   guards     guards are taken out one at a time, and a test has to fail
 #   fuzz       a coverage-led search for decks that the reader misreads (needs AFL++)
 #
@@ -103,6 +104,8 @@ extremes() {
   return $status
 }
 
+faults() { OMP_NUM_THREADS=1 "$python" tests/faults.py; }
+
 guards() { "$python" "$here/guards.py"; }
 
 fuzz() {
@@ -113,7 +116,7 @@ fuzz() {
 }
 
 failed=
-stages='long traps memory coverage levels extremes guards fuzz'
+stages='long traps memory coverage levels extremes faults guards fuzz'
 for stage in ${*:-$stages}; do
   case " $stages " in
     *" $stage "*) ;;
