@@ -11,6 +11,7 @@ module simulation
   use sweeps, only: run_sweep
   use outlook, only: outlook_t, outlook_of
   use blas_threads, only: thread_count
+  use linear_algebra, only: claim_buffers
   use comparison, only: classical_rows
   use approximation_tables, only: approximation_rows
   use records, only: observer_t
@@ -102,6 +103,7 @@ contains
     end if
     failed = 0
     expected = outlook_of(scene)
+    if (expected%too_large == '' .and. .not. problem%rigid) call claim_buffers()
     if (expected%long /= '') call say(out_dir//': '//expected%long, quiet)
     if (allocated(scene%sweep) .and. expected%too_large == '') then
       call results%progress%start(size(scene%sweep%values), name, quiet)

@@ -6,6 +6,7 @@
    FAULT_ERRNO  the error; 0: the process is killed before the call
    FAULT_LASTS  set: every later one fails too
    FAULT_UNDER  part of a path: only files below it count
+   FAULT_BEGINS part of a path: nothing counts before a file of that name has been opened
    FAULT_LOG    a file that gets a line for every call that was made: its name, descriptor, path(s),
                 and what was written in hexadecimal digits
 
@@ -26,7 +27,7 @@
 
 enum { most = 1024 };
 static char *paths[most];
-static const char *call, *under;
+static const char *call, *under, *from;
 static long at, failures, counted;
 static int lasts, failing, log_fd = -1, ready;
 
@@ -37,6 +38,7 @@ static void set_up(void) {
   ready = 1;
   call = getenv("FAULT_CALL");
   under = getenv("FAULT_UNDER");
+  from = getenv("FAULT_BEGINS");
   at = (text = getenv("FAULT_AT")) ? atol(text) : 0;
   failing = (text = getenv("FAULT_ERRNO")) ? atoi(text) : 0;
   lasts = getenv("FAULT_LASTS") != NULL;
@@ -60,7 +62,7 @@ static void note(const char *name, int fd, const char *path, const char *other) 
 /* Whether this call is to fail; sets errno. */
 static int fails(const char *name) {
   set_up();
-  if (!call || (strcmp(call, name) && (strcmp(call, "any") || !strcmp(name, "malloc") ||
+  if (!call || from || (strcmp(call, name) && (strcmp(call, "any") || !strcmp(name, "malloc") ||
                                        !strcmp(name, "mmap"))))
     return 0;
   long mine = __sync_add_and_fetch(&counted, 1);
@@ -89,6 +91,9 @@ static const char *minds(int fd) {
     *(void **)&real = dlsym(RTLD_NEXT, name)
 
 static int opened(const char *path, int flags, mode_t mode) {
+  set_up();
+  if (from && path && strstr(path, from))
+    from = NULL;
   if (minds_path(path) && fails("open"))
     return -1;
   int fd = syscall(SYS_openat, AT_FDCWD, path, flags, mode);
