@@ -141,7 +141,8 @@ def test_what_is_no_file_is_refused_and_not_opened(stand, make, name):
         make(stand.target / f"{name}.partial", elsewhere)
         done = stand.run("try", *options)
         assert done.returncode == 1
-        assert f"{name}.partial: not a file but a link, a pipe or a device; move away" in done.stderr
+        words = "not a file but a link, a pipe or a device; move away"
+        assert f"{name}.partial: {words}" in done.stderr
         assert stand.state() == "old"
         if make is make_link:
             assert elsewhere.read_text() == "precious"
