@@ -11,9 +11,9 @@ module blas_threads
 
   !> Order of the matrix from which threads pay, even on a machine with other work.
   integer, parameter :: worthwhile = 2500
-  !> Address space [bytes] that OpenBLAS 0.3 maps for each thread that calls it, whatever the size of
-  !> the matrices; and what every further thread has as stack and for `malloc`. Hardly any of it is
-  !> ever touched.
+  !> Address space [bytes] that OpenBLAS 0.3 maps for each thread that calls it, whatever the size
+  !> of the matrices; and what every further thread has as stack and for `malloc`. Hardly any of it
+  !> is ever touched.
   real(wp), parameter :: of_buffer = 136.0e6_wp, of_thread = 76.0e6_wp
 
   abstract interface

@@ -29,9 +29,9 @@ module publication
     'The files in this folder may not belong together: newer results were taking the place' // &
     nl // 'of older ones when the program was stopped. Do not use them like this. Run the deck' // &
     nl // 'again, best with --resume: that first puts the newer results in place, all of them.' // &
-    nl // 'By hand: of each file listed below NAME.partial is the newer one where it exists, and' // &
-    nl // 'is to be renamed to NAME. Then remove other results, what is called .partial, and' // &
-    nl // 'this file.' // nl
+    nl // 'By hand: of each file listed below NAME.partial is the newer one where it exists,' // &
+    nl // 'and is to be renamed to NAME. Then remove other results, what is called .partial,' // &
+    nl // 'and this file.' // nl
 
 contains
 

@@ -1,7 +1,7 @@
 /* Loaded before the C library, makes its calls fail, or the process die, where tests want it.
 
-   FAULT_CALL   the call: open, write, fsync, close, rename, unlink, ftruncate, fstat, mkdir, malloc,
-                mmap, or any (of those on files)
+   FAULT_CALL   the call: open, write, fsync, close, rename, unlink, ftruncate, fstat, mkdir,
+                malloc, mmap, or any (of those on files)
    FAULT_AT     which of them, from 1; 0 counts only
    FAULT_ERRNO  the error; 0: the process is killed before the call
    FAULT_LASTS  set: every later one fails too
