@@ -2,14 +2,19 @@
 !> on a busy machine very much more; and with one, results do not depend on their number.
 module blas_threads
   use, intrinsic :: iso_c_binding, only: c_funptr, c_int, c_associated, c_f_procpointer
+  use kinds, only: wp
   use c_library, only: procedure_named
   !$ use omp_lib, only: omp_get_max_threads, omp_in_parallel
   implicit none
   private
-  public :: use_threads_for, thread_count
+  public :: use_threads_for, thread_count, blas_buffers
 
   !> Order of the matrix from which threads pay, even on a machine with other work.
   integer, parameter :: worthwhile = 2500
+  !> Address space [bytes] that OpenBLAS 0.3 maps for each thread that calls it, whatever the size
+  !> of the matrices; and what every further thread has as stack and for `malloc`. Hardly any of it
+  !> is ever touched.
+  real(wp), parameter :: of_buffer = 136.0e6_wp, of_thread = 76.0e6_wp
 
   abstract interface
     subroutine set_threads(count) bind(c)
@@ -37,6 +42,16 @@ contains
     !$   count = int(omp_get_max_threads(), c_int)
     call set(count)
   end subroutine use_threads_for
+
+  !> Address space [bytes] that threads and the linear algebra map for themselves, for matrices of
+  !> the given order in so many cases at once. OpenBLAS asks for ever where it does not get its own.
+  real(wp) function blas_buffers(order, cases) result(bytes)
+    integer, intent(in) :: order, cases
+
+    bytes = (thread_count() - 1)*of_thread
+    if (.not. c_associated(procedure_named('openblas_set_num_threads'))) return
+    bytes = bytes + merge(max(cases, thread_count()), cases, order >= worthwhile)*of_buffer
+  end function blas_buffers
 
   !> Threads that the program may use.
   integer function thread_count()

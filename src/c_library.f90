@@ -1,247 +1,207 @@
-!> The few procedures of the C library that files, the terminal and signals need, and its error
-!> messages.
+!> The few things that files, the terminal and the process need of the system, most of them by way
+!> of `posix.c`, and its error messages. A status below zero is a failure, for `system_failure`.
 module c_library
-  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_funptr, c_int, c_intptr_t, c_long, &
+  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_funptr, c_int, c_long, &
     c_null_char, c_null_ptr, c_ptr, c_size_t
   use failure, only: failure_t, fail, file_trouble
   implicit none
   private
-  public :: c_mkdir, c_faccessat, c_renameat, c_unlinkat, c_isatty, c_write, c_fopen, c_fwrite, c_fread, c_fflush, &
-    c_fseek, c_fileno, c_ftruncate, c_fclose, c_opendir, c_dirfd, c_closedir, c_flock, &
-    c_signal
-  public :: c_ferror, errno, reason, system_failure, text_at, procedure_named
-  public :: from_start, from_here, lock_or_fail, locked_elsewhere
+  public :: c_open_input, c_open_output, c_read, c_write, c_sync, c_close, c_size, c_go_to, &
+    c_truncate, c_make_folder, c_open_folder, c_lock, c_kind, c_rename, c_remove, c_is_terminal, &
+    c_prepare
+  public :: sort_of, reason, system_failure, text_at, procedure_named
+  public :: too_large, disk_full, in_the_way, not_there, locked_elsewhere
 
-  !> Numbers of errors, the same on every Linux.
-  integer(c_int), parameter :: file_exists_already = 17, not_a_folder = 20, is_a_folder = 21, &
-    file_too_large = 27, disk_full = 28, quota_used_up = 122
-
-  !> Of `c_fseek`: where offsets are counted from.
-  integer(c_int), parameter :: from_start = 0, from_here = 1
-  !> Of `c_flock`: an exclusive lock, without waiting for it; and the error where another has it.
-  integer(c_int), parameter :: lock_or_fail = 2 + 4, locked_elsewhere = 11
+  !> Sorts of failure that users are told apart, as in `posix.c`.
+  integer(c_int), parameter :: too_large = 1, disk_full = 2, in_the_way = 3, not_there = 4, &
+    locked_elsewhere = 5
 
   interface
-    function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
+    !> A descriptor of the file `path`, whatever kind it is of, to be read.
+    integer(c_int) function c_open_input(path) bind(c, name='snapin_open_input')
       import :: c_char, c_int
       implicit none
       character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: mode
-      integer(c_int) :: status
-    end function c_mkdir
+    end function c_open_input
 
-    function c_faccessat(folder, name, mode, flags) bind(c, name='faccessat') result(status)
+    !> A descriptor of the regular file `path`, to be read and written: as it is where `keep` is not
+    !> 0, otherwise empty, and made where there is none.
+    integer(c_int) function c_open_output(path, keep) bind(c, name='snapin_open_output')
       import :: c_char, c_int
       implicit none
-      integer(c_int), value :: folder, mode, flags
-      character(kind=c_char), intent(in) :: name(*)
-      integer(c_int) :: status
-    end function c_faccessat
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: keep
+    end function c_open_output
 
-    function c_renameat(folder, from, new_folder, to) bind(c, name='renameat') result(status)
-      import :: c_char, c_int
+    !> Number of bytes read; fewer than `count` at the end of the file only.
+    integer(c_long) function c_read(descriptor, bytes, count) bind(c, name='snapin_read')
+      import :: c_char, c_int, c_long
       implicit none
-      integer(c_int), value :: folder, new_folder
-      character(kind=c_char), intent(in) :: from(*), to(*)
-      integer(c_int) :: status
-    end function c_renameat
+      integer(c_int), value :: descriptor
+      character(kind=c_char), intent(inout) :: bytes(*)
+      integer(c_long), value :: count
+    end function c_read
 
-    function c_unlinkat(folder, name, flags) bind(c, name='unlinkat') result(status)
-      import :: c_char, c_int
+    !> Writes all of `count` bytes.
+    integer(c_int) function c_write(descriptor, bytes, count) bind(c, name='snapin_write')
+      import :: c_char, c_int, c_long
       implicit none
-      integer(c_int), value :: folder, flags
-      character(kind=c_char), intent(in) :: name(*)
-      integer(c_int) :: status
-    end function c_unlinkat
+      integer(c_int), value :: descriptor
+      character(kind=c_char), intent(in) :: bytes(*)
+      integer(c_long), value :: count
+    end function c_write
 
-    function c_isatty(descriptor) bind(c, name='isatty') result(yes)
+    !> Waits until a file, or the names in a folder, are on the disk.
+    integer(c_int) function c_sync(descriptor) bind(c, name='snapin_sync')
       import :: c_int
       implicit none
       integer(c_int), value :: descriptor
-      integer(c_int) :: yes
-    end function c_isatty
+    end function c_sync
 
-    function c_write(descriptor, text, length) bind(c, name='write') result(written)
-      import :: c_char, c_int, c_size_t
+    integer(c_int) function c_close(descriptor) bind(c, name='snapin_close')
+      import :: c_int
       implicit none
       integer(c_int), value :: descriptor
-      character(kind=c_char), intent(in) :: text(*)
-      integer(c_size_t), value :: length
-      integer(c_size_t) :: written
-    end function c_write
+    end function c_close
 
-    function c_fopen(path, mode) bind(c, name='fopen') result(stream)
-      import :: c_char, c_ptr
+    !> Bytes in a file.
+    integer(c_long) function c_size(descriptor) bind(c, name='snapin_size')
+      import :: c_int, c_long
       implicit none
-      character(kind=c_char), intent(in) :: path(*), mode(*)
-      type(c_ptr) :: stream
-    end function c_fopen
+      integer(c_int), value :: descriptor
+    end function c_size
 
-    function c_fwrite(text, size, count, stream) bind(c, name='fwrite') result(written)
-      import :: c_char, c_ptr, c_size_t
+    !> Moves to a place [bytes from the start] in a file.
+    integer(c_int) function c_go_to(descriptor, offset) bind(c, name='snapin_go_to')
+      import :: c_int, c_long
       implicit none
-      character(kind=c_char), intent(in) :: text(*)
-      integer(c_size_t), value :: size, count
-      type(c_ptr), value :: stream
-      integer(c_size_t) :: written
-    end function c_fwrite
-
-    function c_fread(text, size, count, stream) bind(c, name='fread') result(taken)
-      import :: c_char, c_ptr, c_size_t
-      implicit none
-      character(kind=c_char), intent(inout) :: text(*)
-      integer(c_size_t), value :: size, count
-      type(c_ptr), value :: stream
-      integer(c_size_t) :: taken
-    end function c_fread
-
-    function c_fseek(stream, offset, origin) bind(c, name='fseek') result(status)
-      import :: c_int, c_long, c_ptr
-      implicit none
-      type(c_ptr), value :: stream
+      integer(c_int), value :: descriptor
       integer(c_long), value :: offset
-      integer(c_int), value :: origin
-      integer(c_int) :: status
-    end function c_fseek
+    end function c_go_to
 
-    function c_fileno(stream) bind(c, name='fileno') result(descriptor)
-      import :: c_int, c_ptr
-      implicit none
-      type(c_ptr), value :: stream
-      integer(c_int) :: descriptor
-    end function c_fileno
-
-    function c_ftruncate(descriptor, length) bind(c, name='ftruncate') result(status)
+    integer(c_int) function c_truncate(descriptor, length) bind(c, name='snapin_truncate')
       import :: c_int, c_long
       implicit none
       integer(c_int), value :: descriptor
       integer(c_long), value :: length
-      integer(c_int) :: status
-    end function c_ftruncate
+    end function c_truncate
 
-    function c_ferror(stream) bind(c, name='ferror') result(status)
-      import :: c_int, c_ptr
-      implicit none
-      type(c_ptr), value :: stream
-      integer(c_int) :: status
-    end function c_ferror
-
-    function c_fflush(stream) bind(c, name='fflush') result(status)
-      import :: c_int, c_ptr
-      implicit none
-      type(c_ptr), value :: stream
-      integer(c_int) :: status
-    end function c_fflush
-
-    function c_fclose(stream) bind(c, name='fclose') result(status)
-      import :: c_int, c_ptr
-      implicit none
-      type(c_ptr), value :: stream
-      integer(c_int) :: status
-    end function c_fclose
-
-    function c_opendir(path) bind(c, name='opendir') result(folder)
-      import :: c_char, c_ptr
+    integer(c_int) function c_make_folder(path) bind(c, name='snapin_make_folder')
+      import :: c_char, c_int
       implicit none
       character(kind=c_char), intent(in) :: path(*)
-      type(c_ptr) :: folder
-    end function c_opendir
+    end function c_make_folder
 
-    function c_dirfd(folder) bind(c, name='dirfd') result(descriptor)
-      import :: c_int, c_ptr
+    !> A descriptor of a folder.
+    integer(c_int) function c_open_folder(path) bind(c, name='snapin_open_folder')
+      import :: c_char, c_int
       implicit none
-      type(c_ptr), value :: folder
-      integer(c_int) :: descriptor
-    end function c_dirfd
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_open_folder
 
-    function c_closedir(folder) bind(c, name='closedir') result(status)
-      import :: c_int, c_ptr
-      implicit none
-      type(c_ptr), value :: folder
-      integer(c_int) :: status
-    end function c_closedir
-
-    function c_flock(descriptor, operation) bind(c, name='flock') result(status)
+    !> Locks a folder without waiting: it fails as `locked_elsewhere` where another has it.
+    integer(c_int) function c_lock(folder) bind(c, name='snapin_lock')
       import :: c_int
       implicit none
-      integer(c_int), value :: descriptor, operation
-      integer(c_int) :: status
-    end function c_flock
+      integer(c_int), value :: folder
+    end function c_lock
 
-    function c_signal(number, action) bind(c, name='signal') result(before)
-      import :: c_int, c_intptr_t
+    !> What a name in a folder is: 0 nothing, 1 a file, 2 a folder.
+    integer(c_int) function c_kind(folder, name) bind(c, name='snapin_kind')
+      import :: c_char, c_int
       implicit none
-      integer(c_int), value :: number
-      integer(c_intptr_t), value :: action
-      integer(c_intptr_t) :: before
-    end function c_signal
+      integer(c_int), value :: folder
+      character(kind=c_char), intent(in) :: name(*)
+    end function c_kind
 
-    function c_dlsym(handle, name) bind(c, name='dlsym') result(address)
+    integer(c_int) function c_rename(folder, from, to) bind(c, name='snapin_rename')
+      import :: c_char, c_int
+      implicit none
+      integer(c_int), value :: folder
+      character(kind=c_char), intent(in) :: from(*), to(*)
+    end function c_rename
+
+    !> Removes a file from a folder; that there is none is no failure.
+    integer(c_int) function c_remove(folder, name) bind(c, name='snapin_remove')
+      import :: c_char, c_int
+      implicit none
+      integer(c_int), value :: folder
+      character(kind=c_char), intent(in) :: name(*)
+    end function c_remove
+
+    !> 1 for a terminal.
+    integer(c_int) function c_is_terminal(descriptor) bind(c, name='snapin_is_terminal')
+      import :: c_int
+      implicit none
+      integer(c_int), value :: descriptor
+    end function c_is_terminal
+
+    !> Makes trouble with a file an error of that file, and nothing that ends the process.
+    subroutine c_prepare() bind(c, name='snapin_prepare')
+      implicit none
+    end subroutine c_prepare
+
+    type(c_ptr) function c_reason(status) bind(c, name='snapin_reason')
+      import :: c_int, c_ptr
+      implicit none
+      integer(c_int), value :: status
+    end function c_reason
+
+    integer(c_int) function c_sort(status) bind(c, name='snapin_sort')
+      import :: c_int
+      implicit none
+      integer(c_int), value :: status
+    end function c_sort
+
+    type(c_funptr) function c_dlsym(handle, name) bind(c, name='dlsym')
       import :: c_ptr, c_funptr, c_char
       implicit none
       type(c_ptr), value :: handle
       character(kind=c_char), intent(in) :: name(*)
-      type(c_funptr) :: address
     end function c_dlsym
 
-    ! errno itself is a macro; this is what it stands for in glibc and musl.
-    function c_errno_location() bind(c, name='__errno_location') result(place)
-      import :: c_ptr
-      implicit none
-      type(c_ptr) :: place
-    end function c_errno_location
-
-    function c_strerror(code) bind(c, name='strerror') result(text)
-      import :: c_int, c_ptr
-      implicit none
-      integer(c_int), value :: code
-      type(c_ptr) :: text
-    end function c_strerror
-
-    function c_strlen(text) bind(c, name='strlen') result(length)
+    integer(c_size_t) function c_strlen(text) bind(c, name='strlen')
       import :: c_ptr, c_size_t
       implicit none
       type(c_ptr), value :: text
-      integer(c_size_t) :: length
     end function c_strlen
   end interface
 
 contains
 
   !> What could not be done, the system's reason, and what to do about it.
-  subroutine system_failure(what, code, error)
+  subroutine system_failure(what, status, error)
     character(len=*), intent(in) :: what
-    integer(c_int), intent(in) :: code
+    integer(c_int), intent(in) :: status
     type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: advice
 
-    select case (code)
-    case (file_too_large)
+    select case (sort_of(status))
+    case (too_large)
       advice = 'raise the limit on the size of files (ulimit -f)'
-    case (disk_full, quota_used_up)
+    case (disk_full)
       advice = 'make room there, or choose another folder with --out'
-    case (file_exists_already, not_a_folder, is_a_folder)
+    case (in_the_way)
       advice = 'move away what is in the way, or choose another folder with --out'
     case default
       advice = 'choose a folder with --out that you may write to'
     end select
-    call fail(error, file_trouble, what // ': ' // reason(code) // '; ' // advice)
+    call fail(error, file_trouble, what // ': ' // reason(status) // '; ' // advice)
   end subroutine system_failure
 
-  !> The C library's number of what went wrong last.
-  integer(c_int) function errno()
-    integer(c_int), pointer :: code
+  !> The sort of a failure; 0: none of those above.
+  integer(c_int) function sort_of(status)
+    integer(c_int), intent(in) :: status
 
-    call c_f_pointer(c_errno_location(), code)
-    errno = code
-  end function errno
+    sort_of = c_sort(status)
+  end function sort_of
 
-  !> The C library's words for an error.
-  function reason(code) result(text)
-    integer(c_int), intent(in) :: code
+  !> The system's words for a failure.
+  function reason(status) result(text)
+    integer(c_int), intent(in) :: status
     character(len=:), allocatable :: text
 
-    text = text_at(c_strerror(code))
+    text = text_at(c_reason(status))
   end function reason
 
   !> A copy of the C string at `place`.

@@ -1,11 +1,11 @@
 !> The text of a deck as one string, and messages that point into it.
 !>
-!> Files are read with C's streams: a Fortran `open` passes over blanks at the end of a name and so
+!> Files are read by system calls: a Fortran `open` passes over blanks at the end of a name and so
 !> finds another file.
 module deck_source
-  use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_char, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
   use failure, only: failure_t, fail, bad_input, file_trouble
-  use c_library, only: c_fopen, c_fread, c_ferror, c_fclose, errno, reason
+  use c_library, only: c_open_input, c_read, c_close, sort_of, reason, not_there
   use deck_text, only: printable
   implicit none
   private
@@ -14,8 +14,6 @@ module deck_source
   character(len=*), parameter :: newline = new_line('a')
   !> Ten thousand sweep values take a quarter of this; anything larger is not a deck.
   integer, parameter :: largest_deck = 1048576
-  !> The C library's number for it, the same on every Linux.
-  integer(c_int), parameter :: no_such_file = 2
 
   !> A deck's text, line ends made uniform.
   type :: source_t
@@ -37,8 +35,7 @@ contains
     type(source_t), intent(out) :: source
     type(failure_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: bytes
-    type(c_ptr) :: stream
-    integer(c_int) :: trouble, status
+    integer(c_int) :: descriptor, status
     integer :: n
 
     source%file = printable(file)
@@ -47,23 +44,20 @@ contains
       call fail(error, file_trouble, 'a deck needs a file name')
       return
     end if
-    stream = c_fopen(file // c_null_char, 'r' // c_null_char)
-    if (.not. c_associated(stream)) then
-      trouble = errno()
-      if (trouble == no_such_file) then
+    descriptor = c_open_input(file // c_null_char)
+    if (descriptor < 0) then
+      if (sort_of(descriptor) == not_there) then
         call fail(error, file_trouble, source%file // ': no such file')
       else
-        call fail(error, file_trouble, source%file // ': cannot be opened: ' // reason(trouble))
+        call fail(error, file_trouble, source%file // ': cannot be opened: ' // reason(descriptor))
       end if
       return
     end if
     allocate (character(len=largest_deck + 1) :: bytes)
-    n = int(c_fread(bytes, 1_c_size_t, int(len(bytes), c_size_t), stream))
-    trouble = 0
-    if (c_ferror(stream) /= 0) trouble = errno()
-    status = c_fclose(stream)
-    if (trouble /= 0) then
-      call fail(error, file_trouble, source%file // ': cannot be read: ' // reason(trouble))
+    n = int(c_read(descriptor, bytes, int(len(bytes), c_long)))
+    status = c_close(descriptor)
+    if (n < 0) then
+      call fail(error, file_trouble, source%file // ': cannot be read: ' // reason(int(n, c_int)))
     else if (n > largest_deck) then
       call fail(error, bad_input, source%file // ': larger than 1 MiB, so not a deck')
     else

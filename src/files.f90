@@ -1,12 +1,14 @@
-!> Folders, whether files exist, and standard error.
+!> Folders, small files read whole, and standard error.
 module files
-  use, intrinsic :: iso_c_binding, only: c_int, c_null_char, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use kinds, only: long
   use failure, only: failure_t
-  use c_library, only: c_mkdir, c_isatty, c_write, errno, system_failure
+  use c_library, only: c_make_folder, c_open_folder, c_sync, c_close, c_is_terminal, c_write, &
+    system_failure
   implicit none
   private
-  public :: make_folder, file_exists, is_terminal, write_stderr
+  public :: make_folder, file_exists, read_file, is_terminal, write_stderr
 
   !> Number of standard error.
   integer(c_int), parameter :: standard_error = 2
@@ -17,8 +19,7 @@ contains
   subroutine make_folder(path, error)
     character(len=*), intent(in) :: path
     type(failure_t), allocatable, intent(out) :: error
-    integer(c_int), parameter :: everyone = int(o'777', c_int)
-    integer(c_int) :: code
+    integer(c_int) :: status
     integer :: i
 
     do i = 1, len(path)
@@ -27,14 +28,45 @@ contains
       end if
       if (path(i:i) == '/') cycle
       if (file_exists(path(:i) // '/.')) cycle
-      if (c_mkdir(path(:i) // c_null_char, everyone) == 0) cycle
-      code = errno()
+      status = c_make_folder(path(:i) // c_null_char)
+      if (status == 0) then
+        call sync_parent(path(:i))
+        cycle
+      end if
       ! Another process may have made it meanwhile.
       if (file_exists(path(:i) // '/.')) cycle
-      call system_failure('cannot make the folder ' // path(:i), code, error)
+      call system_failure('cannot make the folder ' // path(:i), status, error)
       return
     end do
   end subroutine make_folder
+
+  !> Sees that the new folder `path` outlives a power failure, where its parent can be opened.
+  subroutine sync_parent(path)
+    character(len=*), intent(in) :: path
+    integer(c_int) :: parent, status
+
+    parent = c_open_folder(path // '/..' // c_null_char)
+    if (parent < 0) return
+    status = c_sync(parent)
+    status = c_close(parent)
+  end subroutine sync_parent
+
+  !> The text of the file `path`; not allocated where it cannot be read.
+  subroutine read_file(path, text)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable, intent(out) :: text
+    integer(long) :: length
+    integer :: unit, status
+
+    open (newunit=unit, file=path, status='old', action='read', access='stream', &
+      form='unformatted', iostat=status)
+    if (status /= 0) return
+    inquire (unit, size=length)
+    allocate (character(len=max(length, 0_long)) :: text)
+    read (unit, iostat=status) text
+    close (unit)
+    if (status /= 0) deallocate (text)
+  end subroutine read_file
 
   !> Whether there is a file or folder `path`.
   logical function file_exists(path)
@@ -45,23 +77,18 @@ contains
 
   !> Whether standard error is a terminal.
   logical function is_terminal()
-    is_terminal = c_isatty(standard_error) == 1
+    is_terminal = c_is_terminal(standard_error) == 1
   end function is_terminal
 
   !> Writes `text` as it is to standard error; a Fortran unit would end it with a new line. That
   !> nobody may be listening is no error.
   subroutine write_stderr(text)
     character(len=*), intent(in) :: text
-    integer(c_size_t) :: written, sent
+    integer(c_int) :: sent
     integer :: status
 
     flush (error_unit, iostat=status)
-    sent = 0
-    do while (sent < len(text))
-      written = c_write(standard_error, text(sent + 1:), len(text) - sent)
-      if (written < 1) return
-      sent = sent + written
-    end do
+    sent = c_write(standard_error, text, int(len(text), c_long))
   end subroutine write_stderr
 
 end module files

@@ -1,6 +1,6 @@
 !> Whether a folder already holds all the results of a run.
 module finished_run
-  use kinds, only: long
+  use files, only: read_file
   implicit none
   private
   public :: find_finished
@@ -13,20 +13,14 @@ contains
     character(len=*), intent(in) :: folder, resolved, version
     logical, intent(out) :: finished, converged
     character(len=:), allocatable :: text
-    integer(long) :: length
-    integer :: unit, status, start
+    integer :: start
 
     finished = .false.
     converged = .false.
-    open (newunit=unit, file=folder // '/summary.nml', status='old', action='read', &
-      access='stream', form='unformatted', iostat=status)
-    if (status /= 0) return
-    inquire (unit, size=length)
-    allocate (character(len=max(length, 0_long)) :: text)
-    read (unit, iostat=status) text
-    close (unit)
+    call read_file(folder // '/summary.nml', text)
+    if (.not. allocated(text)) return
     start = len(text) - len(resolved)
-    if (status /= 0 .or. start < 1) return
+    if (start < 1) return
     ! The groups of results, then the deck.
     finished = text(start + 1:) == resolved .and. &
       index(text(:start), new_line('a') // '  version = ''' // version // '''' // new_line('a')) > 0

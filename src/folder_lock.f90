@@ -2,10 +2,10 @@
 !> gone with the process, however that ends, and leaves no file. What is done to its files here is
 !> done in that very folder: another that has taken its name meanwhile is another run's.
 module folder_lock
-  use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_char, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_int, c_null_char
   use failure, only: failure_t, fail, file_trouble
-  use c_library, only: c_opendir, c_dirfd, c_closedir, c_flock, c_faccessat, c_renameat, &
-    c_unlinkat, errno, lock_or_fail, locked_elsewhere, system_failure
+  use c_library, only: c_open_folder, c_lock, c_kind, c_rename, c_remove, c_sync, c_close, &
+    sort_of, locked_elsewhere, system_failure
   implicit none
   private
   public :: folder_lock_t
@@ -13,15 +13,18 @@ module folder_lock
   !> Not to be copied while it is held.
   type :: folder_lock_t
     private
-    type(c_ptr) :: folder = c_null_ptr
+    integer(c_int) :: folder = -1
     character(len=:), allocatable :: path
     logical :: held = .false.
   contains
     procedure :: take
     procedure :: is_held
+    procedure :: path_of
     procedure :: contains_file
+    procedure :: contains_folder
     procedure :: rename_file
     procedure :: remove_file
+    procedure :: sync
     procedure :: release
   end type folder_lock_t
 
@@ -34,17 +37,18 @@ contains
     class(folder_lock_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     type(failure_t), allocatable, intent(out) :: error
+    integer(c_int) :: status
 
     call self%release()
     self%path = path
-    self%folder = c_opendir(path // c_null_char)
-    if (.not. c_associated(self%folder)) then
-      call system_failure('cannot open the folder ' // path, errno(), error)
+    self%folder = c_open_folder(path // c_null_char)
+    if (self%folder < 0) then
+      call system_failure('cannot open the folder ' // path, self%folder, error)
       return
     end if
-    self%held = c_flock(c_dirfd(self%folder), lock_or_fail) == 0
-    if (self%held) return
-    if (errno() /= locked_elsewhere) return
+    status = c_lock(self%folder)
+    self%held = status == 0
+    if (self%held .or. sort_of(status) /= locked_elsewhere) return
     call fail(error, file_trouble, 'another run is writing into this folder; wait for it, or ' // &
       'choose another folder with --out')
     call self%release()
@@ -57,26 +61,44 @@ contains
     is_held = self%held
   end function is_held
 
-  !> Whether the folder that was taken has a file `name`; not where it has been removed since.
+  !> Path of a file of the folder.
+  pure function path_of(self, name) result(path)
+    class(folder_lock_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: path
+
+    path = self%path // '/' // name
+  end function path_of
+
+  !> Whether the folder that was taken has a file `name`; not where it has been removed since. Where
+  !> the system cannot say it is taken to be there: what is then done with it will fail.
   logical function contains_file(self, name) result(found)
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: name
-    integer(c_int), parameter :: exists = 0
+    integer(c_int) :: kind
 
-    found = c_faccessat(c_dirfd(self%folder), name // c_null_char, exists, 0_c_int) == 0
+    kind = c_kind(self%folder, name // c_null_char)
+    found = kind /= 0 .and. kind /= 2
   end function contains_file
+
+  !> Whether the folder has a folder `name`.
+  logical function contains_folder(self, name) result(found)
+    class(folder_lock_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+
+    found = c_kind(self%folder, name // c_null_char) == 2
+  end function contains_folder
 
   !> Gives the folder's file `from` the name `to`, replacing a file of that name at one stroke.
   subroutine rename_file(self, from, to, error)
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: from, to
     type(failure_t), allocatable, intent(out) :: error
-    integer(c_int) :: here
+    integer(c_int) :: status
 
-    here = c_dirfd(self%folder)
-    if (c_renameat(here, from // c_null_char, here, to // c_null_char) /= 0) &
-      call system_failure('cannot rename ' // self%path // '/' // from // ' to ' // &
-      self%path // '/' // to, errno(), error)
+    status = c_rename(self%folder, from // c_null_char, to // c_null_char)
+    if (status < 0) call system_failure('cannot rename ' // self%path_of(from) // ' to ' // &
+      self%path_of(to), status, error)
   end subroutine rename_file
 
   !> Removes the folder's file `name`; that it does not exist is no error.
@@ -84,13 +106,21 @@ contains
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: name
     type(failure_t), allocatable, intent(out) :: error
-    integer(c_int) :: code
+    integer(c_int) :: status
 
-    if (c_unlinkat(c_dirfd(self%folder), name // c_null_char, 0_c_int) == 0) return
-    code = errno()
-    if (self%contains_file(name)) &
-      call system_failure('cannot remove ' // self%path // '/' // name, code, error)
+    status = c_remove(self%folder, name // c_null_char)
+    if (status < 0) call system_failure('cannot remove ' // self%path_of(name), status, error)
   end subroutine remove_file
+
+  !> Waits until what was made, renamed and removed in the folder is so on the disk.
+  subroutine sync(self, error)
+    class(folder_lock_t), intent(in) :: self
+    type(failure_t), allocatable, intent(out) :: error
+    integer(c_int) :: status
+
+    status = c_sync(self%folder)
+    if (status < 0) call system_failure('cannot write the folder ' // self%path, status, error)
+  end subroutine sync
 
   !> Lets others have the folder; nothing is done where no lock is held.
   subroutine release(self)
@@ -98,8 +128,8 @@ contains
     integer(c_int) :: status
 
     ! Closing the descriptor gives up its lock.
-    if (c_associated(self%folder)) status = c_closedir(self%folder)
-    self%folder = c_null_ptr
+    if (self%folder >= 0) status = c_close(self%folder)
+    self%folder = -1
     self%held = .false.
   end subroutine release
 

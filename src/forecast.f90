@@ -4,8 +4,10 @@ module forecast
   use scene_groups, only: scene_t
   use problem, only: problem_t
   use choice, only: choice_t, choose, companion
-  use edge_locked, only: mesh_pair_t, new_mesh_pair
+  use edge_locked, only: mesh_pair_t, new_mesh_pair, largest_radius, contact_level, &
+    smallest_feature
   use experiment, only: problem_of, range_of
+  use locked_steps, only: has_path
   use plans, only: states_planned
   implicit none
   private
@@ -14,25 +16,36 @@ module forecast
   type :: forecast_t
     !> Bytes of the matrices that are held at once, and [s], to a factor of three or so.
     real(wp) :: bytes = 0, seconds = 0
+    !> Cases that are computed at once.
+    integer :: copies = 1
     !> Equilibria of the h0-stepped branches of all cases, and nodes of the largest mesh.
     real(wp) :: states = 0
     integer :: nodes = 0
   end type forecast_t
 
   !> Measured on one core of a common machine: operations a second of products with a matrix and of
-  !> factorisations; and what a state takes beside them [s].
-  real(wp), parameter :: product_rate = 4.0e9_wp, factor_rate = 1.0e10_wp, overhead = 2.0e-5_wp
-  !> Iterations a state, and states that a factorisation serves, in steps of the law's length or
-  !> so, and in steps so fine (law's lengths) that a state is known before it is computed; the
-  !> jumps, which take many, are few. Mixing's iterations a state may be a tenth of this or ten
-  !> times it.
-  real(wp), parameter :: iterations = 5, served = 8, fine = 0.01_wp, fine_iterations = 1.5_wp, &
-    fine_served = 100, mixed = 500
+  !> factorisations, these of matrices of so many nodes or more (fewer: in proportion less); and
+  !> what a state takes beside them [s].
+  real(wp), parameter :: product_rate = 4.0e9_wp, factor_rate = 1.0e10_wp, large = 500, &
+    overhead = 2.0e-5_wp
+  !> Products and factorisations a state, jumps included, in steps of a tenth of the law's length or
+  !> so, and in steps so fine (law's lengths) that a state is known before it is computed. Mixing's
+  !> products may be a tenth of this or ten times it.
+  real(wp), parameter :: products = 9, factors = 1, fine = 0.01_wp, fine_products = 1.5_wp, &
+    fine_factors = 0.01_wp, newton_factors = 6.4_wp, mixed = 500
+  !> States of a path where adhesion is weak (sigma up to 1), and more for each factor of ten.
+  real(wp), parameter :: of_path = 50, of_decade = 40
+  !> Where a fixed grid does not resolve the neck, nodes being farther apart than so many widths of
+  !> it, the contact edge goes from node to node: factorisations and products for each. From some
+  !> strength of adhesion on (sigma) little converges, and it takes up to so many times as long. To
+  !> estimate the error on more nodes takes as long again.
+  real(wp), parameter :: resolved = 0.4_wp, of_node = 15, node_products = 30, hopeless = 1000, &
+    hopeless_factor = 20
+  !> What a run with matrices needs beside them.
+  real(wp), parameter :: other_bytes = 1.0e7_wp
   !> Operations of a verified eigenvalue over the cube of the nodes, at the rate of factorisations,
   !> and the matrices that it needs.
   real(wp), parameter :: eigenvalue_work = 6, eigenvalue_matrices = 2
-  !> States of a path.
-  real(wp), parameter :: of_path = 100
 
 contains
 
@@ -70,8 +83,12 @@ contains
       square = square + 1.6_wp*(sum(real(pair%grid%nodes, wp)**2) + n**2)
     end if
     if (has_eigenvalues(scene)) square = square + eigenvalue_matrices*n**2
-    of_state = anderson_seconds(n, 1.0_wp) + eigenvalue_seconds(scene, n)
-    if (allocated(scene%path)) expected%seconds = of_path*of_state
+    ! A cycle goes along the path too.
+    if (allocated(scene%path) .or. chosen%grid == 'edge_locked' .and. has_path(problem)) &
+      expected%seconds = (of_path + of_decade*log10(max(problem%coupling*problem%law%adhesion, &
+      1.0_wp)))*seconds_of(n, products, factors)
+    if (allocated(scene%path)) &
+      expected%seconds = expected%seconds + of_path*eigenvalue_seconds(scene, n)
     if (chosen%grid /= 'edge_locked') then
       n = chosen%nodes
       expected%nodes = max(expected%nodes, chosen%nodes)
@@ -83,23 +100,48 @@ contains
       square = max(square, matrices*n**2 + 2*real(other%nodes, wp)**2)
     end if
     if (allocated(scene%loading)) then
-      of_state = anderson_seconds(n, scene%loading%h0_step/problem%length)
-      if (chosen%options%method == 'mixing') of_state = overhead + &
-        min(mixed, real(chosen%options%most_iterations, wp))*2*n**2/product_rate
+      of_state = seconds_of(n, products, factors)
+      if (scene%loading%h0_step/problem%length < fine) &
+        of_state = seconds_of(n, fine_products, fine_factors)
+      if (chosen%options%method == 'newton') of_state = seconds_of(n, 0.0_wp, newton_factors)
+      if (chosen%options%method == 'mixing') of_state = &
+        seconds_of(n, min(mixed, real(chosen%options%most_iterations, wp)), 0.0_wp)
       expected%seconds = expected%seconds + &
         states_planned(scene)*(of_state + eigenvalue_seconds(scene, n))
+      if (chosen%grid /= 'edge_locked' .and. chosen%options%method /= 'mixing') &
+        expected%seconds = expected%seconds + node_by_node(scene, problem, chosen, low)* &
+        merge(2, 1, other%nodes > chosen%nodes)*seconds_of(n, node_products, of_node)
     end if
     expected%seconds = expected%seconds*cases/copies
-    if (.not. problem%rigid) expected%bytes = 8*square*copies
+    expected%copies = copies
+    if (.not. problem%rigid) expected%bytes = other_bytes + 8*square*copies
   end function forecast_of
 
-  !> Seconds for a state on n nodes by the accelerated iteration, in steps of h0 (law's lengths).
-  pure real(wp) function anderson_seconds(n, step) result(seconds)
-    real(wp), intent(in) :: n, step
+  !> Seconds for products with a matrix of n nodes and factorisations of it.
+  pure real(wp) function seconds_of(n, products, factorisations) result(seconds)
+    real(wp), intent(in) :: n, products, factorisations
 
-    seconds = overhead + 4*n**2*merge(fine_iterations, iterations, step < fine)/product_rate + &
-      n**3*2/3/merge(fine_served, served, step < fine)/factor_rate
-  end function anderson_seconds
+    seconds = overhead + products*2*n**2/product_rate + &
+      factorisations*n**3*2/3/(factor_rate*min(1.0_wp, max(n, 1.0_wp)/large))
+  end function seconds_of
+
+  !> How many times the contact edge goes from one node of a fixed grid to the next, on all branches
+  !> of a scene down to H0 = low; 0 where the grid resolves the neck.
+  real(wp) function node_by_node(scene, problem, chosen, low) result(times)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(choice_t), intent(in) :: chosen
+    real(wp), intent(in) :: low
+    real(wp) :: widest, sigma
+
+    times = 0
+    widest = min(largest_radius(problem, low, contact_level(problem)), chosen%extent)
+    if (chosen%extent/chosen%nodes <= resolved*smallest_feature(problem, widest)) return
+    times = chosen%nodes*widest/chosen%extent
+    if (allocated(scene%unloading)) times = times*(1 + size(scene%unloading%from))
+    sigma = problem%coupling*problem%law%adhesion
+    times = times*min(hopeless_factor, max(1.0_wp, (sigma/hopeless)**2))
+  end function node_by_node
 
   !> Whether eigenvalues are computed: cases of a sweep leave none.
   pure logical function has_eigenvalues(scene)

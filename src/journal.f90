@@ -3,15 +3,15 @@
 !>
 !> A journal begins with a text that says whose it is; records follow. Each has its length, a
 !> checksum, and the time since the run began, and is handed to the system at once: what follows the
-!> last whole record was being written when the run was killed, and is cut off. It is written with
-!> C's streams for the reason given in `text_file`.
+!> last whole record was being written when the run was killed, and is cut off. Every few seconds it
+!> is put on the disk, so that a power failure costs no more than these. It is written by system
+!> calls for the reason given in `text_file`.
 module journal
-  use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_long, c_null_char, &
-    c_null_ptr, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
   use kinds, only: wp, long
   use failure, only: failure_t, fail, file_trouble
-  use c_library, only: c_fopen, c_fread, c_fwrite, c_fflush, c_fseek, c_fileno, c_ftruncate, &
-    c_fclose, from_start, from_here, errno, system_failure
+  use c_library, only: c_open_output, c_read, c_write, c_sync, c_close, c_size, c_go_to, &
+    c_truncate, system_failure
   use packing, only: packed_t, checksum
   use clock, only: seconds
   implicit none
@@ -26,12 +26,13 @@ module journal
     integer :: inherited = 0
     real(wp) :: earlier = 0
     character(len=:), allocatable, private :: path
-    type(c_ptr), private :: stream = c_null_ptr
+    integer(c_int), private :: descriptor = -1
     !> Records of the earlier run that are still to be handed out.
     integer, private :: waiting = 0
     !> Words in the file when it was opened.
     integer(long), private :: room = 0
-    real(wp), private :: began = 0
+    !> Times [s]: when it was opened, when it was last put on the disk.
+    real(wp), private :: began = 0, synced = 0
   contains
     procedure :: begin
     procedure :: go_on
@@ -47,6 +48,8 @@ module journal
 
   !> Words before the packed ones: how many these are, the checksum of all else, the time.
   integer, parameter :: frame = 3, word = storage_size(0_long)/8
+  !> Seconds of work that a power failure may cost. Waiting for a disk takes a hundredth of one.
+  real(wp), parameter :: sync_interval = 2
 
 contains
 
@@ -57,7 +60,7 @@ contains
     type(failure_t), allocatable, intent(out) :: error
     type(packed_t) :: heading
 
-    call start(self, path, 'w+b', error)
+    call start(self, path, 0_c_int, error)
     if (allocated(error)) return
     call heading%put(owner)
     call self%append(heading)
@@ -74,9 +77,10 @@ contains
     type(failure_t), allocatable, intent(out) :: error
     type(packed_t) :: record
     integer(c_long) :: whole, first
+    integer(c_int) :: status
     logical :: found
 
-    call start(self, path, 'r+b', error)
+    call start(self, path, 1_c_int, error)
     if (allocated(error)) return
     whole = 0
     call self%read_frame(record, whole, found)
@@ -98,21 +102,18 @@ contains
       self%inherited = self%inherited + 1
     end do
     self%waiting = self%inherited
-    if (c_ftruncate(c_fileno(self%stream), whole) /= 0) then
-      call system_failure('cannot write ' // path, errno(), error)
-      call self%close()
-      return
-    end if
-    if (c_fseek(self%stream, first, from_start) /= 0) then
-      call system_failure('cannot read ' // path, errno(), error)
-      call self%close()
-    end if
+    status = c_truncate(self%descriptor, whole)
+    if (status == 0) status = c_go_to(self%descriptor, first)
+    if (status == 0) return
+    call system_failure('cannot write ' // path, status, error)
+    call self%close()
   end subroutine go_on
 
-  !> Opens the file and forgets what was before.
-  subroutine start(self, path, mode, error)
+  !> Opens the file, empty or (keep: 1) as it is, and forgets what was before.
+  subroutine start(self, path, keep, error)
     class(journal_t), intent(inout) :: self
-    character(len=*), intent(in) :: path, mode
+    character(len=*), intent(in) :: path
+    integer(c_int), intent(in) :: keep
     type(failure_t), allocatable, intent(out) :: error
 
     call self%close()
@@ -121,21 +122,21 @@ contains
     self%earlier = 0
     self%waiting = 0
     self%began = seconds()
+    self%synced = self%began
     self%path = path
-    self%stream = c_fopen(path // c_null_char, mode // c_null_char)
+    self%descriptor = c_open_output(path // c_null_char, keep)
     if (.not. self%is_open()) then
-      call system_failure('cannot write ' // path, errno(), error)
+      call system_failure('cannot write ' // path, self%descriptor, error)
       return
     end if
-    inquire (file=path, size=self%room)
-    self%room = self%room/word
+    self%room = c_size(self%descriptor)/word
   end subroutine start
 
   !> Whether records can be read or added.
   pure logical function is_open(self)
     class(journal_t), intent(in) :: self
 
-    is_open = c_associated(self%stream)
+    is_open = self%descriptor >= 0
   end function is_open
 
   !> Whether records of the earlier run are still to be handed out.
@@ -151,7 +152,6 @@ contains
     type(packed_t), intent(inout) :: record
     logical, intent(out) :: found
     integer(c_long) :: whole
-    integer(c_int) :: status
 
     found = .false.
     if (.not. self%is_behind()) return
@@ -159,13 +159,9 @@ contains
     call self%read_frame(record, whole, found)
     self%waiting = self%waiting - 1
     ! It was there when the journal was opened.
-    if (.not. found) then
-      call fail(self%trouble, file_trouble, 'cannot read ' // self%path)
-      call self%close()
-      return
-    end if
-    ! Between reading and writing C asks for a change of position.
-    if (self%waiting == 0) status = c_fseek(self%stream, 0_c_long, from_here)
+    if (found) return
+    call fail(self%trouble, file_trouble, 'cannot read ' // self%path)
+    call self%close()
   end subroutine next
 
   !> The next record, which must begin with the text `mark`.
@@ -191,13 +187,15 @@ contains
     call self%close()
   end subroutine reject
 
-  !> Adds a record and hands it to the system, so that it survives this process. Not before `next`
+  !> Adds a record and hands it to the system, so that it survives this process, and now and then to
+  !> the disk. Not before `next`
   !> has handed out all there were.
   subroutine append(self, record)
     class(journal_t), intent(inout) :: self
     type(packed_t), intent(in) :: record
     integer(long) :: words(frame + record%held)
     character :: bytes(word*size(words))
+    integer(c_int) :: status
 
     if (.not. self%is_open()) return
     words(1) = record%held
@@ -206,21 +204,26 @@ contains
     words(frame + 1:) = record%words(:record%held)
     words(2) = checksum(words)
     bytes = transfer(words, bytes)
-    if (c_fwrite(bytes, 1_c_size_t, size(bytes, kind=c_size_t), self%stream) == size(bytes)) then
-      if (c_fflush(self%stream) == 0) return
+    status = c_write(self%descriptor, bytes, size(bytes, kind=c_long))
+    if (status == 0 .and. seconds() - self%synced > sync_interval) then
+      status = c_sync(self%descriptor)
+      self%synced = seconds()
     end if
-    call system_failure('cannot write ' // self%path, errno(), self%trouble)
+    if (status == 0) return
+    call system_failure('cannot write ' // self%path, status, self%trouble)
     call self%close()
   end subroutine append
 
-  !> Closes it; nothing is done where none is open.
+  !> Puts it on the disk and closes it; nothing is done where none is open.
   subroutine close_journal(self)
     class(journal_t), intent(inout) :: self
     integer(c_int) :: status
 
-    ! Every record has been flushed: what closing could say has been said.
-    if (self%is_open()) status = c_fclose(self%stream)
-    self%stream = c_null_ptr
+    if (.not. self%is_open()) return
+    ! No result depends on it: what could be lost here is time.
+    status = c_sync(self%descriptor)
+    status = c_close(self%descriptor)
+    self%descriptor = -1
   end subroutine close_journal
 
   !> Reads the record at the present place and moves `whole` [bytes] to its end; not found where the
@@ -235,12 +238,12 @@ contains
 
     found = .false.
     call record%clear()
-    if (.not. read_words(self%stream, head)) return
+    if (.not. read_words(self%descriptor, head)) return
     if (head(1) < 0 .or. head(1) > self%room) return
     allocate (words(frame + head(1)))
     words(:frame) = head
     words(2) = 0
-    if (.not. read_words(self%stream, words(frame + 1:))) return
+    if (.not. read_words(self%descriptor, words(frame + 1:))) return
     if (checksum(words) /= head(2)) return
     record%words = words(frame + 1:)
     record%held = int(head(1))
@@ -250,12 +253,12 @@ contains
   end subroutine read_frame
 
   !> Reads words; .false. where the file ends before.
-  logical function read_words(stream, words) result(complete)
-    type(c_ptr), intent(in) :: stream
+  logical function read_words(descriptor, words) result(complete)
+    integer(c_int), intent(in) :: descriptor
     integer(long), intent(out) :: words(:)
     character :: bytes(word*size(words))
 
-    complete = c_fread(bytes, 1_c_size_t, size(bytes, kind=c_size_t), stream) == size(bytes)
+    complete = c_read(descriptor, bytes, size(bytes, kind=c_long)) == size(bytes)
     if (complete) words = transfer(bytes, words)
   end function read_words
 

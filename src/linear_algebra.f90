@@ -4,7 +4,7 @@ module linear_algebra
   implicit none
   private
   public :: multiply, factorisation_t, factorise, solve, determinant_sign, &
-    log_determinant, eigenvalues, positive_definite, positive_eigenvalues
+    log_determinant, claim_buffers, eigenvalues, positive_definite, positive_eigenvalues
 
   !> LU factors of a square matrix, from `factorise`.
   type :: factorisation_t
@@ -65,6 +65,16 @@ module linear_algebra
   end interface
 
 contains
+
+  !> Has the library map what it needs for itself while there is room. OpenBLAS would ask for it for
+  !> ever in the middle of a run that has used the memory up.
+  subroutine claim_buffers()
+    real(wp) :: a(2, 2)
+    integer :: pivot(2), info
+
+    a = reshape([2.0_wp, 1.0_wp, 1.0_wp, 2.0_wp], [2, 2])
+    call dgetrf(2, 2, a, 2, pivot, info)
+  end subroutine claim_buffers
 
   !> y = a(:size(y), :columns) x(:columns).
   subroutine multiply(a, columns, x, y)

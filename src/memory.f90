@@ -8,15 +8,17 @@ module memory
 contains
 
   !> Bytes that may still be taken: the least of what the machine has to spare, the process's limit
-  !> of addresses (`ulimit -v`) and the limit of its control group. Huge where nobody says.
-  real(wp) function available_memory() result(bytes)
+  !> of addresses (`ulimit -v`) less what will be mapped and never touched, and the limit of its
+  !> control group. Huge where nobody says.
+  real(wp) function available_memory(mapped) result(bytes)
+    real(wp), intent(in) :: mapped
     real(wp), parameter :: kilo = 1024
     real(wp) :: limit, used
 
     bytes = kilo*number_after('/proc/meminfo', 'MemAvailable:', huge(1.0_wp)/kilo)
     limit = number_after('/proc/self/limits', 'Max address space', huge(1.0_wp))
     used = kilo*number_after('/proc/self/status', 'VmSize:', 0.0_wp)
-    if (limit < huge(1.0_wp)) bytes = min(bytes, limit - used)
+    if (limit < huge(1.0_wp)) bytes = min(bytes, limit - used - mapped)
     ! Version 2, and version 1 where a huge number stands for none.
     limit = number_after('/sys/fs/cgroup/memory.max', '', huge(1.0_wp))
     used = number_after('/sys/fs/cgroup/memory.current', '', 0.0_wp)

@@ -6,7 +6,7 @@ module outlook
   use deck_text, only: brief
   use forecast, only: forecast_t, forecast_of
   use memory, only: available_memory
-  use blas_threads, only: thread_count
+  use blas_threads, only: thread_count, blas_buffers
   use progress, only: duration
   implicit none
   private
@@ -21,7 +21,7 @@ module outlook
   end type outlook_t
 
   !> Seconds beyond which a run is announced as long.
-  real(wp), parameter :: long_run = 60
+  real(wp), parameter :: long_run = 30
 
 contains
 
@@ -32,7 +32,7 @@ contains
     real(wp) :: available
 
     expected = forecast_of(scene, thread_count())
-    available = available_memory()
+    available = available_memory(blas_buffers(expected%nodes, expected%copies))
     outlook%too_large = ''
     outlook%long = ''
     if (expected%bytes > available) then
@@ -40,8 +40,9 @@ contains
         ' nodes need '//gigabytes(expected%bytes)//' of memory, and '//gigabytes(available)// &
         ' are available'
     else if (expected%seconds > long_run) then
-      outlook%long = brief(expected%states)//' states on '//brief(real(expected%nodes, wp))// &
-        ' nodes: may take '//duration(expected%seconds)//' or so'
+      outlook%long = brief(real(expected%nodes, wp))//' nodes: may take '// &
+        duration(expected%seconds)//' or so'
+      if (expected%states > 0) outlook%long = brief(expected%states)//' states on '//outlook%long
     end if
   end function outlook_of
 

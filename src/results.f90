@@ -1,9 +1,9 @@
 !> The results of one run: a folder with the curve, the profiles, the tables and the summary.
 !>
 !> All of them are written to `.partial` files, the curve and the profiles row by row; `finish`
-!> gives the whole set its names. Until then the results of an earlier run stay as they are, and
-!> what an interrupted run leaves is partial by name. One run at a time has the folder; what it
-!> finds goes into a journal, so that another can go on from there.
+!> gives the whole set its names (`publication`). Until then the results of an earlier run stay as
+!> they are, and what an interrupted run leaves is partial by name. One run at a time has the
+!> folder; what it finds goes into a journal, so that another can go on from there.
 module results
   use kinds, only: wp
   use failure, only: failure_t, fail, file_trouble
@@ -14,6 +14,7 @@ module results
   use deck, only: deck_t
   use files, only: make_folder, file_exists
   use folder_lock, only: folder_lock_t
+  use publication, only: publish, result_files, journal_name
   use journal, only: journal_t
   use run_identity, only: difference_between
   use text_file, only: output_t, partial
@@ -24,12 +25,6 @@ module results
   implicit none
   private
   public :: results_t, journal_of
-
-  !> The files of a folder of results; the summary comes last, so that where it is all the rest is.
-  character(len=*), parameter :: names(*) = [character(len=18) :: 'curve.csv', 'profiles.csv', &
-    'approximations.csv', 'classical.csv', 'sweep.csv', 'summary.nml']
-
-  character(len=*), parameter :: journal_name = 'journal' // partial
 
   !> Takes what a run has to show, between `open` and `finish`. The first thing that goes wrong is
   !> kept in `trouble`; after it nothing more is written. Not to be copied while files are open.
@@ -45,8 +40,8 @@ module results
     type(folder_lock_t) :: lock
     character(len=:), allocatable, private :: folder, title, version
     type(table_t), private :: curve, shapes, cases
-    !> Which of `names` this run has made.
-    logical, private :: made(size(names)) = .false.
+    !> Which of `result_files` this run has made.
+    logical, private :: made(size(result_files)) = .false.
   contains
     procedure :: open => open_results
     procedure :: take
@@ -55,7 +50,6 @@ module results
     procedure :: write_summary
     procedure :: finish
     procedure, private :: claim
-    procedure, private :: publish
     procedure, private :: check_presence
     procedure, private :: path_of
     procedure, private :: mark
@@ -118,6 +112,8 @@ contains
       call self%mark('profiles.csv')
       call self%shapes%begin(self%path_of('profiles.csv'), title, version, profile_columns, error)
     end if
+    ! What is put on the disk later needs its name there.
+    if (.not. allocated(error)) call self%lock%sync(error)
     if (.not. allocated(error)) return
     self%trouble = error
     call self%lock%release()
@@ -277,33 +273,11 @@ contains
     if (allocated(self%trouble)) then
       error = self%trouble
     else if (any(self%made)) then
-      call self%publish(error)
+      call self%check_presence(error)
+      if (.not. allocated(error)) call publish(self%lock, self%made, error)
     end if
     call self%lock%release()
   end subroutine finish
-
-  !> Gives the files their names.
-  subroutine publish(self, error)
-    class(results_t), intent(inout) :: self
-    type(failure_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: name
-    integer :: i
-
-    call self%check_presence(error)
-    ! No summary may stand beside results that are not its own.
-    if (.not. allocated(error)) call self%lock%remove_file('summary.nml', error)
-    do i = 1, size(names)
-      if (allocated(error)) return
-      name = trim(names(i))
-      if (self%made(i)) then
-        call self%lock%rename_file(name // partial, name, error)
-      else
-        call self%lock%remove_file(name, error)
-        if (.not. allocated(error)) call self%lock%remove_file(name // partial, error)
-      end if
-    end do
-    if (.not. allocated(error)) call self%lock%remove_file(journal_name, error)
-  end subroutine publish
 
   !> Fails where a file that this run has begun is no longer in the folder it was begun in.
   subroutine check_presence(self, error)
@@ -312,11 +286,11 @@ contains
     integer :: i
 
     if (.not. self%lock%contains_file(journal_name)) call complain(journal_name)
-    do i = 1, size(names)
+    do i = 1, size(result_files)
       if (allocated(error)) return
       if (.not. self%made(i)) cycle
-      if (.not. self%lock%contains_file(trim(names(i)) // partial)) &
-        call complain(trim(names(i)) // partial)
+      if (.not. self%lock%contains_file(trim(result_files(i)) // partial)) &
+        call complain(trim(result_files(i)) // partial)
     end do
 
   contains
@@ -345,7 +319,7 @@ contains
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: name
 
-    where (names == name) self%made = .true.
+    where (result_files == name) self%made = .true.
   end subroutine mark
 
   !> Path of a file of the folder.

@@ -12,6 +12,7 @@ module simulation
   use sweeps, only: run_sweep
   use outlook, only: outlook_t, outlook_of
   use blas_threads, only: thread_count
+  use linear_algebra, only: claim_buffers
   use comparison, only: classical_rows
   use approximation_tables, only: approximation_rows
   use records, only: observer_t
@@ -19,6 +20,7 @@ module simulation
   use summarise, only: summary_of
   use summary, only: summary_t
   use results, only: results_t, journal_of
+  use publication, only: mend
   use run_identity, only: identity_of
   use finished_run, only: find_finished
   use progress, only: duration
@@ -50,12 +52,19 @@ contains
     type(outlook_t) :: expected
     real(wp) :: began
     integer :: i, failed
-    logical :: curve, left_over, finished, converged
+    logical :: curve, left_over, finished, converged, mended
 
     began = seconds()
     exit_code = 1
     name = out_dir(index(out_dir, '/', .true.) + 1:)
     resolved = scene%deck%resolved()
+    call mend(out_dir, mended, error)
+    if (allocated(error)) then
+      call say(out_dir//': '//error%message, .false.)
+      return
+    end if
+    if (mended) call say(out_dir//': put results in place that an interrupted run had completed', &
+      quiet)
     left_over = file_exists(journal_of(out_dir))
     if (resume .and. .not. left_over) then
       call find_finished(out_dir, resolved, version, finished, converged)
@@ -96,6 +105,7 @@ contains
     end if
     failed = 0
     expected = outlook_of(scene)
+    if (expected%too_large == '' .and. .not. problem%rigid) call claim_buffers()
     if (expected%long /= '') call say(out_dir//': '//expected%long, quiet)
     if (allocated(scene%sweep) .and. expected%too_large == '') then
       call results%progress%start(size(scene%sweep%values), name, quiet)

@@ -7,7 +7,7 @@ program snapin
   use deck_keys, only: write_keys
   use scene, only: scene_t, read_scene
   use scene_keys, only: keys_of_scene
-  use process, only: prepare_process
+  use c_library, only: c_prepare
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
   use simulation, only: run_scene
   use outlook, only: outlook_t, outlook_of
@@ -26,7 +26,7 @@ program snapin
   type(options_t) :: options
   type(failure_t), allocatable :: error
 
-  call prepare_process()
+  call c_prepare()
   call read_command_line(options, error)
   if (allocated(error)) then
     call print_line(error_unit, 'snapin: ' // error%message)

@@ -1,12 +1,11 @@
 !> Text files that lose nothing in silence.
 !>
-!> They are written with C's streams because gfortran's units do: on a full disk `flush` and `close`
+!> They are written by system calls because gfortran's units do: on a full disk `flush` and `close`
 !> return iostat = 0 (seen with gfortran 12).
 module text_file
-  use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_char, c_null_ptr, c_ptr, &
-    c_size_t
+  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
   use failure, only: failure_t
-  use c_library, only: c_fopen, c_fwrite, c_fflush, c_fclose, errno, system_failure
+  use c_library, only: c_open_output, c_write, c_sync, c_close, system_failure
   implicit none
   private
   public :: output_t, partial, plain
@@ -19,8 +18,11 @@ module text_file
   !> Not to be copied while it is open.
   type :: output_t
     private
-    type(c_ptr) :: stream = c_null_ptr
+    integer(c_int) :: descriptor = -1
     character(len=:), allocatable :: path
+    !> What is still to be handed to the system is buffer(:held).
+    character(len=8192) :: buffer
+    integer :: held = 0
   contains
     procedure :: open => open_output
     procedure :: is_open
@@ -28,12 +30,13 @@ module text_file
     procedure :: line
     procedure :: flush => flush_output
     procedure :: close => close_output
-    procedure, private :: give_up
+    procedure, private :: hand_over
   end type output_t
 
 contains
 
-  !> Creates the file `path`, or empties it, and opens it.
+  !> Creates the file `path`, or empties it, and opens it. Fails where that is anything but a file:
+  !> a link, a pipe.
   subroutine open_output(self, path, error)
     class(output_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -42,15 +45,16 @@ contains
     call self%close(error)
     if (allocated(error)) return
     self%path = path
-    self%stream = c_fopen(path // c_null_char, 'w' // c_null_char)
-    if (.not. self%is_open()) call system_failure('cannot write ' // path, errno(), error)
+    self%held = 0
+    self%descriptor = c_open_output(path // c_null_char, 0_c_int)
+    if (.not. self%is_open()) call system_failure('cannot write ' // path, self%descriptor, error)
   end subroutine open_output
 
   !> Whether the file is open.
   pure logical function is_open(self)
     class(output_t), intent(in) :: self
 
-    is_open = c_associated(self%stream)
+    is_open = self%descriptor >= 0
   end function is_open
 
   !> Writes `text` as it is.
@@ -60,8 +64,14 @@ contains
     type(failure_t), allocatable, intent(out) :: error
 
     if (.not. self%is_open()) return
-    if (c_fwrite(text, 1_c_size_t, int(len(text), c_size_t), self%stream) /= len(text)) &
-      call self%give_up(errno(), error)
+    if (self%held + len(text) > len(self%buffer)) call self%flush(error)
+    if (allocated(error)) return
+    if (len(text) > len(self%buffer)) then
+      call self%hand_over(text, error)
+    else
+      self%buffer(self%held + 1:self%held + len(text)) = text
+      self%held = self%held + len(text)
+    end if
   end subroutine put
 
   !> Writes `text` and ends the line.
@@ -77,35 +87,42 @@ contains
   subroutine flush_output(self, error)
     class(output_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
+    integer :: held
 
     if (.not. self%is_open()) return
-    if (c_fflush(self%stream) /= 0) call self%give_up(errno(), error)
+    held = self%held
+    self%held = 0
+    call self%hand_over(self%buffer(:held), error)
   end subroutine flush_output
 
-  !> Closes the file; nothing is done where none is open.
+  !> Waits until the file is on the disk and closes it; nothing is done where none is open.
   subroutine close_output(self, error)
     class(output_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
-    type(c_ptr) :: stream
+    integer(c_int) :: synced, closed
 
+    call self%flush(error)
     if (.not. self%is_open()) return
-    ! The stream is gone even where closing it fails.
-    stream = self%stream
-    self%stream = c_null_ptr
-    if (c_fclose(stream) /= 0) call system_failure('cannot write ' // self%path, errno(), error)
+    synced = c_sync(self%descriptor)
+    closed = c_close(self%descriptor)
+    self%descriptor = -1
+    if (synced == 0) synced = closed
+    if (synced < 0) call system_failure('cannot write ' // self%path, synced, error)
   end subroutine close_output
 
-  !> Reports that writing failed and closes the file.
-  subroutine give_up(self, code, error)
+  !> Hands `text` to the system. Where that fails the file is closed.
+  subroutine hand_over(self, text, error)
     class(output_t), intent(inout) :: self
-    integer(c_int), intent(in) :: code
+    character(len=*), intent(in) :: text
     type(failure_t), allocatable, intent(inout) :: error
     integer(c_int) :: status
 
-    call system_failure('cannot write ' // self%path, code, error)
-    status = c_fclose(self%stream)
-    self%stream = c_null_ptr
-  end subroutine give_up
+    status = c_write(self%descriptor, text, int(len(text), c_long))
+    if (status == 0) return
+    call system_failure('cannot write ' // self%path, status, error)
+    status = c_close(self%descriptor)
+    self%descriptor = -1
+  end subroutine hand_over
 
   !> `text` as one line of plain ASCII: white space becomes a blank, anything else a question mark.
   pure function plain(text) result(clean)

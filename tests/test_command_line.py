@@ -1,9 +1,11 @@
 """The command line: options, exit status, and that a wrong deck leaves nothing behind."""
 
 import os
+import shutil
 import subprocess
 
 import pytest
+from conftest import ROOT
 
 # The cheapest thing the program can do.
 DECK = """&bodies radius = 1e-2, stiffness = 1e10 /
@@ -195,3 +197,33 @@ def test_no_more_of_an_endless_file_is_read_than_a_deck_may_hold(snapin_path, de
 def test_quiet_says_nothing(snapin, decks):
     done = snapin("--quiet", "good.nml", cwd=decks)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+# --- The commands at the top of the checkout
+
+
+@pytest.mark.parametrize("name, character", [("a:b", "a colon"), ("a\nb", "a line end"),
+                                             ("a\\b", "a backslash"), ("a=b", "an equals sign")])
+def test_a_checkout_in_a_path_that_cannot_be_built_in_is_refused_at_once(tmp_path, name, character):
+    top = tmp_path / name / "checkout"
+    (top / "tools").mkdir(parents=True)
+    shutil.copy(ROOT / "tools/setup.sh", top / "tools")
+    for command in ("run", "test"):
+        shutil.copy(ROOT / command, top)
+        done = subprocess.run([top / command, "deck.nml"], capture_output=True, text=True,
+                              timeout=10, check=False)
+        assert done.returncode == 2
+        assert character in done.stderr
+        assert "move or clone it" in done.stderr
+        assert sorted(path.name for path in top.iterdir()) == sorted(["tools", "run", "test"][
+            : 2 if command == "run" else 3])
+
+
+def test_a_checkout_may_have_blanks_and_quotes_in_its_path(tmp_path):
+    top = tmp_path / "it's a \"test\" [1] $x"
+    (top / "tools").mkdir(parents=True)
+    shutil.copy(ROOT / "tools/setup.sh", top / "tools")
+    script = 'top=$1; . "$top/tools/setup.sh"; refuse_path; echo fine'
+    done = subprocess.run(["sh", "-c", script, "sh", top], capture_output=True, text=True,
+                          timeout=10, check=False)
+    assert done.stdout == "fine\n"

@@ -127,3 +127,14 @@ def test_units_keep_numbers_short(monkeypatch, largest, factor, unit):
     from read_results import scale
 
     assert scale([-largest, np.nan], "N") == (factor, unit)
+
+
+def test_files_that_may_not_belong_together_are_not_drawn(plot, results):
+    note = results / "cycle/INCOMPLETE.txt"
+    note.write_text("")
+    try:
+        done = plot("force_curve.py", results / "cycle")
+    finally:
+        note.unlink()
+    assert done.returncode != 0
+    assert "may not belong together" in done.stderr

@@ -138,8 +138,25 @@ bring_up_to_date() {
   compile
 }
 
+# What Python's virtual environments, Meson and Ninja cannot have in the path of a folder: what
+# separates folders in lists, and what is special in the files that they write.
+refuse_path() {
+  newline='
+'
+  case $top in
+    *"$newline"*) character='a line end' ;;
+    *:*) character='a colon' ;;
+    *\\*) character='a backslash' ;;
+    *=*) character='an equals sign' ;;
+    *) return ;;
+  esac
+  say "the path of this checkout has $character in it, with which it cannot be built: $top"
+  give_up "move or clone it to a folder whose path has no colon, backslash, equals sign or line end"
+}
+
 # One at a time in a checkout; in a subshell, so that the lock and the environment end with it.
 prepare() {
+  refuse_path
   (
     if has flock && ! flock -n 9; then
       say 'waiting for another set-up of this checkout'

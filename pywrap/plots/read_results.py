@@ -27,6 +27,8 @@ class ResultsError(Exception):
 def read_table(folder, name):
     """Return the columns of a table as a dict of arrays, text for `branch` and `theory`."""
     path = pathlib.Path(folder) / name
+    if path.with_name("INCOMPLETE.txt").exists():
+        raise ResultsError(f"files in {folder} may not belong together: see INCOMPLETE.txt there")
     if not path.is_file():
         raise ResultsError(f"no {name} in {folder}{_hint(path)}")
     with path.open(encoding="utf-8", newline="") as file:

@@ -10,6 +10,7 @@
 #   extremes   decks drawn at random from the far ends, on the build of `traps`
 #   judge      the program against an independent solution of the Lennard-Jones problem: studies of
 #              every reported number, of cycles, folds and the energy lost (tools/verify/judge.py)
+#   faults     every system call on results fails, kills the run, or is the last before the power does
 #   guards     guards are taken out one at a time, and a test has to fail
 #   fuzz       a coverage-led search for decks that the reader misreads (needs AFL++)
 #
@@ -108,6 +109,8 @@ extremes() {
 
 judge() { "$python" "$here/judge.py" --seed "${SEED:-1}"; }
 
+faults() { OMP_NUM_THREADS=1 "$python" tests/faults.py; }
+
 guards() { "$python" "$here/guards.py"; }
 
 fuzz() {
@@ -118,7 +121,7 @@ fuzz() {
 }
 
 failed=
-stages='long traps memory coverage levels extremes judge guards fuzz'
+stages='long traps memory coverage levels extremes faults judge guards fuzz'
 for stage in ${*:-$stages}; do
   case " $stages " in
     *" $stage "*) ;;

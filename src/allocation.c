@@ -1,0 +1,74 @@
+/* Little memory. None is an end with status 1 and a reason. Code that gfortran makes does not
+   always look at what malloc returns and would go on to a segmentation fault; the linker leads its
+   calls here (--wrap, see meson.build). States that were complete are in the journal by then. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *old, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *old, size_t size);
+
+static void *checked(void *place, size_t size) {
+  static const char message[] = "snapin: there is not enough memory to go on; free some, raise the "
+                                "limit (ulimit -v), or ask for fewer nodes, then use --resume\n";
+  if (place == NULL && size > 0) {
+    ssize_t sent = write(STDERR_FILENO, message, sizeof message - 1);
+    (void)sent;
+    _exit(1);
+  }
+  return place;
+}
+
+void *__wrap_malloc(size_t size) { return checked(__real_malloc(size), size); }
+
+void *__wrap_calloc(size_t count, size_t size) {
+  return checked(__real_calloc(count, size), count > 0 ? size : 0);
+}
+
+void *__wrap_realloc(void *old, size_t size) { return checked(__real_realloc(old, size), size); }
+
+/* OpenBLAS maps memory for each of its threads before main begins, and where it gets none it tries
+   for ever. With little address space it is to have fewer threads: the program begins once more and
+   tells it so. This runs before the libraries' own beginnings, which look at the environment that
+   the process was given. A thread's memory, its stack and what malloc keeps for it are 200 MB. */
+static void leave_room(int count, char **arguments, char **environment) {
+  static const char name[] = "OPENBLAS_NUM_THREADS=";
+  const rlim_t one = 320000000;
+  struct rlimit limit;
+  long wanted = 0, room, kept = 0, i;
+  const char *common = NULL;
+  char text[64], **changed;
+  (void)count;
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return;
+  for (i = 0; environment[i] != NULL; i++) {
+    if (strncmp(environment[i], name, sizeof name - 1) == 0)
+      wanted = atol(environment[i] + sizeof name - 1);
+    if (strncmp(environment[i], "OMP_NUM_THREADS=", 16) == 0)
+      common = environment[i] + 16;
+  }
+  if (wanted < 1 && common != NULL)
+    wanted = atol(common);
+  if (wanted < 1)
+    wanted = sysconf(_SC_NPROCESSORS_ONLN);
+  room = limit.rlim_cur / one > 1 ? (long)(limit.rlim_cur / one) : 1;
+  changed = room < wanted ? malloc((i + 2) * sizeof *changed) : NULL;
+  if (changed == NULL)
+    return;
+  for (i = 0; environment[i] != NULL; i++)
+    if (strncmp(environment[i], name, sizeof name - 1) != 0)
+      changed[kept++] = environment[i];
+  snprintf(text, sizeof text, "%s%ld", name, room);
+  changed[kept++] = text;
+  changed[kept] = NULL;
+  execve("/proc/self/exe", arguments, changed);
+}
+
+__attribute__((section(".preinit_array"), used)) static void (*first)(int, char **, char **) =
+    leave_room;
