@@ -91,7 +91,7 @@ contains
       call use_threads_for(maxval(locked%pair%grid%nodes))
       select type (locked)
       class is (path_steps_t)
-        call locked%know_path(high, low, .false.)
+        call locked%know_path(high, low, .false., rows)
       end select
       call run_stretches(locked, h0/problem%length, rows, stretch)
       outcome%unloading = stretch

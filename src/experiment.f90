@@ -107,7 +107,7 @@ contains
     began = seconds()
     select type (steps)
     class is (path_steps_t)
-      call steps%know_path(high, low, allocated(scene%path))
+      call steps%know_path(high, low, allocated(scene%path), observer)
       if (allocated(scene%path)) call run_path(scene, steps, observer, outcome)
     class is (unique_steps_t)
       if (allocated(scene%path)) call run_stepped_path(scene, steps, observer, outcome)
@@ -116,6 +116,7 @@ contains
       call run_cycle(scene, steps, observer, outcome, journal)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
+    call observer%hear('estimating errors')
     call judge_locked(steps, high, low, outcome)
     steps%cost%estimate_seconds = seconds() - began
     outcome%cost = steps%cost
@@ -144,6 +145,7 @@ contains
     call run_cycle(scene, steps, observer, outcome, journal)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
+    call observer%hear('estimating errors')
     call judge_fixed(steps, low, outcome)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     outcome%cost = steps%cost

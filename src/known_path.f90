@@ -3,6 +3,7 @@
 !> when it leaves one over a fold.
 module known_path
   use kinds, only: wp
+  use listener, only: listener_t
   use problem, only: problem_t
   use equilibrium, only: state_t, cost_t, lost_in_rounding, beyond_rounding
   use solver_options, only: solver_options_t
@@ -60,17 +61,19 @@ contains
 
   !> Traces the path from a state far from contact, on the mesh for the approach, until it is stable
   !> at h0_low; into_contact: until it is also on the mesh for contact.
-  subroutine trace(this, pair, options, start, h0_low, into_contact, known, cost)
+  subroutine trace(this, pair, options, start, h0_low, into_contact, listener, known, cost)
     type(problem_t), intent(in) :: this
     type(mesh_pair_t), intent(in) :: pair
     type(solver_options_t), intent(in) :: options
     type(state_t), intent(in) :: start
     real(wp), intent(in) :: h0_low
     logical, intent(in) :: into_contact
+    class(listener_t), intent(inout) :: listener
     type(known_path_t), intent(inout) :: known
     type(cost_t), intent(inout) :: cost
     type(tracer_t) :: walker
     type(solver_options_t) :: for_path
+    character(len=40) :: so_far
     logical :: lost, blind, finished
     integer :: k
 
@@ -82,6 +85,8 @@ contains
     finished = .false.
     do while (known%ends_because == '' .and. .not. finished)
       call extend(known%path, walker, this, pair, for_path, lost, cost)
+      write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
+      call listener%hear(trim(so_far))
       known%fallen = collapsed(this, known%path)
       if (lost .or. known%path%held >= longest) then
         known%ends_because = 'the equilibrium path was lost: no step, however small, converged'

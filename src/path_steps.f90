@@ -7,6 +7,7 @@
 !> steps; beside a fold the state is looked for along the path.
 module path_steps
   use kinds, only: wp
+  use listener, only: listener_t
   use equilibrium, only: state_t
   use anderson, only: frozen_t
   use edge_locked, only: contact
@@ -44,18 +45,19 @@ contains
 
   !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
   !> h0_low; into_contact: until it is also on the mesh for contact. To be called before the first
-  !> step.
-  subroutine know_path(self, h0_high, h0_low, into_contact)
+  !> step. The listener hears how far it is.
+  subroutine know_path(self, h0_high, h0_low, into_contact, listener)
     class(path_steps_t), intent(inout) :: self
     real(wp), intent(in) :: h0_high, h0_low
     logical, intent(in) :: into_contact
+    class(listener_t), intent(inout) :: listener
     type(position_t) :: position
     type(event_t) :: event
 
     call self%begin_afar(h0_high, position, event)
     if (event%reason == '') then
       call trace(self%problem, self%pair, self%options, position%state, h0_low, into_contact, &
-        self%known, self%cost)
+        listener, self%known, self%cost)
     else
       self%known%ends_because = event%reason
       allocate (self%known%piece(0))

@@ -1,6 +1,7 @@
 !> What an experiment hands to whoever keeps its results: one record an equilibrium, in SI units.
 module records
   use kinds, only: wp
+  use listener, only: listener_t
   use problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t, radius_of_gap
@@ -34,7 +35,7 @@ module records
   end type theory_row_t
 
   !> Takes records as they are computed.
-  type, abstract :: observer_t
+  type, abstract, extends(listener_t) :: observer_t
   contains
     procedure(take_record), deferred :: take
   end type observer_t

@@ -45,6 +45,7 @@ module results
   contains
     procedure :: open => open_results
     procedure :: take
+    procedure :: hear
     procedure :: take_case
     procedure :: write_theory
     procedure :: write_summary
@@ -149,6 +150,14 @@ contains
 
     path = folder // '/' // journal_name
   end function journal_of
+
+  !> Shows what is being done.
+  subroutine hear(self, what)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: what
+
+    call self%progress%note(what)
+  end subroutine hear
 
   !> Adds a record to the curve and, if `profile`, the state to the profiles.
   subroutine take(self, record, problem, grid, state, profile)

@@ -29,6 +29,7 @@ module stability_records
     type(journal_t), pointer :: journal => null()
   contains
     procedure :: take
+    procedure :: hear
     procedure, private :: find_eigenvalue
   end type stability_recorder_t
 
@@ -39,6 +40,13 @@ module stability_records
   real(wp), parameter :: zero = 100
 
 contains
+
+  subroutine hear(self, what)
+    class(stability_recorder_t), intent(inout) :: self
+    character(len=*), intent(in) :: what
+
+    call self%next%hear(what)
+  end subroutine hear
 
   subroutine take(self, record, problem, grid, state, profile)
     class(stability_recorder_t), intent(inout) :: self
