@@ -3,7 +3,7 @@ module bodies
   use kinds, only: wp
   implicit none
   private
-  public :: composite_stiffness
+  public :: composite_stiffness, compliance_shares
 
 contains
 
@@ -17,5 +17,14 @@ contains
 
     stiffness = 2/sum((1 - poisson)*(1 + poisson)/young)
   end function composite_stiffness
+
+  !> What each of two bodies deforms by over what identical bodies of the composite stiffness do: its
+  !> compliance over the mean. Arguments as above.
+  pure function compliance_shares(young, poisson) result(share)
+    real(wp), intent(in) :: young(2), poisson(2)
+    real(wp) :: share(2)
+
+    share = composite_stiffness(young, poisson)*(1 - poisson)*(1 + poisson)/young
+  end function compliance_shares
 
 end module bodies

@@ -50,6 +50,7 @@ contains
     end associate
     call new_law(parameters, law)
     problem = new_problem(law, scene%bodies%radius, scene%bodies%stiffness, scene%bodies%rigid)
+    problem%share = scene%bodies%share
   end function problem_of
 
   !> Runs the path and the cycle of a scene; neither may be asked for, and then nothing is done.

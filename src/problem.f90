@@ -21,6 +21,8 @@ module problem
     !> Bodies, SI: R, and E/(1-nu^2) of two identical bodies.
     real(wp) :: radius = 1, stiffness = 1
     logical :: rigid = .false.
+    !> What each body deforms by over what it is for identical ones.
+    real(wp) :: share(2) = 1
   end type problem_t
 
   !> Width of the neck times sigma, lateral units.

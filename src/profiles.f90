@@ -8,7 +8,7 @@ module profiles
   use tables, only: table_t, cells
   implicit none
   private
-  public :: profile_columns, write_profile
+  public :: columns_of_profiles, write_profile
 
   !> Columns of the table of profiles.
   character(len=*), parameter :: profile_columns(*) = [character(len=96) :: &
@@ -16,11 +16,35 @@ module profiles
     'h0 [m] separation that undeformed bodies would have on the axis', &
     'r [m] distance from the axis', &
     'separation [m]', &
-    'deformation [m] of each surface, outward positive', &
+    'deformation [m] of each surface, outward positive; of unlike bodies the mean', &
     'pressure [Pa] negative: attraction', &
     'energy [J/m^2] of the surface force']
 
+  !> Of bodies that are not alike.
+  character(len=*), parameter :: unlike_columns(*) = [character(len=96) :: &
+    'deformation_1 [m] of the first body''s surface, outward positive', &
+    'deformation_2 [m] of the second body''s']
+
 contains
+
+  !> The columns of the table.
+  pure function columns_of_profiles(problem) result(columns)
+    type(problem_t), intent(in) :: problem
+    character(len=96), allocatable :: columns(:)
+
+    if (alike(problem)) then
+      columns = profile_columns
+    else
+      columns = [profile_columns, unlike_columns]
+    end if
+  end function columns_of_profiles
+
+  !> Whether both bodies deform by as much.
+  pure logical function alike(problem)
+    type(problem_t), intent(in) :: problem
+
+    alike = .not. abs(problem%share(1) - problem%share(2)) > 0
+  end function alike
 
   !> Adds a state to a table of profiles: the axis, then its nodes. `h0` is in metres.
   subroutine write_profile(table, branch, h0, problem, grid, state, error)
@@ -32,6 +56,7 @@ contains
     type(state_t), intent(in) :: state
     type(failure_t), allocatable, intent(inout) :: error
     real(wp), dimension(size(state%gap) + 1) :: r, gap, deformation, pressure, energy
+    character(len=:), allocatable :: row
     integer :: j
 
     if (.not. table%has_begun()) return
@@ -46,9 +71,12 @@ contains
     do j = 1, size(r)
       ! A mesh may have a node on the axis.
       if (j == 2 .and. .not. r(j) > 0) cycle
-      call table%row(branch // ',' // cells([h0, r(j)*problem%lateral, gap(j)*problem%length, &
+      row = branch // ',' // cells([h0, r(j)*problem%lateral, gap(j)*problem%length, &
         deformation(j)*problem%length, pressure(j)*problem%pressure, &
-        energy(j)*problem%pressure*problem%length]), error)
+        energy(j)*problem%pressure*problem%length])
+      if (.not. alike(problem)) &
+        row = row // ',' // cells(problem%share*deformation(j)*problem%length)
+      call table%row(row, error)
       if (allocated(error)) return
     end do
     call table%flush(error)

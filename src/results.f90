@@ -19,7 +19,7 @@ module results
   use run_identity, only: difference_between
   use text_file, only: output_t, partial
   use tables, only: table_t, cells
-  use profiles, only: profile_columns, write_profile
+  use profiles, only: columns_of_profiles, write_profile
   use summary, only: summary_t, summary_text
   use progress, only: progress_t
   implicit none
@@ -86,10 +86,11 @@ contains
   !> place where nothing can be written shows before anything is computed. `owner` is the run's
   !> identity; resume: the journal that an interrupted run has left, if there is one, is gone on
   !> with.
-  subroutine open_results(self, folder, title, version, curve, shapes, stability, owner, resume, &
-    error)
+  subroutine open_results(self, folder, title, version, problem, curve, shapes, stability, owner, &
+    resume, error)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: folder, title, version, owner
+    type(problem_t), intent(in) :: problem
     logical, intent(in) :: curve, shapes, stability, resume
     type(failure_t), allocatable, intent(out) :: error
 
@@ -111,7 +112,8 @@ contains
     end if
     if (shapes .and. .not. allocated(error)) then
       call self%mark('profiles.csv')
-      call self%shapes%begin(self%path_of('profiles.csv'), title, version, profile_columns, error)
+      call self%shapes%begin(self%path_of('profiles.csv'), title, version, &
+        columns_of_profiles(problem), error)
     end if
     ! What is put on the disk later needs its name there.
     if (.not. allocated(error)) call self%lock%sync(error)

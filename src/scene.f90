@@ -2,7 +2,7 @@
 module scene
   use kinds, only: wp
   use failure, only: failure_t
-  use bodies, only: composite_stiffness
+  use bodies, only: composite_stiffness, compliance_shares
   use deck_text, only: brief, quoted
   use deck, only: deck_t, read_deck
   use scene_keys, only: keys_of_scene
@@ -109,6 +109,7 @@ contains
         call deck%mistake('bodies', 'young', 'missing; young and poisson go together', error)
       else if (pair) then
         bodies%stiffness = composite_stiffness(spread_out(young), spread_out(poisson))
+        bodies%share = compliance_shares(spread_out(young), spread_out(poisson))
       else
         call deck%get('bodies', 'stiffness', bodies%stiffness)
       end if

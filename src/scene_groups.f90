@@ -16,6 +16,8 @@ module scene_groups
     real(wp) :: radius = 0
     !> E/(1-nu^2) of two identical bodies equivalent to these [Pa]; without meaning if `rigid`.
     real(wp) :: stiffness = 0
+    !> Compliance of each body over their mean.
+    real(wp) :: share(2) = 1
     logical :: rigid = .false.
   end type bodies_t
 

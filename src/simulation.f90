@@ -79,8 +79,8 @@ contains
     problem = problem_of(scene)
     ! The cases of a sweep leave their summaries, not their curves.
     curve = .not. allocated(scene%sweep) .and. (allocated(scene%loading) .or. allocated(scene%path))
-    call results%open(out_dir, scene%title, version, curve, curve .and. allocated(scene%profiles), &
-      curve .and. allocated(scene%stability), &
+    call results%open(out_dir, scene%title, version, problem, curve, &
+      curve .and. allocated(scene%profiles), curve .and. allocated(scene%stability), &
       ! Each case of a sweep has one thread, however many there are.
       identity_of(resolved, merge(0, thread_count(), allocated(scene%sweep))), resume, error)
     if (allocated(error)) then

@@ -293,3 +293,22 @@ def test_path_of_a_law_without_attraction_is_the_h0_stepped_one(run, scene):
             assert mine[0] == pytest.approx(load, rel=1e-6)
     for key in ("max_tension", "jump_in_h0", "folds_h0", "spacing_over_neck", "resolved"):
         assert key not in result.summary
+
+
+def test_a_path_that_starts_in_contact_begins_there_and_has_no_jump_in(run):
+    # The first state at h0 = 1 on the way inward is one in contact, behind both folds.
+    result = run(path(0.87, h0_start=1.0, h0_end=-2.0))
+    whole = run(path(0.87, h0_end=-2.0))
+    assert list(result.curve["h0"][[0, -1]]) == pytest.approx([1.0, -2.0], rel=1e-14)
+    assert (np.diff(result.curve["h0"]) < 0).all()
+    assert "jump_in_h0" not in result.summary
+    assert "energy_lost" not in result.summary
+    assert result.summary["end_load"] == pytest.approx(whole.summary["end_load"], rel=1e-6)
+
+
+def test_a_path_that_starts_between_far_and_the_jump_begins_at_its_start(run):
+    result = run(path(8.7, h0_start=7.0, h0_end=0.0))
+    whole = run(path(8.7, h0_end=0.0))
+    assert result.curve["h0"][0] == pytest.approx(7.0, rel=1e-14)
+    for key in ("jump_in_h0", "jump_out_h0", "max_tension", "energy_lost"):
+        assert result.summary[key] == pytest.approx(whole.summary[key], rel=1e-6)

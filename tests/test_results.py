@@ -91,6 +91,21 @@ def test_profiles_and_theories_have_the_columns_of_the_contract(full):
     assert len(classical.comments) == 2 + len(classical.names)
 
 
+def test_profiles_of_unlike_bodies_have_the_deformation_of_each(run):
+    # Compliances (1 - nu^2)/E of 0.5 and 1.5: their mean is that of the unit problem.
+    scene = {"loading": loading(6, 0, 1.0), "profiles": {"h0": [1.0]}}
+    alike = run(lennard_jones(0.87, **scene)).table("profiles.csv")
+    unlike = run(
+        lennard_jones(0.87, **scene).replace(
+            "stiffness = 1.0", "young = 2.0, 0.5, poisson = 0.0, 0.5"
+        )
+    ).table("profiles.csv")
+    assert unlike.names == [*alike.names, "deformation_1", "deformation_2"]
+    assert unlike["deformation"] == pytest.approx(alike["deformation"], rel=1e-9)
+    assert unlike["deformation_1"] == pytest.approx(0.5 * unlike["deformation"], rel=1e-12)
+    assert unlike["deformation_2"] == pytest.approx(1.5 * unlike["deformation"], rel=1e-12)
+
+
 def test_branches_are_named_and_in_order(full):
     branches = list(dict.fromkeys(full.curve["branch"]))
     assert branches == ["loading", "unloading_1", "unloading_2"]
