@@ -295,7 +295,8 @@ contains
     if (allocated(scene%path)) then
       low = min(low, scene%path%h0_end)
       high = max(high, scene%path%h0_end)
-      high = max(high, path_start(scene, problem))
+      ! Where the last jump apart leads belongs to the path too.
+      high = max(high, path_start(scene, problem), beyond_contact(problem)*problem%length)
     end if
     low = low/problem%length
     high = high/problem%length
