@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 import numpy as np
+from processes import HANG
 
 
 def agm_k(complement):
@@ -136,7 +137,7 @@ def independent_states(law, s, h0, ends, largest=0.8):
         text=True,
         check=True,
         env=environment,
-        timeout=300,
+        timeout=HANG,
     )
     return np.array(json.loads(done.stdout)).T
 

@@ -4,8 +4,11 @@ import os
 import subprocess
 import sys
 
+# Seconds of the clock that only what hangs takes, however busy the machine is.
+HANG = 3600
 
-def python(*arguments, seconds=300, **environment):
+
+def python(*arguments, seconds=HANG, **environment):
     """Runs `python ARGUMENT ...` with the paths of this process; a CompletedProcess with text."""
     return subprocess.run(
         [sys.executable, *arguments],

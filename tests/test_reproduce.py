@@ -10,6 +10,7 @@ import f90nml
 import numpy as np
 import pytest
 from conftest import ROOT
+from processes import HANG
 
 pytest.importorskip("matplotlib")
 TOOLS = ROOT / "tools" / "reproduce"
@@ -278,7 +279,7 @@ def test_the_command_writes_report_table_and_picture_and_fails_on_a_bad_name(sna
     environment = {key: value for key, value in os.environ.items() if key != "SNAPIN"}
 
     def run(*args):
-        return subprocess.run([*command, *args], capture_output=True, text=True, timeout=300,
+        return subprocess.run([*command, *args], capture_output=True, text=True, timeout=HANG,
                               check=False, env=environment)
 
     done = run("fig03")
