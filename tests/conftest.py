@@ -8,9 +8,10 @@ import pathlib
 import subprocess
 
 # Before anything loads OpenMP. Other tests run at the same time: two threads are enough to be more
-# than one, and while they wait they leave the core to others.
+# than one, and while they wait they leave the core to others. OpenBLAS's own do not.
 os.environ.setdefault("OMP_NUM_THREADS", "2")
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest  # noqa: E402
 from decks import RUNTIME_ERROR  # noqa: E402

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Which numerics the pages with measured figures belong to.
 
-    pages.py              names every page that is older than the sources; status 1 where there is one
+    pages.py              names every page that is older than the sources, with status 1
     pages.py --mark PAGE  says that all figures of PAGE were measured just now
 
 A page holds the line `<!-- measured at DIGEST -->`. The digest is that of the sources that
@@ -84,7 +84,7 @@ def main():
         return 0
     old = old_pages()
     for page, named in old:
-        was = f"measured at {named}" if named else "does not say with which numerics it was measured"
+        was = f"measured at {named}" if named else "does not say at which numerics it was measured"
         print(f"{page}: {was}, the sources are at {digest()}; renew it with: {PAGES[page]}")
     return 1 if old else 0
 

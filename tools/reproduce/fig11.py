@@ -48,11 +48,15 @@ def _jumps(fraction):
     return spring.jumps(force, slope, fraction * largest, 0.6 * _Z0, 100 * _Z0, count=100001)
 
 
-@functools.cache
 def _brackets():
     """Return for how many of the stiffnesses the ends of jumps bracket their starts."""
+    return _brackets_of(tuple(_FRACTIONS))
+
+
+@functools.cache
+def _brackets_of(fractions):
     return sum(inward.end < outward.start < inward.start < outward.end
-               for inward, outward in map(_jumps, _FRACTIONS))
+               for inward, outward in map(_jumps, fractions))
 
 
 def _profile(results, branch, h0):

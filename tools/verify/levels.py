@@ -1,12 +1,15 @@
-"""How far results depend on compiler options and on the number of threads.
+"""How far results depend on compiler options, on the number of threads and on OpenBLAS's kernels.
 
     levels.py REFERENCE NAME=PROGRAM ...
 
 runs the decks below with the program REFERENCE on one thread, then with every other PROGRAM on one
-thread and with REFERENCE on 1, 2 and 4, twice, and prints a table: the largest difference of a
-column over the column's largest value, that of loads and displacements over the value itself, that
-of the summary's numbers, and rows whose iterations are not as many. Ends with status 1 where loads
-or displacements differ by more than the deck's limit, or where a run repeated gives other bytes.
+thread, with REFERENCE on 1, 2 and 4, twice, and with the kernels for other processors that this one
+can run. It prints a table: the largest difference of a column over the column's largest value, that
+of loads and displacements over the value itself, that of the summary's numbers, and rows whose
+iterations are not as many. Ends with status 1 where loads or displacements differ by more than the
+deck's limit, where a run repeated gives other bytes, or where threads change a byte of a deck whose
+matrices are too small to be shared between them. Counts of iterations, and values near zero
+relative to themselves, are shown and not judged.
 """
 
 import argparse
@@ -34,10 +37,18 @@ PROMISED = ("load", "displacement")
 SHOWN = ("h_centre", "displacement", "load", "contact_radius")
 NUMBERS = ("max_tension", "jump_in_h0", "jump_in_load", "jump_out_h0", "jump_out_load", "folds_h0")
 THREADS = (1, 2, 4)
+# Kernels of OpenBLAS and what a processor needs for them.
+KERNELS = {
+    "Prescott": {"pni"},
+    "Haswell": {"avx2", "fma"},
+    "SkylakeX": {"avx512f", "avx512dq", "avx512bw", "avx512vl"},
+    "Zen": {"avx2", "fma"},
+}
 
 CYCLE = {"loading": loading(6, -2, 0.25), "unloading": {}}
 FIXED = {"grid": "uniform", "nodes": 300}
-# Matrices from 2500 nodes on are given to more than one thread.
+# Matrices from so many nodes on are given to more than one thread (src/blas_threads.f90).
+SHARED = 2500
 THREADED = {"grid": "uniform", "nodes": 2600, "r_max": 20.0}
 STRONG = {"loading": loading(13, -4, 0.25), "unloading": {"from_": [2.0, -4.0]}}
 STRONGER = {"loading": loading(80, -4, 2), "unloading": {"from_": [2.0, -4.0]}}
@@ -83,11 +94,22 @@ class Difference(NamedTuple):
     rows: int
 
 
-def run(program, name, text, threads, folder):
+def kernels():
+    """The kernels that this processor can run."""
+    try:
+        features = set(pathlib.Path("/proc/cpuinfo").read_text().split())
+    except OSError:
+        features = set()
+    return [name for name, needed in KERNELS.items() if needed <= features]
+
+
+def run(program, name, text, threads, folder, kernel=None):
     """The results of a deck."""
     folder.mkdir(parents=True)
     (folder / "deck.nml").write_text(text)
     environment = dict(os.environ, OMP_NUM_THREADS=str(threads), OPENBLAS_NUM_THREADS=str(threads))
+    if kernel is not None:
+        environment["OPENBLAS_CORETYPE"] = kernel
     done = subprocess.run(
         [program, "--quiet", "deck.nml"],
         cwd=folder,
@@ -125,6 +147,11 @@ def difference(one, other):
     return Difference(columns, by_value, numbers, iterations, len(a))
 
 
+def table(result):
+    """The bytes of a run's curve."""
+    return (result.folder / "curve.csv").read_bytes()
+
+
 def row(name, deck, found):
     """A row of the table."""
     if found is None:
@@ -141,21 +168,23 @@ def row(name, deck, found):
 def compare(reference, programs, folder):
     """Runs all; prints the table; what is broken of the promises."""
     broken = []
-    variants = [(name, program, 1) for name, program in programs.items()]
-    variants += [(f"threads: {threads}", reference, threads) for threads in THREADS]
+    variants = [(name, program, 1, None) for name, program in programs.items()]
+    variants += [(f"threads: {threads}", reference, threads, None) for threads in THREADS]
+    variants += [(f"kernel: {kernel}", reference, 1, kernel) for kernel in kernels()]
     print(f"| build | deck | {' | '.join(SHOWN)} | by value | summary | other counts |")
     print("|---|---|" + "---|" * (len(SHOWN) + 3))
     worst = {}
     for number, (deck, (text, limit)) in enumerate(DECKS.items()):
         one = run(reference, deck, text, 1, folder / f"{number}")
-        for index, (name, program, threads) in enumerate(variants):
-            other = run(program, deck, text, threads, folder / f"{number}-{index}")
+        for index, (name, program, threads, kernel) in enumerate(variants):
+            other = run(program, deck, text, threads, folder / f"{number}-{index}", kernel)
             found = difference(one, other)
             print(row(name, deck, found), flush=True)
-            if program == reference:
+            if program == reference and kernel is None:
+                if one.cost["nodes"] < SHARED and table(one) != table(other):
+                    broken.append(f"{deck}, {name}: other bytes than on one thread")
                 again = run(reference, deck, text, threads, folder / f"{number}-{index}-again")
-                tables = [(r.folder / "curve.csv").read_bytes() for r in (other, again)]
-                if tables[0] != tables[1]:
+                if table(other) != table(again):
                     broken.append(f"{deck}, {name}: the same run twice gives other bytes")
             if found is None:
                 broken.append(f"{deck}, {name}: other rows or other numbers of the summary")
