@@ -164,7 +164,7 @@ def draw(runs):
     upper.legend(handles[1:5], names[1:5], title="paper's grid and rule,\nunloading from",
                  loc="upper right", bbox_to_anchor=(0.34, 1.05), alignment="left", ncols=1)
     style.statement(lower, "paper: several results for each large $\\sigma$,\n"
-                    "neither theory appropriate", 0.985, 0.3, align="right")
+                    "neither theory appropriate", 0.015, 0.22)
     return page
 
 
