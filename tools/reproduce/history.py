@@ -31,8 +31,8 @@ largest; dashed, the converged value; left of the thin line the grid resolves th
 (deepest penetration), {one_a:.2f}, {one_b:.2f} and {one_c:.2f} at 1 width, and {fine_a:.4f},
 {fine_b:.4f} and {fine_c:.4f} at {finest:.2g}; converged it is {true_a:.4f}, {true_b:.4f} and
 **{true_c:.4f}**. Pinning makes a memory too, but only on grids much coarser than the neck: pull-off
-from different penetrations differs by up to {spread_coarse:.0f} % at 4 widths, {spread_two:.1g} %
-at 2, {spread_one:.1g} % at 1 and {spread_fine:.1g} % on grids that resolve the neck.
+from different penetrations differs by up to {spread_coarse:.0f} % at 4 widths, {spread_two} %
+at 2, {spread_one} % at 1 and {spread_fine} % on grids that resolve the neck.
 
 **The stopping rule** gives another pull-off on every grid. On the finest
 ({rule_finest_a:.2g}, {rule_finest_b:.2g} and {rule_finest_c:.2g} widths), where it stops
@@ -100,6 +100,11 @@ def _percent(pulls):
     return 100 * float(np.max(np.ptp(pulls, axis=0) / np.min(pulls, axis=0)))
 
 
+def _shown(percent):
+    """Return per cent as text; of what is left to rounding no digit means anything."""
+    return f"{percent:.1g}" if percent >= 1e-7 else "less than 1e-7"
+
+
 def _listed(values, digits=2):
     return ", ".join(f"{value:.{digits}f}" for value in values)
 
@@ -130,8 +135,8 @@ def numbers(runs):
                                             for columns in stopped(runs, letter)], 0),
             f"runs_{letter}": len(pulls_by_rule),
             f"rule_{letter}": draws.several(pulls_by_rule[:, :, 0].T)})
-    return {**found, "spread_coarse": max(coarse), "spread_two": max(two), "spread_one": max(one),
-            "spread_fine": max(fine), "grows": sum(factor > 1 for factor in factors),
+    return {**found, "spread_coarse": max(coarse), "spread_two": _shown(max(two)),
+            "spread_one": _shown(max(one)), "spread_fine": _shown(max(fine)), "grows": sum(factor > 1 for factor in factors),
             "cases": len(factors), "factor": np.median(factors), "scatter": np.median(scatter),
             "scatter_most": max(scatter)}
 
@@ -170,7 +175,7 @@ def draw(runs):
                 axis.set_major_formatter(plain)
                 axis.set_minor_formatter(NullFormatter())
             panel.set_xlim(0.085, 5)
-            panel.set_ylim(*((0.42, 8) if rule == "paper" else (0.95, 4.6)))
+            panel.set_ylim(*((0.3, 12) if rule == "paper" else (0.95, 4.6)))
             if rule == "paper":
                 style.letter(panel, letter)
                 panel.set_title(f"$\\sigma$ = {sigma}")
