@@ -27,6 +27,7 @@ def peak_memory(snapin_path, folder, law, step):
         return used, sum(1 for line in file)
 
 
+@pytest.mark.alone
 @pytest.mark.parametrize("law", LAWS)
 def test_memory_does_not_grow_with_the_number_of_states(law, snapin_path, tmp_path):
     few, short = peak_memory(snapin_path, tmp_path / "few", law, 2e-10)

@@ -120,6 +120,7 @@ def test_the_number_of_openmp_threads_makes_no_difference():
     assert len(told) == 1
 
 
+@pytest.mark.alone
 def test_ctrl_c_is_answered_when_the_call_ends_and_spoils_nothing():
     """The library cannot be stopped half way; Python raises as soon as it has control again."""
     script = """
@@ -166,6 +167,7 @@ def test_the_numerics_keep_nothing_between_calls(snapin_path):
     assert {name for name in kept if not name.startswith("slen.")} == set()
 
 
+@pytest.mark.alone
 def test_the_wrapper_keeps_python_s_lock():
     """Another thread stands still for the whole of a call: calls cannot overlap, see above."""
     pauses = [0.0]
