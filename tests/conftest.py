@@ -1,11 +1,21 @@
-"""Fixtures shared by all tests that go through the program."""
+"""Fixtures shared by all tests that go through the program, and how tests keep out of each other's
+way when several run at once."""
 
+import contextlib
+import fcntl
 import os
 import pathlib
 import subprocess
 
-import pytest
-from decks import RUNTIME_ERROR
+# Before anything loads OpenMP. Other tests run at the same time: two threads are enough to be more
+# than one, and while they wait they leave the core to others. OpenBLAS's own do not.
+os.environ.setdefault("OMP_NUM_THREADS", "2")
+os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import pytest  # noqa: E402
+from decks import RUNTIME_ERROR  # noqa: E402
+from processes import HANG  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -22,6 +32,27 @@ def pytest_collection_modifyitems(config, items):
             item.add_marker(pytest.mark.skip(reason="takes minutes: --long"))
 
 
+@contextlib.contextmanager
+def _locked(name, kind):
+    with open(ROOT / "tests" / name, "rb") as file:
+        fcntl.flock(file, kind)
+        yield
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item):
+    """Tests marked `alone` run while no other does; all others share the room.
+
+    Whoever waits to be alone stands in the door meanwhile, so that nobody else comes in. The locks
+    are on files that are there anyway.
+    """
+    alone = item.get_closest_marker("alone") is not None
+    with contextlib.ExitStack() as room:
+        with _locked("processes.py", fcntl.LOCK_EX):
+            room.enter_context(_locked("conftest.py", fcntl.LOCK_EX if alone else fcntl.LOCK_SH))
+        return (yield)
+
+
 @pytest.fixture(scope="session")
 def snapin_path():
     """The executable under test: $SNAPIN, else build/snapin of this checkout."""
@@ -35,7 +66,7 @@ def snapin_path():
 def snapin(snapin_path):
     """Runs the program: snapin(arg, ..., cwd=DIR) -> CompletedProcess with text output."""
 
-    def run(*args, cwd=None, timeout=300, **kwargs):
+    def run(*args, cwd=None, timeout=HANG, **kwargs):
         return subprocess.run(
             [str(snapin_path), *map(str, args)],
             cwd=cwd,

@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 import numpy as np
+from processes import HANG
 
 
 def agm_k(complement):
@@ -155,7 +156,7 @@ def carried_out(task):
         text=True,
         check=True,
         env=environment,
-        timeout=300,
+        timeout=HANG,
     )
     return np.array(json.loads(done.stdout)).T
 

@@ -4,8 +4,11 @@ import os
 import subprocess
 import sys
 
+# Seconds of the clock that only what hangs takes, however busy the machine is.
+HANG = 3600
 
-def python(*arguments, seconds=300, **environment):
+
+def python(*arguments, seconds=HANG, **environment):
     """Runs `python ARGUMENT ...` with the paths of this process; a CompletedProcess with text."""
     return subprocess.run(
         [sys.executable, *arguments],
@@ -22,3 +25,24 @@ def answer(script, **options):
     result = python("-c", script, **options)
     assert result.returncode == 0, f"status {result.returncode}\n{result.stderr[-2000:]}"
     return result.stdout
+
+
+# The system counts to a process what its parent had in memory when it was made: hundreds of MB of
+# the tests'. This parent is smaller than any program.
+_SMALL_PARENT = """
+import os, sys
+answer = os.dup(1)
+os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+_, status, used = os.wait4(os.spawnvp(os.P_NOWAIT, sys.argv[1], sys.argv[1:]), 0)
+os.write(answer, b"%d %d" % (os.waitstatus_to_exitcode(status), used.ru_maxrss))
+"""
+
+
+def status_and_memory(*command, cwd):
+    """Exit status of a command and the most memory it had [bytes]."""
+    result = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", _SMALL_PARENT, *map(str, command)],
+        cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=HANG, check=True,
+    )
+    status, kilobytes = map(int, result.stdout.split())
+    return status, 1024 * kilobytes

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import f90nml
 import numpy as np
+from processes import HANG
 
 JKR = 1.5 * math.pi  # Pull-off of JKR theory in units of gamma R.
 
@@ -149,7 +150,7 @@ def runner(snapin, folder):
     """
     done = {}
 
-    def run(text, *, status=0, threads=1, timeout=300):
+    def run(text, *, status=0, threads=1, timeout=HANG):
         key = text, threads
         if key not in done:
             name = f"d{len(done)}"

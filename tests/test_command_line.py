@@ -6,6 +6,7 @@ import subprocess
 
 import pytest
 from conftest import ROOT
+from processes import status_and_memory
 
 # The cheapest thing the program can do.
 DECK = """&bodies radius = 1e-2, stiffness = 1e10 /
@@ -164,21 +165,12 @@ def test_a_deck_may_be_called_anything(snapin, decks, name):
     assert (decks / "results" / name.removesuffix(".nml") / "summary.nml").is_file()
 
 
-def memory(program, *args, cwd):
-    """Exit status and most memory [bytes] of a run."""
-    process = subprocess.Popen([program, *args], cwd=cwd, stdout=subprocess.DEVNULL,
-                               stderr=subprocess.DEVNULL)
-    _, status, used = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    return process.returncode, used.ru_maxrss * 1024
-
-
-def test_a_thousand_decks_are_checked_in_little_memory(snapin_path, decks):
+def test_a_thousand_decks_are_checked_in_little_status_and_memory(snapin_path, decks):
     names = [f"d{i}.nml" for i in range(1000)]
     for name in names:
         (decks / name).write_text(DECK)
-    _, alone = memory(snapin_path, "--check", names[0], cwd=decks)
-    status, used = memory(snapin_path, "--check", *names, cwd=decks)
+    _, alone = status_and_memory(snapin_path, "--check", names[0], cwd=decks)
+    status, used = status_and_memory(snapin_path, "--check", *names, cwd=decks)
     assert status == 0
     # A deck is its text and one value a key.
     assert used < alone + 1000 * 100e3
@@ -187,9 +179,9 @@ def test_a_thousand_decks_are_checked_in_little_memory(snapin_path, decks):
 def test_no_more_of_an_endless_file_is_read_than_a_deck_may_hold(snapin_path, decks):
     with open(decks / "large.nml", "wb") as file:
         file.truncate(100_000_000)
-    _, alone = memory(snapin_path, "--check", "good.nml", cwd=decks)
+    _, alone = status_and_memory(snapin_path, "--check", "good.nml", cwd=decks)
     for name in ["large.nml", "/dev/zero"]:
-        status, used = memory(snapin_path, "--check", name, cwd=decks)
+        status, used = status_and_memory(snapin_path, "--check", name, cwd=decks)
         assert status == 2
         assert used < alone + 10e6
 

@@ -11,7 +11,7 @@ from decks import GOOD, RUNTIME_ERROR
 
 
 def refused_file(snapin, path, phrase):
-    done = snapin("--check", path, timeout=60)
+    done = snapin("--check", path)
     assert done.returncode == 2
     assert done.stdout == ""
     assert done.stderr.startswith(f"{path}: ")
@@ -80,7 +80,7 @@ def test_endless_device_is_refused(snapin):
 
 
 def test_binary_file_is_refused(snapin, snapin_path):
-    done = snapin("--check", snapin_path, timeout=60)
+    done = snapin("--check", snapin_path)
     assert done.returncode == 2
     assert not RUNTIME_ERROR.search(done.stderr)
 
@@ -95,7 +95,7 @@ def test_binary_file_is_refused(snapin, snapin_path):
 )
 def test_pathological_file_is_refused_at_once(snapin, tmp_path, text):
     (tmp_path / "d.nml").write_text(text)
-    done = snapin("--check", "d.nml", cwd=tmp_path, timeout=20)
+    done = snapin("--check", "d.nml", cwd=tmp_path)
     assert done.returncode == 2
     assert len(done.stderr) < 20_000
 

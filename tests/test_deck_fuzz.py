@@ -97,7 +97,7 @@ def checked(snapin, folder, texts):
     decks = {f"d{i:04}.nml": text for i, text in enumerate(texts)}
     for name, text in decks.items():
         (folder / name).write_bytes(text)
-    done = snapin("--check", *decks, cwd=folder, timeout=60)
+    done = snapin("--check", *decks, cwd=folder)
     assert not RUNTIME_ERROR.search(done.stderr + done.stdout), done.stderr
     assert {path.name for path in folder.iterdir()} == set(decks)
     assert all((folder / name).read_bytes() == text for name, text in decks.items())
@@ -166,7 +166,7 @@ def summaries(snapin, folder, decks):
     folder.mkdir()
     for name, text in decks.items():
         (folder / name).write_bytes(text)
-    done = snapin("--quiet", *decks, cwd=folder, timeout=60)
+    done = snapin("--quiet", *decks, cwd=folder)
     assert done.returncode in (0, 1)
     assert not RUNTIME_ERROR.search(done.stderr + done.stdout), done.stderr
     return {

@@ -286,19 +286,13 @@ def test_unit_scene_is_the_scene_of_fig10(run):
     ],
     ids=["adhesion", "uniform grid", "repulsion"],
 )
-def test_digits_do_not_depend_on_the_number_of_threads(run, scene):
-    """1e-12 of the largest: sums of another order, and tolerances that they do not cross."""
+def test_below_2500_nodes_the_number_of_threads_makes_no_difference_at_all(run, scene):
+    """Matrices of that size are kept on one thread; kernels are computed entry by entry."""
     one = run(scene, threads=1)
     for threads in (2, 4):
         more = run(scene, threads=threads)
-        assert more.cost["threads"] == threads
-        assert list(more.curve["branch"]) == list(one.curve["branch"])
-        for name in ("h0", "h_centre", "displacement", "load"):
-            scale = abs(one.curve[name]).max()
-            np.testing.assert_allclose(
-                more.curve[name], one.curve[name], rtol=1e-12, atol=1e-12 * scale, err_msg=name
-            )
+        assert more.cost["threads"] == threads and more.cost["nodes"] < 2500
+        tables = [(result.folder / "curve.csv").read_bytes() for result in (one, more)]
+        assert tables[0] == tables[1]
         for key in ("max_tension", "jump_in_h0", "jump_out_h0", "folds_h0"):
-            if key in one.summary:
-                mine, theirs = (several(r.summary[key]) for r in (more, one))
-                np.testing.assert_allclose(mine, theirs, rtol=1e-12)
+            assert several(more.summary.get(key)) == several(one.summary.get(key))

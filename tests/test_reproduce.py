@@ -10,6 +10,7 @@ import f90nml
 import numpy as np
 import pytest
 from conftest import ROOT
+from processes import HANG
 
 pytest.importorskip("matplotlib")
 TOOLS = ROOT / "tools" / "reproduce"
@@ -168,6 +169,43 @@ def test_a_deck_on_the_paper_s_rule_must_leave_a_summary_of_its_own(tools, tmp_p
         Runs(tmp_path / "runs", program).run(deck)
 
 
+def test_runs_of_a_deck_on_the_paper_s_rule_differ_in_the_twelfth_digit_of_hamaker_alone(
+        tools, snapin_path, tmp_path):
+    import draws
+    from runs import Runs
+
+    runs = Runs(tmp_path, snapin_path, count=3)
+    names = runs.with_draws(["fig07_paper", "fig06_converged"])
+    assert names == ["fig07_paper", "fig07_paper_draw1", "fig07_paper_draw2", "fig06_converged"]
+    plain, *others = (f90nml.read(runs.path_of(name)) for name in names[:3])
+    for number, groups in enumerate(others, 1):
+        factor = groups["force"].pop("hamaker") / plain["force"]["hamaker"]
+        assert factor == pytest.approx(1 + number * 1e-12, rel=1e-15)
+        values = np.divide(groups["sweep"].pop("values"), plain["sweep"]["values"])
+        np.testing.assert_allclose(values, 1 + number * 1e-12, rtol=1e-15)
+        rest = f90nml.read(runs.path_of("fig07_paper"))
+        del rest["force"]["hamaker"], rest["sweep"]["values"]
+        assert groups == rest
+    assert draws.COUNT >= 5
+
+
+def test_what_differs_between_runs_is_printed_as_a_range_and_what_rounding_leaves_not_at_all(tools):
+    import draws
+
+    assert draws.ranged([1.234, 0.9, 2.0]) == "0.90 to 2.00"
+    assert draws.ranged([1.0001, 1.0002]) == "1.00"
+    assert draws.within(3e-15) == "better than 1e-9" and draws.within(2e-4) == "2e-4"
+
+
+def test_figure_6_neck_and_tension_are_those_between_the_nodes(tools, runs):
+    """Nodes alone would say 8.82137 um and 16.33 MPa."""
+    import fig06
+
+    radius, tension, _ = fig06._edge(fig06._states(runs)[-1])
+    assert radius == pytest.approx(8.8238e-6, rel=5e-6)
+    assert tension == pytest.approx(16.336e6, rel=5e-5)
+
+
 def test_rows_are_written_as_csv_that_reads_back(tools, tmp_path):
     from published import COLUMNS, Row, write_csv
 
@@ -278,7 +316,7 @@ def test_the_command_writes_report_table_and_picture_and_fails_on_a_bad_name(sna
     environment = {key: value for key, value in os.environ.items() if key != "SNAPIN"}
 
     def run(*args):
-        return subprocess.run([*command, *args], capture_output=True, text=True, timeout=300,
+        return subprocess.run([*command, *args], capture_output=True, text=True, timeout=HANG,
                               check=False, env=environment)
 
     done = run("fig03")

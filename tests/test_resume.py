@@ -349,6 +349,7 @@ def test_a_run_whose_folder_is_gone_publishes_nothing_and_touches_no_other(
     with subprocess.Popen([snapin_path, "deck.nml"], cwd=tmp_path, env=environment(1),
                           stderr=subprocess.PIPE, text=True) as process:
         while not (folder / "curve.csv.partial").exists():
+            assert process.poll() is None, process.communicate()[1]
             time.sleep(0.001)
         process.send_signal(signal.SIGSTOP)
         assert (folder / "journal.partial").exists()
@@ -484,9 +485,11 @@ def test_times_of_a_run_that_was_interrupted_are_those_of_all_its_parts(short):
     parts = frames(short.journal)
     late = bytearray(parts[-1])
     late[2 * WORD : 3 * WORD] = struct.pack("<d", 1000.0)
+    began = time.monotonic()
     assert short.resume(b"".join(parts[:-1]) + sealed(bytes(late))).returncode == 0
+    taken = time.monotonic() - began
     cost = f90nml.read(short.folder / "cut/deck/summary.nml")["cost"]
-    assert 1000 < cost["wall_seconds"] < 1100
+    assert 1000 < cost["wall_seconds"] <= 1000 + taken
     assert short.resume(b"".join(parts[:-1])).returncode == 0
     cost = f90nml.read(short.folder / "cut/deck/summary.nml")["cost"]
     assert cost["wall_seconds"] >= cost["kernel_seconds"] + cost["solve_seconds"]

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import snapin
+from extremes import tolerance_of
 from scenes import deck, exponential, lennard_jones, loading, runner, several
 from wrapper_registry import UNIT, law_of
 
@@ -14,8 +15,10 @@ FORCE = {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9}
 LAW = snapin.lennard_jones(hamaker=1e-20, z0=0.5e-9)
 DOWN = np.linspace(4e-9, -2e-9, 61)
 
-# The program steps h0 by repeated multiplication, here by linspace: the last digit may differ.
-SAME = 1e-12
+# The program steps h0 by repeated multiplication, here by linspace: the last digit may differ, and
+# with it where below its tolerance of 1e-10 an iteration ends. Between kernels of the linear algebra,
+# which differ as little, loads of such states were 1.1e-12 apart.
+SAME = 1e-11
 
 COLUMNS = ("h0", "h_centre", "displacement", "load", "contact_radius")
 
@@ -52,14 +55,17 @@ def test_three_lines_give_the_program_s_curve(run):
     result = run(deck(bodies=BODIES, force=FORCE, loading=step))
     assert len(result.curve) == h0.size
     assert_same(curve, result.curve)
-    assert curve.residual.max() == pytest.approx(result.summary["worst_residual"], rel=1e-3)
+    # How far below the tolerance an iteration ends is rounding's affair.
+    assert max(curve.residual.max(), result.summary["worst_residual"]) <= tolerance_of({})
     (jump,) = curve.jumps
     assert jump.h0 == pytest.approx(result.summary["jump_in_h0"], rel=SAME)
     assert jump.load == pytest.approx(result.summary["jump_in_load"], rel=SAME)
     assert curve.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
     # At a smooth maximum the place is known to half the digits.
     assert curve.max_tension_h0 == pytest.approx(result.summary["max_tension_h0"], rel=1e-6)
-    assert curve.error_estimate == pytest.approx(result.summary["error_estimate"], rel=1e-3)
+    assert curve.error_estimate == pytest.approx(
+        result.summary["error_estimate"], rel=1e-3, abs=SAME
+    )
     assert curve.converged
 
 
@@ -96,7 +102,9 @@ def test_options_are_those_of_the_deck(run, options):
     result = run(lennard_jones(0.2, loading=loading(6, 1, 0.5), numerics=options))
     curve = snapin.force_curve(np.linspace(6, 1, 11), **UNIT, law=law_of(0.2), **options)
     assert_same(curve, result.curve)
-    assert curve.error_estimate == pytest.approx(result.summary["error_estimate"], rel=1e-3)
+    assert curve.error_estimate == pytest.approx(
+        result.summary["error_estimate"], rel=1e-3, abs=SAME
+    )
 
 
 def test_rigid_bodies_give_the_program_s_curve(run):
@@ -120,7 +128,9 @@ def test_path_is_that_of_the_program(run):
     folds = np.transpose([several(result.summary[f"folds_{name}"]) for name in ("h0", "load")])
     np.testing.assert_allclose(path.folds, folds, rtol=SAME)
     assert path.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
-    assert path.error_estimate == pytest.approx(result.summary["error_estimate"], rel=1e-3)
+    assert path.error_estimate == pytest.approx(
+        result.summary["error_estimate"], rel=1e-3, abs=SAME
+    )
     assert path.converged
 
 

@@ -76,12 +76,23 @@ def test_every_entry_of_the_registry_is_of_a_public_callable():
     assert set(known) == set(REGISTRY)
 
 
-@pytest.mark.parametrize("name", [name for name in REGISTRY if REGISTRY[name].kinds])
-def test_wrong_arguments_are_refused_by_name_and_odd_ones_make_no_difference(name):
-    result = python(CHILD, name, OMP_NUM_THREADS="1")
+def groups():
+    """The entries with arguments, in as many processes as pay: a start takes as long as hundreds of
+    cases. Those that compute have one of their own."""
+    names = [name for name in REGISTRY if REGISTRY[name].kinds]
+    heavy = [name for name in names if name.startswith(("force_curve", "equilibrium", "approx"))]
+    light = [name for name in names if name not in heavy]
+    return [[name] for name in heavy] + [light[first::3] for first in range(3)]
+
+
+@pytest.mark.parametrize("names", groups(), ids=lambda names: f"{names[0]} and {len(names) - 1}")
+def test_wrong_arguments_are_refused_by_name_and_odd_ones_make_no_difference(names):
+    result = python(CHILD, *names, OMP_NUM_THREADS="1")
     lines = [json.loads(line) for line in result.stdout.splitlines()]
     cases = [line["case"] for line in lines if "case" in line]
     faults = [line["fault"] for line in lines if "fault" in line]
     assert result.returncode == 0, f"{cases[-1:]} ended with {result.returncode}: {result.stderr}"
     assert len(cases) == len(faults) > 20
+    for name in names:
+        assert sum(case.startswith(f"{name}, ") for case in cases) > 20
     assert not [f"{case}: {fault}" for case, fault in zip(cases, faults) if fault]

@@ -155,9 +155,9 @@ def peak():
         return next(1024 * int(line.split()[1]) for line in table if line.startswith("VmHWM"))
 snapin.force_curve([4.0, 3.0], law=law, **bodies)
 before = peak()
-snapin.force_curve([4.0, 2.0], law=law, **bodies, grid="uniform", nodes=1500, r_max=12.0,
+snapin.force_curve([4.0, 2.0], law=law, **bodies, grid="uniform", nodes=800, r_max=12.0,
                    method={method!r})
-print((peak() - before) / bytes_for(1500))
+print((peak() - before) / bytes_for(800))
 """
     share = float(answer(script, OMP_NUM_THREADS="1"))
     assert 0.2 < share < 1

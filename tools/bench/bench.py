@@ -23,6 +23,10 @@ import scaling
 import tables
 import work_precision
 
+sys.path.append(str(program.ROOT / "tools"))
+
+import pages  # noqa: E402 (found through the line above)
+
 _GUIDE = program.ROOT / "docs" / "accuracy.md"
 
 # What measures, what draws, what makes the guide's tables.
@@ -59,7 +63,10 @@ def main():
             tables.write(path, rows, [f"./bench --only {name}{' --quick' if quick else ''}",
                                       version, tables.machine()])
             _say(f"  {time.perf_counter() - began:.0f} s; {path}")
-    _present(folder, not quick and options.out is None)
+    in_guide = not quick and options.out is None
+    _present(folder, in_guide)
+    if in_guide and not options.only and not options.draw:
+        pages.mark(_GUIDE)
 
 
 def _present(folder, in_guide):

@@ -1,6 +1,7 @@
 """Fig. 10: cycles from several turning points, by the paper's rule, on its grid, and converged."""
 
 import curves
+import draws
 import numpy as np
 import penetrations
 import style
@@ -13,12 +14,13 @@ DECKS = ("fig10a_paper", "fig10b_paper", "fig10c_paper", "fig10a_converged", "fi
 TITLE = "Fig. 10: hysteresis and the penetration"
 CAPTION = """Central displacement against load for σ = 1.7 (a), 4.4 (b) and 8.7 (c); unloading from
 several turning points, dashed line JKR theory. Left of (a) to (c): uniform grid, nodes 50 nm apart,
-with the paper's stopping rule as read here; right: converged. (d): σ = 8.7 on uniform grids with
+with the paper's stopping rule as read here, one run in colours, {others} others that differ in A's
+twelfth digit behind it in grey; right: converged. (d): σ = 8.7 on uniform grids with
 the equations solved, nodes 100 nm apart (left, the paper's coarsest) and 200 nm (right).
 
 Converged there is one contact branch. Loading and unloading run through the same states in contact,
 whatever the penetration; the largest tension of all turning points is **{a:.5f}**, **{b:.5f}** and
-**{c:.5f}** of JKR's, equal to {agree:.0e}. Hysteresis is real: the bodies jump in at one h0 and
+**{c:.5f}** of JKR's, equal to {agree}. Hysteresis is real: the bodies jump in at one h0 and
 apart at another (arrows), and lose energy, for all σ above a value between {none:.2f} and
 {some:.2f} rather than about 1. JKR theory follows the contact branch: loads under tension differ by
 up to {jkr_a:.0f} % of the pull-off for σ = 1.7 and {jkr:.0f} % for σ = 8.7. {reached}.
@@ -31,11 +33,11 @@ penetration, these lines meet later, JKR theory lies between loading and unloadi
 nearer to the former (at {fraction:.2f} of the way from one to the other for 200 nm,
 {fraction_100:.2f} for 100 nm), and pull-off is too large, {uniform:.3f} and {coarse:.3f} of JKR's;
 for 200 nm the lines meet about where the tension is largest. A grid that resolves the neck has none
-of this. **The stopping rule** makes scatter: left, states are up to {residual:.0f} z0 from
-equilibrium, and the largest tension, here {c_least:.2f} to {c_most:.2f} of JKR's for σ = 8.7, is
-that of single states: with A changed in its twelfth digit others come out. Deeper retreats have
-more of them; above the shallowest turning point, where all retreats pass, the largest tension
-follows the penetration far less ({c_common}). The rule scatters more than the paper's
+of this. **The stopping rule** makes scatter: left, states are {residual} z0 from equilibrium at
+worst, and the largest tension is that of single states: for σ = 8.7 and retreats from h0 = {turns}
+nm the {runs} runs give {c_each} of JKR's. From the deepest turning point it is larger than from the
+shallowest in {deeper} of {runs} runs, since a deeper retreat has more states of which to be the
+largest; above the shallowest turning point, where all retreats pass, it is {c_common}. The rule scatters more than the paper's
 words suggest. How its mixing ratio changes the paper says in words only (here it is halved when the
 change of the central displacement turns round or doubles, else it grows by 5 %); how large its
 steps of h0 are it does not say, nor how its kernel was integrated, on which the strength of the
@@ -49,6 +51,13 @@ _PANELS = (
 )
 _COLORS = (style.ORANGE, style.GREEN, style.PURPLE, style.SKY)
 _MARKERS = ("s", "^", "D", "v")
+
+
+def _deeper(runs):
+    """Return in how many runs the deepest retreat of Fig. 10(c) has a larger tension than the
+    shallowest."""
+    shallow, *_, deep = penetrations.of_runs(runs.draws("fig10c_paper"))
+    return sum(two.ratio > one.ratio for one, two in zip(shallow, deep))
 
 
 def _loading_of_unloading(results):
@@ -68,14 +77,14 @@ def _reached(runs):
 
 
 def _common(results):
-    """Return the largest tension over JKR's of each retreat where all retreats pass, as text."""
+    """Return the largest tension over JKR's of each retreat where all retreats pass."""
     summary, found = results.summary, []
     turns = np.atleast_1d(summary["unload_from"])
     for number in range(1, turns.size + 1):
         curve = results.branch(f"unloading_{number}")
         inside = curve["h0"] > turns.max() - 1e-13
         found.append(-curve["load"][inside].min() / summary["jkr_pull_off"])
-    return ", ".join(f"{ratio:.2f}" for ratio in found)
+    return found
 
 
 def _first_jump(runs):
@@ -84,23 +93,35 @@ def _first_jump(runs):
     return columns["sigma"][first - 1], columns["sigma"][first]
 
 
-def _pulls(runs, kind):
-    return {letter: penetrations.of_cycle(runs[f"fig10{letter}_{kind}"])
+def _pulls(runs):
+    """Return the converged Pulls of each cycle."""
+    return {letter: penetrations.of_cycle(runs[f"fig10{letter}_converged"])
             for letter in penetrations.FIG10}
+
+
+def _rule_pulls(runs):
+    """Return the Pulls by the paper's rule: of each cycle a tuple of all runs an unloading."""
+    return {letter: penetrations.of_runs(runs.draws(f"fig10{letter}_paper"))
+            for letter in penetrations.FIG10}
+
+
+def _residuals(runs, letter):
+    return [results.summary["worst_residual"] for results in runs.draws(f"fig10{letter}_paper")]
 
 
 def numbers(runs):
     """Return what the caption quotes."""
-    rule, true = _pulls(runs, "paper"), _pulls(runs, "converged")
+    rule, true = _rule_pulls(runs), _pulls(runs)
     uniform = penetrations.of_cycle(runs["fig10c_uniform"])
     none, some = _first_jump(runs)
     return {
-        "c_least": min(pull.ratio for pull in rule["c"]),
-        "c_most": max(pull.ratio for pull in rule["c"]),
-        "c_common": _common(runs["fig10c_paper"]),
-        "residual": runs["fig10c_paper"].summary["worst_residual"],
+        "runs": len(rule["c"][0]), "others": len(rule["c"][0]) - 1,
+        "turns": penetrations.turns([pulls[0] for pulls in rule["c"]]),
+        "c_each": penetrations.ranged(rule["c"]), "deeper": _deeper(runs),
+        "c_common": draws.several(zip(*map(_common, runs.draws("fig10c_paper")))),
+        "residual": draws.ranged(_residuals(runs, "c"), 0),
         **{letter: pulls[0].ratio for letter, pulls in true.items()},
-        "agree": max(penetrations.spread(pulls) for pulls in true.values()),
+        "agree": draws.within(max(penetrations.spread(pulls) for pulls in true.values())),
         "uniform": uniform[-1].ratio,
         "coarse": penetrations.of_cycle(runs["fig10c_coarse"])[-1].ratio,
         "fraction": penetrations.between(runs["fig10c_coarse"]),
@@ -122,6 +143,11 @@ def draw(runs):
             displacement, load = penetrations.jkr(results, 1e-6 * x_range[1])
             panel.plot(load * 1e6, displacement * 1e9, color=style.BLACK, dashes=(5, 2),
                        linewidth=1.2, zorder=6)
+            if kind == "paper":
+                for other in runs.draws(f"fig10{letter}_paper")[1:]:
+                    panel.plot(other.curve["load"] * 1e6, other.curve["displacement"] * 1e9, "o",
+                               color=style.GREY, markersize=1.5, markeredgewidth=0, alpha=0.7,
+                               zorder=1)
             (_draw_rule if kind == "paper" else _draw_converged)(panel, results, x_range, y_range)
             panel.set_xlim(*x_range)
             panel.xaxis.set_major_locator(MaxNLocator(4))
@@ -174,8 +200,8 @@ def _draw_rule(panel, results, x_range, y_range):
         outside += int(((x < x_range[0]) | (x > x_range[1]) | (y < y_range[0])
                         | (y > y_range[1])).sum())
     if outside:
-        panel.text(0.985, 0.015, f"{outside} states outside", transform=panel.transAxes,
-                   ha="right", va="bottom", fontsize=8, color="#555555")
+        panel.text(0.985, 0.015, f"{outside} of the run's states outside",
+                   transform=panel.transAxes, ha="right", va="bottom", fontsize=8, color="#555555")
 
 
 def _draw_grid(panel, results):
@@ -229,7 +255,7 @@ def _jump(panel, curve, before, after, color):
 
 def rows(runs):
     """Return the statements of the paper, and how it computed."""
-    rule, true = _pulls(runs, "paper"), _pulls(runs, "converged")
+    rule, true = _rule_pulls(runs), _pulls(runs)
     uniform = penetrations.of_cycle(runs["fig10c_uniform"])
     coarse = penetrations.of_cycle(runs["fig10c_coarse"])
     words = {"a": "independent of penetration, within the noise", "b": "depends on penetration",
@@ -241,26 +267,29 @@ def rows(runs):
                     f"200 nm: {penetrations.listed(coarse, 3)} (from "
                     f"{penetrations.turns(coarse)} nm)"}
     found = [Row(f"Fig. 10({letter}), largest tension over JKR, sigma = {sigma}", words[letter],
-                 penetrations.listed(rule[letter]), penetrations.listed(true[letter], 5), "",
-                 f"unloading from h0 = {penetrations.turns(rule[letter])} nm. {verdict[letter]}")
+                 penetrations.ranged(rule[letter]), penetrations.listed(true[letter], 5), "",
+                 f"{len(rule[letter][0])} runs, unloading from h0 = "
+                 f"{penetrations.turns(true[letter])} nm. {verdict[letter]}")
              for letter, sigma, *_ in _PANELS]
     none, some = _first_jump(runs)
     converged = [runs[f"fig10{letter}_converged"] for letter in penetrations.FIG10]
-    iterations = np.concatenate([runs[f"fig10{letter}_paper"].curve["iterations"]
-                                 for letter in penetrations.FIG10])
+    some_runs = {letter: runs.draws(f"fig10{letter}_paper") for letter in penetrations.FIG10}
+    iterations = np.concatenate([results.curve["iterations"] for letter in penetrations.FIG10
+                                 for results in some_runs[letter]])
     products = np.concatenate([results.curve["iterations"] for results in converged])
     middle, high = np.percentile(iterations, (50, 95))
     found += [Row(f"Fig. 10({letter}), the same above the shallowest turning point", None,
-                  _common(runs[f"fig10{letter}_paper"]), _common(runs[f"fig10{letter}_converged"]),
-                  "", "where all retreats pass. By the paper's rule a deeper retreat has more "
+                  draws.several(zip(*map(_common, some_runs[letter]))),
+                  draws.several([[ratio] for ratio in _common(runs[f"fig10{letter}_converged"])]),
+                  "", f"{len(some_runs[letter])} runs, where all retreats pass. By the paper's rule a deeper retreat has more "
                   "states, each stopped anywhere, to be the one of largest tension")
               for letter, *_ in _PANELS]
     return [
         *found,
         Row("Fig. 10, largest tension of the loading over that of the unloading",
             "much less than 1",
-            ", ".join(f"{_loading_of_unloading(runs[f'fig10{letter}_paper']):.2f}"
-                      for letter in penetrations.FIG10),
+            draws.several([_loading_of_unloading(results) for results in some_runs[letter]]
+                          for letter in penetrations.FIG10),
             ", ".join(f"{_loading_of_unloading(results):.3f}" for results in converged), "",
             "sigma = 1.7, 4.4, 8.7, at steps of h0. "
             + _reached(runs)),
@@ -278,9 +307,10 @@ def rows(runs):
         Row("Fig. 10, sigma above which there is hysteresis", "about unity", None,
             f"{none:.3f} to {some:.3f}", "", "where the two jumps begin to differ"),
         Row("method, largest residual", "converged to within about 1e-4 nm",
-            max(runs[f"fig10{letter}_paper"].summary["worst_residual"]
-                for letter in penetrations.FIG10) * 0.5,
-            f"{max(results.summary['worst_residual'] for results in converged) * 0.5:.1e}", "nm",
+            draws.ranged([0.5 * max(worst) for worst in zip(
+                *(_residuals(runs, letter) for letter in penetrations.FIG10))], 0),
+            draws.within(max(results.summary["worst_residual"] for results in converged) * 0.5),
+            "nm",
             "the rule judges the change in one iteration, at a mixing ratio that the contact "
             "keeps small; what is left of the equations is the residual"),
         Row("method, iterations for one equilibrium", "50 to 1000",

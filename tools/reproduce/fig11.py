@@ -1,13 +1,16 @@
 """Fig. 11: a spring in a field of force, and profiles of loading and unloading at the same h0."""
 
+import functools
+
 import curves
+import draws
 import numpy as np
 import penetrations
 import spring
 import style
 from published import Row
 
-DECKS = ("fig10c_converged", "fig10c_paper", "fig10c_coarse")
+DECKS = ("fig10c_converged", "fig10c_coarse")
 TITLE = "Fig. 11: why there is hysteresis"
 CAPTION = """(a) A spring in the attraction of a Lennard-Jones wall. It rests where the line of the
 spring's force, whose slope is its stiffness, meets the force of the wall. Where the line touches it
@@ -21,7 +24,7 @@ interval only, that is beyond the other start.
 (b), (c) Separations of σ = 8.7 at the same h0 in loading and unloading, the undeformed bodies
 dotted. Converged (b), h0 = {h0:.0f} nm lies between the two jumps: in loading the bodies are apart,
 in unloading in contact, with a radius of {radius:.1f} µm. Once both are in contact the two are the
-same to {same:.0e}. The paper's sketch has two contacts of different radii at one h0. Such states
+same to {same}. The paper's sketch has two contacts of different radii at one h0. Such states
 are there on a grid that does not resolve the neck, here (c) with nodes 200 nm apart at h0 =
 {h0_coarse:.0f} nm: {loading:.1f} µm in loading, {unloading:.1f} µm in unloading. Each node by
 itself is then a spring that jumps; without a grid the surface moves as one."""
@@ -47,8 +50,13 @@ def _jumps(fraction):
 
 def _brackets():
     """Return for how many of the stiffnesses the ends of jumps bracket their starts."""
+    return _brackets_of(tuple(_FRACTIONS))
+
+
+@functools.cache
+def _brackets_of(fractions):
     return sum(inward.end < outward.start < inward.start < outward.end
-               for inward, outward in map(_jumps, _FRACTIONS))
+               for inward, outward in map(_jumps, fractions))
 
 
 def _profile(results, branch, h0):
@@ -97,7 +105,7 @@ def numbers(runs):
     return {
         "count": _FRACTIONS.size, "softest": _FRACTIONS.min(), "stiffest": _FRACTIONS.max(),
         "h0": _H0 * 1e9, "radius": _radius(converged, "unloading_4", _H0) * 1e6,
-        "same": _same(converged), "h0_coarse": _H0_COARSE * 1e9,
+        "same": draws.within(_same(converged)), "h0_coarse": _H0_COARSE * 1e9,
         "loading": _radius(coarse, "loading", _H0_COARSE) * 1e6,
         "unloading": _radius(coarse, "unloading_3", _H0_COARSE) * 1e6,
     }
@@ -183,10 +191,10 @@ def rows(runs):
             "interval. The paper is right"),
         Row("Fig. 11, contact radius of unloading over loading at the same h0",
             "always larger", float(np.median(freed[inside] / caught[inside])),
-            f"1 to {_same(converged):.0e}", "",
+            f"1, to {draws.within(_same(converged))}", "",
             "sigma = 8.7, both in contact. Computed: nodes 200 nm apart, equations solved, median. "
             "Converged, the radii differ only between the jumps, where the loading has no contact"),
         Row("section III D, unloading tension less loading tension at the same h0, the least",
-            "greater than or equal to 0", None, _least_excess(converged), "JKR pull-off",
+            "greater than or equal to 0", None, f"0, to {draws.within(abs(_least_excess(converged)))}", "JKR pull-off",
             "sigma = 8.7. The paper is right"),
     ]

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import curves
+import draws
 import numpy as np
 
 _RADIUS, _STIFFNESS = 1.5e-2, 1e10
@@ -34,6 +35,16 @@ def of_sweep(results, turns):
         found += [Pull(*row) for row in zip(columns["sigma"], np.full(tension.size, turn),
                                             tension / columns["jkr_pull_off"])]
     return sorted(found)
+
+
+def of_runs(runs):
+    """Return, for each unloading of a deck, the Pulls of all its runs."""
+    return list(zip(*(of_cycle(results) for results in runs)))
+
+
+def ranged(sets, digits=2):
+    """Return the ranges of the ratios of some unloadings as text, in the order given."""
+    return draws.several([[pull.ratio for pull in pulls] for pulls in sets], digits)
 
 
 def spread(pulls):

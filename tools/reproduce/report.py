@@ -1,5 +1,6 @@
 """Puts pictures, captions and tables together: report.md."""
 
+import draws
 import published
 from runs import path_name
 
@@ -12,6 +13,11 @@ grid and stopping rule, where there is such a run: nodes 10–100 nm apart, mixi
 stopped when the central displacement changes by less than 1e-4 nm. **Converged** is what the
 equations give, with the error estimated in each run's summary. The same rows, all together, are
 in [{table}]({table}).
+
+What the paper's rule gives depends on rounding: the last digit decides where an iteration stops, so
+that another processor or library gives other numbers. Decks on that rule are therefore run
+{count} times (`history_c_paper`: {fewer}) with the Hamaker constant changed in its twelfth digit, and
+numbers that differ are given as ranges: from the least to the largest of these runs.
 """
 
 _RUNNING = """./reproduce            # all of it
@@ -26,7 +32,9 @@ def write(path, csv_name, chapters, runs, version, seconds):
     well).
     """
     lines = ["# The figures and numbers of Attard and Parker (1992), computed again", "",
-             _INTRODUCTION.format(table=csv_name)]
+             _INTRODUCTION.format(
+                 table=csv_name, count=draws.COUNT,
+                 fewer=len(draws.names("history_c_paper")))]
     for chapter in chapters:
         lines.append(f"- [{chapter['title']}](#{_anchor(chapter['title'])})")
     lines.append("")
@@ -76,10 +84,10 @@ def _ending(chapters, runs, version, seconds):
         "Decks that have not changed are not run again.", "", "    " + version.replace(
             "\n", "\n    "), "",
         f"{len(decks)} decks, {seconds:.0f} s of one core together:", "",
-        "| deck | seconds | exit status |", "|---|---|---|"]
+        "| deck | runs | seconds, the first | exit status |", "|---|---|---|---|"]
     for deck in decks:
-        record = runs.record(deck)
-        lines.append(f"| `{path_name(deck)}` | {record.get('seconds', '')} | "
+        record, count = runs.record(deck), len(runs.with_draws([deck]))
+        lines.append(f"| `{path_name(deck)}` | {count} | {record.get('seconds', '')} | "
                      f"{record.get('status', 'not run')} |")
     lines += ["", "Exit status 1 is what decks named `_paper` may end with: they stop on the "
               "paper's rule, and snapin does not call that converged."]

@@ -14,7 +14,8 @@ A figure is a module here with
     draw(runs)      the picture, a matplotlib Figure
     rows(runs)      published.Row beside published.Row
 
-and so is any other chapter; one without draw has no picture.
+and so is any other chapter; one without draw has no picture. Decks on the paper's stopping rule are
+run several times, with rounding changed: draws.py.
 """
 
 import argparse
@@ -33,6 +34,9 @@ import style
 from runs import ROOT, Runs
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.append(str(HERE.parent))
+
+import pages  # noqa: E402 (found through the line above)
 
 
 def main():
@@ -45,7 +49,7 @@ def main():
     runs = Runs(folder / "runs", options.program)
     modules = {name: importlib.import_module(name) for name in options.only or names}
 
-    decks = [deck for module in modules.values() for deck in module.DECKS]
+    decks = runs.with_draws(deck for module in modules.values() for deck in module.DECKS)
     problems = runs.run_all(decks, options.jobs, _say)
     chapters = []
     for name, module in modules.items():
@@ -65,6 +69,7 @@ def main():
          f"{time.perf_counter() - began:.0f} s")
     if options.publish and not problems:
         _publish(folder, ROOT / "docs" / "reproduction")
+        pages.mark(ROOT / "docs" / "reproduction" / "report.md")
     for name, problem in problems.items():
         _say(f"failed: {name}: {problem}")
     sys.exit(1 if problems else 0)

@@ -8,8 +8,10 @@ import os
 import pathlib
 import subprocess
 import sys
+import threading
 import time
 
+import draws
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -88,10 +90,13 @@ class Runs:
     taken. It is written last and removed first, so that what was interrupted is gone on with.
     """
 
-    def __init__(self, root, program=None):
+    def __init__(self, root, program=None, count=None, change=None):
+        """`count` is the number of runs of decks on the paper's rule, draws.COUNT by default;
+        `change(groups)` changes every deck first, to make it quicker for instance."""
+        self._count, self._change = count, change
         self.root = pathlib.Path(root)
         self.program = pathlib.Path(program or os.environ.get("SNAPIN", ROOT / "build" / "snapin"))
-        self._results = {}
+        self._results, self._written, self._writing = {}, {}, threading.Lock()
         self._program_digest = None
 
     def __getitem__(self, stem):
@@ -107,10 +112,36 @@ class Runs:
             self._results[path.stem] = Results(self.root / path.stem)
         return self._results[path.stem]
 
+    def draws(self, stem):
+        """Return the results of a deck on the paper's rule, one for each of its runs."""
+        return [self.run(name) for name in draws.names(stem, self._count)]
+
+    def with_draws(self, decks):
+        """Return the names of all runs of decks."""
+        return [name for deck in dict.fromkeys(decks) for name in draws.names(deck, self._count)]
+
     def path_of(self, deck):
-        """Return the path of a deck given by its stem or its path."""
+        """Return the path of a deck given by its stem, the name of a run or its path."""
         path = pathlib.Path(deck)
-        return path if path.suffix == ".nml" else INPUTS / f"{deck}.nml"
+        if path.suffix == ".nml":
+            return path
+        stem, number = draws.parts(str(deck))
+        path = INPUTS / f"{stem}.nml"
+        if not path.is_file() or number == 0 and self._change is None:
+            return path
+        return self._changed_deck(path, str(deck), number)
+
+    def _changed_deck(self, path, name, number):
+        """Return the path of a deck written from that in inputs/."""
+        with self._writing:
+            if name not in self._written:
+                groups = draws.changed(draws.read(path), number)
+                if self._change is not None:
+                    self._change(groups)
+                self._written[name] = self.root / "decks" / f"{name}.nml"
+                self._written[name].parent.mkdir(parents=True, exist_ok=True)
+                groups.write(self._written[name], force=True)
+        return self._written[name]
 
     def digest(self, path):
         """Return what tells one deck and program from another."""

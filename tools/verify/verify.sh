@@ -6,13 +6,16 @@
 #              operation, overflow, index out of bounds or use of an unset real number
 #   memory     valgrind over tools/verify/decks: no leak, no use of memory that was not set
 #   coverage   which lines of src/ the tests reach; those that they do not are listed
-#   levels     builds at -O0, -O2, -O3 and -march=native, 1, 2 and 4 threads: how far results differ
+#   levels     builds at -O0, -O2, -O3 and -march=native, 1, 2 and 4 threads, OpenBLAS's kernels for
+#              other processors: how far results differ; then the quick tests on each of these
+#              kernels and on the reference LAPACK (kinds.sh)
 #   extremes   decks drawn at random from the far ends, on the build of `traps`
 #   judge      the program against an independent solution of the Lennard-Jones problem: studies of
 #              every reported number, of cycles, folds and the energy lost (tools/verify/judge.py)
 #   faults     every system call on results fails, kills the run, or is the last before the power does
 #   guards     guards are taken out one at a time, and a test has to fail
 #   fuzz       a coverage-led search for decks that the reader misreads (needs AFL++)
+#   pages      no page has figures of older numerics than src/ (tools/pages.py says what renews it)
 #
 # Without a stage: all of them, about two hours on two cores. Ends with status 1 where one
 # fails. EXTREMES (200) is the number of decks, FIRST (5000) the first of them, FUZZ (240) seconds,
@@ -37,7 +40,7 @@ builds() {
   "$meson" compile -C "$folder" > "$folder/compile.log" || { tail -n 25 "$folder/compile.log"; return 1; }
 }
 
-long() { "$python" -m pytest -q --long; }
+long() { "$python" -m pytest -q --long -n auto --dist worksteal; }
 
 build_traps() { builds build-traps --buildtype=debug -Dtraps=true -Dpython=disabled; }
 
@@ -94,6 +97,8 @@ levels() {
     builds build-native -Dpython=disabled -Dnative=true || return
   "$python" "$here/levels.py" "$build/snapin" O0=build-O0/snapin O2=build-O2/snapin \
     native=build-native/snapin
+  different=$?
+  "$here/kinds.sh" && return $different
 }
 
 extremes() {
@@ -120,8 +125,10 @@ fuzz() {
   [ -z "$found" ] || { printf '%s\n' "$found"; return 1; }
 }
 
+pages() { "$python" "$top/tools/pages.py"; }
+
 failed=
-stages='long traps memory coverage levels extremes faults judge guards fuzz'
+stages='long traps memory coverage levels extremes faults judge guards fuzz pages'
 for stage in ${*:-$stages}; do
   case " $stages " in
     *" $stage "*) ;;

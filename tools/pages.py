@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Which numerics the pages with measured figures belong to.
+
+    pages.py              names every page that is older than the sources, with status 1
+    pages.py --mark PAGE  says that all figures of PAGE were measured just now
+
+A page holds the line `<!-- measured at DIGEST -->`. The digest is that of the sources that
+determine numbers. What renews a whole page marks it; whoever writes figures by hand does it after
+measuring them.
+"""
+
+import argparse
+import hashlib
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+# Page, and what renews its figures.
+PAGES = {
+    "README.md": "./run inputs/first.nml, compared by hand; then tools/pages.py --mark README.md",
+    "docs/accuracy.md": "./bench",
+    "docs/asymptotics.md": "tools/asymptotics.py",
+    "docs/reproduction/report.md": "./reproduce --publish",
+    "docs/testing.md": "tools/verify/verify.sh, its tables by hand; then tools/pages.py --mark "
+    "docs/testing.md",
+}
+# What reads decks, writes files or talks changes no number. A new file counts until it is here.
+_NO_NUMBERS = (
+    "assignments", "clock", "command_line", "c_library", "deck", "deck_keys", "deck_number",
+    "deck_scan", "deck_source", "deck_store", "deck_text", "deck_token", "deck_values", "failure",
+    "files", "finished_run", "folder_lock", "forecast", "journal", "memory", "outlook",
+    "packed_states", "packing", "process", "progress", "run_identity", "snapin", "text_file",
+)
+_MARK = re.compile(r"<!-- measured at (\w+) -->")
+
+
+def digest(folder=ROOT / "src"):
+    """Return twelve digits that change when code that determines numbers does, not its comments."""
+    found = hashlib.sha256()
+    for path in sorted(folder.rglob("*.f90")):
+        if path.stem in _NO_NUMBERS:
+            continue
+        lines = (line.strip() for line in path.read_text(encoding="utf-8").splitlines())
+        code = "\n".join(line for line in lines if line and not line.startswith("!"))
+        found.update(f"{path.relative_to(folder).as_posix()}\n{code}\n".encode())
+    return found.hexdigest()[:12]
+
+
+def mark(page):
+    """Write into a page that it was measured with the sources as they are."""
+    text = page.read_text(encoding="utf-8")
+    line = f"<!-- measured at {digest()} -->"
+    if _MARK.search(text):
+        text = _MARK.sub(line, text)
+    else:
+        title, rest = text.split("\n", 1)
+        text = f"{title}\n\n{line}\n{rest}"
+    page.write_text(text, encoding="utf-8")
+
+
+def measured_at(page):
+    """Return the digest that a page names, None without one."""
+    found = _MARK.search(page.read_text(encoding="utf-8"))
+    return found and found[1]
+
+
+def old_pages(root=ROOT):
+    """Return (page, the digest it names or None) for those that are not of the sources here."""
+    now = digest(root / "src")
+    pairs = [(page, measured_at(root / page)) for page in PAGES]
+    return [(page, named) for page, named in pairs if named != now]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--mark", nargs="+", metavar="PAGE", choices=PAGES,
+                        help="pages whose figures were measured just now")
+    options = parser.parse_args()
+    for page in options.mark or []:
+        mark(ROOT / page)
+    if options.mark:
+        return 0
+    old = old_pages()
+    for page, named in old:
+        was = f"measured at {named}" if named else "does not say at which numerics it was measured"
+        print(f"{page}: {was}, the sources are at {digest()}; renew it with: {PAGES[page]}")
+    return 1 if old else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
