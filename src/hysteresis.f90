@@ -11,10 +11,10 @@ module hysteresis
   private
   public :: lost_energy_t, energy_lost
 
-  !> Lost energy, the same on the finer mesh of the error estimate, and the largest energy that it is
-  !> a difference of; in units of load times length.
+  !> Lost energy, the same on the finer mesh of the error estimate, and what rounding leaves; in units
+  !> of load times length.
   type :: lost_energy_t
-    real(wp) :: energy = 0, fine_energy = 0, largest = 0
+    real(wp) :: energy = 0, fine_energy = 0, rounding = 0
   end type lost_energy_t
 
 contains
@@ -46,7 +46,7 @@ contains
 
     subroutine add(landing)
       type(landing_t), intent(in) :: landing
-      real(wp) :: before, after
+      real(wp) :: before, after, uncertainty(2)
 
       whole = landing%piece > 0 .and. landing%converged
       ! Beyond where it was to lead: another way.
@@ -54,12 +54,12 @@ contains
       if (.not. whole) return
       associate (fold => known%path%point(landing%fold))
         whole = fold%state%h0 >= lowest
-        before = energy_of(this, pair%grid(fold%mesh), fold%state)
-        after = energy_of(this, pair%grid(landing%mesh), landing%state)
+        call energy_of(this, pair%grid(fold%mesh), fold%state, before, uncertainty(1))
+        call energy_of(this, pair%grid(landing%mesh), landing%state, after, uncertainty(2))
         lost%energy = lost%energy + (before - after)
         if (allocated(fold%fine) .and. allocated(landing%fine)) &
           lost%fine_energy = lost%fine_energy + (fold%fine%energy - landing%fine%energy)
-        lost%largest = max(lost%largest, abs(before), abs(after))
+        lost%rounding = lost%rounding + sum(uncertainty)
       end associate
       k = landing%piece
     end subroutine add

@@ -216,8 +216,7 @@ contains
       lost, whole)
     if (.not. whole) return
     outcome%energy_lost = lost%energy
-    outcome%energy_uncertainty = judge%margin*abs(lost%energy - lost%fine_energy) + &
-      rounding*lost%largest
+    outcome%energy_uncertainty = judge%margin*abs(lost%energy - lost%fine_energy) + lost%rounding
 
   contains
 

@@ -149,14 +149,14 @@ contains
     type(expansion_t) :: near
     type(measure_t) :: own, moved
     type(state_t) :: right
-    real(wp) :: distance
+    real(wp) :: distance, uncertainty
     integer :: move
     logical :: found
 
     own = measure_t(state%h0, state%axis_gap - state%h0, state%load)
     error = unknown_error(reported_t(own%h0, own%displacement, own%load))
     on_fine = own
-    on_fine%energy = energy_of(this, pair%grid(mesh), state)
+    call energy_of(this, pair%grid(mesh), state, on_fine%energy, uncertainty)
     near%s = coordinate_of(this, mesh, state)
     near%state = regrid(state, pair%grid(mesh), fine%grid(mesh), state%scale, &
       finer_nodes(pair, fine, mesh, state))
@@ -200,7 +200,7 @@ contains
     logical, intent(out) :: found
     type(cost_t), intent(inout) :: cost
     type(state_t) :: second
-    real(wp) :: slopes(2), slopes_there(2)
+    real(wp) :: slopes(2), slopes_there(2), uncertainty
 
     call solve_fine(this, fine, mesh, near%s, near%state, found, cost, slopes)
     if (.not. found) return
@@ -211,7 +211,7 @@ contains
     near%load = parabola_t(near%state%load, slopes(2), (slopes_there(2) - slopes(2))/apart)
     near%axis_gap = parabola_t(near%state%axis_gap, &
       (second%axis_gap - near%state%axis_gap)/apart, 0.0_wp)
-    near%energy = energy_of(this, fine%grid(mesh), near%state)
+    call energy_of(this, fine%grid(mesh), near%state, near%energy, uncertainty)
   end subroutine expand
 
   !> Solves for the state at the coordinate s on the finer mesh; slopes: of h0 and load by s.

@@ -19,22 +19,27 @@ contains
 
   !> 2 pi Int [e(H) + P (H - H0 - rho^2/2)/2] rho drho in units of load times length: e is the
   !> energy of the surface force per area, and the bodies have yielded by H - H0 - rho^2/2.
-  function energy_of(this, grid, state) result(energy)
+  !> uncertainty: what rounding, and a residual of the equations, leave of it.
+  subroutine energy_of(this, grid, state, energy, uncertainty)
     type(problem_t), intent(in) :: this
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
-    real(wp) :: energy
+    real(wp), intent(out) :: energy, uncertainty
     real(wp) :: node(points), weight(points), last
+    real(wp), dimension(size(state%gap)) :: of_surface, of_bodies
 
     associate (n => size(state%gap), c => state%scale)
-      energy = c**2*sum(grid%weight(:n)*(this%law%energy(state%gap) + &
-        0.5_wp*state%pressure*(state%gap - state%h0 - 0.5_wp*(c*grid%x(:n))**2)))
+      of_surface = c**2*grid%weight(:n)*this%law%energy(state%gap)
+      of_bodies = c**2*grid%weight(:n)*0.5_wp*state%pressure* &
+        (state%gap - state%h0 - 0.5_wp*(c*grid%x(:n))**2)
+      uncertainty = 2*pi*(epsilon(1.0_wp)*sum(abs(of_surface) + abs(of_bodies)) + &
+        0.5_wp*state%residual*c**2*sum(abs(grid%weight(:n)*state%pressure)))
       ! Beyond the mesh rho drho = dH. With H = last/x the interval is finite.
       last = state%gap(n) + 0.5_wp*(load_reach(grid, state)**2 - (c*grid%x(n))**2)
     end associate
     call gauss_legendre(node, weight)
-    energy = energy + last*sum(weight*this%law%energy(last/node)/node**2)
-    energy = 2*pi*energy
-  end function energy_of
+    energy = 2*pi*(sum(of_surface) + sum(of_bodies) + &
+      last*sum(weight*this%law%energy(last/node)/node**2))
+  end subroutine energy_of
 
 end module potential_energy

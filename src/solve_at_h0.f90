@@ -4,10 +4,11 @@ module solve_at_h0
   use kinds, only: wp
   use problem, only: problem_t
   use interpolation, only: polynomial_value
-  use equilibrium, only: state_t, cost_t, residual_floor
+  use discretisation, only: discretisation_t
+  use equilibrium, only: control_t, state_t, cost_t, residual_floor, at_h0_with_edge
   use solver_options, only: solver_options_t, tightened
-  use anderson, only: frozen_t
-  use edge_locked, only: mesh_pair_t
+  use anderson, only: frozen_t, solve_anderson
+  use edge_locked, only: mesh_pair_t, contact
   use tracer, only: state_at, between, coordinate_of
   use traced_path, only: traced_path_t
   implicit none
@@ -21,6 +22,8 @@ module solve_at_h0
   !> no more. What is that near to an end of the piece is the end.
   real(wp), parameter :: near_enough = 2.0e-13_wp
   integer, parameter :: most_rounds = 30, bisections = 60
+  !> Change of the coordinate over which a state is the same one but for rounding.
+  real(wp), parameter :: same_place = 1.0e-8_wp
 
   !> Points about a piece of the path, on one mesh; the piece is from the one numbered `lower` to
   !> the next.
@@ -109,7 +112,6 @@ contains
     state = near%state(near%lower)
     if (abs(near%state(near%lower + 1)%h0 - h0) < abs(state%h0 - h0)) &
       state = near%state(near%lower + 1)
-    converged = state%residual <= options%tolerance
     frozen%factors%valid = .false.
     width = huge(1.0_wp)
     do round = 1, most_rounds
@@ -127,18 +129,41 @@ contains
       end associate
       call state_at(this, pair, near%mesh, s, near%coordinate(:near%held), &
         near%state(:near%held), tightened(options), frozen, trial, converged, cost)
-      converged = converged .or. trial%residual <= options%tolerance
-      if (.not. converged) exit
+      if (.not. (converged .or. trial%residual <= options%tolerance)) exit
       if (abs(trial%h0 - h0) < abs(state%h0 - h0)) state = trial
       call join(near, s, trial, (trial%h0 - h0)*(near%state(near%lower)%h0 - h0) > 0)
     end do
+    s = coordinate_of(this, near%mesh, state)
+    if (abs(state%h0 - h0) > max(options%tolerance, residual_floor(this, state))) &
+      call finish_at_h0(this, pair%grid(near%mesh), near%mesh, h0, options, frozen, s, state, cost)
     ! What is left of the way is rounding; the equations at h0 itself are off by it.
     state%residual = max(state%residual, abs(state%h0 - h0))
-    converged = converged .and. state%residual <= max(options%tolerance, &
-      residual_floor(this, state))
-    s = coordinate_of(this, near%mesh, state)
+    converged = state%residual <= max(options%tolerance, residual_floor(this, state))
     state%h0 = h0
   end subroutine solve_between
+
+  !> Where the contact is wide and far from a fold, h0 changes by more than the tolerance with the
+  !> last digit of the coordinate; there it can be prescribed.
+  subroutine finish_at_h0(this, grid, mesh, h0, options, frozen, s, state, cost)
+    type(problem_t), intent(in) :: this
+    type(discretisation_t), intent(in) :: grid
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: h0
+    type(solver_options_t), intent(in) :: options
+    type(frozen_t), intent(inout) :: frozen
+    real(wp), intent(in) :: s
+    type(state_t), intent(inout) :: state
+    type(cost_t), intent(inout) :: cost
+    type(control_t) :: control
+    type(state_t) :: trial
+    logical :: arrived
+
+    control%value = h0
+    if (mesh == contact) control%kind = at_h0_with_edge
+    trial = state
+    call solve_anderson(this, grid, control, options, frozen, trial, arrived, cost)
+    if (arrived .and. abs(coordinate_of(this, mesh, trial) - s) < same_place) state = trial
+  end subroutine finish_at_h0
 
   !> Adds a state inside the piece; with_lower: it takes the place of the piece's lower end, else of
   !> the upper. The farthest neighbour makes room.
