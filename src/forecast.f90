@@ -3,6 +3,7 @@ module forecast
   use kinds, only: wp
   use scene_groups, only: scene_t
   use problem, only: problem_t
+  use equilibrium, only: lost_in_rounding
   use choice, only: choice_t, choose, companion
   use edge_locked, only: mesh_pair_t, new_mesh_pair, largest_radius, contact_level, &
     smallest_feature
@@ -26,13 +27,15 @@ module forecast
   !> Measured on one core of a common machine: operations a second of products with a matrix and of
   !> factorisations, these of matrices of so many nodes or more (fewer: in proportion less); and
   !> what a state takes beside them [s].
-  real(wp), parameter :: product_rate = 4.0e9_wp, factor_rate = 1.0e10_wp, large = 500, &
+  real(wp), parameter :: product_rate = 4.0e9_wp, factor_rate = 1.2e10_wp, large = 500, &
     overhead = 2.0e-5_wp
   !> Products and factorisations a state, jumps included, in steps of a tenth of the law's length or
   !> so, and in steps so fine (law's lengths) that a state is known before it is computed. Mixing's
   !> products may be a tenth of this or ten times it.
   real(wp), parameter :: products = 9, factors = 1, fine = 0.01_wp, fine_products = 1.5_wp, &
     fine_factors = 0.01_wp, newton_factors = 6.4_wp, mixed = 500
+  !> The same where the path is known.
+  real(wp), parameter :: known_products = 5, known_factors = 0.05_wp
   !> States of a path where adhesion is weak (sigma up to 1), and more for each factor of ten.
   real(wp), parameter :: of_path = 50, of_decade = 40
   !> Where a fixed grid does not resolve the neck, nodes being farther apart than so many widths of
@@ -45,7 +48,7 @@ module forecast
   real(wp), parameter :: other_bytes = 1.0e7_wp
   !> Operations of a verified eigenvalue over the cube of the nodes, at the rate of factorisations,
   !> and the matrices that it needs.
-  real(wp), parameter :: eigenvalue_work = 6, eigenvalue_matrices = 2
+  real(wp), parameter :: eigenvalue_work = 7, eigenvalue_matrices = 2
 
 contains
 
@@ -59,6 +62,7 @@ contains
     type(mesh_pair_t) :: pair
     real(wp) :: low, high, of_state, square, cases, matrices, n
     integer :: copies
+    logical :: known
 
     if (.not. (allocated(scene%path) .or. allocated(scene%loading))) return
     problem = problem_of(scene)
@@ -84,7 +88,8 @@ contains
     end if
     if (has_eigenvalues(scene)) square = square + eigenvalue_matrices*n**2
     ! A cycle goes along the path too.
-    if (allocated(scene%path) .or. chosen%grid == 'edge_locked' .and. has_path(problem)) &
+    known = chosen%grid == 'edge_locked' .and. has_path(problem)
+    if (allocated(scene%path) .or. known) &
       expected%seconds = (of_path + of_decade*log10(max(problem%coupling*problem%law%adhesion, &
       1.0_wp)))*seconds_of(n, products, factors)
     if (allocated(scene%path)) &
@@ -101,6 +106,7 @@ contains
     end if
     if (allocated(scene%loading)) then
       of_state = seconds_of(n, products, factors)
+      if (known) of_state = seconds_of(n, known_products, known_factors)
       if (scene%loading%h0_step/problem%length < fine) &
         of_state = seconds_of(n, fine_products, fine_factors)
       if (chosen%options%method == 'newton') of_state = seconds_of(n, 0.0_wp, newton_factors)
@@ -112,6 +118,9 @@ contains
         expected%seconds = expected%seconds + node_by_node(scene, problem, chosen, low)* &
         merge(2, 1, other%nodes > chosen%nodes)*seconds_of(n, node_products, of_node)
     end if
+    ! Of a contact that rounding hides nothing is computed.
+    if (known .and. lost_in_rounding(problem, largest_radius(problem, low, pair%level))) &
+      expected%seconds = 0
     expected%seconds = expected%seconds*cases/copies
     expected%copies = copies
     if (.not. problem%rigid) expected%bytes = other_bytes + 8*square*copies

@@ -31,7 +31,7 @@ _NO_NUMBERS = (
     "assignments", "clock", "command_line", "c_library", "deck", "deck_keys", "deck_number",
     "deck_scan", "deck_source", "deck_store", "deck_text", "deck_token", "deck_values", "failure",
     "files", "finished_run", "folder_lock", "forecast", "journal", "memory", "outlook",
-    "packed_states", "packing", "process", "progress", "run_identity", "snapin", "text_file",
+    "packed_states", "packing", "progress", "publication", "run_identity", "snapin", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")
 
