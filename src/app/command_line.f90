@@ -1,7 +1,7 @@
 !> The command line: options, decks, help.
 module command_line
   use failure, only: failure_t, fail, bad_input
-  use deck_text, only: guess, printable
+  use text, only: guess, printable
   implicit none
   private
   public :: options_t, file_t, read_command_line, stem_of, write_help, write_usage

@@ -2,14 +2,14 @@
 module forecast
   use kinds, only: wp
   use scene_groups, only: scene_t
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use equilibrium, only: lost_in_rounding
-  use choice, only: choice_t, choose, companion
+  use numerics_choice, only: choice_t, choose, companion
   use edge_locked, only: mesh_pair_t, new_mesh_pair, largest_radius, contact_level, &
     smallest_feature
   use experiment, only: problem_of, range_of
-  use locked_steps, only: has_path
-  use plans, only: states_planned
+  use locked_stepper, only: has_path
+  use h0_schedule, only: states_planned
   implicit none
   private
   public :: forecast_t, forecast_of

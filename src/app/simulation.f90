@@ -3,17 +3,17 @@ module simulation
   use kinds, only: wp
   use failure, only: failure_t
   use build_info, only: version, compiler, blas, options
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use scene_groups, only: scene_t
-  use deck_text, only: brief
-  use outcome, only: outcome_t
+  use text, only: brief
+  use experiment_result, only: experiment_result_t
   use experiment, only: run_experiment, problem_of, path_start
-  use plans, only: states_planned
+  use h0_schedule, only: states_planned
   use sweeps, only: run_sweep
-  use outlook, only: outlook_t, outlook_of
+  use preflight, only: preflight_t, preflight_of
   use blas_threads, only: thread_count
   use linear_algebra, only: claim_buffers
-  use comparison, only: classical_rows
+  use classical_rows, only: rows_of_classical
   use approximation_tables, only: approximation_rows
   use records, only: observer_t
   use stability_records, only: stability_recorder_t
@@ -45,11 +45,11 @@ contains
     type(stability_recorder_t), target :: recorder
     class(observer_t), pointer :: observer
     type(problem_t) :: problem
-    type(outcome_t) :: outcome
+    type(experiment_result_t) :: outcome
     type(summary_t) :: summary
     type(failure_t), allocatable :: error
     character(len=:), allocatable :: name, resolved
-    type(outlook_t) :: expected
+    type(preflight_t) :: expected
     real(wp) :: began
     integer :: i, failed
     logical :: curve, left_over, finished, converged, mended
@@ -104,7 +104,7 @@ contains
       observer => recorder
     end if
     failed = 0
-    expected = outlook_of(scene)
+    expected = preflight_of(scene)
     if (expected%too_large == '' .and. .not. problem%rigid) call claim_buffers()
     if (expected%long /= '') call say(out_dir//': '//expected%long, quiet)
     if (allocated(scene%sweep) .and. expected%too_large == '') then
@@ -118,7 +118,7 @@ contains
     outcome%cost%factorisations = outcome%cost%factorisations + recorder%cost%factorisations
 
     if (allocated(scene%classical)) call results%write_theory('classical.csv', &
-      classical_rows(problem, scene%classical, path_start(scene, problem)))
+      rows_of_classical(problem, scene%classical, path_start(scene, problem)))
     if (allocated(scene%approximations)) call results%write_theory('approximations.csv', &
       approximation_rows(problem, scene%approximations, path_start(scene, problem)))
     summary = summary_of(scene, problem, outcome)
@@ -170,7 +170,7 @@ contains
   function report(out_dir, summary, outcome) result(text)
     character(len=*), intent(in) :: out_dir
     type(summary_t), intent(in) :: summary
-    type(outcome_t), intent(in) :: outcome
+    type(experiment_result_t), intent(in) :: outcome
     character(len=:), allocatable :: text
     character(len=160) :: buffer
 

@@ -10,7 +10,7 @@ program snapin
   use c_library, only: c_prepare
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
   use simulation, only: run_scene
-  use outlook, only: outlook_t, outlook_of
+  use preflight, only: preflight_t, preflight_of
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
 
@@ -55,7 +55,7 @@ contains
   function run_decks() result(status)
     integer :: status
     type(scene_t), allocatable :: scenes(:)
-    type(outlook_t) :: expected
+    type(preflight_t) :: expected
     type(failure_t), allocatable :: trouble
     integer :: i, outcome
 
@@ -68,7 +68,7 @@ contains
         status = 2
       else if (options%check) then
         call print_line(output_unit, options%decks(i)%name // ': ok')
-        expected = outlook_of(scenes(i))
+        expected = preflight_of(scenes(i))
         if (expected%too_large // expected%long /= '') call print_line(error_unit, 'snapin: ' // &
           options%decks(i)%name // ': ' // expected%too_large // expected%long)
       end if

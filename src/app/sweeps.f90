@@ -2,18 +2,18 @@
 module sweeps
   use kinds, only: wp
   use failure, only: failure_t
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use scene_groups, only: scene_t
   use scene, only: swept_scene
-  use outcome, only: outcome_t
+  use experiment_result, only: experiment_result_t
   use experiment, only: run_experiment, problem_of
   use equilibrium, only: cost_t
   use records, only: silent_observer_t
   use summarise, only: summary_of
   use summary, only: summary_t
   use case_columns, only: columns_of, numbers_of
-  use packing, only: packed_t
-  use packed_states, only: put_cost, take_cost
+  use byte_record, only: byte_record_t
+  use state_records, only: put_cost, take_cost
   use results, only: results_t
   implicit none
   private
@@ -56,7 +56,7 @@ contains
 
     !> Enters the cases that an interrupted run has completed.
     subroutine recall_cases()
-      type(packed_t) :: record
+      type(byte_record_t) :: record
       logical :: found
       integer :: i
 
@@ -74,7 +74,7 @@ contains
     subroutine complete(i)
       integer, intent(in) :: i
       type(case_t) :: fresh
-      type(packed_t) :: record
+      type(byte_record_t) :: record
       logical :: stopped
 
       !$omp critical (one_at_a_time)
@@ -115,7 +115,7 @@ contains
     type(case_t), intent(out) :: case
     type(scene_t) :: variant
     type(problem_t) :: problem
-    type(outcome_t) :: outcome
+    type(experiment_result_t) :: outcome
     type(summary_t) :: summary
     type(silent_observer_t) :: observer
     type(failure_t), allocatable :: error
@@ -141,7 +141,7 @@ contains
 
   !> Packs a case.
   subroutine put_case(record, case)
-    type(packed_t), intent(inout) :: record
+    type(byte_record_t), intent(inout) :: record
     type(case_t), intent(in) :: case
 
     call record%put(case%converged)
@@ -151,7 +151,7 @@ contains
 
   !> Unpacks what `put_case` packed.
   subroutine take_case(record, case)
-    type(packed_t), intent(inout) :: record
+    type(byte_record_t), intent(inout) :: record
     type(case_t), intent(out) :: case
 
     case%done = .true.

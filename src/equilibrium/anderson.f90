@@ -7,7 +7,7 @@
 !> every step and no history.
 module anderson
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, cost_t, residual, largest_step, state_from, &
     unknowns_of, residual_floor, at_h0, at_h0_with_edge
@@ -16,15 +16,15 @@ module anderson
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: frozen_t, solve_anderson
+  public :: frozen_jacobian_t, solve_anderson
 
   !> A factorisation kept from state to state, and the kind of control that it belongs to.
-  type :: frozen_t
+  type :: frozen_jacobian_t
     type(factorisation_t) :: factors
     integer :: control_kind = 0
     !> States solved with it.
     integer :: served = 0
-  end type frozen_t
+  end type frozen_jacobian_t
 
   !> Differences of unknowns and of steps, newest last.
   type :: history_t
@@ -44,12 +44,12 @@ contains
   !> From `state` (gaps, and H0 or c where the control leaves it open) to the equilibrium at
   !> `control`. On return state%residual says how well the equations hold; converged is
   !> state%residual <= tolerance (or the floor that rounding sets).
-  subroutine solve_anderson(this, grid, control, options, frozen, state, converged, cost)
-    type(problem_t), intent(in) :: this
+  subroutine solve_anderson(problem, grid, control, options, frozen, state, converged, cost)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(control_t), intent(in) :: control
     type(solver_options_t), intent(in) :: options
-    type(frozen_t), intent(inout) :: frozen
+    type(frozen_jacobian_t), intent(inout) :: frozen
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
     type(cost_t), intent(inout) :: cost
@@ -61,7 +61,7 @@ contains
 
     z = unknowns_of(control, state)
     allocate (g(size(z)))
-    if (.not. this%coupling > 0 .and. control%kind == at_h0) then
+    if (.not. problem%coupling > 0 .and. control%kind == at_h0) then
       call solve_rigid()
       return
     end if
@@ -75,11 +75,11 @@ contains
     since_renewal = 0
     rejections = 0
     do iteration = 1, options%most_iterations
-      call residual(this, grid, control, z, g, state, cost)
+      call residual(problem, grid, control, z, g, state, cost)
       cost%iterations = cost%iterations + 1
       state%iterations = iteration
       if (state%residual < best%residual) best = state
-      converged = state%residual <= max(options%tolerance, residual_floor(this, state))
+      converged = state%residual <= max(options%tolerance, residual_floor(problem, state))
       if (converged .or. .not. state%residual < huge(1.0_wp)) exit
 
       if (.not. frozen%factors%valid .or. since_renewal >= options%patience) call renew()
@@ -95,7 +95,7 @@ contains
         rejections = rejections + 1
         if (rejections > most_rejections) exit
         z = z_best
-        call residual(this, grid, control, z, g, state, cost)
+        call residual(problem, grid, control, z, g, state, cost)
         call renew()
         if (.not. frozen%factors%valid) exit
         f = g
@@ -108,7 +108,7 @@ contains
       end if
       before = length
       step = accelerated_step(history, options%depth, z, f)
-      step = largest_step(this, control, z, step)*step
+      step = largest_step(problem, control, z, step)*step
       z = z + step
       ! The parabola between the bodies is quadratic in the scale: its second-order part is known,
       ! and far out it is large.
@@ -130,14 +130,14 @@ contains
     !> Rigid bodies: their gap is known.
     subroutine solve_rigid()
       z = control%value + 0.5_wp*(control%scale*grid%x(:size(z)))**2
-      call residual(this, grid, control, z, g, state, cost)
+      call residual(problem, grid, control, z, g, state, cost)
       state%iterations = 0
-      converged = state%residual <= max(options%tolerance, residual_floor(this, state))
+      converged = state%residual <= max(options%tolerance, residual_floor(problem, state))
     end subroutine solve_rigid
 
     !> A factorisation at the present state; what was learnt with the old one is forgotten.
     subroutine renew()
-      call factorise_jacobian(this, grid, control, state, frozen%factors, cost)
+      call factorise_jacobian(problem, grid, control, state, frozen%factors, cost)
       frozen%control_kind = control%kind
       history%held = 0
       if (allocated(history%f_before)) deallocate (history%f_before)

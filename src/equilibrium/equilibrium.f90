@@ -1,4 +1,4 @@
-!> The equations of equilibrium on a discretisation, in the units of `problem`:
+!> The equations of equilibrium on a discretisation, in the units of `dimensionless_problem`:
 !>
 !>     G_i = H_i - H0 - c^2 x_i^2/2 - 2 coupling c (W P(H))_i = 0
 !>
@@ -7,7 +7,7 @@
 !> unknown (H0 or c) and one more equation (the gap on the axis or at the contact edge) join.
 module equilibrium
   use kinds, only: wp, pi, long
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use linear_algebra, only: multiply
   implicit none
@@ -68,8 +68,8 @@ contains
   !> z = (gaps [, H0 or c]). On return `state` is what z stands for, with its load and residual.
   !> Where z is outside the law's domain there are neither pressures nor a load, and the residual is
   !> huge.
-  subroutine residual(this, grid, control, z, g, state, cost)
-    type(problem_t), intent(in) :: this
+  subroutine residual(problem, grid, control, z, g, state, cost)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(control_t), intent(in) :: control
     real(wp), intent(in) :: z(:)
@@ -83,7 +83,7 @@ contains
     n = node_count(control, size(z))
     call unpack(control, z, state%h0, state%scale)
     state%gap = z(:n)
-    if (.not. defined(this, z, state)) then
+    if (.not. defined(problem, z, state)) then
       g = 0
       state%pressure = 0*g(:n)
       state%load = 0
@@ -91,13 +91,13 @@ contains
       state%residual = huge(1.0_wp)
       return
     end if
-    state%pressure = this%law%pressure(state%gap)
+    state%pressure = problem%law%pressure(state%gap)
     cost%pressure_evaluations = cost%pressure_evaluations + n
     raised = 0
-    if (this%coupling > 0) then
+    if (problem%coupling > 0) then
       columns = acting_columns(state%pressure)
       call multiply(grid%kernel, columns, state%pressure, raised)
-      raised = 2*this%coupling*state%scale*raised
+      raised = 2*problem%coupling*state%scale*raised
       cost%operator_products = cost%operator_products + 1
       cost%operator_columns = cost%operator_columns + columns
     end if
@@ -108,33 +108,33 @@ contains
       g(n + 1) = axis_gap - control%value
     case (at_edge_radius, at_h0_with_edge)
       edge_gap = state%h0 + 0.5_wp*state%scale**2 + raised(centre_row)
-      g(n + 1) = edge_gap - this%law%edge_gap
+      g(n + 1) = edge_gap - problem%law%edge_gap
     end select
     state%axis_gap = axis_gap
     ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
     reach = load_reach(grid, state)
     state%load = 2*pi*(state%scale**2*dot_product(grid%weight(:n), state%pressure) + &
-      sum(this%law%energy([state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)])))
+      sum(problem%law%energy([state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)])))
     state%residual = maxval(abs(g))
     ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
     if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
   end subroutine residual
 
   !> Whether unknowns are such that pressures, and all that follows from them, are numbers.
-  pure logical function defined(this, z, state)
-    type(problem_t), intent(in) :: this
+  pure logical function defined(problem, z, state)
+    type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: z(:)
     type(state_t), intent(in) :: state
 
     defined = all(abs(z) <= largest_unknown) .and. &
       abs(state%h0) <= largest_unknown .and. state%scale > 0
-    if (defined) defined = all(state%gap >= this%law%smallest_gap)
+    if (defined) defined = all(state%gap >= problem%law%smallest_gap)
   end function defined
 
   !> The fraction (at most 1) of a step dz from z that keeps every gap within the law's closure
   !> limit and the contact radius within a third.
-  pure real(wp) function largest_step(this, control, z, dz) result(fraction)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function largest_step(problem, control, z, dz) result(fraction)
+    type(problem_t), intent(in) :: problem
     type(control_t), intent(in) :: control
     real(wp), intent(in) :: z(:), dz(:)
     integer :: n
@@ -153,7 +153,7 @@ contains
     pure real(wp) function limit(gap, step)
       real(wp), intent(in) :: gap(:), step(:)
 
-      limit = min(1.0_wp, minval((this%law%closure_fraction*gap + this%law%closure_length)/ &
+      limit = min(1.0_wp, minval((problem%law%closure_fraction*gap + problem%law%closure_length)/ &
         max(-step, tiny(1.0_wp)*max(1.0_wp, abs(gap)))))
     end function limit
 
@@ -226,22 +226,22 @@ contains
   !> The residual that rounding alone leaves: a few units in the last place of the gaps and of the
   !> deformation's parts, which are of opposite signs in an adhesive contact (the operator on a
   !> uniform pressure gives at most 2). Never more than still is an equilibrium of the law.
-  pure real(wp) function residual_floor(this, state)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function residual_floor(problem, state)
+    type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
 
     residual_floor = 2*epsilon(1.0_wp)*(abs(state%h0) + maxval(abs(state%gap)) + &
-      4*this%coupling*state%scale*maxval(abs(state%pressure)))
+      4*problem%coupling*state%scale*maxval(abs(state%pressure)))
     residual_floor = min(residual_floor, largest_floor)
   end function residual_floor
 
   !> Whether the deformation of a contact of radius c (lateral units) under the law's largest
   !> tension, about one unit of pressure, is so large that rounding hides the law.
-  pure logical function lost_in_rounding(this, c)
-    type(problem_t), intent(in) :: this
+  pure logical function lost_in_rounding(problem, c)
+    type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
 
-    lost_in_rounding = 8*epsilon(1.0_wp)*this%coupling*this%law%adhesion*c > largest_floor
+    lost_in_rounding = 8*epsilon(1.0_wp)*problem%coupling*problem%law%adhesion*c > largest_floor
   end function lost_in_rounding
 
   !> Number of gaps among `size` unknowns.

@@ -2,7 +2,7 @@
 !> depend on what a control prescribes.
 module jacobian
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use linear_algebra, only: factorisation_t, factorise
   use equilibrium, only: control_t, state_t, cost_t, at_h0, at_axis_gap, at_edge_radius, &
@@ -16,8 +16,8 @@ contains
   !> Factors of the Jacobian of `residual` at a state, bordered where the control has an unknown of
   !> its own: I - 2 coupling c W diag(P'), and the derivatives by H0 or c. `shift` is added to the
   !> diagonal of the nodes' block.
-  subroutine factorise_jacobian(this, grid, control, state, factors, cost, shift)
-    type(problem_t), intent(in) :: this
+  subroutine factorise_jacobian(problem, grid, control, state, factors, cost, shift)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
@@ -34,13 +34,13 @@ contains
       if (size(factors%lu, 1) /= m) deallocate (factors%lu)
     end if
     if (.not. allocated(factors%lu)) allocate (factors%lu(m, m))
-    factor = -2*this%coupling*state%scale*this%law%slope(state%gap)
+    factor = -2*problem%coupling*state%scale*problem%law%slope(state%gap)
     cost%pressure_evaluations = cost%pressure_evaluations + n
     diagonal = 1
     if (present(shift)) diagonal = 1 + shift
     row = merge(axis_row, centre_row, control%kind == at_axis_gap)
     do j = 1, n
-      if (this%coupling > 0) then
+      if (problem%coupling > 0) then
         factors%lu(:n, j) = factor(j)*grid%kernel(first_node:first_node - 1 + n, j)
         if (m > n) factors%lu(m, j) = -factor(j)*grid%kernel(row, j)
       else
@@ -48,7 +48,7 @@ contains
       end if
       factors%lu(j, j) = factors%lu(j, j) + diagonal
     end do
-    if (m > n) call border(this, grid, control, state, factors%lu(:, m))
+    if (m > n) call border(problem, grid, control, state, factors%lu(:, m))
     call factorise(factors)
     cost%factorisations = cost%factorisations + 1
     factors%origin = [real(control%kind, wp), control%value, control%scale, diagonal - 1, &
@@ -57,8 +57,8 @@ contains
 
   !> Factors of the Jacobian that factors%origin tells of, bit by bit what `factorise_jacobian` made
   !> on the same mesh.
-  subroutine factorise_again(this, grid, factors)
-    type(problem_t), intent(in) :: this
+  subroutine factorise_again(problem, grid, factors)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(factorisation_t), intent(inout) :: factors
     type(control_t) :: control
@@ -73,19 +73,19 @@ contains
       state%scale = origin(6)
       state%gap = origin(7:)
     end associate
-    call factorise_jacobian(this, grid, control, state, factors, not_counted, shift)
+    call factorise_jacobian(problem, grid, control, state, factors, not_counted, shift)
   end subroutine factorise_again
 
   !> The column of derivatives of `residual` by the control's unknown.
-  pure subroutine border(this, grid, control, state, column)
-    type(problem_t), intent(in) :: this
+  pure subroutine border(problem, grid, control, state, column)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: column(:)
 
     if (control%kind == at_h0_with_edge) then
-      column = scale_derivative(this, grid, state)
+      column = scale_derivative(problem, grid, state)
     else
       column = -1
       column(size(column)) = 1
@@ -95,22 +95,22 @@ contains
   !> Derivative of `residual` by the scale c: -c x^2 - 2 coupling W P at the nodes, and the opposite
   !> sign, with x = 1, in the equation for the edge. The deformation is read off the gaps, which is
   !> exact where the residual vanishes and costs no operator product.
-  pure function scale_derivative(this, grid, state) result(column)
-    type(problem_t), intent(in) :: this
+  pure function scale_derivative(problem, grid, state) result(column)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     real(wp) :: column(size(state%gap) + 1)
 
     associate (c => state%scale, n => size(state%gap))
       column(:n) = -0.5_wp*c*grid%x(:n)**2 - (state%gap - state%h0)/c
-      column(n + 1) = 0.5_wp*c + (this%law%edge_gap - state%h0)/c
+      column(n + 1) = 0.5_wp*c + (problem%law%edge_gap - state%h0)/c
     end associate
   end function scale_derivative
 
   !> Derivative of `residual` by the control's value, at a state: with the factors of the same
   !> control the tangent of the path is minus their solution for it.
-  pure function control_derivative(this, grid, control, state) result(derivative)
-    type(problem_t), intent(in) :: this
+  pure function control_derivative(problem, grid, control, state) result(derivative)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
@@ -128,7 +128,7 @@ contains
       allocate (derivative(n + 1), source=0.0_wp)
       derivative(n + 1) = -1
     case (at_edge_radius)
-      derivative = scale_derivative(this, grid, state)
+      derivative = scale_derivative(problem, grid, state)
     end select
   end function control_derivative
 

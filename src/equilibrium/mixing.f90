@@ -7,7 +7,7 @@
 !> there, as an option, to reproduce the paper.
 module mixing
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, cost_t, residual, largest_step, residual_floor, at_h0
   use solver_options, only: solver_options_t
@@ -28,8 +28,8 @@ contains
 
   !> From `state` to the equilibrium at a prescribed H0 (control kind at_h0). On return
   !> state%residual says how well the equations hold; converged says that the chosen rule was met.
-  subroutine solve_mixing(this, grid, control, options, state, converged, cost)
-    type(problem_t), intent(in) :: this
+  subroutine solve_mixing(problem, grid, control, options, state, converged, cost)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(control_t), intent(in) :: control
     type(solver_options_t), intent(in) :: options
@@ -47,14 +47,14 @@ contains
     ratio = options%mixing_limit
     change = 0
     do iteration = 1, options%most_iterations
-      call residual(this, grid, control, z, g, state, cost)
+      call residual(problem, grid, control, z, g, state, cost)
       cost%iterations = cost%iterations + 1
       state%iterations = iteration
       if (options%stop_on_change) then
         converged = iteration > 1 .and. abs(change) <= options%displacement_tolerance .and. &
           state%residual < huge(1.0_wp)
       else
-        converged = state%residual <= max(options%tolerance, residual_floor(this, state))
+        converged = state%residual <= max(options%tolerance, residual_floor(problem, state))
       end if
       if (converged .or. .not. state%residual < huge(1.0_wp)) exit
 
@@ -70,7 +70,7 @@ contains
         end if
       end if
       change = -ratio*g(1)
-      fraction = largest_step(this, control, z, -ratio*g)
+      fraction = largest_step(problem, control, z, -ratio*g)
       z = z - fraction*ratio*g
     end do
   end subroutine solve_mixing

@@ -3,7 +3,7 @@
 !> quasi-static experiment would land, and leaves unstable equilibria.
 module relaxation
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, cost_t, residual, largest_step, residual_floor, &
     at_h0
@@ -35,8 +35,8 @@ module relaxation
 contains
 
   !> From `state` to a stable equilibrium at the prescribed H0 (control kind at_h0), in place.
-  subroutine relax(this, grid, control, options, state, converged, cost)
-    type(problem_t), intent(in) :: this
+  subroutine relax(problem, grid, control, options, state, converged, cost)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(control_t), intent(in) :: control
     type(solver_options_t), intent(in) :: options
@@ -60,14 +60,14 @@ contains
     allowed = max(few_factorisations, int(min(most_cubes/real(size(z), wp)**3, 1.0e6_wp)))
     do step = 1, most_steps
       if (cost%factorisations - began >= allowed) return
-      call residual(this, grid, control, z, g, state, cost)
+      call residual(problem, grid, control, z, g, state, cost)
       cost%iterations = cost%iterations + 1
       state%iterations = step
       if (.not. state%residual < huge(1.0_wp)) return
-      if (this%law%adhesion > 0 .and. .not. this%law%edge_gap > 0 .and. &
+      if (problem%law%adhesion > 0 .and. .not. problem%law%edge_gap > 0 .and. &
         minval(z) < fallen*apart) return
-      if (state%residual <= max(options%tolerance, residual_floor(this, state))) then
-        call factorise_jacobian(this, grid, control, state, factors, cost)
+      if (state%residual <= max(options%tolerance, residual_floor(problem, state))) then
+        call factorise_jacobian(problem, grid, control, state, factors, cost)
         if (.not. factors%valid) return
         converged = determinant_sign(factors) > 0
         if (converged) return
@@ -82,7 +82,7 @@ contains
       dtau = min(max(dtau, usual_step), longest_step)
       before = state%residual
       do
-        call factorise_jacobian(this, grid, control, state, factors, cost, 1/dtau)
+        call factorise_jacobian(problem, grid, control, state, factors, cost, 1/dtau)
         if (.not. factors%valid) return
         ! A step so long that an unstable mode would be climbed instead of left is too long.
         if (determinant_sign(factors) > 0 .or. dtau <= shortest_step) exit
@@ -90,7 +90,7 @@ contains
       end do
       dz = -g
       call solve(factors, dz)
-      dz = largest_step(this, control, z, dz)*dz
+      dz = largest_step(problem, control, z, dz)*dz
       z = z + dz
       moved = max(maxval(abs(dz)), tiny(1.0_wp)/epsilon(1.0_wp))
     end do

@@ -27,8 +27,8 @@ module solver_options
 
 contains
 
-  !> The same options with a tolerance near rounding: for the few states whose place on the path, not
-  !> only whose load, must be exact. Where rounding allows no better its floor counts
+  !> The same options with a tolerance near rounding: for the few states whose place on the path,
+  !> not only whose load, must be exact. Where rounding allows no better its floor counts
   !> (`residual_floor`).
   pure function tightened(options) result(tight)
     type(solver_options_t), intent(in) :: options

@@ -3,7 +3,7 @@
 module stability
   use kinds, only: wp
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, first_node
   use equilibrium, only: control_t, state_t, cost_t
   use jacobian, only: factorise_jacobian
@@ -42,8 +42,8 @@ contains
   !> found is one of the operator; the determinant has the sign of an even number of eigenvalues
   !> below; the operator made symmetric has none below, counted by Sylvester's law of inertia. If
   !> they do not, the eigenvalue is NaN and `certain` .false.
-  subroutine smallest_eigenvalue(this, grid, state, eigenvalue, certain, cost)
-    type(problem_t), intent(in) :: this
+  subroutine smallest_eigenvalue(problem, grid, state, eigenvalue, certain, cost)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: eigenvalue
@@ -57,7 +57,7 @@ contains
     eigenvalue = 1
     certain = .true.
     n = size(state%gap)
-    factor = 2*this%coupling*state%scale*this%law%slope(state%gap)
+    factor = 2*problem%coupling*state%scale*problem%law%slope(state%gap)
     ! Rigid bodies, or none that attract: repulsion raises eigenvalues, which accumulate at 1.
     if (.not. maxval(factor) > 0) return
     root = sqrt(grid%weight(:n))
@@ -69,7 +69,7 @@ contains
     if (certain) then
       eigenvalue = 1 - maxval(part)
       widest = maxval(abs(part))
-      call refine(this, grid, state, factor, widest, eigenvalue, certain, cost)
+      call refine(problem, grid, state, factor, widest, eigenvalue, certain, cost)
     end if
     if (certain) certain = none_below(grid, factor, root, &
       eigenvalue - room(lower, eigenvalue, widest), matrix, cost)
@@ -79,8 +79,8 @@ contains
   !> Inverse iteration from a shift just below the eigenvalue, on the operator itself. certain:
   !> it ended where it began, with a pair of the operator, and the determinant says that an even
   !> number of eigenvalues is below the shift.
-  subroutine refine(this, grid, state, factor, widest, eigenvalue, certain, cost)
-    type(problem_t), intent(in) :: this
+  subroutine refine(problem, grid, state, factor, widest, eigenvalue, certain, cost)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: factor(:), widest
@@ -97,7 +97,7 @@ contains
     first = eigenvalue
     shift = first - room(close, first, widest)
     control%scale = state%scale
-    call factorise_jacobian(this, grid, control, state, factors, cost, -shift)
+    call factorise_jacobian(problem, grid, control, state, factors, cost, -shift)
     if (.not. factors%valid) return
     if (determinant_sign(factors) < 0) return
     associate (weight => grid%weight(:size(factor)))
@@ -172,15 +172,15 @@ contains
   !> unstable. It is derived for surfaces that attract each other, with p < 0 and p' > 0, and is
   !> taken where this is so: inside the contact edge p passes zero, and the ratio has no bound.
   !> Contacts with adhesion always violate it just outside that edge. NaN where nothing attracts.
-  pure real(wp) function local_criterion(this, grid, state) result(value)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function local_criterion(problem, grid, state) result(value)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     logical :: attracted(size(state%gap))
 
     value = unknown()
     associate (two_u => state%h0 + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2 - state%gap, &
-      slope => this%law%slope(state%gap))
+      slope => problem%law%slope(state%gap))
       attracted = attracts(state%pressure, slope)
       ! Slopes are below 1e121 and lengths below 1e80.
       if (any(attracted)) value = maxval(abs(two_u*slope)/max(-state%pressure, least_pressure), &
@@ -190,14 +190,14 @@ contains
 
   !> The left side of (29), 2 p'(h(0)) u(0)/p(h(0)); below -1 the criterion calls the state
   !> unstable. NaN where the bodies do not attract each other on the axis, as in contact.
-  pure real(wp) function axis_criterion(this, state) result(value)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function axis_criterion(problem, state) result(value)
+    type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
     real(wp) :: slope(1), pressure(1)
 
     value = unknown()
-    slope = this%law%slope([state%axis_gap])
-    pressure = this%law%pressure([state%axis_gap])
+    slope = problem%law%slope([state%axis_gap])
+    pressure = problem%law%pressure([state%axis_gap])
     if (all(attracts(pressure, slope))) value = (state%h0 - state%axis_gap)*slope(1)/pressure(1)
   end function axis_criterion
 

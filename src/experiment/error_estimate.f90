@@ -3,14 +3,15 @@
 !> the margin covers. What the iteration may have left, which differs from state to state by chance,
 !> is added: a residual as large as the tolerance acts like an h0 that is off by as much.
 !>
-!> Here for states at a given h0, of which there is one; `path_errors` for those of a path with folds.
+!> Here for states at a given h0, of which there is one; `path_errors` for those of a path with
+!> folds.
 module error_estimate
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use edge_locked, only: regrid
   use equilibrium, only: control_t, state_t, cost_t
-  use anderson, only: frozen_t, solve_anderson
+  use anderson, only: frozen_jacobian_t, solve_anderson
   use solver_options, only: solver_options_t
   use reported, only: reported_t, error_t
   implicit none
@@ -41,14 +42,14 @@ contains
 
   !> Errors of a reported state by its witness: on `fine`, of which `nodes` nodes are used, at the
   !> same h0; tolerance is that of the iteration, and the difference counts `margin` times.
-  subroutine judge_at_h0(this, mesh, fine, nodes, margin, tolerance, reported, cost)
-    type(problem_t), intent(in) :: this
+  subroutine judge_at_h0(problem, mesh, fine, nodes, margin, tolerance, reported, cost)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: mesh, fine
     integer, intent(in) :: nodes
     real(wp), intent(in) :: margin, tolerance
     type(reported_t), intent(inout) :: reported
     type(cost_t), intent(inout) :: cost
-    type(frozen_t) :: frozen
+    type(frozen_jacobian_t) :: frozen
     type(state_t) :: state, shifted
     type(control_t) :: control
     real(wp) :: left
@@ -59,16 +60,17 @@ contains
       ! What did not converge has no counterpart.
       if (.not. witness%state%residual < 1) return
       state = regrid(witness%state, mesh, fine, witness%state%scale, nodes)
-      call solve_anderson(this, fine, witness%control, to_rounding(), frozen, state, converged, cost)
+      call solve_anderson(problem, fine, witness%control, to_rounding(), frozen, state, &
+        converged, cost)
       if (.not. (converged .or. state%residual < nearly_solved)) return
       error = error_t(load=margin*abs(state%load - reported%load) + rounding*abs(reported%load), &
         displacement=margin*abs(state%axis_gap - state%h0 - reported%displacement), &
         profile=margin*profile_error(mesh, witness%state, fine, state))
-      if (.not. this%coupling > 0) return
+      if (.not. problem%coupling > 0) return
       control = witness%control
       control%value = control%value + shift
       shifted = state
-      call solve_anderson(this, fine, control, to_rounding(), frozen, shifted, converged, cost)
+      call solve_anderson(problem, fine, control, to_rounding(), frozen, shifted, converged, cost)
       if (.not. (converged .or. shifted%residual < nearly_solved)) return
       left = max(tolerance, witness%state%residual)/shift
       error%load = error%load + left*abs(shifted%load - state%load)

@@ -2,23 +2,23 @@
 !> Effects that the scene leaves out are not set up.
 module experiment
   use kinds, only: wp
-  use problem, only: problem_t, new_problem
+  use dimensionless_problem, only: problem_t, new_problem
   use force_law, only: force_law_t
   use laws, only: law_parameters_t, new_law
   use scene_groups, only: scene_t
-  use choice, only: choice_t, choose, fixed_mesh
+  use numerics_choice, only: choice_t, choose, fixed_mesh
   use edge_locked, only: new_mesh_pair, beyond_contact
-  use quasi_static, only: quasi_static_t, position_t
-  use locked_steps, only: locked_steps_t, has_path
-  use path_steps, only: path_steps_t
-  use unique_steps, only: unique_steps_t
-  use fixed_steps, only: fixed_steps_t
-  use journalled_steps, only: journalled_steps_t, new_journalled_steps
+  use stepper, only: stepper_t, branch_point_t
+  use locked_stepper, only: locked_stepper_t, has_path
+  use path_stepper, only: path_stepper_t
+  use unique_stepper, only: unique_stepper_t
+  use fixed_stepper, only: fixed_stepper_t
+  use resumable_stepper, only: resumable_stepper_t, new_resumable_stepper
   use journal, only: journal_t
-  use stepped_branch, only: plan_t, run_branch
-  use plans, only: plan_of
-  use outcome, only: outcome_t
-  use outcome_errors, only: judge_locked, judge_fixed
+  use stepped_branch, only: h0_schedule_t, run_branch
+  use h0_schedule, only: schedule_of
+  use experiment_result, only: experiment_result_t
+  use result_errors, only: judge_locked, judge_fixed
   use path, only: follow_path
   use records, only: observer_t
   use equilibrium, only: cost_t
@@ -59,7 +59,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
-    type(outcome_t), intent(out) :: outcome
+    type(experiment_result_t), intent(out) :: outcome
     type(journal_t), intent(inout), optional :: journal
     real(wp) :: low, high
     logical :: fixed
@@ -83,11 +83,11 @@ contains
     real(wp), intent(in) :: high, low
     logical, intent(in) :: with_cycle
     class(observer_t), intent(inout) :: observer
-    type(outcome_t), intent(inout) :: outcome
+    type(experiment_result_t), intent(inout) :: outcome
     type(journal_t), intent(inout), optional :: journal
-    type(path_steps_t), target :: along_path
-    type(unique_steps_t), target :: one_by_one
-    class(locked_steps_t), pointer :: steps
+    type(path_stepper_t), target :: along_path
+    type(unique_stepper_t), target :: one_by_one
+    class(locked_stepper_t), pointer :: steps
     real(wp) :: began
 
     ! Not allocatable: gfortran 12 frees what a polymorphic one of these types never had.
@@ -107,14 +107,14 @@ contains
     call use_threads_for(maxval(steps%pair%grid%nodes))
     began = seconds()
     select type (steps)
-    class is (path_steps_t)
+    class is (path_stepper_t)
       call steps%know_path(high, low, allocated(scene%path), observer)
       if (allocated(scene%path)) call run_path(scene, steps, observer, outcome)
-    class is (unique_steps_t)
+    class is (unique_stepper_t)
       if (allocated(scene%path)) call run_stepped_path(scene, steps, observer, outcome)
     end select
     if (allocated(scene%loading) .and. with_cycle) &
-      call run_cycle(scene, steps, observer, outcome, journal)
+      call run_kept_cycle(scene, steps, observer, outcome, journal)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
     call observer%hear('estimating errors')
@@ -129,9 +129,9 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: low
     class(observer_t), intent(inout) :: observer
-    type(outcome_t), intent(inout) :: outcome
+    type(experiment_result_t), intent(inout) :: outcome
     type(journal_t), intent(inout), optional :: journal
-    type(fixed_steps_t) :: steps
+    type(fixed_stepper_t) :: steps
     real(wp) :: began
 
     call prepare(steps, problem, outcome%chosen, scene%numerics%accuracy)
@@ -143,7 +143,7 @@ contains
     outcome%nodes = outcome%nodes + steps%mesh%nodes
     call use_threads_for(steps%mesh%nodes)
     began = seconds()
-    call run_cycle(scene, steps, observer, outcome, journal)
+    call run_kept_cycle(scene, steps, observer, outcome, journal)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
     call observer%hear('estimating errors')
@@ -154,7 +154,7 @@ contains
 
   !> What both kinds of steps are told.
   subroutine prepare(steps, problem, chosen, accuracy)
-    class(quasi_static_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     type(problem_t), intent(in) :: problem
     type(choice_t), intent(in) :: chosen
     real(wp), intent(in) :: accuracy
@@ -167,9 +167,9 @@ contains
 
   subroutine run_path(scene, steps, observer, outcome)
     type(scene_t), intent(in) :: scene
-    class(path_steps_t), intent(inout) :: steps
+    class(path_stepper_t), intent(inout) :: steps
     class(observer_t), intent(inout) :: observer
-    type(outcome_t), intent(inout) :: outcome
+    type(experiment_result_t), intent(inout) :: outcome
     real(wp), allocatable :: profiles(:)
 
     associate (length => steps%problem%length)
@@ -200,11 +200,11 @@ contains
   !> stepping h0 gives it.
   subroutine run_stepped_path(scene, steps, observer, outcome)
     type(scene_t), intent(in) :: scene
-    class(unique_steps_t), intent(inout) :: steps
+    class(unique_stepper_t), intent(inout) :: steps
     class(observer_t), intent(inout) :: observer
-    type(outcome_t), intent(inout) :: outcome
-    type(position_t) :: position, none(0)
-    type(plan_t) :: plan
+    type(experiment_result_t), intent(inout) :: outcome
+    type(branch_point_t) :: position, none(0)
+    type(h0_schedule_t) :: plan
     real(wp) :: start
     real(wp), allocatable :: nowhere(:)
 
@@ -216,7 +216,7 @@ contains
         start = max(steps%far_away()*length, scene%path%h0_end + length)
       end if
       allocate (outcome%stepped_path)
-      plan = plan_of('path', start, scene%path%h0_end, &
+      plan = schedule_of('path', start, scene%path%h0_end, &
         abs(start - scene%path%h0_end)/path_states, scene, length, nowhere)
       plan%unique = .true.
       call run_branch(steps, plan, .true., position, observer, nowhere, none, outcome%stepped_path)
@@ -224,32 +224,32 @@ contains
   end subroutine run_stepped_path
 
   !> The cycle, kept in a journal where there is one.
-  subroutine run_cycle(scene, steps, observer, outcome, journal)
+  subroutine run_kept_cycle(scene, steps, observer, outcome, journal)
     type(scene_t), intent(in) :: scene
-    class(quasi_static_t), intent(inout), target :: steps
+    class(stepper_t), intent(inout), target :: steps
     class(observer_t), intent(inout) :: observer
-    type(outcome_t), intent(inout) :: outcome
+    type(experiment_result_t), intent(inout) :: outcome
     type(journal_t), intent(inout), optional, target :: journal
-    type(journalled_steps_t) :: kept
+    type(resumable_stepper_t) :: kept
 
     if (.not. present(journal)) then
-      call go_through(scene, steps, observer, outcome)
+      call run_cycle(scene, steps, observer, outcome)
       return
     end if
-    kept = new_journalled_steps(steps, journal)
-    call go_through(scene, kept, observer, outcome)
+    kept = new_resumable_stepper(steps, journal)
+    call run_cycle(scene, kept, observer, outcome)
     steps%cost%states = steps%cost%states + kept%cost%states
     steps%cost%solve_seconds = steps%cost%solve_seconds + kept%earlier_seconds
-  end subroutine run_cycle
+  end subroutine run_kept_cycle
 
   !> Loading, then an unloading from each turning point.
-  subroutine go_through(scene, steps, observer, outcome)
+  subroutine run_cycle(scene, steps, observer, outcome)
     type(scene_t), intent(in) :: scene
-    class(quasi_static_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     class(observer_t), intent(inout) :: observer
-    type(outcome_t), intent(inout) :: outcome
-    type(position_t) :: position
-    type(position_t), allocatable :: turning(:), none(:)
+    type(experiment_result_t), intent(inout) :: outcome
+    type(branch_point_t) :: position
+    type(branch_point_t), allocatable :: turning(:), none(:)
     real(wp), allocatable :: from(:), nowhere(:)
     character(len=24) :: name
     integer :: k
@@ -258,7 +258,7 @@ contains
     if (allocated(scene%unloading)) from = scene%unloading%from/steps%problem%length
     allocate (turning(size(from)))
     allocate (outcome%loading)
-    call run_branch(steps, plan_of('loading', scene%loading%h0_start, scene%loading%h0_end, &
+    call run_branch(steps, schedule_of('loading', scene%loading%h0_start, scene%loading%h0_end, &
       scene%loading%h0_step, scene, steps%problem%length, from), .true., position, observer, from, &
       turning, outcome%loading)
     if (allocated(scene%unloading)) then
@@ -272,12 +272,12 @@ contains
         ! Not by a function with a result of deferred length: gfortran keeps that length in static
         ! storage, and the cases of a sweep share it.
         write (name, '(a, i0)') 'unloading_', k
-        call run_branch(steps, plan_of(trim(name), scene%unloading%from(k), &
+        call run_branch(steps, schedule_of(trim(name), scene%unloading%from(k), &
           scene%unloading%h0_end, scene%unloading%h0_step, scene, steps%problem%length, &
           nowhere), .false., position, observer, nowhere, none, outcome%unloading(k))
       end do
     end if
-  end subroutine go_through
+  end subroutine run_cycle
 
   !> The range of H0, in the law's lengths, that the scene covers.
   subroutine range_of(scene, problem, low, high)

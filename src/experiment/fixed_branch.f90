@@ -1,19 +1,19 @@
 !> One branch of equilibria on a mesh fixed in space: the next state on it, and how far it goes.
 module fixed_branch
   use kinds, only: wp
-  use problem, only: over_neck => spacing_over_neck
+  use dimensionless_problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t
   use jacobian, only: factorise_jacobian, control_derivative
   use linear_algebra, only: solve, determinant_sign, log_determinant
   use solver, only: solve_state
   use prediction, only: extrapolated, moved_with_edge, towards_fold
-  use quasi_static, only: quasi_static_t, position_t, event_t, remember
+  use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   implicit none
   private
   public :: fixed_branch_t, change, jump
 
-  type, abstract, extends(quasi_static_t) :: fixed_branch_t
+  type, abstract, extends(stepper_t) :: fixed_branch_t
     type(discretisation_t) :: mesh
   contains
     procedure :: continue_to
@@ -49,10 +49,10 @@ contains
   subroutine continue_to(self, h0, position, expected, state, event, continues)
     class(fixed_branch_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(in) :: position
+    type(branch_point_t), intent(in) :: position
     type(state_t), intent(in) :: expected
     type(state_t), intent(out) :: state
-    type(event_t), intent(inout) :: event
+    type(step_result_t), intent(inout) :: event
     logical, intent(out) :: continues
 
     state = expected
@@ -69,7 +69,7 @@ contains
   function expected_at(self, h0, position) result(expected)
     class(fixed_branch_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(in) :: position
+    type(branch_point_t), intent(in) :: position
     type(state_t) :: expected
 
     if (self%options%method == 'mixing' .or. &
@@ -93,8 +93,8 @@ contains
   subroutine follow(self, h0, position, event, beyond, arrived, at_fold)
     class(fixed_branch_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(inout) :: position
-    type(event_t), intent(inout) :: event
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
     real(wp), intent(out) :: beyond
     logical, intent(out) :: arrived, at_fold
     type(state_t) :: state, expected
@@ -201,7 +201,7 @@ contains
     class(fixed_branch_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(state_t), intent(inout) :: state
-    type(event_t), intent(inout) :: event
+    type(step_result_t), intent(inout) :: event
     type(control_t) :: control
 
     control%value = h0

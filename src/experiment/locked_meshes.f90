@@ -1,10 +1,10 @@
-!> A state of an experiment in edge-locked coordinates: how many nodes of its mesh it uses, and how h0
-!> is prescribed there.
+!> A state of an experiment in edge-locked coordinates: how many nodes of its mesh it uses, and how
+!> h0 is prescribed there.
 module locked_meshes
   use kinds, only: wp
   use equilibrium, only: control_t, at_h0_with_edge
   use edge_locked, only: mesh_pair_t, hertz_scale, contact
-  use tracer, only: node_count
+  use continuation, only: node_count
   implicit none
   private
   public :: nodes_to_use, h0_control, scale_at

@@ -2,20 +2,20 @@
 !> stable and unstable states, every fold in h0, every extremum of the load.
 module path
   use kinds, only: wp
-  use problem, only: spacing_over_neck
+  use dimensionless_problem, only: spacing_over_neck
   use equilibrium, only: state_t
   use edge_locked, only: contact
   use traced_path, only: traced_path_t
   use known_path, only: known_path_t, interval_at
   use locked_meshes, only: h0_control
-  use path_steps, only: path_steps_t
-  use reported, only: reported_t, reported_state, witness_t, add_reported
+  use path_stepper, only: path_stepper_t
+  use reported, only: reported_t, reported_state, error_probe_t, add_reported
   use records, only: observer_t, record_of, stable_yes, stable_no
   implicit none
   private
   public :: path_t, follow_path
 
-  !> In the units of `problem`, in the order from afar inward.
+  !> In the units of `dimensionless_problem`, in the order from afar inward.
   type :: path_t
     integer :: states = 0
     !> Folds in h0, and the number of unstable modes after each; extrema of the load.
@@ -33,8 +33,8 @@ module path
     character(len=160) :: reason = ''
   end type path_t
 
-  !> One row: its state and mesh, the point of the path that it is (0: none), its unstable modes, and
-  !> whether it is solved.
+  !> One row: its state and mesh, the point of the path that it is (0: none), its unstable modes,
+  !> and whether it is solved.
   type :: row_t
     type(state_t) :: state
     integer :: mesh = 1, point = 0, modes = 0
@@ -47,7 +47,7 @@ contains
   !> beginning, to the contact at h0_end. States go to the observer, and profiles where the path
   !> crosses the values `profiles`.
   subroutine follow_path(steps, h0_end, profiles, observer, path, h0_start)
-    class(path_steps_t), intent(inout) :: steps
+    class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_end, profiles(:)
     class(observer_t), intent(inout) :: observer
     type(path_t), intent(out) :: path
@@ -145,7 +145,7 @@ contains
   end function piece_of
 
   function row_of_point(steps, i) result(row)
-    type(path_steps_t), intent(in) :: steps
+    type(path_stepper_t), intent(in) :: steps
     integer, intent(in) :: i
     type(row_t) :: row
 
@@ -157,7 +157,7 @@ contains
 
   !> The row at h0 between point i and the next.
   function row_between(steps, i, h0) result(row)
-    class(path_steps_t), intent(inout) :: steps
+    class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
     real(wp), intent(in) :: h0
     type(row_t) :: row
@@ -168,10 +168,10 @@ contains
 
   !> A row as one that is reported.
   function reported_row(steps, row) result(reported)
-    type(path_steps_t), intent(in) :: steps
+    type(path_stepper_t), intent(in) :: steps
     type(row_t), intent(in) :: row
     type(reported_t) :: reported
-    type(witness_t) :: witness
+    type(error_probe_t) :: witness
 
     witness%mesh = row%mesh
     witness%control = h0_control(steps%pair, row%mesh, row%state%h0)
@@ -185,7 +185,7 @@ contains
 
   !> Gives a row to the observer and keeps what is reported of it.
   subroutine take(steps, row, profile, observer, path)
-    type(path_steps_t), intent(in) :: steps
+    type(path_stepper_t), intent(in) :: steps
     type(row_t), intent(in) :: row
     logical, intent(in) :: profile
     class(observer_t), intent(inout) :: observer

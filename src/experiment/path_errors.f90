@@ -1,17 +1,17 @@
-!> Errors of what is reported of the equilibrium path: each reported state (a fold, an extremum of the
-!> load, the landing after a jump, a state at a given h0) is found again on a finer mesh.
+!> Errors of what is reported of the equilibrium path: each reported state (a fold, an extremum of
+!> the load, the landing after a jump, a state at a given h0) is found again on a finer mesh.
 !>
 !> There the path near the state is a parabola in its coordinate, whose slopes are exact
-!> (`tangent`): from it the same state follows, at the h0 or at the extremum that defines it. That
-!> holds beside folds too, where an h0 that is off by little moves the load by much.
+!> (`path_slopes`): from it the same state follows, at the h0 or at the extremum that defines it.
+!> That holds beside folds too, where an h0 that is off by little moves the load by much.
 module path_errors
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use edge_locked, only: mesh_pair_t, regrid
   use equilibrium, only: state_t, cost_t, load_reach
-  use anderson, only: frozen_t, solve_anderson
-  use tracer, only: path_control, coordinate_of
-  use tangent, only: path_slopes
+  use anderson, only: frozen_jacobian_t, solve_anderson
+  use continuation, only: path_control, coordinate_of
+  use path_slopes, only: slopes_along_path
   use potential_energy, only: energy_of
   use known_path, only: known_path_t, landing_t, landing_over
   use reported, only: reported_t, error_t, measure_t
@@ -49,8 +49,9 @@ contains
 
   !> Errors of a reported state. Differences count `margin` times; tolerance is that of the
   !> iteration at fixed h0. with_profile: of the profile too.
-  subroutine judge_on_path(this, pair, fine, margin, tolerance, with_profile, known, reported, cost)
-    type(problem_t), intent(in) :: this
+  subroutine judge_on_path(problem, pair, fine, margin, tolerance, with_profile, known, &
+    reported, cost)
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair, fine
     real(wp), intent(in) :: margin, tolerance
     logical, intent(in) :: with_profile
@@ -64,18 +65,18 @@ contains
     if (reported%landing) then
       call landing_over(known, reported%point, k, inside)
       if (inside) then
-        call judge_landing(this, pair, fine, margin, known, known%inward(k), cost)
+        call judge_landing(problem, pair, fine, margin, known, known%inward(k), cost)
         reported%error = known%inward(k)%error
       else
-        call judge_landing(this, pair, fine, margin, known, known%outward(k), cost)
+        call judge_landing(problem, pair, fine, margin, known, known%outward(k), cost)
         reported%error = known%outward(k)%error
       end if
     else if (reported%point > 0) then
-      call judge_point(this, pair, fine, margin, known, reported%point, cost)
+      call judge_point(problem, pair, fine, margin, known, reported%point, cost)
       reported%error = known%path%point(reported%point)%error
     else
       associate (witness => reported%witness)
-        call judge(this, pair, fine, witness%mesh, at_h0, witness%state, reported%h0, margin, &
+        call judge(problem, pair, fine, witness%mesh, at_h0, witness%state, reported%h0, margin, &
           max(tolerance, witness%state%residual), with_profile, on_fine, reported%error, cost)
       end associate
     end if
@@ -93,8 +94,8 @@ contains
   end function finer_nodes
 
   !> Errors of a fold or an extremum of the load, kept in the path.
-  subroutine judge_point(this, pair, fine, margin, known, i, cost)
-    type(problem_t), intent(in) :: this
+  subroutine judge_point(problem, pair, fine, margin, known, i, cost)
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair, fine
     real(wp), intent(in) :: margin
     type(known_path_t), intent(inout) :: known
@@ -104,7 +105,7 @@ contains
 
     associate (point => known%path%point(i))
       if (allocated(point%error)) return
-      call judge(this, pair, fine, point%mesh, &
+      call judge(problem, pair, fine, point%mesh, &
         merge(extremum_of_h0, extremum_of_load, point%fold), point%state, point%state%h0, margin, &
         tight, .false., on_fine, point%error, cost)
       point%fine = on_fine
@@ -112,8 +113,8 @@ contains
   end subroutine judge_point
 
   !> Errors of a landing, whose h0 is that of the fold on the same mesh; kept with it.
-  subroutine judge_landing(this, pair, fine, margin, known, landing, cost)
-    type(problem_t), intent(in) :: this
+  subroutine judge_landing(problem, pair, fine, margin, known, landing, cost)
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair, fine
     real(wp), intent(in) :: margin
     type(known_path_t), intent(inout) :: known
@@ -122,12 +123,12 @@ contains
     type(measure_t) :: on_fine
 
     if (allocated(landing%error)) return
-    call judge_point(this, pair, fine, margin, known, landing%fold, cost)
+    call judge_point(problem, pair, fine, margin, known, landing%fold, cost)
     if (.not. landing%converged) then
       landing%error = unknown_error(reported_t(h0=known%path%point(landing%fold)%state%h0))
       return
     end if
-    call judge(this, pair, fine, landing%mesh, at_h0, landing%state, &
+    call judge(problem, pair, fine, landing%mesh, at_h0, landing%state, &
       known%path%point(landing%fold)%fine%h0, margin, tight, .false., on_fine, landing%error, cost)
     landing%fine = on_fine
     landing%error%h0 = known%path%point(landing%fold)%error%h0
@@ -135,9 +136,9 @@ contains
 
   !> Errors of a state that is defined by `kind`, at `h0` if that is it, and what it is on the finer
   !> mesh.
-  subroutine judge(this, pair, fine, mesh, kind, state, h0, margin, tolerance, with_profile, &
+  subroutine judge(problem, pair, fine, mesh, kind, state, h0, margin, tolerance, with_profile, &
     on_fine, error, cost)
-    type(problem_t), intent(in) :: this
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair, fine
     integer, intent(in) :: mesh, kind
     type(state_t), intent(in) :: state
@@ -156,12 +157,12 @@ contains
     own = measure_t(state%h0, state%axis_gap - state%h0, state%load)
     error = unknown_error(reported_t(own%h0, own%displacement, own%load))
     on_fine = own
-    call energy_of(this, pair%grid(mesh), state, on_fine%energy, uncertainty)
-    near%s = coordinate_of(this, mesh, state)
+    call energy_of(problem, pair%grid(mesh), state, on_fine%energy, uncertainty)
+    near%s = coordinate_of(problem, mesh, state)
     near%state = regrid(state, pair%grid(mesh), fine%grid(mesh), state%scale, &
       finer_nodes(pair, fine, mesh, state))
     do move = 1, most_moves
-      call expand(this, fine, mesh, near, found, cost)
+      call expand(problem, fine, mesh, near, found, cost)
       if (.not. found) return
       distance = distance_to(near, kind, h0)
       if (abs(distance) <= believed) exit
@@ -185,15 +186,15 @@ contains
     if (.not. with_profile) return
     near%s = near%s + distance
     right = near%state
-    call solve_fine(this, fine, mesh, near%s, right, found, cost)
+    call solve_fine(problem, fine, mesh, near%s, right, found, cost)
     error%profile = 1
     if (found) error%profile = margin*profile_error(pair%grid(mesh), state, fine%grid(mesh), right)
   end subroutine judge
 
   !> Expands the path at near%s, from the guess near%state; found = .false. where the finer mesh has
   !> no such state.
-  subroutine expand(this, fine, mesh, near, found, cost)
-    type(problem_t), intent(in) :: this
+  subroutine expand(problem, fine, mesh, near, found, cost)
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: fine
     integer, intent(in) :: mesh
     type(expansion_t), intent(inout) :: near
@@ -202,21 +203,21 @@ contains
     type(state_t) :: second
     real(wp) :: slopes(2), slopes_there(2), uncertainty
 
-    call solve_fine(this, fine, mesh, near%s, near%state, found, cost, slopes)
+    call solve_fine(problem, fine, mesh, near%s, near%state, found, cost, slopes)
     if (.not. found) return
     second = near%state
-    call solve_fine(this, fine, mesh, near%s + apart, second, found, cost, slopes_there)
+    call solve_fine(problem, fine, mesh, near%s + apart, second, found, cost, slopes_there)
     if (.not. found) return
     near%h0 = parabola_t(near%state%h0, slopes(1), (slopes_there(1) - slopes(1))/apart)
     near%load = parabola_t(near%state%load, slopes(2), (slopes_there(2) - slopes(2))/apart)
     near%axis_gap = parabola_t(near%state%axis_gap, &
       (second%axis_gap - near%state%axis_gap)/apart, 0.0_wp)
-    call energy_of(this, fine%grid(mesh), near%state, near%energy, uncertainty)
+    call energy_of(problem, fine%grid(mesh), near%state, near%energy, uncertainty)
   end subroutine expand
 
   !> Solves for the state at the coordinate s on the finer mesh; slopes: of h0 and load by s.
-  subroutine solve_fine(this, fine, mesh, s, state, found, cost, slopes)
-    type(problem_t), intent(in) :: this
+  subroutine solve_fine(problem, fine, mesh, s, state, found, cost, slopes)
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: fine
     integer, intent(in) :: mesh
     real(wp), intent(in) :: s
@@ -224,13 +225,14 @@ contains
     logical, intent(out) :: found
     type(cost_t), intent(inout) :: cost
     real(wp), intent(out), optional :: slopes(2)
-    type(frozen_t) :: frozen
+    type(frozen_jacobian_t) :: frozen
 
-    associate (control => path_control(this, mesh, s), grid => fine%grid(mesh))
-      call solve_anderson(this, grid, control, to_rounding(), frozen, state, found, cost)
+    associate (control => path_control(problem, mesh, s), grid => fine%grid(mesh))
+      call solve_anderson(problem, grid, control, to_rounding(), frozen, state, found, cost)
       found = found .or. state%residual < nearly_solved
       if (.not. (found .and. present(slopes))) return
-      call path_slopes(this, grid, control, state, frozen, slopes(1), slopes(2), found, cost)
+      call slopes_along_path(problem, grid, control, state, frozen, slopes(1), slopes(2), found, &
+        cost)
       ! On both meshes the control's value is exp(s) and a constant.
       slopes = slopes*exp(s)
     end associate

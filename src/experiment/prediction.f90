@@ -5,8 +5,8 @@ module prediction
   use discretisation, only: discretisation_t
   use interpolation, only: polynomial_weights
   use equilibrium, only: state_t, radius_of_gap
-  use quasi_static, only: position_t
-  use tracer, only: between
+  use stepper, only: branch_point_t
+  use continuation, only: between
   implicit none
   private
   public :: extrapolated, moved_with_edge, towards_fold
@@ -16,7 +16,7 @@ contains
   !> The state at h0 extrapolated from a position's past, node by node.
   function extrapolated(mesh, position, h0) result(expected)
     type(discretisation_t), intent(in) :: mesh
-    type(position_t), intent(in) :: position
+    type(branch_point_t), intent(in) :: position
     real(wp), intent(in) :: h0
     type(state_t) :: expected
 
@@ -31,7 +31,7 @@ contains
   function moved_with_edge(law, mesh, position, h0) result(expected)
     class(force_law_t), intent(in) :: law
     type(discretisation_t), intent(in) :: mesh
-    type(position_t), intent(in) :: position
+    type(branch_point_t), intent(in) :: position
     real(wp), intent(in) :: h0
     type(state_t) :: expected
     real(wp) :: weight(position%held), radius(position%held), c

@@ -2,7 +2,7 @@
 module records
   use kinds, only: wp
   use listener, only: listener_t
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t, radius_of_gap
   implicit none

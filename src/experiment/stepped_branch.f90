@@ -1,26 +1,26 @@
-!> One branch of an h0-stepped experiment: from one h0 to the next, the deformation carried over from
-!> step to step.
+!> One branch of an h0-stepped experiment: from one h0 to the next, the deformation carried over
+!> from step to step.
 module stepped_branch
   use kinds, only: wp
   use equilibrium, only: state_t, residual_floor
-  use quasi_static, only: quasi_static_t, position_t, event_t
+  use stepper, only: stepper_t, branch_point_t, step_result_t
   use tension_search, only: tension_search_t
   use reported, only: reported_t, reported_state, add_reported
   use records, only: observer_t, record_of, stable_yes, stable_unasked
   implicit none
   private
-  public :: plan_t, branch_t, run_branch
+  public :: h0_schedule_t, branch_t, run_branch
 
   !> The values of h0 to go through, and those whose profile is wanted; in the law's lengths.
-  type :: plan_t
+  type :: h0_schedule_t
     character(len=:), allocatable :: name
     real(wp), allocatable :: h0(:)
     logical, allocatable :: profile(:)
     !> There is one state for every h0, so that each is known to be stable.
     logical :: unique = .false.
-  end type plan_t
+  end type h0_schedule_t
 
-  !> What a branch showed, in the units of `problem`. Unallocated: there was none.
+  !> What a branch showed, in the units of `dimensionless_problem`. Unallocated: there was none.
   type :: branch_t
     !> Largest tension (a negative load).
     type(reported_t), allocatable :: lowest
@@ -30,8 +30,8 @@ module stepped_branch
     real(wp) :: jump_uncertainty = 0
     !> The last equilibrium; no state that did not converge counts as one.
     type(reported_t), allocatable :: finish
-    !> States whose profile was asked for; where the path is not known, first and middle state, whose
-    !> errors stand for those of all.
+    !> States whose profile was asked for; where the path is not known, first and middle state,
+    !> whose errors stand for those of all.
     type(reported_t), allocatable :: profile(:), sample(:)
     !> The stable pieces of the path on which it begins and ends; 0 where that is not known.
     integer :: first_piece = 0, last_piece = 0
@@ -45,20 +45,21 @@ module stepped_branch
 contains
 
   !> Goes through plan%h0. A new experiment (fresh) begins by an approach from afar at the first
-  !> value; otherwise it goes on from `position`. Positions at the steps nearest to the values `keep`
-  !> are handed back in `kept`: a plan takes values that differ by a rounded step for the same.
+  !> value; otherwise it goes on from `position`. Positions at the steps nearest to the values
+  !> `keep` are handed back in `kept`: a plan takes values that differ by a rounded step for the
+  !> same.
   subroutine run_branch(steps, plan, fresh, position, observer, keep, kept, branch)
-    class(quasi_static_t), intent(inout) :: steps
-    type(plan_t), intent(in) :: plan
+    class(stepper_t), intent(inout) :: steps
+    type(h0_schedule_t), intent(in) :: plan
     logical, intent(in) :: fresh
-    type(position_t), intent(inout) :: position
+    type(branch_point_t), intent(inout) :: position
     class(observer_t), intent(inout) :: observer
     real(wp), intent(in) :: keep(:)
-    type(position_t), intent(out) :: kept(:)
+    type(branch_point_t), intent(out) :: kept(:)
     type(branch_t), intent(out) :: branch
     type(tension_search_t) :: search
-    type(position_t) :: previous
-    type(event_t) :: event
+    type(branch_point_t) :: previous
+    type(step_result_t) :: event
     real(wp) :: last_h0
     integer :: i, k, place(size(keep))
 
@@ -73,10 +74,10 @@ contains
     do i = 1, size(plan%h0)
       previous = position
       if (fresh .and. i == 1) then
-        call steps%begin(plan%h0(i), position, event)
+        call steps%approach_to(plan%h0(i), position, event)
         branch%first_piece = position%piece
       else
-        call steps%go(plan%h0(i), position, event)
+        call steps%step_to(plan%h0(i), position, event)
       end if
       steps%cost%states = steps%cost%states + 1
       call note(branch, steps, position, event, plan%h0(i))
@@ -106,7 +107,7 @@ contains
 
   !> Whether a state is an equilibrium, which the paper's stopping rule does not say.
   pure logical function holds(steps, state)
-    class(quasi_static_t), intent(in) :: steps
+    class(stepper_t), intent(in) :: steps
     type(state_t), intent(in) :: state
 
     holds = state%residual <= max(steps%options%tolerance, residual_floor(steps%problem, state))
@@ -115,9 +116,9 @@ contains
   !> Keeps the first, the worst and the lowest of what happened.
   subroutine note(branch, steps, position, event, h0)
     type(branch_t), intent(inout) :: branch
-    class(quasi_static_t), intent(in) :: steps
-    type(position_t), intent(in) :: position
-    type(event_t), intent(in) :: event
+    class(stepper_t), intent(in) :: steps
+    type(branch_point_t), intent(in) :: position
+    type(step_result_t), intent(in) :: event
     real(wp), intent(in) :: h0
 
     if (event%jumped .and. .not. allocated(branch%jump)) then
@@ -140,9 +141,9 @@ contains
   !> Lets the largest tension of a step on a known path be the branch's if it is.
   subroutine lower(branch, steps, position, event)
     type(branch_t), intent(inout) :: branch
-    class(quasi_static_t), intent(in) :: steps
-    type(position_t), intent(in) :: position
-    type(event_t), intent(in) :: event
+    class(stepper_t), intent(in) :: steps
+    type(branch_point_t), intent(in) :: position
+    type(step_result_t), intent(in) :: event
 
     associate (lowest => event%lowest)
       if (.not. lowest%load < 0) return

@@ -3,7 +3,7 @@
 module tension_search
   use kinds, only: wp
   use interpolation, only: interpolated_maximum
-  use quasi_static, only: quasi_static_t, position_t, event_t
+  use stepper, only: stepper_t, branch_point_t, step_result_t
   use reported, only: reported_t, reported_state
   implicit none
   private
@@ -13,7 +13,7 @@ module tension_search
   !> and the values of h0 between which the largest tension of all lies (the neighbours of that
   !> state, or a jump).
   type :: stretch_t
-    type(position_t) :: lowest, previous
+    type(branch_point_t) :: lowest, previous
     real(wp) :: before = 0, after = 0
     logical :: open = .false.
     !> The contact edge jumped from node to node on the way, or may have.
@@ -54,9 +54,9 @@ contains
   !> Lets a load at h0 be the largest tension if it is; position: the state that has it.
   subroutine lower(self, steps, load, h0, position)
     class(tension_search_t), intent(inout) :: self
-    class(quasi_static_t), intent(in) :: steps
+    class(stepper_t), intent(in) :: steps
     real(wp), intent(in) :: load, h0
-    type(position_t), intent(in), optional :: position
+    type(branch_point_t), intent(in), optional :: position
 
     if (.not. load < 0) return
     if (allocated(self%lowest)) then
@@ -72,8 +72,8 @@ contains
   !> The last state before a jump may be the one of largest tension.
   subroutine note_jump(self, steps, event)
     class(tension_search_t), intent(inout) :: self
-    class(quasi_static_t), intent(in) :: steps
-    type(event_t), intent(in) :: event
+    class(stepper_t), intent(in) :: steps
+    type(step_result_t), intent(in) :: event
 
     if (event%jumped) call self%lower(steps, event%jump_load, event%jump_h0)
   end subroutine note_jump
@@ -81,10 +81,10 @@ contains
   !> Takes the step from `previous` at last_h0 to `position` at h0.
   subroutine note_state(self, steps, last_h0, h0, previous, position, event)
     class(tension_search_t), intent(inout) :: self
-    class(quasi_static_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: last_h0, h0
-    type(position_t), intent(in) :: previous, position
-    type(event_t), intent(in) :: event
+    type(branch_point_t), intent(in) :: previous, position
+    type(step_result_t), intent(in) :: event
     real(wp) :: began
 
     associate (stretch => self%stretch)
@@ -113,7 +113,7 @@ contains
   !> Ends the branch at last_h0.
   subroutine finish(self, steps, last_h0)
     class(tension_search_t), intent(inout) :: self
-    class(quasi_static_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: last_h0
 
     call self%end_stretch(steps, last_h0)
@@ -124,7 +124,7 @@ contains
   !> `deferred`, which is the best of those.
   subroutine end_stretch(self, steps, finish)
     class(tension_search_t), intent(inout) :: self
-    class(quasi_static_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: finish
     type(stretch_t) :: stretch
 
@@ -155,10 +155,10 @@ contains
   !> on either.
   subroutine refine(self, steps, stretch)
     class(tension_search_t), intent(inout) :: self
-    class(quasi_static_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     type(stretch_t), intent(in) :: stretch
-    type(position_t) :: best, trial
-    type(event_t) :: event
+    type(branch_point_t) :: best, trial
+    type(step_result_t) :: event
     real(wp), allocatable :: h0(:), load(:)
     real(wp) :: low, high, left, right, next, width, gained
     integer :: round
@@ -191,7 +191,7 @@ contains
           best%state%h0 - left > right - best%state%h0)
       end if
       trial = best
-      call steps%go(next, trial, event)
+      call steps%step_to(next, trial, event)
       if (event%jumped .or. .not. event%converged) then
         ! The stretch does not reach there, but to the jump, where its tension may be largest.
         if (event%jumped) next = event%jump_h0
@@ -215,10 +215,10 @@ contains
   !> before it, with every jump of the contact edge located: the tension is largest just before one.
   subroutine search_jump_by_jump(self, steps, stretch)
     class(tension_search_t), intent(inout) :: self
-    class(quasi_static_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     type(stretch_t), intent(in) :: stretch
-    type(position_t) :: position, best
-    type(event_t) :: event
+    type(branch_point_t) :: position, best
+    type(step_result_t) :: event
     real(wp) :: start
     integer :: i, count
 
@@ -230,7 +230,7 @@ contains
     start = position%state%h0
     count = ceiling(abs(stretch%after - start)/short_step)
     do i = 1, count
-      call steps%go(start + (stretch%after - start)*i/count, position, event)
+      call steps%step_to(start + (stretch%after - start)*i/count, position, event)
       if (.not. event%converged .or. event%reason /= '') exit
       call self%note_jump(steps, event)
       if (position%state%load < best%state%load) best = position

@@ -6,7 +6,7 @@
 !> the edge stays at 1, and c is the coordinate. Both coordinates are monotone along the path.
 module edge_locked
   use kinds, only: wp, pi
-  use problem, only: problem_t, neck_width
+  use dimensionless_problem, only: problem_t, neck_width
   use discretisation, only: discretisation_t
   use panels, only: new_panel_grid, graded_ends
   use equilibrium, only: state_t
@@ -49,8 +49,8 @@ contains
 
   !> Meshes for H0 from h0_high down to h0_low. shape_only leaves the kernels out, to learn how
   !> large they would be.
-  function new_mesh_pair(this, h0_high, h0_low, resolution, shape_only) result(pair)
-    type(problem_t), intent(in) :: this
+  function new_mesh_pair(problem, h0_high, h0_low, resolution, shape_only) result(pair)
+    type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, h0_low
     type(resolution_t), intent(in) :: resolution
     logical, intent(in), optional :: shape_only
@@ -58,24 +58,24 @@ contains
     real(wp) :: feature, widest
     logical :: elastic
 
-    elastic = .not. this%rigid
+    elastic = .not. problem%rigid
     if (present(shape_only)) elastic = elastic .and. .not. shape_only
-    pair%traceable = this%law%adhesion > 0 .or. this%rigid
-    if (.not. pair%traceable) pair%level = contact_level(this)
-    widest = largest_radius(this, h0_low, pair%level)
-    feature = smallest_feature(this, 1.0_wp)
-    pair%passage = min(0.6_wp*neck_width(this), 0.4_wp)
+    pair%traceable = problem%law%adhesion > 0 .or. problem%rigid
+    if (.not. pair%traceable) pair%level = contact_level(problem)
+    widest = largest_radius(problem, h0_low, pair%level)
+    feature = smallest_feature(problem, 1.0_wp)
+    pair%passage = min(0.6_wp*neck_width(problem), 0.4_wp)
     ! The neglected pressure of order rho^-6 lowers the gap by about 17 coupling/reach^5.
-    pair%reach = max(sqrt(2*max(this%law%range - min(h0_low, 0.0_wp), 1.0_wp)), &
-      (17*this%law%adhesion*this%coupling**(1.0_wp/3)/resolution%accuracy)**0.2_wp, &
-      4*this%law%adhesion*widest, sqrt(100*this%law%adhesion*max(h0_high, 1.0_wp)))
+    pair%reach = max(sqrt(2*max(problem%law%range - min(h0_low, 0.0_wp), 1.0_wp)), &
+      (17*problem%law%adhesion*problem%coupling**(1.0_wp/3)/resolution%accuracy)**0.2_wp, &
+      4*problem%law%adhesion*widest, sqrt(100*problem%law%adhesion*max(h0_high, 1.0_wp)))
     pair%reach = resolution%farther*pair%reach
     associate (fineness => resolution%fineness, order => resolution%order)
       if (pair%traceable) pair%grid(approach) = new_panel_grid(0.0_wp, &
         graded_ends(0.0_wp, pair%reach, fineness*feature, 1.0_wp, pair%reach), order, elastic)
-      if (this%law%edge_gap > 0 .and. .not. this%rigid .or. .not. pair%traceable) &
+      if (problem%law%edge_gap > 0 .and. .not. problem%rigid .or. .not. pair%traceable) &
         pair%grid(contact) = new_locked_grid(pair%reach/min(pair%passage, 1.0_wp), &
-        fineness*smallest_feature(this, widest)/widest, order, elastic)
+        fineness*smallest_feature(problem, widest)/widest, order, elastic)
     end associate
   end function new_mesh_pair
 
@@ -92,28 +92,28 @@ contains
 
   !> Contact radius that JKR theory (11) gives at H0, with a margin of a fifth; for a law without
   !> adhesion that of Hertz, beginning at its level.
-  pure real(wp) function largest_radius(this, h0, level) result(c)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function largest_radius(problem, h0, level) result(c)
+    type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0, level
     integer :: step
 
-    if (this%law%adhesion <= 0) then
+    if (problem%law%adhesion <= 0) then
       c = hertz_scale(level, h0)
       return
     end if
     c = 1
     do step = 1, 200
-      c = sqrt(max(1 - h0, 0.0_wp) + sqrt(4*pi*this%coupling*this%law%adhesion*c))
+      c = sqrt(max(1 - h0, 0.0_wp) + sqrt(4*pi*problem%coupling*problem%law%adhesion*c))
     end do
     c = max(1.0_wp, 1.2_wp*c)
   end function largest_radius
 
   !> An H0 beyond which no contact reaches: the jump out of contact at fixed displacement of JKR
   !> theory, the extremum of (11), with a margin of a fifth.
-  pure real(wp) function beyond_contact(this)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function beyond_contact(problem)
+    type(problem_t), intent(in) :: problem
 
-    beyond_contact = 1.2_wp*(1 + 3*(pi*this%coupling*this%law%adhesion/4)**(2.0_wp/3))
+    beyond_contact = 1.2_wp*(1 + 3*(pi*problem%coupling*problem%law%adhesion/4)**(2.0_wp/3))
   end function beyond_contact
 
   !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins
@@ -126,17 +126,17 @@ contains
 
   !> The gap at which the pressure over a unit radius deforms the bodies by one unit, by bisection
   !> of a law that decreases with the gap.
-  pure real(wp) function contact_level(this) result(level)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function contact_level(problem) result(level)
+    type(problem_t), intent(in) :: problem
     real(wp) :: low, high, pressure(1)
     integer :: step
 
-    low = this%law%smallest_gap
-    high = this%law%range + 500
+    low = problem%law%smallest_gap
+    high = problem%law%range + 500
     do step = 1, 100
       level = 0.5_wp*(low + high)
-      pressure = this%law%pressure([level])
-      if (2*this%coupling*pressure(1) > 1) then
+      pressure = problem%law%pressure([level])
+      if (2*problem%coupling*pressure(1) > 1) then
         low = level
       else
         high = level
@@ -148,12 +148,12 @@ contains
   !> that is wide, the half-width of the pressure between spheres near contact and the boundary
   !> layer of a Hertz contact, whose gap opens as sqrt(c) s^(3/2) with the distance s from the edge
   !> and changes the repulsion over one repulsion length.
-  pure real(wp) function smallest_feature(this, c)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function smallest_feature(problem, c)
+    type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
 
-    smallest_feature = max(finest*max(c, 1.0_wp), min(neck_width(this), 0.5_wp, &
-      (this%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3)))
+    smallest_feature = max(finest*max(c, 1.0_wp), min(neck_width(problem), 0.5_wp, &
+      (problem%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3)))
   end function smallest_feature
 
   !> The state on another mesh (or a shorter or longer part of the same), at the scale given: gaps

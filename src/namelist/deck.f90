@@ -4,7 +4,7 @@
 !> for the caller, who reports it with `mistake` so that it carries file, line, group and key too.
 module deck
   use failure, only: failure_t
-  use deck_text, only: lower, guess, listing, clip
+  use text, only: lower, guess, listing, clip
   use deck_source, only: load_source
   use deck_scan, only: span_t, entry_t, scan_t, scan_deck
   use deck_keys, only: key_spec, ignored_group, allowed, names_of

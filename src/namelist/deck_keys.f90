@@ -1,7 +1,7 @@
 !> The table that describes every group and key a deck may hold, and its printed form.
 module deck_keys
   use kinds, only: wp
-  use deck_text, only: brief, listing
+  use text, only: brief, listing
   implicit none
   private
   public :: key_spec, group_row, ignored_group

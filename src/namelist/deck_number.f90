@@ -1,7 +1,7 @@
 !> Numbers and logicals as they stand in a deck: strict readers for one token.
 module deck_number
   use kinds, only: wp, long
-  use deck_text, only: lower, clip
+  use text, only: lower, clip
   implicit none
   private
   public :: parse_real, parse_integer, parse_logical

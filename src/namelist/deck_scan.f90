@@ -4,7 +4,7 @@
 !> truncated strings and text after `/` in silence, and reports the rest without a line.
 module deck_scan
   use failure, only: failure_t
-  use deck_text, only: lower
+  use text, only: lower
   use deck_source, only: source_t
   use deck_token, only: skip_blank, next_is_equals, take_word, take_string, is_name
   implicit none

@@ -6,7 +6,7 @@ module deck_source
   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
   use failure, only: failure_t, fail, bad_input, file_trouble
   use c_library, only: c_open_input, c_read, c_close, sort_of, reason, not_there
-  use deck_text, only: printable
+  use text, only: printable
   implicit none
   private
   public :: source_t, load_source

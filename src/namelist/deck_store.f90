@@ -2,7 +2,7 @@
 module deck_store
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
-  use deck_text, only: lower, quoted, brief, guess, listing, clip
+  use text, only: lower, quoted, brief, guess, listing, clip
   use deck_source, only: source_t
   use deck_keys, only: key_spec, group_row, real_value, real_list, integer_value, allowed
   use deck_values, only: value_t, unset, assumed, given, outside, assignment_text
@@ -196,8 +196,8 @@ contains
     self%values(row)%status = assumed
   end subroutine assume_text
 
-  !> Row of the key `path` ("force.hamaker"). Fails where the table has no such key, the key does not
-  !> hold numbers or the deck lacks its group; `error` then says so without a place in the file,
+  !> Row of the key `path` ("force.hamaker"). Fails where the table has no such key, the key does
+  !> not hold numbers or the deck lacks its group; `error` then says so without a place in the file,
   !> which is the caller's to add.
   subroutine find_number(self, path, row, error)
     class(deck_t), intent(in) :: self
@@ -246,8 +246,8 @@ contains
     end do
   end function numbers_of
 
-  !> Gives the key `path` another value (a list: this one value), as if the deck said so. Fails as `find_number` does and
-  !> where the value is out of range.
+  !> Gives the key `path` another value (a list: this one value), as if the deck said so. Fails as
+  !> `find_number` does and where the value is out of range.
   subroutine set_real(self, path, value, error)
     class(deck_t), intent(inout) :: self
     character(len=*), intent(in) :: path

@@ -1,7 +1,7 @@
 !> The smallest pieces of a deck: blanks and comments, words, strings.
 module deck_token
   use failure, only: failure_t
-  use deck_text, only: lower
+  use text, only: lower
   use deck_source, only: source_t
   implicit none
   private

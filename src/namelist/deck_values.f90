@@ -2,7 +2,7 @@
 !> table, and written again.
 module deck_values
   use kinds, only: wp
-  use deck_text, only: lower, quoted, unquoted, full, guess, clip
+  use text, only: lower, quoted, unquoted, full, guess, clip
   use deck_number, only: parse_real, parse_integer, parse_logical
   use deck_source, only: source_t
   use deck_scan, only: span_t

@@ -3,15 +3,15 @@
 !> show in the derivative of h0 along the path, which between them has the other sign.
 module hidden_folds
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use equilibrium, only: state_t, cost_t
   use solver_options, only: solver_options_t
-  use anderson, only: frozen_t
+  use anderson, only: frozen_jacobian_t
   use edge_locked, only: mesh_pair_t
   use interpolation, only: polynomial_slope
-  use extremum, only: extremum_t
-  use tangent, only: path_slopes
-  use tracer, only: state_at, path_control
+  use path_extremum, only: extremum_t
+  use path_slopes, only: slopes_along_path
+  use continuation, only: state_at, path_control
   implicit none
   private
   public :: find_hidden_folds
@@ -29,8 +29,8 @@ contains
 
   !> The two folds between the last three of some states of a path, along which h0 goes one way;
   !> none where there are none. Coordinates run one way.
-  subroutine find_hidden_folds(this, pair, mesh, coordinate, states, options, folds, cost)
-    type(problem_t), intent(in) :: this
+  subroutine find_hidden_folds(problem, pair, mesh, coordinate, states, options, folds, cost)
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair
     integer, intent(in) :: mesh
     real(wp), intent(in) :: coordinate(:)
@@ -38,7 +38,7 @@ contains
     type(solver_options_t), intent(in) :: options
     type(extremum_t), allocatable, intent(out) :: folds(:)
     type(cost_t), intent(inout) :: cost
-    type(frozen_t) :: frozen
+    type(frozen_jacobian_t) :: frozen
     type(extremum_t) :: first, second
     real(wp) :: begin, finish, sense, mean, s, least, value, width, middle, beside(2)
     integer :: n, k, round
@@ -113,8 +113,9 @@ contains
       logical :: fine
 
       derivative = 0
-      call state_at(this, pair, mesh, s, coordinate, states, options, frozen, state, fine, cost)
-      if (fine) call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), state, &
+      call state_at(problem, pair, mesh, s, coordinate, states, options, frozen, state, fine, cost)
+      if (fine) call slopes_along_path(problem, pair%grid(mesh), path_control(problem, mesh, s), &
+        state, &
         frozen, h0_slope, load_slope, fine, cost)
       lost = lost .or. .not. fine
       if (.not. fine) return

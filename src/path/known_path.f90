@@ -1,15 +1,15 @@
 !> The equilibrium path as an experiment needs it: traced as far as the experiment goes, with its
-!> stable pieces, on which a quasi-static experiment at controlled h0 moves, and where the bodies land
-!> when it leaves one over a fold.
+!> stable pieces, on which a quasi-static experiment at controlled h0 moves, and where the bodies
+!> land when it leaves one over a fold.
 module known_path
   use kinds, only: wp
   use listener, only: listener_t
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use equilibrium, only: state_t, cost_t, lost_in_rounding, beyond_rounding
   use solver_options, only: solver_options_t
-  use anderson, only: frozen_t
+  use anderson, only: frozen_jacobian_t
   use edge_locked, only: mesh_pair_t, approach, contact, largest_radius
-  use tracer, only: tracer_t, new_tracer
+  use continuation, only: continuation_t, new_continuation
   use traced_path, only: traced_path_t, extend, collapsed
   use reported, only: error_t, measure_t
   use solve_at_h0, only: neighbours_t, neighbours_of, solve_between
@@ -61,8 +61,8 @@ contains
 
   !> Traces the path from a state far from contact, on the mesh for the approach, until it is stable
   !> at h0_low; into_contact: until it is also on the mesh for contact.
-  subroutine trace(this, pair, options, start, h0_low, into_contact, listener, known, cost)
-    type(problem_t), intent(in) :: this
+  subroutine trace(problem, pair, options, start, h0_low, into_contact, listener, known, cost)
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair
     type(solver_options_t), intent(in) :: options
     type(state_t), intent(in) :: start
@@ -71,23 +71,23 @@ contains
     class(listener_t), intent(inout) :: listener
     type(known_path_t), intent(inout) :: known
     type(cost_t), intent(inout) :: cost
-    type(tracer_t) :: walker
+    type(continuation_t) :: walker
     type(solver_options_t) :: for_path
     character(len=40) :: so_far
     logical :: lost, blind, finished
     integer :: k
 
     ! Where rounding hides the contact the path is of use up to its first fold.
-    blind = lost_in_rounding(this, largest_radius(this, h0_low, pair%level))
+    blind = lost_in_rounding(problem, largest_radius(problem, h0_low, pair%level))
     for_path = options
     for_path%tolerance = min(options%tolerance, path_tolerance)
-    walker = new_tracer(this, start, approach, path_step)
+    walker = new_continuation(problem, start, approach, path_step)
     finished = .false.
     do while (known%ends_because == '' .and. .not. finished)
-      call extend(known%path, walker, this, pair, for_path, lost, cost)
+      call extend(known%path, walker, problem, pair, for_path, lost, cost)
       write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
       call listener%hear(trim(so_far))
-      known%fallen = collapsed(this, known%path)
+      known%fallen = collapsed(problem, known%path)
       if (lost .or. known%path%held >= longest) then
         known%ends_because = 'the equilibrium path was lost: no step, however small, converged'
       else if (known%fallen) then
@@ -106,8 +106,8 @@ contains
     known%piece = pieces_of(known%path)
     allocate (known%inward(size(known%piece)), known%outward(size(known%piece)))
     do k = 1, size(known%piece)
-      call land(this, pair, known, k, .true., options, known%inward(k), cost)
-      call land(this, pair, known, k, .false., options, known%outward(k), cost)
+      call land(problem, pair, known, k, .true., options, known%inward(k), cost)
+      call land(problem, pair, known, k, .false., options, known%outward(k), cost)
     end do
   end subroutine trace
 
@@ -139,8 +139,8 @@ contains
     end do
   end function pieces_of
 
-  !> The piece nearest to `from` that a jump at h0 leads to: inward, the later ones, or outward; 0 if
-  !> there is none.
+  !> The piece nearest to `from` that a jump at h0 leads to: inward, the later ones, or outward; 0
+  !> if there is none.
   pure integer function piece_containing(pieces, from, inward, h0) result(found)
     type(stable_piece_t), intent(in) :: pieces(:)
     integer, intent(in) :: from
@@ -173,8 +173,8 @@ contains
   end function interval_at
 
   !> Where the bodies land that leave a piece over the fold at its inner or outer end.
-  subroutine land(this, pair, known, from, inward, options, landing, cost)
-    type(problem_t), intent(in) :: this
+  subroutine land(problem, pair, known, from, inward, options, landing, cost)
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: from
@@ -183,7 +183,7 @@ contains
     type(landing_t), intent(out) :: landing
     type(cost_t), intent(inout) :: cost
     type(neighbours_t) :: near
-    type(frozen_t) :: frozen
+    type(frozen_jacobian_t) :: frozen
     real(wp) :: h0
 
     associate (left => known%piece(from))
@@ -195,7 +195,8 @@ contains
     if (landing%piece == 0) return
     near = neighbours_of(known%path, interval_at(known, landing%piece, h0))
     landing%mesh = near%mesh
-    call solve_between(this, pair, near, h0, options, frozen, landing%coordinate, landing%state, &
+    call solve_between(problem, pair, near, h0, options, frozen, landing%coordinate, &
+      landing%state, &
       landing%converged, cost)
   end subroutine land
 

@@ -4,7 +4,7 @@
 !> integral along the path is needed.
 module potential_energy
   use kinds, only: wp, pi
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t, load_reach
   use quadrature, only: gauss_legendre
@@ -20,8 +20,8 @@ contains
   !> 2 pi Int [e(H) + P (H - H0 - rho^2/2)/2] rho drho in units of load times length: e is the
   !> energy of the surface force per area, and the bodies have yielded by H - H0 - rho^2/2.
   !> uncertainty: what rounding, and a residual of the equations, leave of it.
-  subroutine energy_of(this, grid, state, energy, uncertainty)
-    type(problem_t), intent(in) :: this
+  subroutine energy_of(problem, grid, state, energy, uncertainty)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: energy, uncertainty
@@ -29,7 +29,7 @@ contains
     real(wp), dimension(size(state%gap)) :: of_surface, of_bodies
 
     associate (n => size(state%gap), c => state%scale)
-      of_surface = c**2*grid%weight(:n)*this%law%energy(state%gap)
+      of_surface = c**2*grid%weight(:n)*problem%law%energy(state%gap)
       of_bodies = c**2*grid%weight(:n)*0.5_wp*state%pressure* &
         (state%gap - state%h0 - 0.5_wp*(c*grid%x(:n))**2)
       uncertainty = 2*pi*(epsilon(1.0_wp)*sum(abs(of_surface) + abs(of_bodies)) + &
@@ -39,7 +39,7 @@ contains
     end associate
     call gauss_legendre(node, weight)
     energy = 2*pi*(sum(of_surface) + sum(of_bodies) + &
-      last*sum(weight*this%law%energy(last/node)/node**2))
+      last*sum(weight*problem%law%energy(last/node)/node**2))
   end subroutine energy_of
 
 end module potential_energy

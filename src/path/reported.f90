@@ -4,18 +4,18 @@ module reported
   use equilibrium, only: control_t, state_t
   implicit none
   private
-  public :: witness_t, error_t, measure_t, reported_t, reported_state, &
+  public :: error_probe_t, error_t, measure_t, reported_t, reported_state, &
     add_reported, relative_error
 
-  !> A state at a given h0, and what was prescribed there; solved again on a finer mesh, it tells the
-  !> error of the numbers that are reported of it.
-  type :: witness_t
+  !> A state at a given h0, and what was prescribed there; solved again on a finer mesh, it tells
+  !> the error of the numbers that are reported of it.
+  type :: error_probe_t
     integer :: mesh = 1
     type(control_t) :: control
     type(state_t) :: state
-  end type witness_t
+  end type error_probe_t
 
-  !> What a state is reported by, in the units of `problem`.
+  !> What a state is reported by, in the units of `dimensionless_problem`.
   type :: measure_t
     real(wp) :: h0 = 0, displacement = 0, load = 0, energy = 0
   end type measure_t
@@ -25,14 +25,14 @@ module reported
     real(wp) :: h0 = 0, displacement = 0, load = 0, profile = 0
   end type error_t
 
-  !> A state that numbers are reported of, in the units of `problem`, and where it comes from: a
-  !> point of the traced path, or the landing after a jump over a point, or else a state at a given
-  !> h0, which is on the path or not.
+  !> A state that numbers are reported of, in the units of `dimensionless_problem`, and where it
+  !> comes from: a point of the traced path, or the landing after a jump over a point, or else a
+  !> state at a given h0, which is on the path or not.
   type :: reported_t
     real(wp) :: h0 = 0, displacement = 0, load = 0
     integer :: point = 0
     logical :: landing = .false.
-    type(witness_t), allocatable :: witness
+    type(error_probe_t), allocatable :: witness
     type(error_t), allocatable :: error
   end type reported_t
 
@@ -43,7 +43,7 @@ contains
 
   !> A witness's state as one that is reported.
   pure function reported_state(witness) result(reported)
-    type(witness_t), intent(in) :: witness
+    type(error_probe_t), intent(in) :: witness
     type(reported_t) :: reported
 
     associate (state => witness%state)

@@ -2,14 +2,14 @@
 !> that h0 is met by moving along it, however near a fold is.
 module solve_at_h0
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use interpolation, only: polynomial_value
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, cost_t, residual_floor, at_h0_with_edge
   use solver_options, only: solver_options_t, tightened
-  use anderson, only: frozen_t, solve_anderson
+  use anderson, only: frozen_jacobian_t, solve_anderson
   use edge_locked, only: mesh_pair_t, contact
-  use tracer, only: state_at, between, coordinate_of
+  use continuation, only: state_at, between, coordinate_of
   use traced_path, only: traced_path_t
   implicit none
   private
@@ -94,13 +94,13 @@ contains
   !> says where, the state there is solved and joins them, and so on; every other round halves the
   !> piece where that gains little. s: its coordinate. Outside the piece, which is what rounding may
   !> ask for, it is the nearer end.
-  subroutine solve_between(this, pair, near, h0, options, frozen, s, state, converged, cost)
-    type(problem_t), intent(in) :: this
+  subroutine solve_between(problem, pair, near, h0, options, frozen, s, state, converged, cost)
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair
     type(neighbours_t), intent(inout) :: near
     real(wp), intent(in) :: h0
     type(solver_options_t), intent(in) :: options
-    type(frozen_t), intent(inout) :: frozen
+    type(frozen_jacobian_t), intent(inout) :: frozen
     real(wp), intent(out) :: s
     type(state_t), intent(out) :: state
     logical, intent(out) :: converged
@@ -127,30 +127,31 @@ contains
         width = abs(at(2) - at(1))
         if (abs(s - at(1)) <= 0 .or. abs(s - at(2)) <= 0) exit
       end associate
-      call state_at(this, pair, near%mesh, s, near%coordinate(:near%held), &
+      call state_at(problem, pair, near%mesh, s, near%coordinate(:near%held), &
         near%state(:near%held), tightened(options), frozen, trial, converged, cost)
       if (.not. (converged .or. trial%residual <= options%tolerance)) exit
       if (abs(trial%h0 - h0) < abs(state%h0 - h0)) state = trial
       call join(near, s, trial, (trial%h0 - h0)*(near%state(near%lower)%h0 - h0) > 0)
     end do
-    s = coordinate_of(this, near%mesh, state)
-    if (abs(state%h0 - h0) > max(options%tolerance, residual_floor(this, state))) &
-      call finish_at_h0(this, pair%grid(near%mesh), near%mesh, h0, options, frozen, s, state, cost)
+    s = coordinate_of(problem, near%mesh, state)
+    if (abs(state%h0 - h0) > max(options%tolerance, residual_floor(problem, state))) &
+      call finish_at_h0(problem, pair%grid(near%mesh), near%mesh, h0, options, frozen, s, state, &
+      cost)
     ! What is left of the way is rounding; the equations at h0 itself are off by it.
     state%residual = max(state%residual, abs(state%h0 - h0))
-    converged = state%residual <= max(options%tolerance, residual_floor(this, state))
+    converged = state%residual <= max(options%tolerance, residual_floor(problem, state))
     state%h0 = h0
   end subroutine solve_between
 
   !> Where the contact is wide and far from a fold, h0 changes by more than the tolerance with the
   !> last digit of the coordinate; there it can be prescribed.
-  subroutine finish_at_h0(this, grid, mesh, h0, options, frozen, s, state, cost)
-    type(problem_t), intent(in) :: this
+  subroutine finish_at_h0(problem, grid, mesh, h0, options, frozen, s, state, cost)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: mesh
     real(wp), intent(in) :: h0
     type(solver_options_t), intent(in) :: options
-    type(frozen_t), intent(inout) :: frozen
+    type(frozen_jacobian_t), intent(inout) :: frozen
     real(wp), intent(in) :: s
     type(state_t), intent(inout) :: state
     type(cost_t), intent(inout) :: cost
@@ -161,8 +162,8 @@ contains
     control%value = h0
     if (mesh == contact) control%kind = at_h0_with_edge
     trial = state
-    call solve_anderson(this, grid, control, options, frozen, trial, arrived, cost)
-    if (arrived .and. abs(coordinate_of(this, mesh, trial) - s) < same_place) state = trial
+    call solve_anderson(problem, grid, control, options, frozen, trial, arrived, cost)
+    if (arrived .and. abs(coordinate_of(problem, mesh, trial) - s) < same_place) state = trial
   end subroutine finish_at_h0
 
   !> Adds a state inside the piece; with_lower: it takes the place of the piece's lower end, else of

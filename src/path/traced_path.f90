@@ -10,13 +10,13 @@
 !> unstable.
 module traced_path
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use equilibrium, only: state_t, cost_t
   use solver_options, only: solver_options_t, tightened
   use edge_locked, only: mesh_pair_t, approach, contact
   use reported, only: error_t, measure_t
-  use extremum, only: extremum_t, polish_extremum, of_h0, of_load
-  use tracer, only: tracer_t
+  use path_extremum, only: extremum_t, polish_extremum, of_h0, of_load
+  use continuation, only: continuation_t
   use hidden_folds, only: find_hidden_folds
   implicit none
   private
@@ -25,7 +25,7 @@ module traced_path
   !> One equilibrium of the path.
   type :: path_point_t
     type(state_t) :: state
-    !> The mesh that it was solved on and its coordinate there (`tracer`).
+    !> The mesh that it was solved on and its coordinate there (`continuation`).
     integer :: mesh = approach
     real(wp) :: coordinate = 0
     !> Unstable modes from here to the next point.
@@ -57,14 +57,14 @@ module traced_path
 contains
 
   !> Whether the newest state of a path is one of collapse.
-  pure logical function collapsed(this, path)
-    type(problem_t), intent(in) :: this
+  pure logical function collapsed(problem, path)
+    type(problem_t), intent(in) :: problem
     type(traced_path_t), intent(in) :: path
     real(wp) :: scale
     integer :: first
 
     collapsed = .false.
-    if (this%law%edge_gap > 0) return
+    if (problem%law%edge_gap > 0) return
     scale = 1
     first = findloc(path%point(:path%held)%fold, .true., 1)
     if (first > 0) scale = path%point(first)%state%axis_gap
@@ -114,10 +114,10 @@ contains
   !> passed. An extremum between the two newest points is seen only with the next one, so what lies
   !> before the newest but one is final. A new path begins with the tracer's own newest state. lost:
   !> no step, however small, converged.
-  subroutine extend(path, walker, this, pair, options, lost, cost)
+  subroutine extend(path, walker, problem, pair, options, lost, cost)
     type(traced_path_t), intent(inout) :: path
-    type(tracer_t), intent(inout) :: walker
-    type(problem_t), intent(in) :: this
+    type(continuation_t), intent(inout) :: walker
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
@@ -125,20 +125,20 @@ contains
     integer :: n
 
     if (path%held == 0) call append(path, walker)
-    call walker%advance(this, pair, options, lost, cost)
+    call walker%advance(problem, pair, options, lost, cost)
     if (lost) return
     call append(path, walker)
     n = walker%held
     if (n >= 3) then
       if (surrounded(walker%past(n - 2:n)%h0)) then
-        call insert_extremum(path, walker, of_h0, this, pair, options, lost, cost)
+        call insert_extremum(path, walker, of_h0, problem, pair, options, lost, cost)
       else if (.not. any(path%point(max(1, path%held - 4):path%held)%fold)) then
-        call insert_hidden(path, walker, this, pair, options, cost)
+        call insert_hidden(path, walker, problem, pair, options, cost)
       end if
       if (.not. lost .and. surrounded(walker%past(n - 2:n)%load)) &
-        call insert_extremum(path, walker, of_load, this, pair, options, lost, cost)
+        call insert_extremum(path, walker, of_load, problem, pair, options, lost, cost)
     end if
-    if (.not. lost) call change_mesh(path, walker, this, pair, options, lost, cost)
+    if (.not. lost) call change_mesh(path, walker, problem, pair, options, lost, cost)
   end subroutine extend
 
   !> Whether the middle one of three values is an extremum.
@@ -151,7 +151,7 @@ contains
   !> Makes the tracer's newest state the last point.
   subroutine append(path, walker)
     type(traced_path_t), intent(inout) :: path
-    type(tracer_t), intent(in) :: walker
+    type(continuation_t), intent(in) :: walker
     type(path_point_t) :: point
 
     if (path%held > 0) point%modes = path%point(path%held)%modes
@@ -162,10 +162,10 @@ contains
   end subroutine append
 
   !> Lets the tracer change its mesh, and keeps what it took along as twins.
-  subroutine change_mesh(path, walker, this, pair, options, lost, cost)
+  subroutine change_mesh(path, walker, problem, pair, options, lost, cost)
     type(traced_path_t), intent(inout) :: path
-    type(tracer_t), intent(inout) :: walker
-    type(problem_t), intent(in) :: this
+    type(continuation_t), intent(inout) :: walker
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
@@ -176,7 +176,7 @@ contains
     mesh = walker%mesh
     n = walker%held
     before = walker%coordinate([max(1, n - 1), n])
-    call walker%change_mesh(this, pair, options, lost, cost)
+    call walker%change_mesh(problem, pair, options, lost, cost)
     if (lost .or. walker%mesh == mesh) return
     ! One or both of the last two, the newest last.
     taken = walker%held
@@ -189,11 +189,11 @@ contains
   end subroutine change_mesh
 
   !> Polishes the extremum that the walker's last three states surround and puts it in its place.
-  subroutine insert_extremum(path, walker, quantity, this, pair, options, lost, cost)
+  subroutine insert_extremum(path, walker, quantity, problem, pair, options, lost, cost)
     type(traced_path_t), intent(inout) :: path
-    type(tracer_t), intent(in) :: walker
+    type(continuation_t), intent(in) :: walker
     integer, intent(in) :: quantity
-    type(problem_t), intent(in) :: this
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
@@ -201,7 +201,7 @@ contains
     type(extremum_t) :: found
 
     associate (n => walker%held)
-      call polish_extremum(this, pair, walker%mesh, quantity, walker%coordinate(:n), &
+      call polish_extremum(problem, pair, walker%mesh, quantity, walker%coordinate(:n), &
         walker%past(:n), tightened(options), found, lost, cost)
     end associate
     if (lost) return
@@ -209,10 +209,10 @@ contains
   end subroutine insert_extremum
 
   !> Puts folds that the walker's last three states pass over in their places.
-  subroutine insert_hidden(path, walker, this, pair, options, cost)
+  subroutine insert_hidden(path, walker, problem, pair, options, cost)
     type(traced_path_t), intent(inout) :: path
-    type(tracer_t), intent(in) :: walker
-    type(problem_t), intent(in) :: this
+    type(continuation_t), intent(in) :: walker
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair
     type(solver_options_t), intent(in) :: options
     type(cost_t), intent(inout) :: cost
@@ -220,7 +220,7 @@ contains
     integer :: i
 
     associate (n => walker%held)
-      call find_hidden_folds(this, pair, walker%mesh, walker%coordinate(:n), walker%past(:n), &
+      call find_hidden_folds(problem, pair, walker%mesh, walker%coordinate(:n), walker%past(:n), &
         tightened(options), folds, cost)
     end associate
     do i = 1, size(folds)
@@ -231,7 +231,7 @@ contains
   !> Puts an extremum among the last points, by its coordinate on the walker's mesh.
   subroutine put(path, walker, quantity, found)
     type(traced_path_t), intent(inout) :: path
-    type(tracer_t), intent(in) :: walker
+    type(continuation_t), intent(in) :: walker
     integer, intent(in) :: quantity
     type(extremum_t), intent(in) :: found
     type(path_point_t) :: point

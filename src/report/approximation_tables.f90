@@ -3,7 +3,7 @@
 module approximation_tables
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use slow_deformation, only: by_quadrature, closed_form, attraction_only, has_form, &
     slow_displacement, slow_load
   use slow_jumps, only: gap_of_h0, criterion_gap, equation_37_gap, fold_gap

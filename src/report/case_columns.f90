@@ -3,7 +3,7 @@
 module case_columns
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
-  use deck_text, only: brief
+  use text, only: brief
   use scene_groups, only: scene_t
   use summary, only: summary_t
   implicit none

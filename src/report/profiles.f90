@@ -2,7 +2,7 @@
 module profiles
   use kinds, only: wp
   use failure, only: failure_t
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t
   use tables, only: table_t, cells

@@ -7,7 +7,7 @@
 module results
   use kinds, only: wp
   use failure, only: failure_t, fail, file_trouble
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t, cost_t
   use records, only: record_t, observer_t, theory_row_t

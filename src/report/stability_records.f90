@@ -4,13 +4,13 @@
 module stability_records
   use kinds, only: wp
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t, cost_t
   use records, only: observer_t, record_t, stable_yes, stable_no, stable_unasked
   use journal, only: journal_t
-  use packing, only: packed_t
-  use packed_states, only: put_cost, take_cost
+  use byte_record, only: byte_record_t
+  use state_records, only: put_cost, take_cost
   use stability, only: smallest_eigenvalue, local_criterion, axis_criterion, unknown
   implicit none
   private
@@ -89,7 +89,7 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: eigenvalue
     logical, intent(out) :: certain
-    type(packed_t) :: record
+    type(byte_record_t) :: record
     logical :: known
 
     call self%journal%next_of(mark, record, known)

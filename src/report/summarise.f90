@@ -3,17 +3,17 @@
 module summarise
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
-  use problem, only: problem_t, tabor_parameter, surface_energy, largest_tension
+  use dimensionless_problem, only: problem_t, tabor_parameter, surface_energy, largest_tension
   use classical, only: jkr_pull_off, dmt_pull_off
   use maugis, only: maugis_lambda, maugis_pull_off
   use approximation_tables, only: jump_t, jumps_t, jumps_of
   use scene_groups, only: scene_t
-  use deck_text, only: brief
-  use outcome, only: outcome_t
+  use text, only: brief
+  use experiment_result, only: experiment_result_t
   use reported, only: reported_t
   use stepped_branch, only: branch_t
   use summary, only: summary_t
-  use judgement, only: judge_resolution, judge_accuracy, about
+  use quality_warnings, only: judge_resolution, judge_accuracy, short_number
   implicit none
   private
   public :: summary_of
@@ -24,7 +24,7 @@ contains
   function summary_of(scene, problem, outcome) result(summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
-    type(outcome_t), intent(in) :: outcome
+    type(experiment_result_t), intent(in) :: outcome
     type(summary_t) :: summary
     integer :: k
 
@@ -60,7 +60,8 @@ contains
     if (allocated(outcome%chosen%grid)) call judge_accuracy(scene, outcome, summary)
     if (outcome%chosen%options%stop_on_change .and. outcome%chosen%options%method == 'mixing') then
       call summary%warn('the iteration was stopped on a small change of the displacement, '// &
-        'which is not convergence: the largest residual left is '//about(summary%worst_residual)// &
+        'which is not convergence: the largest residual left is '// &
+        short_number(summary%worst_residual)// &
         ' lengths of the force law')
       ! Equations that were not asked to hold may hold all the same.
       summary%converged = ended_as_planned(outcome) .and. &
@@ -70,7 +71,7 @@ contains
 
   !> Whether every branch came to its end.
   pure logical function ended_as_planned(outcome) result(ended)
-    type(outcome_t), intent(in) :: outcome
+    type(experiment_result_t), intent(in) :: outcome
 
     ended = .true.
     if (allocated(outcome%path)) ended = outcome%path%reason == ''
@@ -159,8 +160,8 @@ contains
       summary%converged = .false.
       call summary%warn(name//': '//brief(real(branch%unconverged, wp))//' of '// &
         brief(real(branch%states, wp))//' states did not converge, the first at h0 = '// &
-        about(branch%first_unconverged*problem%length)//' m; the largest residual is '// &
-        about(branch%worst_residual)//' lengths of the force law')
+        short_number(branch%first_unconverged*problem%length)//' m; the largest residual is '// &
+        short_number(branch%worst_residual)//' lengths of the force law')
     end if
     if (branch%reason /= '') then
       summary%converged = .false.
@@ -252,7 +253,7 @@ contains
 
   subroutine take_path(problem, outcome, summary)
     type(problem_t), intent(in) :: problem
-    type(outcome_t), intent(in) :: outcome
+    type(experiment_result_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
 
     associate (path => outcome%path)
@@ -305,7 +306,7 @@ contains
   !> The energy lost in the cycle.
   subroutine take_energy(problem, outcome, summary)
     type(problem_t), intent(in) :: problem
-    type(outcome_t), intent(in) :: outcome
+    type(experiment_result_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
 
     if (.not. allocated(outcome%energy_lost)) return
@@ -316,7 +317,7 @@ contains
   !> Where the loading ends or, without one, the path.
   subroutine take_end(problem, outcome, summary)
     type(problem_t), intent(in) :: problem
-    type(outcome_t), intent(in) :: outcome
+    type(experiment_result_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
     type(reported_t), allocatable :: at
 

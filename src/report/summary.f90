@@ -3,7 +3,7 @@
 module summary
   use kinds, only: wp
   use equilibrium, only: cost_t
-  use assignments, only: line_t, assignment_of
+  use namelist_writer, only: line_t, assignment_of
   implicit none
   private
   public :: summary_t, summary_text
@@ -41,8 +41,8 @@ module summary
     !> The last equilibrium of the loading or, without one, of the path: [m], [m], [N].
     real(wp), allocatable :: end_h0, end_displacement, end_load, end_displacement_error, &
       end_load_error
-    !> Of each profile, in the order in which they were computed: of gaps in the law's lengths, or of
-    !> pressures over the largest, whichever is larger.
+    !> Of each profile, in the order in which they were computed: of gaps in the law's lengths, or
+    !> of pressures over the largest, whichever is larger.
     real(wp), allocatable :: profiles_error(:)
     !> Where approaching bodies jump in the approximation of slow deformation, by the criteria of
     !> `jumps_t`: h0 [m], the load [N] there; and the gap (37) itself [m].

@@ -3,7 +3,7 @@
 module tables
   use kinds, only: wp
   use failure, only: failure_t
-  use deck_text, only: full
+  use text, only: full
   use text_file, only: output_t, partial, plain
   implicit none
   private

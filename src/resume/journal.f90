@@ -12,7 +12,7 @@ module journal
   use failure, only: failure_t, fail, file_trouble
   use c_library, only: c_open_output, c_read, c_write, c_sync, c_close, c_size, c_go_to, &
     c_truncate, system_failure
-  use packing, only: packed_t, checksum
+  use byte_record, only: byte_record_t, checksum
   use clock, only: seconds
   implicit none
   private
@@ -58,7 +58,7 @@ contains
     class(journal_t), intent(inout) :: self
     character(len=*), intent(in) :: path, owner
     type(failure_t), allocatable, intent(out) :: error
-    type(packed_t) :: heading
+    type(byte_record_t) :: heading
 
     call start(self, path, 0_c_int, error)
     if (allocated(error)) return
@@ -75,7 +75,7 @@ contains
     character(len=*), intent(in) :: path, owner
     character(len=:), allocatable, intent(out) :: other
     type(failure_t), allocatable, intent(out) :: error
-    type(packed_t) :: record
+    type(byte_record_t) :: record
     integer(c_long) :: whole, first
     integer(c_int) :: status
     logical :: found
@@ -149,7 +149,7 @@ contains
   !> The next record of the earlier run; not found: there are no more, and `append` may begin.
   subroutine next(self, record, found)
     class(journal_t), intent(inout) :: self
-    type(packed_t), intent(inout) :: record
+    type(byte_record_t), intent(inout) :: record
     logical, intent(out) :: found
     integer(c_long) :: whole
 
@@ -168,7 +168,7 @@ contains
   subroutine next_of(self, mark, record, found)
     class(journal_t), intent(inout) :: self
     character(len=*), intent(in) :: mark
-    type(packed_t), intent(inout) :: record
+    type(byte_record_t), intent(inout) :: record
     logical, intent(out) :: found
     character(len=:), allocatable :: kind
 
@@ -192,7 +192,7 @@ contains
   !> has handed out all there were.
   subroutine append(self, record)
     class(journal_t), intent(inout) :: self
-    type(packed_t), intent(in) :: record
+    type(byte_record_t), intent(in) :: record
     integer(long) :: words(frame + record%held)
     character :: bytes(word*size(words))
     integer(c_int) :: status
@@ -230,7 +230,7 @@ contains
   !> file ends or what is there is not a whole record.
   subroutine read_frame(self, record, whole, found)
     class(journal_t), intent(inout) :: self
-    type(packed_t), intent(inout) :: record
+    type(byte_record_t), intent(inout) :: record
     integer(c_long), intent(inout) :: whole
     logical, intent(out) :: found
     integer(long) :: head(frame)

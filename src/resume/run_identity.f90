@@ -5,9 +5,9 @@ module run_identity
   use kinds, only: wp, long
   use build_info, only: version, compiler, blas, options
   use c_library, only: procedure_named, text_at
-  use deck_text, only: brief
+  use text, only: brief
   use deck_number, only: parse_real
-  use packing, only: checksum
+  use byte_record, only: checksum
   implicit none
   private
   public :: identity_of, difference_between

@@ -4,7 +4,7 @@
 module magnitudes
   use kinds, only: wp, pi
   use failure, only: failure_t
-  use deck_text, only: brief
+  use text, only: brief
   use deck, only: deck_t
   use scene_groups, only: scene_t
   implicit none

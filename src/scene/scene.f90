@@ -3,7 +3,7 @@ module scene
   use kinds, only: wp
   use failure, only: failure_t
   use bodies, only: composite_stiffness, compliance_shares
-  use deck_text, only: brief, quoted
+  use text, only: brief, quoted
   use deck, only: deck_t, read_deck
   use scene_keys, only: keys_of_scene
   use scene_groups, only: scene_t, bodies_t, force_t, loading_t, unloading_t, path_t, profiles_t, &

@@ -2,7 +2,7 @@
 module scene_ranges
   use kinds, only: wp
   use failure, only: failure_t
-  use deck_text, only: brief
+  use text, only: brief
   use deck, only: deck_t
   use scene_keys, only: most_steps
   use scene_groups, only: scene_t, range_t

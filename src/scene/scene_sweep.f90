@@ -2,7 +2,7 @@
 module scene_sweep
   use kinds, only: wp
   use failure, only: failure_t
-  use deck_text, only: brief
+  use text, only: brief
   use scene_groups, only: scene_t
   implicit none
   private

@@ -2,14 +2,14 @@
 !> Displacement (22) and load (23) then follow from the gap on the axis alone: for any law by
 !> quadrature, and in the paper's closed forms.
 !>
-!> Everything is in the units of `problem`. With c the coupling, delta = 2 sqrt(2) c J(h), where J
-!> is the integral of p(h')/sqrt(h' - h) over h' from h on.
+!> Everything is in the units of `dimensionless_problem`. With c the coupling, delta = 2 sqrt(2) c
+!> J(h), where J is the integral of p(h')/sqrt(h' - h) over h' from h on.
 module slow_deformation
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp, pi
   use exponential, only: exponential_t
   use lennard_jones, only: lennard_jones_t
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   implicit none
   private
   public :: by_quadrature, closed_form, attraction_only, has_form
@@ -22,12 +22,12 @@ module slow_deformation
 contains
 
   !> Whether the law has this form: a closed one is known, or it has the attraction of (35b).
-  pure logical function has_form(this, form)
-    type(problem_t), intent(in) :: this
+  pure logical function has_form(problem, form)
+    type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
 
     has_form = form == by_quadrature
-    select type (law => this%law)
+    select type (law => problem%law)
     type is (exponential_t)
       has_form = form /= attraction_only
     type is (lennard_jones_t)
@@ -37,40 +37,40 @@ contains
 
   !> delta = h(0) - h0 at a gap on the axis: (22), (31), (35a) or (35b). NaN where there is no such
   !> form.
-  elemental real(wp) function slow_displacement(this, form, gap) result(delta)
-    type(problem_t), intent(in) :: this
+  elemental real(wp) function slow_displacement(problem, form, gap) result(delta)
+    type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
     real(wp), intent(in) :: gap
 
-    delta = response(this, form, gap, .false.)
+    delta = response(problem, form, gap, .false.)
   end function slow_displacement
 
   !> The derivative of the displacement by the gap; h0 = gap - delta folds where it is 1.
-  elemental real(wp) function slow_slope(this, form, gap) result(slope)
-    type(problem_t), intent(in) :: this
+  elemental real(wp) function slow_slope(problem, form, gap) result(slope)
+    type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
     real(wp), intent(in) :: gap
 
-    slope = response(this, form, gap, .true.)
+    slope = response(problem, form, gap, .true.)
   end function slow_slope
 
   !> Load at a gap on the axis: Derjaguin's 2 pi E_s, (23), with the law's own energy for
   !> `by_quadrature`, else (32), (36a) or (36b). Exact for rigid bodies. NaN where there is no such
   !> form.
-  elemental real(wp) function slow_load(this, form, gap) result(load)
-    type(problem_t), intent(in) :: this
+  elemental real(wp) function slow_load(problem, form, gap) result(load)
+    type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
     real(wp), intent(in) :: gap
     real(wp) :: energy(1)
 
     if (form == by_quadrature) then
-      energy = this%law%energy([gap])
+      energy = problem%law%energy([gap])
       load = 2*pi*energy(1)
       return
     end if
     load = nan()
-    if (.not. has_form(this, form)) return
-    select type (law => this%law)
+    if (.not. has_form(problem, form)) return
+    select type (law => problem%law)
     type is (exponential_t)
       load = 2*pi*decay(gap)
     type is (lennard_jones_t)
@@ -79,22 +79,22 @@ contains
   end function slow_load
 
   !> 2 sqrt(2) c J(h) in this form, or with `of_slope` its derivative.
-  elemental real(wp) function response(this, form, gap, of_slope)
-    type(problem_t), intent(in) :: this
+  elemental real(wp) function response(problem, form, gap, of_slope)
+    type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
     real(wp), intent(in) :: gap
     logical, intent(in) :: of_slope
     real(wp) :: integral, near, far
 
     response = nan()
-    if (.not. has_form(this, form)) return
+    if (.not. has_form(problem, form)) return
     response = 0
-    if (.not. this%coupling > 0) return
+    if (.not. problem%coupling > 0) return
     integral = 0
     if (form == by_quadrature) then
-      integral = axis_integral(this, gap, of_slope)
+      integral = axis_integral(problem, gap, of_slope)
     else
-      select type (law => this%law)
+      select type (law => problem%law)
       type is (exponential_t)
         integral = merge(-sqrt(pi), sqrt(pi), of_slope)*decay(gap)
       type is (lennard_jones_t)
@@ -104,7 +104,7 @@ contains
         if (of_slope) integral = (2.5_wp*far - 8.5_wp*near)/gap
       end select
     end if
-    response = 2*sqrt(2.0_wp)*this%coupling*integral
+    response = 2*sqrt(2.0_wp)*problem%coupling*integral
   end function response
 
   !> J(h) by quadrature, or with `of_slope` the same integral of p', which is its derivative. With
@@ -112,8 +112,8 @@ contains
   !> falls exponentially or faster for algebraic and exponential laws alike, and the trapezoidal
   !> rule in t converges exponentially. The error is a few epsilon times the integral of the
   !> integrand's magnitude.
-  pure real(wp) function axis_integral(this, gap, of_slope) result(integral)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function axis_integral(problem, gap, of_slope) result(integral)
+    type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap
     logical, intent(in) :: of_slope
     !> Two rules that agree to this, one of twice as many points, leave nothing to be gained.
@@ -155,9 +155,9 @@ contains
       t = first + step*[(k, k=0, block - 1)]
       do
         if (of_slope) then
-          value = this%law%slope(gap + (scale*sinh(t))**2)
+          value = problem%law%slope(gap + (scale*sinh(t))**2)
         else
-          value = this%law%pressure(gap + (scale*sinh(t))**2)
+          value = problem%law%pressure(gap + (scale*sinh(t))**2)
         end if
         value = 2*scale*cosh(t)*value
         if (.not. t(1) > 0) value(1) = value(1)/2

@@ -1,11 +1,11 @@
 !> Gaps on the axis that the approximation of slowly varying deformation is asked for: the one at an
 !> h0, and those at which it lets approaching bodies jump.
 !>
-!> Everything is in the units of `problem`.
+!> Everything is in the units of `dimensionless_problem`.
 module slow_jumps
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp, pi
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use slow_deformation, only: attraction_only, has_form, slow_displacement, slow_slope
   implicit none
   private
@@ -25,62 +25,64 @@ contains
 
   !> The largest gap on the axis, not below `lowest`, at which the approximation has this h0; NaN
   !> where there is none.
-  pure real(wp) function gap_of_h0(this, form, h0, lowest) result(gap)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function gap_of_h0(problem, form, h0, lowest) result(gap)
+    type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
     real(wp), intent(in) :: h0, lowest
 
-    gap = largest_gap(this, form, at_h0, h0, lowest)
+    gap = largest_gap(problem, form, at_h0, h0, lowest)
   end function gap_of_h0
 
   !> The gap on the axis at which approaching bodies come to violate the stability criterion (29),
   !> 2 p' u(0)/p = -1, with the displacement of this form. NaN where they never do: the law does
   !> not attract, or too little for these bodies.
-  pure real(wp) function criterion_gap(this, form) result(gap)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function criterion_gap(problem, form) result(gap)
+    type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
 
     gap = nan()
-    if (this%law%adhesion > 0) gap = largest_gap(this, form, at_criterion, 0.0_wp, rest_of(this))
+    if (problem%law%adhesion > 0) gap = largest_gap(problem, form, at_criterion, 0.0_wp, &
+      rest_of(problem))
   end function criterion_gap
 
   !> The same for the attraction of Lennard-Jones alone, where p'/p = -3/h, in closed form, (37).
   !> NaN without attraction. It does not tell whether the full law has a jump.
-  pure real(wp) function equation_37_gap(this) result(gap)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function equation_37_gap(problem) result(gap)
+    type(problem_t), intent(in) :: problem
 
     gap = nan()
-    if (this%coupling > 0 .and. has_form(this, attraction_only)) &
-      gap = (6*sqrt(2.0_wp)*pi*this%coupling)**(2.0_wp/7)
+    if (problem%coupling > 0 .and. has_form(problem, attraction_only)) &
+      gap = (6*sqrt(2.0_wp)*pi*problem%coupling)**(2.0_wp/7)
   end function equation_37_gap
 
   !> The gap on the axis at which h0 = gap - delta has its fold: there approaching bodies lose their
   !> equilibrium in the approximation itself. NaN where there is none. With -delta = C h^(-5/2),
   !> (35b), it is at 1 = (5/2) C h^(-7/2); (37) has 3, the pressure's exponent, for 5/2.
-  pure real(wp) function fold_gap(this, form) result(gap)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function fold_gap(problem, form) result(gap)
+    type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
 
     if (form == attraction_only) then
-      gap = equation_37_gap(this)*(5.0_wp/6)**(2.0_wp/7)
+      gap = equation_37_gap(problem)*(5.0_wp/6)**(2.0_wp/7)
       return
     end if
     gap = nan()
-    if (this%law%adhesion > 0) gap = largest_gap(this, form, at_fold, 0.0_wp, rest_of(this))
+    if (problem%law%adhesion > 0) gap = largest_gap(problem, form, at_fold, 0.0_wp, &
+      rest_of(problem))
   end function fold_gap
 
   !> How near jumps are looked for: to where the law stops attracting, if it does.
-  pure real(wp) function rest_of(this)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function rest_of(problem)
+    type(problem_t), intent(in) :: problem
 
     rest_of = -huge(1.0_wp)
-    if (this%law%rest_gap > 0) rest_of = this%law%rest_gap
+    if (problem%law%rest_gap > 0) rest_of = problem%law%rest_gap
   end function rest_of
 
   !> The largest gap not below `nearest` at which the excess is zero; far away it is negative. NaN
   !> where there is none.
-  pure real(wp) function largest_gap(this, form, condition, h0, nearest) result(found)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function largest_gap(problem, form, condition, h0, nearest) result(found)
+    type(problem_t), intent(in) :: problem
     integer, intent(in) :: form, condition
     real(wp), intent(in) :: h0, nearest
     !> Beyond several gaps of most tension, once that little is left of what reaches 1 at a jump, it
@@ -90,10 +92,10 @@ contains
     integer :: step
 
     found = nan()
-    lowest = max(nearest, this%law%smallest_gap)
-    if (.not. has_form(this, form)) return
-    if (condition /= at_h0 .and. .not. this%coupling > 0) return
-    gap = edges*max(this%law%edge_gap, 1.0_wp)
+    lowest = max(nearest, problem%law%smallest_gap)
+    if (.not. has_form(problem, form)) return
+    if (condition /= at_h0 .and. .not. problem%coupling > 0) return
+    gap = edges*max(problem%law%edge_gap, 1.0_wp)
     if (condition == at_h0) gap = max(h0, lowest, 1.0_wp)
     stride = linear_range(gap)
     do step = 1, most_steps
@@ -134,16 +136,16 @@ contains
 
       select case (condition)
       case (at_h0)
-        excess = h0 - (gap - slow_displacement(this, form, gap))
+        excess = h0 - (gap - slow_displacement(problem, form, gap))
       case (at_fold)
-        excess = slow_slope(this, form, gap) - 1
+        excess = slow_slope(problem, form, gap) - 1
       case default
         ! The criterion is for bodies that attract each other.
         excess = -1
-        pressure = this%law%pressure([gap])
-        slope = this%law%slope([gap])
+        pressure = problem%law%pressure([gap])
+        slope = problem%law%slope([gap])
         if (pressure(1) < 0) &
-          excess = slow_displacement(this, form, gap)*slope(1)/pressure(1) - 1
+          excess = slow_displacement(problem, form, gap)*slope(1)/pressure(1) - 1
       end select
     end function excess
 
@@ -151,7 +153,7 @@ contains
     pure real(wp) function linear_range(gap)
       real(wp), intent(in) :: gap
 
-      linear_range = this%law%closure_fraction*gap + this%law%closure_length
+      linear_range = problem%law%closure_fraction*gap + problem%law%closure_length
     end function linear_range
 
     !> The next gap of the search.

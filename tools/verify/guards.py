@@ -41,7 +41,7 @@ GUARDS = {
     "smallest_gap": Guard(
         "gaps that the law is not asked for",
         "equilibrium/equilibrium.f90",
-        "if (defined) defined = all(state%gap >= this%law%smallest_gap)",
+        "if (defined) defined = all(state%gap >= problem%law%smallest_gap)",
         "",
         ("test_extremes.py::test_what_came_before_the_fall_is_kept",),
         traps=True,
@@ -49,7 +49,7 @@ GUARDS = {
     "defined": Guard(
         "what is outside the law's domain has no residual",
         "equilibrium/equilibrium.f90",
-        "if (.not. defined(this, z, state)) then",
+        "if (.not. defined(problem, z, state)) then",
         "if (.false.) then",
         (NOT_PASSED,),
         also=("if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)", ""),
@@ -78,9 +78,9 @@ GUARDS = {
     "anderson_nan": Guard(
         "Anderson's convergence is a comparison that NaN fails",
         "equilibrium/anderson.f90",
-        "converged = state%residual <= max(options%tolerance, residual_floor(this, state))\n"
+        "converged = state%residual <= max(options%tolerance, residual_floor(problem, state))\n"
         "      if (converged",
-        "converged = .not. state%residual > max(options%tolerance, residual_floor(this, state)) "
+        "converged = .not. state%residual > max(options%tolerance, residual_floor(problem, state)) "
         "&\n        .or. state%residual >= huge(1.0_wp)\n      if (converged",
         (NOT_PASSED,),
     ),
@@ -121,14 +121,14 @@ GUARDS = {
     ),
     "memory": Guard(
         "matrices larger than the memory are refused",
-        "app/outlook.f90",
+        "app/preflight.f90",
         "if (expected%bytes > available) then",
         "if (.false.) then",
         (EXTREMES + "matrices_larger_than_the_memory_are_refused_with_the_size_needed",),
     ),
     "under_resolved": Guard(
         "under-resolved meshes are warned of",
-        "report/judgement.f90",
+        "report/quality_warnings.f90",
         "call summary%warn('under-resolved: nodes are '",
         "if (.false.) call summary%warn('under-resolved: nodes are '",
         ("test_cycle_grids.py",),

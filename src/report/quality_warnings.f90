@@ -1,13 +1,13 @@
 !> What the user has to know of the numbers in a summary: whether the mesh resolves the neck, and
 !> whether they are as good as the deck asks for.
-module judgement
+module quality_warnings
   use kinds, only: wp
   use scene_groups, only: scene_t
-  use outcome, only: outcome_t
+  use experiment_result, only: experiment_result_t
   use summary, only: summary_t
   implicit none
   private
-  public :: judge_resolution, judge_accuracy, about
+  public :: judge_resolution, judge_accuracy, short_number
 
   !> Nodes may lie this many necks apart at the contact edge: beyond it the edge is pinned between
   !> them.
@@ -31,9 +31,9 @@ contains
     if (.not. allocated(summary%spacing_over_neck)) return
     summary%resolved = summary%spacing_over_neck <= resolved_spacing
     if (summary%resolved) return
-    call summary%warn('under-resolved: nodes are '//about(summary%spacing_over_neck)// &
+    call summary%warn('under-resolved: nodes are '//short_number(summary%spacing_over_neck)// &
       ' neck widths apart at the contact edge, which is then pinned between them; use '// &
-      about(summary%spacing_over_neck/resolved_spacing)// &
+      short_number(summary%spacing_over_neck/resolved_spacing)// &
       ' times as many nodes or grid = ''panels''')
   end subroutine judge_resolution
 
@@ -42,7 +42,7 @@ contains
   !> better, though they may show in a displacement of one of the law's lengths.
   subroutine judge_accuracy(scene, outcome, summary)
     type(scene_t), intent(in) :: scene
-    type(outcome_t), intent(in) :: outcome
+    type(experiment_result_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
     real(wp) :: enough
     logical :: on_change
@@ -52,8 +52,9 @@ contains
     associate (tolerance => outcome%chosen%options%tolerance)
       if (summary%converged .and. .not. on_change .and. &
         summary%worst_residual > max(tolerance, scene%numerics%accuracy, usual_residual)) &
-        call summary%warn('rounding leaves residuals of up to '//about(summary%worst_residual)// &
-        ' lengths of the force law, above the tolerance of '//about(tolerance))
+        call summary%warn('rounding leaves residuals of up to '// &
+        short_number(summary%worst_residual)// &
+        ' lengths of the force law, above the tolerance of '//short_number(tolerance))
     end associate
     if (.not. allocated(summary%error_estimate)) return
     enough = clearly*scene%numerics%accuracy
@@ -62,19 +63,19 @@ contains
       call summary%warn('the error could not be estimated: a finer mesh has no such states, or '// &
         'these did not converge; the numbers may mean nothing')
     else if (summary%error_estimate > enough) then
-      call summary%warn('the error is estimated as '//about(summary%error_estimate)// &
-        ', above the accuracy of '//about(scene%numerics%accuracy)//' asked for')
+      call summary%warn('the error is estimated as '//short_number(summary%error_estimate)// &
+        ', above the accuracy of '//short_number(scene%numerics%accuracy)//' asked for')
     end if
   end subroutine judge_accuracy
 
   !> A number for a message, to three digits.
-  pure function about(x) result(text)
+  pure function short_number(x) result(text)
     real(wp), intent(in) :: x
     character(len=:), allocatable :: text
     character(len=24) :: buffer
 
     write (buffer, '(g12.3)') x
     text = trim(adjustl(buffer))
-  end function about
+  end function short_number
 
-end module judgement
+end module quality_warnings

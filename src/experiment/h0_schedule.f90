@@ -1,11 +1,11 @@
 !> The values of h0 that the branches of a scene go through.
-module plans
+module h0_schedule
   use kinds, only: wp
   use scene_groups, only: scene_t
-  use stepped_branch, only: plan_t
+  use stepped_branch, only: h0_schedule_t
   implicit none
   private
-  public :: plan_of, states_planned
+  public :: schedule_of, states_planned
 
 contains
 
@@ -29,11 +29,11 @@ contains
 
   !> Values of h0 [m] from start to finish by step, whichever way that is, both ends included, with
   !> the scene's profiles and the values `also` (law's lengths) in their places.
-  function plan_of(name, start, finish, step, scene, length, also) result(plan)
+  function schedule_of(name, start, finish, step, scene, length, also) result(plan)
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: start, finish, step, length, also(:)
     type(scene_t), intent(in) :: scene
-    type(plan_t) :: plan
+    type(h0_schedule_t) :: plan
     real(wp), allocatable :: h0(:), profiles(:)
     real(wp) :: sense, same
     integer :: count, i
@@ -78,6 +78,6 @@ contains
       count_before = int(sum(merge(1, 0, sense*(values - value) < 0)))
     end function count_before
 
-  end function plan_of
+  end function schedule_of
 
-end module plans
+end module h0_schedule

@@ -1,14 +1,14 @@
 !> Extrema of h0 or of the load along the equilibrium path, to the solver's tolerance.
-module extremum
+module path_extremum
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use equilibrium, only: state_t, cost_t
   use solver_options, only: solver_options_t
-  use anderson, only: frozen_t
+  use anderson, only: frozen_jacobian_t
   use edge_locked, only: mesh_pair_t
-  use tangent, only: path_slopes
+  use path_slopes, only: slopes_along_path
   use interpolation, only: interpolated_maximum
-  use tracer, only: state_at, path_control
+  use continuation, only: state_at, path_control
   implicit none
   private
   public :: extremum_t, polish_extremum, of_h0, of_load
@@ -33,9 +33,10 @@ contains
   !> The extremum of h0 or load that the last three of some states of the path surround: a root of
   !> its exact derivative along the path, begun at the extremum of the polynomial through the states
   !> and found by secants. lost: a solve failed.
-  subroutine polish_extremum(this, pair, mesh, quantity, coordinate, states, options, found, lost, &
+  subroutine polish_extremum(problem, pair, mesh, quantity, coordinate, states, options, found, &
+    lost, &
     cost)
-    type(problem_t), intent(in) :: this
+    type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair
     integer, intent(in) :: mesh, quantity
     real(wp), intent(in) :: coordinate(:)
@@ -45,7 +46,7 @@ contains
     logical, intent(out) :: lost
     type(cost_t), intent(inout) :: cost
     type(state_t) :: trial
-    type(frozen_t) :: frozen
+    type(frozen_jacobian_t) :: frozen
     real(wp) :: slopes(2), slope, slope_size, slope_before, s, s_before, s_next, low, high
     integer :: round, n
     logical :: converged
@@ -59,11 +60,12 @@ contains
     end associate
     slope_size = huge(1.0_wp)
     do round = 1, most_rounds
-      call state_at(this, pair, mesh, s, coordinate, states, options, frozen, trial, converged, &
+      call state_at(problem, pair, mesh, s, coordinate, states, options, frozen, trial, converged, &
         cost)
       lost = .not. converged
       if (lost) return
-      call path_slopes(this, pair%grid(mesh), path_control(this, mesh, s), trial, frozen, &
+      call slopes_along_path(problem, pair%grid(mesh), path_control(problem, mesh, s), trial, &
+        frozen, &
         slopes(1), slopes(2), converged, cost)
       lost = .not. converged
       if (lost) return
@@ -98,4 +100,4 @@ contains
     end do
   end subroutine polish_extremum
 
-end module extremum
+end module path_extremum

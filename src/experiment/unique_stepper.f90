@@ -1,45 +1,45 @@
-!> A quasi-static experiment in edge-locked coordinates where every h0 has one state: under a law that
-!> does not attract, or between rigid bodies.
-module unique_steps
+!> A quasi-static experiment in edge-locked coordinates where every h0 has one state: under a law
+!> that does not attract, or between rigid bodies.
+module unique_stepper
   use kinds, only: wp
   use equilibrium, only: state_t
   use edge_locked, only: contact
   use locked_meshes, only: nodes_to_use, scale_at
-  use locked_steps, only: locked_steps_t
-  use tracer, only: between
-  use quasi_static, only: position_t, event_t, remember, touching
+  use locked_stepper, only: locked_stepper_t
+  use continuation, only: between
+  use stepper, only: branch_point_t, step_result_t, remember, touching
   implicit none
   private
-  public :: unique_steps_t
+  public :: unique_stepper_t
 
-  type, extends(locked_steps_t) :: unique_steps_t
+  type, extends(locked_stepper_t) :: unique_stepper_t
   contains
-    procedure :: begin
-    procedure :: go
+    procedure :: approach_to
+    procedure :: step_to
     procedure, private :: guess
-    procedure, private :: creep
-  end type unique_steps_t
+    procedure, private :: step_in_pieces
+  end type unique_stepper_t
 
   !> Smallest step in h0, in the law's lengths, that is tried.
   real(wp), parameter :: smallest_creep = 1.0e-6_wp
 
 contains
 
-  subroutine begin(self, h0, position, event)
-    class(unique_steps_t), intent(inout) :: self
+  subroutine approach_to(self, h0, position, event)
+    class(unique_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(out) :: position
-    type(event_t), intent(out) :: event
+    type(branch_point_t), intent(out) :: position
+    type(step_result_t), intent(out) :: event
 
     call self%begin_afar(h0, position, event)
-    if (event%reason == '' .and. position%state%h0 > h0) call self%go(h0, position, event)
-  end subroutine begin
+    if (event%reason == '' .and. position%state%h0 > h0) call self%step_to(h0, position, event)
+  end subroutine approach_to
 
-  subroutine go(self, h0, position, event)
-    class(unique_steps_t), intent(inout) :: self
+  subroutine step_to(self, h0, position, event)
+    class(unique_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(inout) :: position
-    type(event_t), intent(out) :: event
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(out) :: event
     type(state_t) :: state
 
     if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
@@ -51,15 +51,15 @@ contains
     if (event%converged) then
       call remember(position, state, position%mesh, .false.)
     else
-      call self%creep(h0, position, event)
+      call self%step_in_pieces(h0, position, event)
     end if
-  end subroutine go
+  end subroutine step_to
 
   !> The state that those behind let expect at h0.
   pure function guess(self, h0, position)
-    class(unique_steps_t), intent(in) :: self
+    class(unique_stepper_t), intent(in) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(in) :: position
+    type(branch_point_t), intent(in) :: position
     type(state_t) :: guess
 
     guess = between(self%pair%grid(position%mesh), position%h0(:position%held), &
@@ -68,11 +68,11 @@ contains
   end function guess
 
   !> Reaches h0 in shorter steps: a step is only ever too long.
-  subroutine creep(self, h0, position, event)
-    class(unique_steps_t), intent(inout) :: self
+  subroutine step_in_pieces(self, h0, position, event)
+    class(unique_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(inout) :: position
-    type(event_t), intent(inout) :: event
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
     type(state_t) :: state
     real(wp) :: next, step
 
@@ -96,6 +96,6 @@ contains
         end if
       end if
     end do
-  end subroutine creep
+  end subroutine step_in_pieces
 
-end module unique_steps
+end module unique_stepper

@@ -1,12 +1,12 @@
 !> Numbers and texts packed into one row of 64-bit words, and back, bit by bit the same.
-module packing
+module byte_record
   use kinds, only: wp, long
   implicit none
   private
-  public :: packed_t, checksum
+  public :: byte_record_t, checksum
 
   !> What is put in comes out in the same order.
-  type :: packed_t
+  type :: byte_record_t
     !> words(:held) are in use.
     integer(long), allocatable :: words(:)
     integer :: held = 0
@@ -21,7 +21,7 @@ module packing
     procedure, private :: take_long, take_integer, take_real, take_reals, take_logical, take_text
     procedure, private :: put_words
     procedure, private :: take_words
-  end type packed_t
+  end type byte_record_t
 
   !> Characters in a word.
   integer, parameter :: letters = storage_size(0_long)/8
@@ -30,7 +30,7 @@ contains
 
   !> Empties it.
   subroutine clear(self)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
 
     self%held = 0
     self%taken = 0
@@ -38,7 +38,7 @@ contains
   end subroutine clear
 
   subroutine put_words(self, words)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     integer(long), intent(in) :: words(:)
     integer(long), allocatable :: larger(:)
 
@@ -53,7 +53,7 @@ contains
   end subroutine put_words
 
   subroutine take_words(self, words)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     integer(long), intent(out) :: words(:)
 
     words = 0
@@ -66,28 +66,28 @@ contains
   end subroutine take_words
 
   subroutine put_long(self, value)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     integer(long), intent(in) :: value
 
     call self%put_words([value])
   end subroutine put_long
 
   subroutine put_integer(self, value)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     integer, intent(in) :: value
 
     call self%put_words([int(value, long)])
   end subroutine put_integer
 
   subroutine put_logical(self, value)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     logical, intent(in) :: value
 
     call self%put_words([merge(1_long, 0_long, value)])
   end subroutine put_logical
 
   subroutine put_real(self, value)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     real(wp), intent(in) :: value
 
     call self%put_words([transfer(value, 0_long)])
@@ -95,7 +95,7 @@ contains
 
   !> The number of values goes with them.
   subroutine put_reals(self, values)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     real(wp), intent(in) :: values(:)
 
     call self%put(size(values))
@@ -104,7 +104,7 @@ contains
 
   !> Its length goes with it.
   subroutine put_text(self, text)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     character(len=*), intent(in) :: text
     integer :: count
 
@@ -114,7 +114,7 @@ contains
   end subroutine put_text
 
   subroutine take_long(self, value)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     integer(long), intent(out) :: value
     integer(long) :: words(1)
 
@@ -123,7 +123,7 @@ contains
   end subroutine take_long
 
   subroutine take_integer(self, value)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     integer, intent(out) :: value
     integer(long) :: words(1)
 
@@ -132,7 +132,7 @@ contains
   end subroutine take_integer
 
   subroutine take_logical(self, value)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     logical, intent(out) :: value
     integer(long) :: words(1)
 
@@ -141,7 +141,7 @@ contains
   end subroutine take_logical
 
   subroutine take_real(self, value)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     real(wp), intent(out) :: value
     integer(long) :: words(1)
 
@@ -150,7 +150,7 @@ contains
   end subroutine take_real
 
   subroutine take_reals(self, values)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     real(wp), allocatable, intent(out) :: values(:)
     integer(long), allocatable :: words(:)
     integer :: count
@@ -162,7 +162,7 @@ contains
   end subroutine take_reals
 
   subroutine take_text(self, text)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     character(len=:), allocatable, intent(out) :: text
     integer(long), allocatable :: words(:)
     integer :: length, count
@@ -177,7 +177,7 @@ contains
 
   !> A number of items, never more than could be held.
   subroutine take_count(self, count)
-    class(packed_t), intent(inout) :: self
+    class(byte_record_t), intent(inout) :: self
     integer, intent(out) :: count
 
     call self%take(count)
@@ -211,4 +211,4 @@ contains
 
   end function checksum
 
-end module packing
+end module byte_record

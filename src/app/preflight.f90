@@ -1,33 +1,33 @@
 !> What the user should know of a run before it begins: that it will be long, or that it does not
 !> fit into the memory.
-module outlook
+module preflight
   use kinds, only: wp
   use scene_groups, only: scene_t
-  use deck_text, only: brief
+  use text, only: brief
   use forecast, only: forecast_t, forecast_of
   use memory, only: available_memory
   use blas_threads, only: thread_count, blas_buffers
   use progress, only: duration
   implicit none
   private
-  public :: outlook_t, outlook_of
+  public :: preflight_t, preflight_of
 
   !> Texts of one line, empty where there is nothing to say.
-  type :: outlook_t
+  type :: preflight_t
     !> Why a run cannot be begun, with the memory that it needs.
     character(len=:), allocatable :: too_large
     !> How long it may take.
     character(len=:), allocatable :: long
-  end type outlook_t
+  end type preflight_t
 
   !> Seconds beyond which a run is announced as long.
   real(wp), parameter :: long_run = 30
 
 contains
 
-  function outlook_of(scene) result(outlook)
+  function preflight_of(scene) result(outlook)
     type(scene_t), intent(in) :: scene
-    type(outlook_t) :: outlook
+    type(preflight_t) :: outlook
     type(forecast_t) :: expected
     real(wp) :: available
 
@@ -44,7 +44,7 @@ contains
         duration(expected%seconds)//' or so'
       if (expected%states > 0) outlook%long = brief(expected%states)//' states on '//outlook%long
     end if
-  end function outlook_of
+  end function preflight_of
 
   !> Bytes for a message.
   function gigabytes(bytes) result(text)
@@ -57,4 +57,4 @@ contains
     if (text(1:1) == '.') text = '0'//text
   end function gigabytes
 
-end module outlook
+end module preflight

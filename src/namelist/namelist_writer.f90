@@ -1,7 +1,7 @@
 !> Assignments as they stand in a namelist group, made from values that may not exist.
-module assignments
+module namelist_writer
   use kinds, only: wp, long
-  use deck_text, only: full, quoted
+  use text, only: full, quoted
   use text_file, only: plain
   implicit none
   private
@@ -166,4 +166,4 @@ contains
     text = text // new_line('a')
   end function written
 
-end module assignments
+end module namelist_writer

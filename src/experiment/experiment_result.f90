@@ -1,15 +1,15 @@
-!> What the experiments of a scene found, in the units of `problem`.
-module outcome
+!> What the experiments of a scene found, in the units of `dimensionless_problem`.
+module experiment_result
   use kinds, only: wp
-  use choice, only: choice_t
+  use numerics_choice, only: choice_t
   use equilibrium, only: cost_t
   use stepped_branch, only: branch_t
   use path, only: path_t
   implicit none
   private
-  public :: outcome_t
+  public :: experiment_result_t
 
-  type :: outcome_t
+  type :: experiment_result_t
     type(choice_t) :: chosen
     type(path_t), allocatable :: path
     type(branch_t), allocatable :: stepped_path, loading, unloading(:)
@@ -19,6 +19,6 @@ module outcome
     real(wp), allocatable :: error_estimate
     type(cost_t) :: cost
     integer :: nodes = 0
-  end type outcome_t
+  end type experiment_result_t
 
-end module outcome
+end module experiment_result

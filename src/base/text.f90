@@ -1,5 +1,5 @@
 !> Small text tools: what messages are made with, and numbers and strings as a deck has them.
-module deck_text
+module text
   use kinds, only: wp
   implicit none
   private
@@ -208,4 +208,4 @@ contains
     if (len(token) > 40) text = token(:37) // '...'
   end function clip
 
-end module deck_text
+end module text

@@ -5,7 +5,7 @@
 !>
 !> with one parameter, coupling = (1-nu^2)/E sqrt(R/L) pressure_unit: sigma (40) for the
 !> Lennard-Jones law, Lambda (39) at h0 = 0 for the exponential one, 0 for rigid bodies.
-module problem
+module dimensionless_problem
   use kinds, only: wp
   use force_law, only: force_law_t
   implicit none
@@ -31,64 +31,64 @@ module problem
 contains
 
   !> radius [m] and stiffness [Pa] as in `bodies`; stiffness is not used for rigid bodies.
-  pure function new_problem(law, radius, stiffness, rigid) result(this)
+  pure function new_problem(law, radius, stiffness, rigid) result(problem)
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: radius, stiffness
     logical, intent(in) :: rigid
-    type(problem_t) :: this
+    type(problem_t) :: problem
 
-    allocate (this%law, source=law)
-    this%length = law%length
-    this%lateral = sqrt(radius*law%length)
-    this%pressure = law%pressure_unit
-    this%load = law%pressure_unit*radius*law%length
-    this%radius = radius
-    this%stiffness = stiffness
-    this%rigid = rigid
-    if (.not. rigid) this%coupling = law%pressure_unit/stiffness*sqrt(radius/law%length)
+    allocate (problem%law, source=law)
+    problem%length = law%length
+    problem%lateral = sqrt(radius*law%length)
+    problem%pressure = law%pressure_unit
+    problem%load = law%pressure_unit*radius*law%length
+    problem%radius = radius
+    problem%stiffness = stiffness
+    problem%rigid = rigid
+    if (.not. rigid) problem%coupling = law%pressure_unit/stiffness*sqrt(radius/law%length)
   end function new_problem
 
   !> Width of the zone outside the contact edge over which the tension decays, lateral units:
   !> 0.75 E* L^2/gamma = 0.375/sigma; huge where bodies are rigid or nothing attracts.
-  pure real(wp) function neck_width(this)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function neck_width(problem)
+    type(problem_t), intent(in) :: problem
 
     neck_width = huge(1.0_wp)
-    if (this%coupling*this%law%adhesion > 0) &
-      neck_width = neck/(this%coupling*this%law%adhesion)
+    if (problem%coupling*problem%law%adhesion > 0) &
+      neck_width = neck/(problem%coupling*problem%law%adhesion)
   end function neck_width
 
   !> A distance between nodes (lateral units) over the width of the neck; 0 where there is no neck.
-  pure real(wp) function spacing_over_neck(this, spacing)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function spacing_over_neck(problem, spacing)
+    type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: spacing
 
-    spacing_over_neck = spacing*this%coupling*this%law%adhesion/neck
+    spacing_over_neck = spacing*problem%coupling*problem%law%adhesion/neck
   end function spacing_over_neck
 
   !> Tabor's parameter (R gamma^2/(E*^2 L^3))^(1/3) = (4 sigma^2)^(1/3); 0 without adhesion.
-  pure real(wp) function tabor_parameter(this)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function tabor_parameter(problem)
+    type(problem_t), intent(in) :: problem
 
-    tabor_parameter = (4*(this%coupling*this%law%adhesion)**2)**(1.0_wp/3)
+    tabor_parameter = (4*(problem%coupling*problem%law%adhesion)**2)**(1.0_wp/3)
   end function tabor_parameter
 
   !> gamma [J/m^2], the depth of the energy minimum; 0 for a law that does not attract.
-  pure real(wp) function surface_energy(this)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function surface_energy(problem)
+    type(problem_t), intent(in) :: problem
 
-    surface_energy = this%law%adhesion*this%pressure*this%length
+    surface_energy = problem%law%adhesion*problem%pressure*problem%length
   end function surface_energy
 
   !> Largest tension of the law [Pa], that at the contact edge; 0 for a law without a largest one.
-  pure real(wp) function largest_tension(this)
-    type(problem_t), intent(in) :: this
+  pure real(wp) function largest_tension(problem)
+    type(problem_t), intent(in) :: problem
     real(wp) :: pressure(1)
 
     largest_tension = 0
-    if (.not. this%law%edge_gap > 0) return
-    pressure = this%law%pressure([this%law%edge_gap])
-    largest_tension = -pressure(1)*this%pressure
+    if (.not. problem%law%edge_gap > 0) return
+    pressure = problem%law%pressure([problem%law%edge_gap])
+    largest_tension = -pressure(1)*problem%pressure
   end function largest_tension
 
-end module problem
+end module dimensionless_problem

@@ -3,13 +3,13 @@
 !> A step leaves one new state; the others that a position holds it had before. These are packed as
 !> the place where they were, and a pressure that follows from its gap is not packed at all, so that
 !> a record takes little more than one row of gaps.
-module packed_states
+module state_records
   use kinds, only: wp, long
   use force_law, only: force_law_t
   use equilibrium, only: state_t, cost_t
-  use quasi_static, only: position_t, event_t
-  use anderson, only: frozen_t
-  use packing, only: packed_t
+  use stepper, only: branch_point_t, step_result_t
+  use anderson, only: frozen_jacobian_t
+  use byte_record, only: byte_record_t
   implicit none
   private
   public :: put_cost, take_cost, put_position, take_position, put_event, take_event, put_frozen, &
@@ -22,9 +22,9 @@ contains
 
   !> Packs the position that a step from `before` has led to.
   subroutine put_position(record, law, before, position)
-    type(packed_t), intent(inout) :: record
+    type(byte_record_t), intent(inout) :: record
     class(force_law_t), intent(in) :: law
-    type(position_t), intent(in) :: before, position
+    type(branch_point_t), intent(in) :: before, position
     integer :: k, place
 
     call record%put(position%mesh)
@@ -64,10 +64,10 @@ contains
 
   !> Unpacks what `put_position` packed, with the same `before`.
   subroutine take_position(record, law, before, position)
-    type(packed_t), intent(inout) :: record
+    type(byte_record_t), intent(inout) :: record
     class(force_law_t), intent(in) :: law
-    type(position_t), intent(in) :: before
-    type(position_t), intent(out) :: position
+    type(branch_point_t), intent(in) :: before
+    type(branch_point_t), intent(out) :: position
     integer :: k, place
 
     call record%take(position%mesh)
@@ -133,7 +133,7 @@ contains
 
   !> Packs a state, if there is one.
   subroutine put_state(record, law, state)
-    type(packed_t), intent(inout) :: record
+    type(byte_record_t), intent(inout) :: record
     class(force_law_t), intent(in) :: law
     type(state_t), intent(in) :: state
     logical :: follows
@@ -154,7 +154,7 @@ contains
 
   !> Unpacks what `put_state` packed after its first word, which said that there is a state.
   subroutine take_state(record, law, state)
-    type(packed_t), intent(inout) :: record
+    type(byte_record_t), intent(inout) :: record
     class(force_law_t), intent(in) :: law
     type(state_t), intent(out) :: state
     logical :: follows
@@ -176,8 +176,8 @@ contains
 
   !> Packs what happened in a step.
   subroutine put_event(record, event)
-    type(packed_t), intent(inout) :: record
-    type(event_t), intent(in) :: event
+    type(byte_record_t), intent(inout) :: record
+    type(step_result_t), intent(in) :: event
 
     call record%put(event%converged)
     call record%put(event%jumped)
@@ -196,8 +196,8 @@ contains
 
   !> Unpacks what `put_event` packed.
   subroutine take_event(record, event)
-    type(packed_t), intent(inout) :: record
-    type(event_t), intent(out) :: event
+    type(byte_record_t), intent(inout) :: record
+    type(step_result_t), intent(out) :: event
     character(len=:), allocatable :: reason
     logical :: known
 
@@ -220,8 +220,8 @@ contains
 
   !> Packs a factorisation as what it was made from; known: the records before have that.
   subroutine put_frozen(record, frozen, known)
-    type(packed_t), intent(inout) :: record
-    type(frozen_t), intent(in) :: frozen
+    type(byte_record_t), intent(inout) :: record
+    type(frozen_jacobian_t), intent(in) :: frozen
     logical, intent(in) :: known
 
     call record%put(frozen%factors%valid)
@@ -234,8 +234,8 @@ contains
   !> Unpacks what `put_frozen` packed, all but the factors: frozen%factors%valid says whether there
   !> were any.
   subroutine take_frozen(record, frozen)
-    type(packed_t), intent(inout) :: record
-    type(frozen_t), intent(inout) :: frozen
+    type(byte_record_t), intent(inout) :: record
+    type(frozen_jacobian_t), intent(inout) :: frozen
     logical :: known
 
     call record%take(frozen%factors%valid)
@@ -247,7 +247,7 @@ contains
 
   !> Packs what was spent.
   subroutine put_cost(record, cost)
-    type(packed_t), intent(inout) :: record
+    type(byte_record_t), intent(inout) :: record
     type(cost_t), intent(in) :: cost
 
     call record%put(cost%operator_products)
@@ -265,7 +265,7 @@ contains
 
   !> Unpacks what `put_cost` packed.
   subroutine take_cost(record, cost)
-    type(packed_t), intent(inout) :: record
+    type(byte_record_t), intent(inout) :: record
     type(cost_t), intent(out) :: cost
 
     call record%take(cost%operator_products)
@@ -281,4 +281,4 @@ contains
     call record%take(cost%estimate_seconds)
   end subroutine take_cost
 
-end module packed_states
+end module state_records

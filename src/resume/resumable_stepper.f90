@@ -1,25 +1,25 @@
 !> A quasi-static experiment whose steps are kept in a journal. Those that an interrupted run has
 !> left there are taken from it instead of being solved; whoever drives the experiment does all it
 !> does and does not notice. Then the solver goes on as if it had never stopped.
-module journalled_steps
+module resumable_stepper
   use kinds, only: wp
   use discretisation, only: discretisation_t
   use equilibrium, only: cost_t
   use jacobian, only: factorise_again
-  use quasi_static, only: quasi_static_t, position_t, event_t
-  use reported, only: witness_t
+  use stepper, only: stepper_t, branch_point_t, step_result_t
+  use reported, only: error_probe_t
   use journal, only: journal_t
-  use packing, only: packed_t
-  use packed_states, only: put_cost, take_cost, put_position, take_position, put_event, &
+  use byte_record, only: byte_record_t
+  use state_records, only: put_cost, take_cost, put_position, take_position, put_event, &
     take_event, put_frozen, take_frozen
   use clock, only: seconds
   implicit none
   private
-  public :: journalled_steps_t, new_journalled_steps
+  public :: resumable_stepper_t, new_resumable_stepper
 
-  type, extends(quasi_static_t) :: journalled_steps_t
+  type, extends(stepper_t) :: resumable_stepper_t
     !> Who solves, and where it is kept.
-    class(quasi_static_t), pointer :: solver => null()
+    class(stepper_t), pointer :: solver => null()
     type(journal_t), pointer :: journal => null()
     !> Time [s] that the steps taken from the journal once took, and those solved since.
     real(wp) :: earlier_seconds = 0, own_seconds = 0
@@ -28,15 +28,15 @@ module journalled_steps
     !> The factorisation that the journal knows of, as counted in it.
     integer, private :: known = -1
   contains
-    procedure :: begin
-    procedure :: go
+    procedure :: approach_to
+    procedure :: step_to
     procedure :: grid
     procedure :: spacing_over_neck
     procedure :: witness
     procedure, private :: recall
     procedure, private :: catch_up
     procedure, private :: keep
-  end type journalled_steps_t
+  end type resumable_stepper_t
 
   !> What a record of a step begins with.
   character(len=*), parameter :: mark = 'step'
@@ -44,58 +44,58 @@ module journalled_steps
 contains
 
   !> Steps of `solver` that are kept in `journal`.
-  function new_journalled_steps(solver, journal) result(steps)
-    class(quasi_static_t), intent(in), target :: solver
+  function new_resumable_stepper(solver, journal) result(steps)
+    class(stepper_t), intent(in), target :: solver
     type(journal_t), intent(in), target :: journal
-    type(journalled_steps_t) :: steps
+    type(resumable_stepper_t) :: steps
 
     steps%solver => solver
     steps%journal => journal
     steps%problem = solver%problem
     steps%options = solver%options
     steps%jump_tolerance = solver%jump_tolerance
-  end function new_journalled_steps
+  end function new_resumable_stepper
 
-  subroutine begin(self, h0, position, event)
-    class(journalled_steps_t), intent(inout) :: self
+  subroutine approach_to(self, h0, position, event)
+    class(resumable_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(out) :: position
-    type(event_t), intent(out) :: event
-    type(position_t) :: nowhere
+    type(branch_point_t), intent(out) :: position
+    type(step_result_t), intent(out) :: event
+    type(branch_point_t) :: nowhere
     real(wp) :: began
 
     if (self%recall(h0, nowhere, position, event)) return
     began = seconds()
     call self%catch_up()
-    call self%solver%begin(h0, position, event)
+    call self%solver%approach_to(h0, position, event)
     call self%keep(h0, nowhere, position, event, began)
-  end subroutine begin
+  end subroutine approach_to
 
-  subroutine go(self, h0, position, event)
-    class(journalled_steps_t), intent(inout) :: self
+  subroutine step_to(self, h0, position, event)
+    class(resumable_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(inout) :: position
-    type(event_t), intent(out) :: event
-    type(position_t) :: before
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(out) :: event
+    type(branch_point_t) :: before
     real(wp) :: began
 
     before = position
     if (self%recall(h0, before, position, event)) return
     began = seconds()
     call self%catch_up()
-    call self%solver%go(h0, position, event)
+    call self%solver%step_to(h0, position, event)
     call self%keep(h0, before, position, event, began)
-  end subroutine go
+  end subroutine step_to
 
   !> Takes a step from `before` to h0 out of the journal. .false. where it has no more: then the
   !> step is to be solved. A journal that cannot be gone on with ends the experiment.
   logical function recall(self, h0, before, position, event) result(known)
-    class(journalled_steps_t), intent(inout) :: self
+    class(resumable_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(in) :: before
-    type(position_t), intent(inout) :: position
-    type(event_t), intent(inout) :: event
-    type(packed_t) :: record
+    type(branch_point_t), intent(in) :: before
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+    type(byte_record_t) :: record
     type(cost_t) :: cost
     real(wp) :: kept_h0
     logical :: fits
@@ -119,13 +119,13 @@ contains
     end if
     if (.not. allocated(self%journal%trouble)) return
     known = .true.
-    event = event_t(reason='what was found can no longer be kept')
+    event = step_result_t(reason='what was found can no longer be kept')
   end function recall
 
   !> Gives the solver the factorisation that it had at the end of the last record.
   subroutine catch_up(self)
-    class(journalled_steps_t), intent(inout) :: self
-    type(position_t) :: on_mesh
+    class(resumable_stepper_t), intent(inout) :: self
+    type(branch_point_t) :: on_mesh
 
     if (.not. self%behind) return
     self%behind = .false.
@@ -140,11 +140,11 @@ contains
 
   !> Adds a step to the journal; it was begun at the time `began`.
   subroutine keep(self, h0, before, position, event, began)
-    class(journalled_steps_t), intent(inout) :: self
+    class(resumable_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0, began
-    type(position_t), intent(in) :: before, position
-    type(event_t), intent(in) :: event
-    type(packed_t) :: record
+    type(branch_point_t), intent(in) :: before, position
+    type(step_result_t), intent(in) :: event
+    type(byte_record_t) :: record
     type(cost_t) :: cost
 
     call record%put(mark)
@@ -161,26 +161,26 @@ contains
   end subroutine keep
 
   function grid(self, position)
-    class(journalled_steps_t), intent(in), target :: self
-    type(position_t), intent(in) :: position
+    class(resumable_stepper_t), intent(in), target :: self
+    type(branch_point_t), intent(in) :: position
     type(discretisation_t), pointer :: grid
 
     grid => self%solver%grid(position)
   end function grid
 
   pure real(wp) function spacing_over_neck(self, position)
-    class(journalled_steps_t), intent(in) :: self
-    type(position_t), intent(in) :: position
+    class(resumable_stepper_t), intent(in) :: self
+    type(branch_point_t), intent(in) :: position
 
     spacing_over_neck = self%solver%spacing_over_neck(position)
   end function spacing_over_neck
 
   pure function witness(self, position)
-    class(journalled_steps_t), intent(in) :: self
-    type(position_t), intent(in) :: position
-    type(witness_t) :: witness
+    class(resumable_stepper_t), intent(in) :: self
+    type(branch_point_t), intent(in) :: position
+    type(error_probe_t) :: witness
 
     witness = self%solver%witness(position)
   end function witness
 
-end module journalled_steps
+end module resumable_stepper

@@ -1,32 +1,32 @@
 !> Records kept as rows of numbers, for callers that take arrays. Beside the flat modules and not in
 !> one, since f2py does not understand the type.
-module collector
+module column_recorder
   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
   use kinds, only: wp
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use records, only: observer_t, record_t
   implicit none
   private
-  public :: collector_t
+  public :: column_recorder_t
 
   integer, parameter :: columns = 8
 
   !> Keeps h0, h_centre, displacement, load, contact radius, stable (1, 0, -1), residual and
   !> converged (1, 0) of every record that it is given.
-  type, extends(observer_t) :: collector_t
+  type, extends(observer_t) :: column_recorder_t
     integer :: held = 0
     real(wp), allocatable, private :: column(:, :)
   contains
     procedure :: take
     procedure :: give
-  end type collector_t
+  end type column_recorder_t
 
 contains
 
   subroutine take(self, record, problem, grid, state, profile)
-    class(collector_t), intent(inout) :: self
+    class(column_recorder_t), intent(inout) :: self
     type(record_t), intent(in) :: record
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -48,7 +48,7 @@ contains
 
   !> Copies what is held to the rows of `states`, as many as there are; the others become NaN.
   pure subroutine give(self, states, reached)
-    class(collector_t), intent(in) :: self
+    class(column_recorder_t), intent(in) :: self
     real(wp), intent(out) :: states(:, :)
     integer, intent(out) :: reached
 
@@ -57,4 +57,4 @@ contains
     if (reached > 0) states(:reached, :) = transpose(self%column(:, :reached))
   end subroutine give
 
-end module collector
+end module column_recorder

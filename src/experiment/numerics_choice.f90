@@ -1,7 +1,7 @@
 !> Which grid, which iteration and how finely: what follows from the accuracy asked for, and why.
-module choice
+module numerics_choice
   use kinds, only: wp
-  use problem, only: problem_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use uniform_grid, only: new_uniform_grid
   use panels, only: new_panel_grid, graded_ends
@@ -144,4 +144,4 @@ contains
     end if
   end function companion
 
-end module choice
+end module numerics_choice

@@ -1,8 +1,8 @@
 !> A quasi-static experiment on a mesh fixed in space: the paper's method. The contact edge moves
 !> across the nodes, and where they are not close against the neck it is pinned between them.
-module fixed_steps
+module fixed_stepper
   use kinds, only: wp
-  use problem, only: over_neck => spacing_over_neck
+  use dimensionless_problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, state_from, residual_floor, radius_of_gap, &
     lost_in_rounding, beyond_rounding
@@ -11,16 +11,16 @@ module fixed_steps
   use relaxation, only: relax
   use fixed_branch, only: fixed_branch_t, change, jump
   use edge_locked, only: largest_radius
-  use quasi_static, only: position_t, event_t, remember, touching
-  use reported, only: witness_t
+  use stepper, only: branch_point_t, step_result_t, remember, touching
+  use reported, only: error_probe_t
   implicit none
   private
-  public :: fixed_steps_t
+  public :: fixed_stepper_t
 
-  type, extends(fixed_branch_t) :: fixed_steps_t
+  type, extends(fixed_branch_t) :: fixed_stepper_t
   contains
-    procedure :: begin
-    procedure :: go
+    procedure :: approach_to
+    procedure :: step_to
     procedure :: grid
     procedure :: spacing_over_neck
     procedure :: witness
@@ -28,7 +28,7 @@ module fixed_steps
     procedure, private :: land
     procedure, private :: goes_on
     procedure, private :: paper_step
-  end type fixed_steps_t
+  end type fixed_stepper_t
 
   !> Steps of the approach from afar, in the law's lengths, and the most of them: where the way is
   !> long they are longer.
@@ -52,11 +52,11 @@ module fixed_steps
 
 contains
 
-  subroutine begin(self, h0, position, event)
-    class(fixed_steps_t), intent(inout) :: self
+  subroutine approach_to(self, h0, position, event)
+    class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(out) :: position
-    type(event_t), intent(out) :: event
+    type(branch_point_t), intent(out) :: position
+    type(step_result_t), intent(out) :: event
     type(state_t) :: state
     real(wp) :: far
     integer :: i, steps, lost
@@ -78,18 +78,18 @@ contains
     steps = ceiling(min((far - h0)/approach_step, real(most_approach, wp)))
     lost = 0
     do i = 1, steps
-      call self%go(merge(h0, far - (far - h0)*i/steps, lost > most_lost), position, event)
+      call self%step_to(merge(h0, far - (far - h0)*i/steps, lost > most_lost), position, event)
       if (event%reason /= '' .or. lost > most_lost) exit
       lost = merge(0, lost + 1, event%converged)
     end do
     event%jumped = .false.
-  end subroutine begin
+  end subroutine approach_to
 
-  recursive subroutine go(self, h0, position, event)
-    class(fixed_steps_t), intent(inout) :: self
+  recursive subroutine step_to(self, h0, position, event)
+    class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(inout) :: position
-    type(event_t), intent(out) :: event
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(out) :: event
     type(state_t) :: state, before, landed
     real(wp) :: beyond, jump_h0, jump_uncertainty
     logical :: continues, stalled, arrived, at_fold, has_landed
@@ -157,7 +157,7 @@ contains
         jump_h0 = 0.5_wp*(before%h0 + beyond)
         jump_uncertainty = 0.5_wp*abs(beyond - before%h0)
         call remember(position, landed, 1, .true.)
-        call self%go(h0, position, event)
+        call self%step_to(h0, position, event)
         if (event%jumped .and. event%jump_load < before%load) return
         event%jumped = .true.
         event%jump_h0 = jump_h0
@@ -182,13 +182,13 @@ contains
     event%jump_load = before%load
     event%jump_uncertainty = 0.5_wp*abs(beyond - before%h0)
     call remember(position, landed, 1, event%jumped)
-  end subroutine go
+  end subroutine step_to
 
   !> Whether the branch of the state `before` goes on to an h0 close by, where the iteration has not
   !> found it: by Newton's method, whatever the deck says of iterations. Where it does, to `state`,
   !> the iteration has failed; where not, the bodies jump.
   logical function goes_on(self, h0, before, state)
-    class(fixed_steps_t), intent(inout) :: self
+    class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(state_t), intent(in) :: before
     type(state_t), intent(out) :: state
@@ -211,9 +211,9 @@ contains
   !> Whether bodies that came from one state to the other by relaxation stayed in contact:
   !> whatever jump there was on the way was one of the edge, from node to node.
   logical function stays(self, before, after, event)
-    class(fixed_steps_t), intent(in) :: self
+    class(fixed_stepper_t), intent(in) :: self
     type(state_t), intent(in) :: before, after
-    type(event_t), intent(in) :: event
+    type(step_result_t), intent(in) :: event
     real(wp) :: from, to
 
     stays = .false.
@@ -227,10 +227,10 @@ contains
   !> until its own rule is met. A jump is a change of deformation many times that of h0, and is
   !> known only to have happened within the step.
   subroutine paper_step(self, h0, position, event)
-    class(fixed_steps_t), intent(inout) :: self
+    class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(inout) :: position
-    type(event_t), intent(out) :: event
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(out) :: event
     type(state_t) :: state
 
     state = position%state
@@ -248,11 +248,11 @@ contains
   !> Where the bodies go from the state `before` when h0 is changed to a value at which its branch
   !> has ended. Mixing relaxes by itself.
   subroutine land(self, h0, before, state, event)
-    class(fixed_steps_t), intent(inout) :: self
+    class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(state_t), intent(in) :: before
     type(state_t), intent(inout) :: state
-    type(event_t), intent(inout) :: event
+    type(step_result_t), intent(inout) :: event
     type(control_t) :: control
 
     state = before
@@ -266,8 +266,8 @@ contains
   end subroutine land
 
   function grid(self, position)
-    class(fixed_steps_t), intent(in), target :: self
-    type(position_t), intent(in) :: position
+    class(fixed_stepper_t), intent(in), target :: self
+    type(branch_point_t), intent(in) :: position
     type(discretisation_t), pointer :: grid
 
     ! One mesh for every position.
@@ -276,19 +276,19 @@ contains
   end function grid
 
   pure real(wp) function spacing_over_neck(self, position)
-    class(fixed_steps_t), intent(in) :: self
-    type(position_t), intent(in) :: position
+    class(fixed_stepper_t), intent(in) :: self
+    type(branch_point_t), intent(in) :: position
 
     spacing_over_neck = over_neck(self%problem, position%state%scale*self%mesh%spacing)
   end function spacing_over_neck
 
   pure function witness(self, position)
-    class(fixed_steps_t), intent(in) :: self
-    type(position_t), intent(in) :: position
-    type(witness_t) :: witness
+    class(fixed_stepper_t), intent(in) :: self
+    type(branch_point_t), intent(in) :: position
+    type(error_probe_t) :: witness
 
     witness%control%value = position%state%h0
     witness%state = position%state
   end function witness
 
-end module fixed_steps
+end module fixed_stepper

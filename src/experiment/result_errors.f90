@@ -1,20 +1,20 @@
 !> Errors of all that an outcome reports, number by number, and the largest of them.
-module outcome_errors
+module result_errors
   use kinds, only: wp
   use discretisation, only: discretisation_t
-  use choice, only: fixed_mesh, companion
+  use numerics_choice, only: fixed_mesh, companion
   use edge_locked, only: mesh_pair_t, new_mesh_pair, resolution_t
-  use fixed_steps, only: fixed_steps_t
-  use locked_steps, only: locked_steps_t
-  use path_steps, only: path_steps_t
-  use quasi_static, only: quasi_static_t
+  use fixed_stepper, only: fixed_stepper_t
+  use locked_stepper, only: locked_stepper_t
+  use path_stepper, only: path_stepper_t
+  use stepper, only: stepper_t
   use hysteresis, only: lost_energy_t, energy_lost
   use reported, only: reported_t, relative_error
   use error_estimate, only: judge_at_h0, rounding
   use path_errors, only: judge_on_path, finer_nodes
   use stepped_branch, only: branch_t
   use path, only: path_t
-  use outcome, only: outcome_t
+  use experiment_result, only: experiment_result_t
   implicit none
   private
   public :: judge_locked, judge_fixed
@@ -32,7 +32,7 @@ module outcome_errors
   !> How a reported state is judged: again on the path of `steps`, if it has one, or else at its h0,
   !> on the finer meshes.
   type :: judge_t
-    class(quasi_static_t), pointer :: steps => null()
+    class(stepper_t), pointer :: steps => null()
     type(mesh_pair_t) :: fine
     real(wp) :: margin = margin
     real(wp) :: largest = rounding
@@ -44,9 +44,9 @@ contains
   !> Judges what edge-locked steps have found, for H0 from high to low. Nothing is set up where
   !> nothing is reported.
   subroutine judge_locked(steps, high, low, outcome)
-    class(locked_steps_t), intent(inout), target :: steps
+    class(locked_stepper_t), intent(inout), target :: steps
     real(wp), intent(in) :: high, low
-    type(outcome_t), intent(inout) :: outcome
+    type(experiment_result_t), intent(inout) :: outcome
     type(judge_t) :: judge
     type(resolution_t) :: finer
 
@@ -61,7 +61,7 @@ contains
     if (allocated(outcome%stepped_path)) call judge_branch(judge, outcome%stepped_path)
     call judge_cycle(judge, outcome)
     select type (steps)
-    class is (path_steps_t)
+    class is (path_stepper_t)
       call judge_energy(judge, steps, outcome)
     end select
     call conclude(judge, outcome)
@@ -70,9 +70,9 @@ contains
   !> Judges the cycle that steps on a fixed mesh have found, for H0 down to low: against a mesh that
   !> is finer or, where that would cost too much, coarser.
   subroutine judge_fixed(steps, low, outcome)
-    type(fixed_steps_t), intent(inout), target :: steps
+    type(fixed_stepper_t), intent(inout), target :: steps
     real(wp), intent(in) :: low
-    type(outcome_t), intent(inout) :: outcome
+    type(experiment_result_t), intent(inout) :: outcome
     type(judge_t) :: judge
 
     if (.not. reports(outcome)) return
@@ -86,7 +86,7 @@ contains
 
   !> Whether there is anything to judge.
   pure logical function reports(outcome)
-    type(outcome_t), intent(in) :: outcome
+    type(experiment_result_t), intent(in) :: outcome
 
     reports = .false.
     if (allocated(outcome%path)) reports = outcome%path%states > 0
@@ -97,7 +97,7 @@ contains
 
   subroutine judge_cycle(judge, outcome)
     type(judge_t), intent(inout) :: judge
-    type(outcome_t), intent(inout) :: outcome
+    type(experiment_result_t), intent(inout) :: outcome
     integer :: k
 
     if (allocated(outcome%loading)) call judge_branch(judge, outcome%loading)
@@ -110,7 +110,7 @@ contains
   !> Of nothing there is no error; a path that was judged before counts too.
   subroutine conclude(judge, outcome)
     type(judge_t), intent(in) :: judge
-    type(outcome_t), intent(inout) :: outcome
+    type(experiment_result_t), intent(inout) :: outcome
 
     if (.not. judge%judged) return
     if (allocated(outcome%error_estimate)) then
@@ -163,16 +163,16 @@ contains
     if (reported%point == 0 .and. .not. allocated(reported%witness)) return
     associate (fine => judge%fine, margin => judge%margin)
       select type (steps => judge%steps)
-      class is (path_steps_t)
+      class is (path_stepper_t)
         call judge_on_path(steps%problem, steps%pair, fine, margin, steps%options%tolerance, &
           with_profile, steps%known, reported, steps%cost)
-      class is (locked_steps_t)
+      class is (locked_stepper_t)
         associate (mesh => reported%witness%mesh)
           call judge_at_h0(steps%problem, steps%pair%grid(mesh), fine%grid(mesh), &
             finer_nodes(steps%pair, fine, mesh, reported%witness%state), margin, &
             steps%options%tolerance, reported, steps%cost)
         end associate
-      class is (fixed_steps_t)
+      class is (fixed_stepper_t)
         call judge_at_h0(steps%problem, steps%mesh, fine%grid(1), fine%grid(1)%nodes, margin, &
           steps%options%tolerance, reported, steps%cost)
       end select
@@ -186,8 +186,8 @@ contains
   !> loading and the first unloading that come back to where they began.
   subroutine judge_energy(judge, steps, outcome)
     type(judge_t), intent(inout) :: judge
-    class(path_steps_t), intent(inout) :: steps
-    type(outcome_t), intent(inout) :: outcome
+    class(path_stepper_t), intent(inout) :: steps
+    type(experiment_result_t), intent(inout) :: outcome
     type(lost_energy_t) :: lost
     real(wp) :: lowest
     integer :: turned, k
@@ -233,4 +233,4 @@ contains
 
   end subroutine judge_energy
 
-end module outcome_errors
+end module result_errors

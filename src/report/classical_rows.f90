@@ -1,8 +1,8 @@
 !> The classical theories over the range of a scene, as rows of a table.
-module comparison
+module classical_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp
-  use problem, only: problem_t, surface_energy, largest_tension
+  use dimensionless_problem, only: problem_t, surface_energy, largest_tension
   use classical, only: hertz_load_at_displacement, hertz_radius_at_displacement, &
     jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
   use maugis, only: maugis_load, maugis_radius_at_displacement
@@ -10,7 +10,7 @@ module comparison
   use records, only: theory_row_t
   implicit none
   private
-  public :: classical_rows
+  public :: rows_of_classical
 
 contains
 
@@ -19,7 +19,7 @@ contains
   !> surface energy. The theories put touching bodies at no separation, so the displacement is -h0;
   !> the state is the one that is stable there, and where a theory has none there is no row. `from`
   !> [m] stands in for a range without a start. None for rigid bodies, which have no displacement.
-  function classical_rows(problem, range, from) result(rows)
+  function rows_of_classical(problem, range, from) result(rows)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
     real(wp), intent(in) :: from
@@ -65,6 +65,6 @@ contains
       rows = [rows, row]
     end subroutine add
 
-  end function classical_rows
+  end function rows_of_classical
 
-end module comparison
+end module classical_rows

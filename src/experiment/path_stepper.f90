@@ -1,38 +1,38 @@
-!> A quasi-static experiment under a law that attracts. All equilibria lie on one path, which is traced
-!> before the experiment: it says on which stable piece an experiment is, how far that goes and where
-!> a jump leads, and what the largest tension on the way is.
+!> A quasi-static experiment under a law that attracts. All equilibria lie on one path, which is
+!> traced before the experiment: it says on which stable piece an experiment is, how far that goes
+!> and where a jump leads, and what the largest tension on the way is.
 !>
 !> The iteration solves the states; its result counts where it is the one that the path has. Usually
 !> that is a few accelerated iterations from the extrapolated state, with one factorisation for many
 !> steps; beside a fold the state is looked for along the path.
-module path_steps
+module path_stepper
   use kinds, only: wp
   use listener, only: listener_t
   use equilibrium, only: state_t
-  use anderson, only: frozen_t
+  use anderson, only: frozen_jacobian_t
   use edge_locked, only: contact
   use locked_meshes, only: nodes_to_use
-  use locked_steps, only: locked_steps_t
-  use tracer, only: coordinate_of, between
+  use locked_stepper, only: locked_stepper_t
+  use continuation, only: coordinate_of, between
   use traced_path, only: traced_path_t
   use solve_at_h0, only: neighbours_t, neighbours_of, coordinate_at_h0, guess_at_h0, solve_between
   use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
-  use quasi_static, only: position_t, event_t, extreme_t, remember
+  use stepper, only: branch_point_t, step_result_t, extreme_t, remember
   implicit none
   private
-  public :: path_steps_t
+  public :: path_stepper_t
 
-  type, extends(locked_steps_t) :: path_steps_t
+  type, extends(locked_stepper_t) :: path_stepper_t
     !> The path, once `know_path` has traced it.
     type(known_path_t) :: known
   contains
-    procedure :: begin
-    procedure :: go
+    procedure :: approach_to
+    procedure :: step_to
     procedure :: know_path
     procedure :: state_at_h0
     procedure, private :: step_over
     procedure, private :: solve_on_piece
-  end type path_steps_t
+  end type path_stepper_t
 
   !> Beside a fold h0 moves with the square of the coordinate and iterations at fixed h0 do not
   !> converge: the part of the last piece before one in which a state is looked for along the path.
@@ -47,12 +47,12 @@ contains
   !> h0_low; into_contact: until it is also on the mesh for contact. To be called before the first
   !> step. The listener hears how far it is.
   subroutine know_path(self, h0_high, h0_low, into_contact, listener)
-    class(path_steps_t), intent(inout) :: self
+    class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0_high, h0_low
     logical, intent(in) :: into_contact
     class(listener_t), intent(inout) :: listener
-    type(position_t) :: position
-    type(event_t) :: event
+    type(branch_point_t) :: position
+    type(step_result_t) :: event
 
     call self%begin_afar(h0_high, position, event)
     if (event%reason == '') then
@@ -65,27 +65,27 @@ contains
     self%frozen%factors%valid = .false.
   end subroutine know_path
 
-  subroutine begin(self, h0, position, event)
-    class(path_steps_t), intent(inout) :: self
+  subroutine approach_to(self, h0, position, event)
+    class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(out) :: position
-    type(event_t), intent(out) :: event
+    type(branch_point_t), intent(out) :: position
+    type(step_result_t), intent(out) :: event
 
     position%piece = 1
-    call self%go(h0, position, event)
+    call self%step_to(h0, position, event)
     ! What the approach passed before the experiment began is not part of it.
     event%jumped = .false.
     event%fold = 0
     if (allocated(event%lowest)) event%lowest = extreme_t(position%state%load, h0)
-  end subroutine begin
+  end subroutine approach_to
 
   !> Goes to h0 along the stable pieces of the path, over the folds that are in the way, and notes
   !> the first jump and the largest tension of the way.
-  subroutine go(self, h0, position, event)
-    class(path_steps_t), intent(inout) :: self
+  subroutine step_to(self, h0, position, event)
+    class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(inout) :: position
-    type(event_t), intent(out) :: event
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(out) :: event
     type(extreme_t) :: lowest
     real(wp) :: from
 
@@ -107,17 +107,17 @@ contains
     if (event%converged .and. position%state%load < lowest%load) &
       lowest = extreme_t(position%state%load, h0)
     event%lowest = lowest
-  end subroutine go
+  end subroutine step_to
 
   !> Leaves the position's piece over the fold at its inner or outer end, and lands. from: the h0
   !> that the piece is left from, then that of the fold.
   subroutine step_over(self, inward, from, position, lowest, event)
-    class(path_steps_t), intent(in) :: self
+    class(path_stepper_t), intent(in) :: self
     logical, intent(in) :: inward
     real(wp), intent(inout) :: from
-    type(position_t), intent(inout) :: position
+    type(branch_point_t), intent(inout) :: position
     type(extreme_t), intent(inout) :: lowest
-    type(event_t), intent(inout) :: event
+    type(step_result_t), intent(inout) :: event
     type(landing_t) :: landing
 
     if (inward) then
@@ -161,16 +161,16 @@ contains
     end associate
   end subroutine lower_to_point
 
-  !> The state at h0 on the position's piece: iterated at fixed h0 and, where that does not arrive at
-  !> the state that the path has, or beside a fold, looked for along the path.
+  !> The state at h0 on the position's piece: iterated at fixed h0 and, where that does not arrive
+  !> at the state that the path has, or beside a fold, looked for along the path.
   subroutine solve_on_piece(self, h0, position, event)
-    class(path_steps_t), intent(inout) :: self
+    class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(position_t), intent(inout) :: position
-    type(event_t), intent(inout) :: event
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
     type(neighbours_t) :: near
     type(state_t) :: state
-    type(frozen_t) :: frozen
+    type(frozen_jacobian_t) :: frozen
     real(wp) :: s, ends(2)
     integer :: i, nodes, present
     logical :: jumped
@@ -205,7 +205,7 @@ contains
   !> Whether the coordinate s in the piece after point i, between `ends`, is so near a fold that h0
   !> hardly moves.
   pure logical function is_beside_fold(self, i, piece, s, ends) result(beside)
-    class(path_steps_t), intent(in) :: self
+    class(path_stepper_t), intent(in) :: self
     integer, intent(in) :: i, piece
     real(wp), intent(in) :: s, ends(2)
 
@@ -221,7 +221,7 @@ contains
   !> Whether h0 goes on from the last two states of a position by a step that is not much longer
   !> than the last: then these tell more of the next state than the points of the path.
   pure logical function goes_on(position, h0)
-    type(position_t), intent(in) :: position
+    type(branch_point_t), intent(in) :: position
     real(wp), intent(in) :: h0
 
     goes_on = .false.
@@ -233,14 +233,14 @@ contains
 
   !> The state at h0 on the piece of the path after point i, however near a fold.
   subroutine state_at_h0(self, i, h0, mesh, state, converged)
-    class(path_steps_t), intent(inout) :: self
+    class(path_stepper_t), intent(inout) :: self
     integer, intent(in) :: i
     real(wp), intent(in) :: h0
     integer, intent(out) :: mesh
     type(state_t), intent(out) :: state
     logical, intent(out) :: converged
     type(neighbours_t) :: near
-    type(frozen_t) :: frozen
+    type(frozen_jacobian_t) :: frozen
     real(wp) :: s
 
     near = neighbours_of(self%known%path, i)
@@ -249,4 +249,4 @@ contains
       converged, self%cost)
   end subroutine state_at_h0
 
-end module path_steps
+end module path_stepper
