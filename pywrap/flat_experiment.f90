@@ -27,7 +27,8 @@ contains
     use column_recorder, only: column_recorder_t
     use stepped_branch, only: branch_t
     use edge_locked, only: new_mesh_pair
-    use experiment, only: prepare, problem_of
+    use experiment, only: prepare
+    use scene_problem, only: problem_of
     use experiment_result, only: experiment_result_t
     use result_errors, only: judge_fixed, judge_locked
     use failure, only: bad_input
@@ -125,7 +126,8 @@ contains
     accuracy, h0_start, given, h0_end, states, folds, fold_count, highest, error_estimate, &
     reached, reason, warnings, stat, message, n)
     use column_recorder, only: column_recorder_t
-    use experiment, only: problem_of, run_experiment
+    use experiment, only: run_experiment
+    use scene_problem, only: problem_of
     use failure, only: no_convergence
     use experiment_result, only: experiment_result_t
     use dimensionless_problem, only: problem_t

@@ -7,7 +7,8 @@ module forecast
   use numerics_choice, only: choice_t, choose, companion
   use edge_locked, only: mesh_pair_t, new_mesh_pair, largest_radius, contact_level, &
     smallest_feature
-  use experiment, only: problem_of, range_of
+  use experiment, only: range_of
+  use scene_problem, only: problem_of
   use locked_stepper, only: has_path
   use h0_schedule, only: states_planned
   implicit none

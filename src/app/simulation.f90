@@ -7,7 +7,9 @@ module simulation
   use scene_groups, only: scene_t
   use text, only: brief
   use experiment_result, only: experiment_result_t
-  use experiment, only: run_experiment, problem_of, path_start
+  use experiment, only: run_experiment, path_start
+  use resumable_stepper, only: resumable_stepper_t
+  use scene_problem, only: problem_of
   use h0_schedule, only: states_planned
   use sweeps, only: run_sweep
   use preflight, only: preflight_t, preflight_of
@@ -43,6 +45,7 @@ contains
     integer, intent(out) :: exit_code
     type(results_t), target :: results
     type(stability_recorder_t), target :: recorder
+    type(resumable_stepper_t), target :: keeper
     class(observer_t), pointer :: observer
     type(problem_t) :: problem
     type(experiment_result_t) :: outcome
@@ -112,7 +115,8 @@ contains
       call run_sweep(scene, results, failed, outcome%cost)
     else if (expected%too_large == '') then
       call results%progress%start(states_planned(scene), name, quiet)
-      call run_experiment(scene, problem, observer, outcome, results%journal)
+      keeper%journal => results%journal
+      call run_experiment(scene, problem, observer, outcome, keeper)
     end if
     call results%progress%finish()
     outcome%cost%factorisations = outcome%cost%factorisations + recorder%cost%factorisations

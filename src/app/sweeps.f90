@@ -6,7 +6,8 @@ module sweeps
   use scene_groups, only: scene_t
   use scene, only: swept_scene
   use experiment_result, only: experiment_result_t
-  use experiment, only: run_experiment, problem_of
+  use experiment, only: run_experiment
+  use scene_problem, only: problem_of
   use equilibrium, only: cost_t
   use records, only: silent_observer_t
   use summarise, only: summary_of

@@ -9,7 +9,7 @@ module error_estimate
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
-  use edge_locked, only: regrid
+  use regridding, only: regrid
   use equilibrium, only: control_t, state_t, cost_t
   use anderson, only: frozen_jacobian_t, solve_anderson
   use solver_options, only: solver_options_t

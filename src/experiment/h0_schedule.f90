@@ -1,7 +1,7 @@
 !> The values of h0 that the branches of a scene go through.
 module h0_schedule
   use kinds, only: wp
-  use scene_groups, only: scene_t
+  use experiment_request, only: request_t
   use stepped_branch, only: h0_schedule_t
   implicit none
   private
@@ -9,18 +9,18 @@ module h0_schedule
 
 contains
 
-  !> Number of equilibria that the scene's cycle will take.
-  integer function states_planned(scene)
-    type(scene_t), intent(in) :: scene
+  !> Number of equilibria that the cycle asked for will take.
+  integer function states_planned(request)
+    class(request_t), intent(in) :: request
     integer :: k
 
     states_planned = 0
-    if (.not. allocated(scene%loading)) return
-    associate (l => scene%loading)
+    if (.not. allocated(request%loading)) return
+    associate (l => request%loading)
       states_planned = nint(min((l%h0_start - l%h0_end)/l%h0_step, 1.0e9_wp)) + 1
     end associate
-    if (.not. allocated(scene%unloading)) return
-    associate (u => scene%unloading)
+    if (.not. allocated(request%unloading)) return
+    associate (u => request%unloading)
       do k = 1, size(u%from)
         states_planned = states_planned + nint(min((u%h0_end - u%from(k))/u%h0_step, 1.0e7_wp)) + 1
       end do
@@ -28,11 +28,11 @@ contains
   end function states_planned
 
   !> Values of h0 [m] from start to finish by step, whichever way that is, both ends included, with
-  !> the scene's profiles and the values `also` (law's lengths) in their places.
-  function schedule_of(name, start, finish, step, scene, length, also) result(plan)
+  !> the profiles asked for and the values `also` (law's lengths) in their places.
+  function schedule_of(name, start, finish, step, request, length, also) result(plan)
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: start, finish, step, length, also(:)
-    type(scene_t), intent(in) :: scene
+    class(request_t), intent(in) :: request
     type(h0_schedule_t) :: plan
     real(wp), allocatable :: h0(:), profiles(:)
     real(wp) :: sense, same
@@ -49,7 +49,7 @@ contains
       h0 = [h0, finish]
     end if
     allocate (profiles(0))
-    if (allocated(scene%profiles)) profiles = scene%profiles%h0
+    if (allocated(request%profiles)) profiles = request%profiles%h0
     do i = 1, size(also)
       call include(h0, also(i)*length)
     end do

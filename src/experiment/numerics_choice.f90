@@ -6,7 +6,7 @@ module numerics_choice
   use uniform_grid, only: new_uniform_grid
   use panels, only: new_panel_grid, graded_ends
   use edge_locked, only: resolution_t, largest_radius, contact_level, smallest_feature
-  use scene_groups, only: numerics_t
+  use experiment_request, only: numerics_t
   use solver_options, only: solver_options_t
   implicit none
   private

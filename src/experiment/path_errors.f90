@@ -7,7 +7,8 @@
 module path_errors
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use edge_locked, only: mesh_pair_t, regrid
+  use edge_locked, only: mesh_pair_t
+  use regridding, only: regrid
   use equilibrium, only: state_t, cost_t, load_reach
   use anderson, only: frozen_jacobian_t, solve_anderson
   use continuation, only: path_control, coordinate_of

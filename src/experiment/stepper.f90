@@ -10,7 +10,8 @@ module stepper
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: stepper_t, branch_point_t, step_result_t, extreme_t, memory, remember, touching
+  public :: stepper_t, keeping_stepper_t, branch_point_t, step_result_t, extreme_t, memory, &
+    remember, touching
 
   !> Why rigid bodies have no state below the smallest gap of their law.
   character(len=*), parameter :: touching = &
@@ -73,6 +74,15 @@ module stepper
     procedure :: mesh_of
   end type stepper_t
 
+  !> A stepper between an experiment and whoever solves, which keeps the steps.
+  type, abstract, extends(stepper_t) :: keeping_stepper_t
+    class(stepper_t), pointer :: solver => null()
+    !> Time [s] that the steps of an earlier run once took.
+    real(wp) :: earlier_seconds = 0
+  contains
+    procedure :: keep_steps_of
+  end type keeping_stepper_t
+
   abstract interface
     !> The state at h0 that an approach from afar arrives at.
     subroutine begin_at(self, h0, position, event)
@@ -115,6 +125,17 @@ module stepper
   end interface
 
 contains
+
+  !> Makes `solver` the one whose steps are kept.
+  subroutine keep_steps_of(self, solver)
+    class(keeping_stepper_t), intent(inout) :: self
+    class(stepper_t), intent(in), target :: solver
+
+    self%solver => solver
+    self%problem = solver%problem
+    self%options = solver%options
+    self%jump_tolerance = solver%jump_tolerance
+  end subroutine keep_steps_of
 
   !> With one mesh there is no choice.
   pure integer function mesh_of(self, kind)

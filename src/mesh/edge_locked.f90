@@ -1,5 +1,4 @@
-!> The two meshes on which the whole equilibrium path is resolved at any adhesion strength, and the
-!> passage of a state from one to the other.
+!> The two meshes on which the whole equilibrium path is resolved at any adhesion strength.
 !>
 !> Before contact the mesh is graded to the axis and the gap there is the coordinate of the path. In
 !> contact the mesh is locked to the contact edge: positions are in units of the contact radius c,
@@ -9,10 +8,9 @@ module edge_locked
   use dimensionless_problem, only: problem_t, neck_width
   use discretisation, only: discretisation_t
   use panels, only: new_panel_grid, graded_ends
-  use equilibrium, only: state_t
   implicit none
   private
-  public :: mesh_pair_t, new_mesh_pair, regrid, hertz_scale, largest_radius, contact_level, &
+  public :: mesh_pair_t, new_mesh_pair, hertz_scale, largest_radius, contact_level, &
     smallest_feature, beyond_contact
   public :: approach, contact
 
@@ -155,34 +153,5 @@ contains
     smallest_feature = max(finest*max(c, 1.0_wp), min(neck_width(problem), 0.5_wp, &
       (problem%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3)))
   end function smallest_feature
-
-  !> The state on another mesh (or a shorter or longer part of the same), at the scale given: gaps
-  !> interpolated, and beyond the old mesh those of a deformation that decays as 1/r.
-  pure function regrid(state, from, to, scale, nodes) result(new)
-    type(state_t), intent(in) :: state
-    type(discretisation_t), intent(in) :: from, to
-    real(wp), intent(in) :: scale
-    integer, intent(in) :: nodes
-    type(state_t) :: new
-    real(wp) :: r, last, raised
-    integer :: j, n
-
-    n = size(state%gap)
-    last = state%scale*from%x(n)
-    raised = state%gap(n) - state%h0 - 0.5_wp*last**2
-    new = state
-    deallocate (new%gap, new%pressure)
-    allocate (new%gap(nodes), new%pressure(nodes))
-    new%pressure = 0
-    new%scale = scale
-    do j = 1, nodes
-      r = scale*to%x(j)
-      if (r <= last) then
-        new%gap(j) = from%interpolate(state%gap, r/state%scale)
-      else
-        new%gap(j) = state%h0 + 0.5_wp*r**2 + raised*last/r
-      end if
-    end do
-  end function regrid
 
 end module edge_locked

@@ -11,7 +11,8 @@ module continuation
     radius_of_gap
   use solver_options, only: solver_options_t
   use anderson, only: frozen_jacobian_t, solve_anderson
-  use edge_locked, only: mesh_pair_t, regrid, approach, contact
+  use edge_locked, only: mesh_pair_t, approach, contact
+  use regridding, only: regrid
   implicit none
   private
   public :: continuation_t, new_continuation, path_control, coordinate_of, move_to_mesh, &

@@ -6,7 +6,7 @@ module resumable_stepper
   use discretisation, only: discretisation_t
   use equilibrium, only: cost_t
   use jacobian, only: factorise_again
-  use stepper, only: stepper_t, branch_point_t, step_result_t
+  use stepper, only: keeping_stepper_t, branch_point_t, step_result_t
   use reported, only: error_probe_t
   use journal, only: journal_t
   use byte_record, only: byte_record_t
@@ -15,14 +15,13 @@ module resumable_stepper
   use clock, only: seconds
   implicit none
   private
-  public :: resumable_stepper_t, new_resumable_stepper
+  public :: resumable_stepper_t
 
-  type, extends(stepper_t) :: resumable_stepper_t
-    !> Who solves, and where it is kept.
-    class(stepper_t), pointer :: solver => null()
+  type, extends(keeping_stepper_t) :: resumable_stepper_t
+    !> Where the steps are kept.
     type(journal_t), pointer :: journal => null()
-    !> Time [s] that the steps taken from the journal once took, and those solved since.
-    real(wp) :: earlier_seconds = 0, own_seconds = 0
+    !> Time [s] that those solved since took.
+    real(wp) :: own_seconds = 0
     !> Whether the solver still lacks the factors of the last record.
     logical, private :: behind = .false.
     !> The factorisation that the journal knows of, as counted in it.
@@ -42,19 +41,6 @@ module resumable_stepper
   character(len=*), parameter :: mark = 'step'
 
 contains
-
-  !> Steps of `solver` that are kept in `journal`.
-  function new_resumable_stepper(solver, journal) result(steps)
-    class(stepper_t), intent(in), target :: solver
-    type(journal_t), intent(in), target :: journal
-    type(resumable_stepper_t) :: steps
-
-    steps%solver => solver
-    steps%journal => journal
-    steps%problem = solver%problem
-    steps%options = solver%options
-    steps%jump_tolerance = solver%jump_tolerance
-  end function new_resumable_stepper
 
   subroutine approach_to(self, h0, position, event)
     class(resumable_stepper_t), intent(inout) :: self

@@ -6,17 +6,15 @@ module scene
   use text, only: brief, quoted
   use deck, only: deck_t, read_deck
   use scene_keys, only: keys_of_scene
-  use scene_groups, only: scene_t, bodies_t, force_t, loading_t, unloading_t, path_t, profiles_t, &
-                          range_t, stability_t, sweep_t, numerics_t
+  use scene_groups, only: scene_t, bodies_t, force_t, range_t, stability_t, sweep_t
+  use experiment_request, only: loading_t, unloading_t, path_range_t, profiles_t, numerics_t
   use scene_ranges, only: take_loading, take_unloading, take_path, take_profiles, take_range, &
                           take_stability
   use scene_sweep, only: take_sweep
   use magnitudes, only: check_derived
   implicit none
   private
-  public :: scene_t, bodies_t, force_t, loading_t, unloading_t, path_t, profiles_t, range_t, &
-            stability_t, sweep_t, numerics_t
-  public :: read_scene, make_scene, swept_scene
+  public :: scene_t, read_scene, make_scene, swept_scene
 
   character(len=*), parameter :: one_way = 'give one of: stiffness; young and poisson; ' // &
     'rigid = .true.'
