@@ -216,6 +216,7 @@ contains
 
     summary%jump_in_h0 = jump%h0*problem%length
     summary%jump_in_load = jump%load*problem%load
+    if (allocated(summary%jump_in_uncertainty)) deallocate (summary%jump_in_uncertainty)
     if (uncertainty > 0) summary%jump_in_uncertainty = uncertainty*problem%length
     if (.not. allocated(jump%error)) return
     summary%jump_in_h0_error = jump%error%h0*problem%length
@@ -231,6 +232,7 @@ contains
 
     summary%jump_out_h0 = jump%h0*problem%length
     summary%jump_out_load = jump%load*problem%load
+    if (allocated(summary%jump_out_uncertainty)) deallocate (summary%jump_out_uncertainty)
     if (uncertainty > 0) summary%jump_out_uncertainty = uncertainty*problem%length
     if (.not. allocated(jump%error)) return
     summary%jump_out_h0_error = jump%error%h0*problem%length
