@@ -103,6 +103,7 @@ contains
     call search%finish(steps, last_h0)
     if (allocated(branch%lowest) .or. .not. allocated(search%lowest)) return
     branch%lowest = search%lowest
+    branch%lowest%searched = .true.
   end subroutine run_branch
 
   !> Whether a state is an equilibrium, which the paper's stopping rule does not say.

@@ -32,6 +32,8 @@ module reported
     real(wp) :: h0 = 0, displacement = 0, load = 0
     integer :: point = 0
     logical :: landing = .false.
+    !> Its h0 was found by a search between steps, and no error of that is known.
+    logical :: searched = .false.
     type(error_probe_t), allocatable :: witness
     type(error_t), allocatable :: error
   end type reported_t

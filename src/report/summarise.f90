@@ -192,7 +192,8 @@ contains
           summary%unload_max_tension_h0(k) = lowest%h0*problem%length
           if (allocated(lowest%error)) then
             summary%unload_max_tension_error(k) = lowest%error%load*problem%load
-            summary%unload_max_tension_h0_error(k) = lowest%error%h0*problem%length
+            if (.not. lowest%searched) &
+              summary%unload_max_tension_h0_error(k) = lowest%error%h0*problem%length
           end if
         end associate
       end if
@@ -347,14 +348,15 @@ contains
 
     if (allocated(summary%max_tension)) then
       if (-lowest%load*problem%load <= summary%max_tension) return
-      if (allocated(summary%max_tension_error)) &
-        deallocate (summary%max_tension_error, summary%max_tension_h0_error)
+      if (allocated(summary%max_tension_error)) deallocate (summary%max_tension_error)
+      if (allocated(summary%max_tension_h0_error)) deallocate (summary%max_tension_h0_error)
     end if
     summary%max_tension = -lowest%load*problem%load
     summary%max_tension_h0 = lowest%h0*problem%length
     if (.not. allocated(lowest%error)) return
     summary%max_tension_error = lowest%error%load*problem%load
-    summary%max_tension_h0_error = lowest%error%h0*problem%length
+    if (.not. lowest%searched) &
+      summary%max_tension_h0_error = lowest%error%h0*problem%length
   end subroutine raise_tension
 
   subroutine widen_spacing(summary, spacing)
