@@ -14,7 +14,7 @@ contains
   subroutine slow_states(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
     form, gap, displacement, slope, load, stat, message, n)
     use failure, only: bad_input
-    use problem, only: problem_t
+    use dimensionless_problem, only: problem_t
     use slow_deformation, only: attraction_only, by_quadrature, closed_form, has_form, &
       slow_displacement, slow_load, slow_slope
     character(len=*), intent(in) :: law, part, form
@@ -52,7 +52,7 @@ contains
     jumps, stat, message)
     use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
     use approximation_tables, only: jumps_of, jumps_t
-    use problem, only: problem_t
+    use dimensionless_problem, only: problem_t
     character(len=*), intent(in) :: law, part
     integer(c_int), intent(in) :: rigid
     real(c_double), intent(in) :: hamaker, z0, p0, decay_length, radius, stiffness
@@ -83,7 +83,7 @@ contains
     rigid, h0_start, h0_end, count, theory, values, rows, stat, message, n)
     use approximation_tables, only: approximation_rows
     use failure, only: no_convergence
-    use problem, only: problem_t
+    use dimensionless_problem, only: problem_t
     use records, only: theory_row_t
     use scene_groups, only: range_t
     character(len=*), intent(in) :: law, part
@@ -122,7 +122,7 @@ contains
     stat, message)
     use force_law, only: force_law_t
     use law_by_name, only: make_law
-    use problem, only: new_problem, problem_t
+    use dimensionless_problem, only: new_problem, problem_t
     character(len=*), intent(in) :: law, part
     integer(c_int), intent(in) :: rigid
     real(c_double), intent(in) :: hamaker, z0, p0, decay_length, radius, stiffness

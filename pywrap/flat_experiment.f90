@@ -2,8 +2,9 @@
 !> equilibrium path. Conventions as in `snapin_flat`, force laws as in `flat_numerics`.
 !>
 !> A state is a row of numbers: h0, h_centre, displacement, load, contact radius, stable,
-!> residual and converged (`collector`). A number that does not exist is NaN. `warnings` is what the
-!> program would warn of, one a line; `reason`, why the experiment ended early, blank if it did not.
+!> residual and converged (`column_recorder`). A number that does not exist is NaN. `warnings` is
+!> what the program would warn of, one a line; `reason`, why the experiment ended early, blank if it
+!> did not.
 !>
 !> Nothing is kept from call to call. f2py holds Python's global lock, so that calls do not overlap;
 !> they must not (no `threadsafe`), since gfortran keeps lengths of intermediate strings in static
@@ -22,20 +23,21 @@ contains
   subroutine force_curve(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
     method, grid, accuracy, nodes, r_max, h0, states, jumps, jump_count, highest, error_estimate, &
     reached, reason, warnings, stat, message, n)
-    use choice, only: choose, fixed_mesh
-    use collector, only: collector_t
+    use numerics_choice, only: choose, fixed_mesh
+    use column_recorder, only: column_recorder_t
     use stepped_branch, only: branch_t
     use edge_locked, only: new_mesh_pair
-    use experiment, only: prepare, problem_of
-    use outcome, only: outcome_t
-    use outcome_errors, only: judge_fixed, judge_locked
+    use experiment, only: prepare
+    use scene_problem, only: problem_of
+    use experiment_result, only: experiment_result_t
+    use result_errors, only: judge_fixed, judge_locked
     use failure, only: bad_input
-    use fixed_steps, only: fixed_steps_t
-    use locked_steps, only: has_path, locked_steps_t
-    use path_steps, only: path_steps_t
-    use unique_steps, only: unique_steps_t
+    use fixed_stepper, only: fixed_stepper_t
+    use locked_stepper, only: has_path, locked_stepper_t
+    use path_stepper, only: path_stepper_t
+    use unique_stepper, only: unique_stepper_t
     use blas_threads, only: use_threads_for
-    use problem, only: problem_t
+    use dimensionless_problem, only: problem_t
     use scene_groups, only: scene_t
     use summarise, only: summary_of
     character(len=*), intent(in) :: law, part, method, grid
@@ -48,12 +50,12 @@ contains
     character(len=2000), intent(out) :: warnings
     type(scene_t) :: scene
     type(problem_t) :: problem
-    type(collector_t) :: rows
-    type(outcome_t) :: outcome
-    type(path_steps_t), target :: along_path
-    type(unique_steps_t), target :: one_by_one
-    class(locked_steps_t), pointer :: locked
-    type(fixed_steps_t) :: fixed
+    type(column_recorder_t) :: rows
+    type(experiment_result_t) :: outcome
+    type(path_stepper_t), target :: along_path
+    type(unique_stepper_t), target :: one_by_one
+    class(locked_stepper_t), pointer :: locked
+    type(fixed_stepper_t) :: fixed
     type(branch_t), allocatable :: stretch(:)
     real(c_double) :: low, high
     integer :: k
@@ -90,7 +92,7 @@ contains
       locked%pair = new_mesh_pair(problem, high, low, outcome%chosen%resolution)
       call use_threads_for(maxval(locked%pair%grid%nodes))
       select type (locked)
-      class is (path_steps_t)
+      class is (path_stepper_t)
         call locked%know_path(high, low, .false., rows)
       end select
       call run_stretches(locked, h0/problem%length, rows, stretch)
@@ -123,11 +125,12 @@ contains
   subroutine equilibrium_path(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
     accuracy, h0_start, given, h0_end, states, folds, fold_count, highest, error_estimate, &
     reached, reason, warnings, stat, message, n)
-    use collector, only: collector_t
-    use experiment, only: problem_of, run_experiment
+    use column_recorder, only: column_recorder_t
+    use experiment, only: run_experiment
+    use scene_problem, only: problem_of
     use failure, only: no_convergence
-    use outcome, only: outcome_t
-    use problem, only: problem_t
+    use experiment_result, only: experiment_result_t
+    use dimensionless_problem, only: problem_t
     use scene_groups, only: scene_t
     use summarise, only: summary_of
     use summary, only: summary_t
@@ -141,8 +144,8 @@ contains
     character(len=2000), intent(out) :: warnings
     type(scene_t) :: scene
     type(problem_t) :: problem
-    type(collector_t) :: rows
-    type(outcome_t) :: outcome
+    type(column_recorder_t) :: rows
+    type(experiment_result_t) :: outcome
     type(summary_t) :: summary
 
     stat = 0
@@ -176,16 +179,16 @@ contains
   !> one way, and a value that repeats the one before begins another. After one that ends early
   !> there is none.
   subroutine run_stretches(steps, h0, observer, stretch)
-    use stepped_branch, only: branch_t, plan_t, run_branch
-    use quasi_static, only: position_t, quasi_static_t
+    use stepped_branch, only: branch_t, h0_schedule_t, run_branch
+    use stepper, only: branch_point_t, stepper_t
     use records, only: observer_t
-    class(quasi_static_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     real(c_double), intent(in) :: h0(:)
     class(observer_t), intent(inout) :: observer
     type(branch_t), allocatable, intent(out) :: stretch(:)
     type(branch_t) :: this
-    type(position_t) :: position, none(0)
-    type(plan_t) :: plan
+    type(branch_point_t) :: position, none(0)
+    type(h0_schedule_t) :: plan
     real(c_double) :: nowhere(0)
     integer :: first, last
 

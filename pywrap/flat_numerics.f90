@@ -168,17 +168,17 @@ contains
     end do
   end subroutine mesh_interpolation
 
-  !> One state at a prescribed H0, in the units of `problem`, on a mesh enlarged `scale` times, from
-  !> the gaps `start`. converged, stop_on_change: 0 or 1. A state that did not converge is not a
-  !> failure; its residual says how far it is from equilibrium.
+  !> One state at a prescribed H0, in the units of `dimensionless_problem`, on a mesh enlarged
+  !> `scale` times, from the gaps `start`. converged, stop_on_change: 0 or 1. A state that did not
+  !> converge is not a failure; its residual says how far it is from equilibrium.
   subroutine equilibrium_state(name, part, coupling, kind, centre, panel_end, order, scale, h0, &
     start, method, tolerance, most_iterations, depth, patience, mixing_limit, stop_on_change, &
     displacement_tolerance, gap, pressure, axis_gap, load, residual, converged, operator_products, &
     factorisations, rejected_steps, stat, message, m)
-    use anderson, only: frozen_t
+    use anderson, only: frozen_jacobian_t
     use discretisation, only: discretisation_t
     use equilibrium, only: control_t, cost_t, state_t, at_h0, state_from
-    use problem, only: problem_t
+    use dimensionless_problem, only: problem_t
     use solver, only: solve_state
     use solver_options, only: solver_options_t
     character(len=*), intent(in) :: name, part, kind, method
@@ -194,7 +194,7 @@ contains
     type(problem_t) :: this
     type(discretisation_t) :: mesh
     type(solver_options_t) :: options
-    type(frozen_t) :: frozen
+    type(frozen_jacobian_t) :: frozen
     type(state_t) :: state
     type(cost_t) :: cost
     logical :: met

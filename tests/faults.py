@@ -3,7 +3,7 @@
     faults.py [--every N]
 
 tries every call (or every N-th), prints a table of how many were tried and how runs ended, and
-ends with status 1 where what src/publication.f90 promises does not hold.
+ends with status 1 where what src/system/publication.f90 promises does not hold.
 
 A run is to replace the results of an older deck of the same name. Whatever happens: files with
 final names are the old set or the new one, or INCOMPLETE.txt is there and the run has said so; the

@@ -112,7 +112,7 @@ def test_jumps_are_near_those_of_the_exact_solution(sigma, h0, load):
         assert 0.05 <= jump.h0 / h0 - 1 <= 0.065
 
 
-# --- Against the exact solution, in the units of src/problem.f90
+# --- Against the exact solution, in the units of src/model/dimensionless_problem.f90
 
 STEPS = np.array([0, 0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32, 48, 64, 96, 128])
 

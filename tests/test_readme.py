@@ -49,10 +49,19 @@ def test_every_file_it_points_to_exists():
         assert (ROOT / link).exists(), link
 
 
-def test_the_tour_of_the_code_names_every_module():
+def test_the_tour_of_the_code_names_every_room_and_no_module_that_is_gone():
     tour = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").split("## How to add")[0]
-    modules = {path.stem for path in (ROOT / "src").glob("*.f90")}
-    assert sorted(name for name in modules if f"`{name}`" not in tour) == []
+    rooms = {path.name for path in (ROOT / "src").iterdir() if any(path.glob("*.f90"))}
+    assert sorted(room for room in rooms if f"| `{room}/` |" not in tour) == []
+    known = {path.stem for path in (ROOT / "src").rglob("*.f90")} | rooms
+    known |= {path.stem for path in (ROOT / "pywrap").rglob("*.*")}
+    named = set(re.findall(r"`([a-z]+(?:_[a-z0-9]+)+)`", tour.split("`pywrap/` holds")[0]))
+    assert sorted(named - known) == []
+
+
+def test_every_module_says_what_it_is_for():
+    for path in (ROOT / "src").rglob("*.f90"):
+        assert path.read_text(encoding="utf-8").startswith("!> "), path
 
 
 if __name__ == "__main__":

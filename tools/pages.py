@@ -28,10 +28,10 @@ PAGES = {
 }
 # What reads decks, writes files or talks changes no number. A new file counts until it is here.
 _NO_NUMBERS = (
-    "assignments", "clock", "command_line", "c_library", "deck", "deck_keys", "deck_number",
-    "deck_scan", "deck_source", "deck_store", "deck_text", "deck_token", "deck_values", "failure",
-    "files", "finished_run", "folder_lock", "forecast", "journal", "memory", "outlook",
-    "packed_states", "packing", "progress", "publication", "run_identity", "snapin", "text_file",
+    "namelist_writer", "clock", "command_line", "c_library", "deck", "deck_keys", "deck_number",
+    "deck_scan", "deck_source", "deck_store", "text", "deck_token", "deck_values", "failure",
+    "files", "finished_run", "folder_lock", "forecast", "journal", "memory", "preflight",
+    "state_records", "byte_record", "progress", "publication", "run_identity", "snapin", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")
 

@@ -1,4 +1,4 @@
-"""Slowly varying deformation: src/slow_deformation.f90 and src/approximation_tables.f90.
+"""Slowly varying deformation: src/theory/slow_deformation.f90 and src/report/approximation_tables.f90.
 
 (21)-(37) of the paper, SI. `radius`, `stiffness`, `rigid` and `law` are as in `force_curve`.
 """

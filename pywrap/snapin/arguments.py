@@ -209,7 +209,7 @@ def _free_memory():
 
 
 def accept(stat, message):
-    """Raise what the library reported; `stat` is 0, or the kind in src/failure.f90."""
+    """Raise what the library reported; `stat` is 0, or the kind in src/base/failure.f90."""
     if stat == 0:
         return
     text = message.decode(errors="replace").strip()

@@ -1,4 +1,4 @@
-"""Hertz, JKR, DMT and Maugis-Dugdale: src/classical.f90 and src/maugis.f90.
+"""Hertz, JKR, DMT and Maugis-Dugdale: src/theory/classical.f90 and src/theory/maugis.f90.
 
 `theory` is "hertz", "jkr", "dmt" or "maugis". `radius` is R [m], `stiffness` E/(1-nu^2) of two
 identical bodies [Pa], `surface_energy` gamma [J/m^2], `strength` the cohesive tension of

@@ -1,7 +1,7 @@
 """Kernel, quadrature, force laws, meshes, and one state of equilibrium.
 
 Kernel, quadrature and meshes have no units. Force laws are in SI. A state of equilibrium is in the
-units of src/problem.f90: gaps in the law's length, lateral positions in sqrt(R length), pressures
+units of src/model/dimensionless_problem.f90: gaps in the law's length, lateral positions in sqrt(R length), pressures
 in the law's unit, loads in that unit times R length.
 """
 
@@ -36,7 +36,7 @@ LAWS = {
 METHODS = ("mixing", "anderson", "newton")
 
 _LARGEST_ORDER = 64
-# As in src/scene_keys.f90.
+# As in src/scene/scene_keys.f90.
 MOST_NODES = 20000
 _MOST_DEPTH = 1000
 
@@ -58,7 +58,7 @@ def _sum_and_distance(total, distance):
 
 
 def kernel(total, distance):
-    """Return k(r, t) for arrays of r + t and |r - t|, both positive (src/elastic_kernel.f90)."""
+    """Return k(r, t) for arrays of r + t and |r - t|, both positive (src/mesh/elastic_kernel.f90)."""
     return _flat.kernel_values(*_sum_and_distance(total, distance))[0]
 
 
@@ -77,7 +77,7 @@ class GaussRule(NamedTuple):
 
 
 def gauss_rule(points):
-    """Return the Gauss-Legendre rule of so many points (src/quadrature.f90)."""
+    """Return the Gauss-Legendre rule of so many points (src/base/quadrature.f90)."""
     return GaussRule(*_flat.gauss_rule(count("points", points, 1, _LARGEST_ORDER)))
 
 

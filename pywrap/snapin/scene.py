@@ -10,7 +10,7 @@ import numpy as np
 from .arguments import flag, instance, positive
 from .numerics import law_arguments, law_numbers
 
-# As in src/scene_keys.f90.
+# As in src/scene/scene_keys.f90.
 _ACCURACIES = 1e-10, 1e-1
 # What was tried, and ends in seconds. Beyond these the library may search for a very long time.
 # h0 in lengths of the law; sigma for laws that attract, the coupling of others.

@@ -8,14 +8,14 @@ program linear_limits
   use clock, only: seconds
   use laws, only: law_parameters_t, new_law
   use force_law, only: force_law_t
-  use problem, only: problem_t, new_problem
+  use dimensionless_problem, only: problem_t, new_problem
   use discretisation, only: discretisation_t, first_node
   use uniform_grid, only: new_uniform_grid
   use equilibrium, only: control_t, state_t, cost_t, state_from, residual
   use jacobian, only: factorise_jacobian
   use linear_algebra, only: multiply, factorisation_t, factorise, solve
   use mixing, only: solve_mixing
-  use anderson, only: frozen_t, solve_anderson
+  use anderson, only: frozen_jacobian_t, solve_anderson
   use solver_options, only: solver_options_t
   use blas_threads, only: use_threads_for
   implicit none
@@ -35,7 +35,7 @@ program linear_limits
   type(discretisation_t) :: grid
   type(control_t) :: control
   type(solver_options_t) :: plain, newton
-  type(frozen_t) :: kept, fresh
+  type(frozen_jacobian_t) :: kept, fresh
   type(factorisation_t) :: matrix
   type(state_t) :: start, state
   type(cost_t) :: cost

@@ -49,7 +49,7 @@ CYCLE = {"loading": loading(6, -2, 0.25), "unloading": {}}
 CLOSE = {"residual_tolerance": 1e-12}
 # On uniform grids the default is 1e-8: of states that stop there no twelve digits can be promised.
 FIXED = {"grid": "uniform", "nodes": 300, **CLOSE}
-# Matrices from so many nodes on are given to more than one thread (src/blas_threads.f90).
+# Matrices from so many nodes on are given to more than one thread (src/system/blas_threads.f90).
 SHARED = 2500
 THREADED = {"grid": "uniform", "nodes": 2600, "r_max": 20.0, **CLOSE}
 STRONG = {"loading": loading(13, -4, 0.25), "unloading": {"from_": [2.0, -4.0]}}

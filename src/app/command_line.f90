@@ -1,0 +1,176 @@
+!> The command line: options, decks, help.
+module command_line
+  use failure, only: failure_t, fail, bad_input
+  use text, only: guess, printable
+  implicit none
+  private
+  public :: options_t, file_t, read_command_line, stem_of, write_help, write_usage
+
+  !> One file name.
+  type :: file_t
+    character(len=:), allocatable :: name
+  end type file_t
+
+  !> What the command line asks for.
+  type :: options_t
+    !> Folder in which each deck gets a folder of its own.
+    character(len=:), allocatable :: out
+    logical :: check = .false., resume = .false., quiet = .false.
+    logical :: keys = .false., version = .false., help = .false.
+    type(file_t), allocatable :: decks(:)
+  end type options_t
+
+  character(len=*), parameter :: usage = &
+    'snapin [--out DIR] [--check] [--resume] [--quiet] [--keys] [--version] [--help] ' // &
+    'DECK [DECK ...]'
+  character(len=*), parameter :: known = &
+    '--out --check --resume --quiet --keys --version --help'
+
+contains
+
+  !> Reads the arguments of this run. Fails on unknown options, where no deck is named though the
+  !> options need one, and on two decks whose results would share a folder.
+  subroutine read_command_line(options, error)
+    type(options_t), intent(out) :: options
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: argument
+    type(file_t) :: file
+    logical :: only_decks
+    integer :: i
+
+    options%out = 'results'
+    allocate (options%decks(0))
+    only_decks = .false.
+    i = 0
+    do while (i < command_argument_count())
+      i = i + 1
+      argument = argument_at(i)
+      if (only_decks .or. index(argument, '-') /= 1 .or. argument == '-') then
+        ! A structure constructor inside an array constructor would leak in gfortran.
+        file = file_t(argument)
+        options%decks = [options%decks, file]
+        cycle
+      end if
+      select case (argument)
+      case ('--')
+        only_decks = .true.
+      case ('--check')
+        options%check = .true.
+      case ('--resume')
+        options%resume = .true.
+      case ('--quiet')
+        options%quiet = .true.
+      case ('--keys')
+        options%keys = .true.
+      case ('--version')
+        options%version = .true.
+      case ('--help')
+        options%help = .true.
+      case ('--out')
+        i = i + 1
+        options%out = ''
+        if (i <= command_argument_count()) options%out = argument_at(i)
+        if (len_trim(options%out) == 0) call fail(error, bad_input, '--out needs a folder')
+      case default
+        if (index(argument, '--out=') == 1) then
+          options%out = argument(7:)
+          if (len_trim(options%out) == 0) call fail(error, bad_input, '--out needs a folder')
+        else
+          call fail(error, bad_input, 'unknown option "' // printable(argument) // '"' // &
+                    guess(argument, known, ''))
+        end if
+      end select
+      if (allocated(error)) return
+    end do
+    if (options%keys .or. options%version .or. options%help) return
+    if (size(options%decks) == 0) then
+      call fail(error, bad_input, 'no deck; name at least one file')
+    else if (.not. options%check) then
+      call check_stems(options%decks, error)
+    end if
+  end subroutine read_command_line
+
+  !> Refuses two decks with the same stem.
+  subroutine check_stems(decks, error)
+    type(file_t), intent(in) :: decks(:)
+    type(failure_t), allocatable, intent(inout) :: error
+    integer :: i, j
+
+    do i = 2, size(decks)
+      do j = 1, i - 1
+        if (stem_of(decks(i)%name) /= stem_of(decks(j)%name)) cycle
+        call fail(error, bad_input, printable(decks(j)%name) // ' and ' // &
+                  printable(decks(i)%name) // ' would both write to the folder ' // &
+                  printable(stem_of(decks(i)%name)) // &
+                  '; rename one, or run them one by one with --out')
+        return
+      end do
+    end do
+  end subroutine check_stems
+
+  !> The file name of `path` without folders and without its last extension. A name like `...nml`
+  !> stays whole: its stem would be a folder above the results.
+  pure function stem_of(path) result(stem)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: stem
+    integer :: dot
+
+    stem = path(index(path, '/', back=.true.) + 1:)
+    dot = index(stem, '.', back=.true.)
+    if (verify(stem(:dot), '.') > 0) stem = stem(:dot - 1)
+  end function stem_of
+
+  !> Argument `i` in full length.
+  function argument_at(i) result(argument)
+    integer, intent(in) :: i
+    character(len=:), allocatable :: argument
+    integer :: length
+
+    call get_command_argument(i, length=length)
+    allocate (character(len=length) :: argument)
+    call get_command_argument(i, argument)
+  end function argument_at
+
+  !> Prints the one-line usage.
+  subroutine write_usage(unit)
+    integer, intent(in) :: unit
+    integer :: status
+
+    write (unit, '(2a)', iostat=status) 'usage: ', usage
+  end subroutine write_usage
+
+  !> Prints what the program does, its options and a deck to start from.
+  subroutine write_help(unit)
+    integer, intent(in) :: unit
+    integer :: status, i
+    character(len=*), parameter :: lines(*) = [character(len=88) :: &
+      '', &
+      'Elastic deformation and adhesion of two bodies near and in contact. Each DECK, a', &
+      'namelist file, is computed into results/<name of the deck>/.', &
+      '', &
+      '  --out DIR   write to DIR/<name of the deck>/ instead', &
+      '  --check     validate the decks, compute nothing', &
+      '  --resume    go on where an interrupted run stopped; leave finished results as they are', &
+      '  --quiet     no progress on the terminal', &
+      '  --keys      print every group and key a deck may hold: unit, default, meaning', &
+      '  --version   print version, compiler and libraries', &
+      '  --help      print this', &
+      '', &
+      'Exit status: 0 done; 1 a calculation failed; 2 deck or command line wrong, and nothing', &
+      'written.', &
+      '', &
+      'A deck to start from (SI units):', &
+      '', &
+      '  &bodies radius = 1.5e-2, stiffness = 1.0e10 /            ! sphere radius, E/(1-nu^2)', &
+      '  &force law = ''lennard_jones'', hamaker = 1.0e-19, z0 = 0.5e-9 /', &
+      '  &loading h0_start = 7e-9, h0_end = -2e-9, h0_step = 0.05e-9 /', &
+      '  &unloading /                                             ! back from h0_end', &
+      '  &profiles h0 = 4.3e-9, 3.6e-9 /']
+
+    call write_usage(unit)
+    do i = 1, size(lines)
+      write (unit, '(a)', iostat=status) trim(lines(i))
+    end do
+  end subroutine write_help
+
+end module command_line

@@ -1,0 +1,104 @@
+!> The program: command line, decks, exit status. 0 done, 1 a calculation failed, 2 the deck or the
+!> command line is wrong.
+program snapin
+  use, intrinsic :: iso_c_binding, only: c_int
+  use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use failure, only: failure_t
+  use deck_keys, only: write_keys
+  use scene, only: scene_t, read_scene
+  use scene_keys, only: keys_of_scene
+  use c_library, only: c_prepare
+  use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
+  use simulation, only: run_scene
+  use preflight, only: preflight_t, preflight_of
+  use build_info, only: version, compiler, blas, options_of_build => options
+  implicit none
+
+  interface
+    ! `stop` would print its code and any floating-point flags; C's exit is silent.
+    subroutine c_exit(status) bind(c, name='exit')
+      import :: c_int
+      implicit none
+      integer(c_int), value :: status
+    end subroutine c_exit
+  end interface
+
+  type(options_t) :: options
+  type(failure_t), allocatable :: error
+
+  call c_prepare()
+  call read_command_line(options, error)
+  if (allocated(error)) then
+    call print_line(error_unit, 'snapin: ' // error%message)
+    call write_usage(error_unit)
+    call print_line(error_unit, 'try "snapin --help"')
+    call leave(2)
+  end if
+  if (options%help) then
+    call write_help(output_unit)
+  else if (options%version) then
+    call print_line(output_unit, 'snapin ' // version)
+    call print_line(output_unit, 'compiler: ' // compiler)
+    call print_line(output_unit, 'blas: ' // blas)
+    call print_line(output_unit, 'options: ' // options_of_build)
+  else if (options%keys) then
+    call write_keys(keys_of_scene(), output_unit)
+  else
+    call leave(run_decks())
+  end if
+  call leave(0)
+
+contains
+
+  !> Validates all decks, then computes them one by one; returns the exit status. Every deck is
+  !> read before anything is written, so that a wrong one leaves nothing behind.
+  function run_decks() result(status)
+    integer :: status
+    type(scene_t), allocatable :: scenes(:)
+    type(preflight_t) :: expected
+    type(failure_t), allocatable :: trouble
+    integer :: i, outcome
+
+    status = 0
+    allocate (scenes(size(options%decks)))
+    do i = 1, size(scenes)
+      call read_scene(options%decks(i)%name, scenes(i), trouble)
+      if (allocated(trouble)) then
+        call print_line(error_unit, trouble%message)
+        status = 2
+      else if (options%check) then
+        call print_line(output_unit, options%decks(i)%name // ': ok')
+        expected = preflight_of(scenes(i))
+        if (expected%too_large // expected%long /= '') call print_line(error_unit, 'snapin: ' // &
+          options%decks(i)%name // ': ' // expected%too_large // expected%long)
+      end if
+    end do
+    if (options%check .or. status /= 0) return
+    do i = 1, size(scenes)
+      call run_scene(scenes(i), options%out // '/' // stem_of(options%decks(i)%name), &
+                     options%quiet, options%resume, outcome)
+      status = max(status, outcome)
+    end do
+  end function run_decks
+
+  !> Prints without minding whether anyone reads: a full disk behind a redirection must not end the
+  !> program with a runtime error.
+  subroutine print_line(unit, text)
+    integer, intent(in) :: unit
+    character(len=*), intent(in) :: text
+    integer :: status
+
+    write (unit, '(a)', iostat=status) text
+  end subroutine print_line
+
+  !> Ends the program.
+  subroutine leave(status)
+    integer, intent(in) :: status
+    integer :: trouble
+
+    flush (output_unit, iostat=trouble)
+    flush (error_unit, iostat=trouble)
+    call c_exit(int(status, c_int))
+  end subroutine leave
+
+end program snapin

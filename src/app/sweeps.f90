@@ -1,0 +1,181 @@
+!> The cases of a sweep, spread over the cores: one value of a key a case, one row of its summary.
+module sweeps
+  use kinds, only: wp
+  use failure, only: failure_t
+  use dimensionless_problem, only: problem_t
+  use scene_groups, only: scene_t
+  use scene, only: swept_scene
+  use experiment_result, only: experiment_result_t
+  use experiment, only: run_experiment
+  use scene_problem, only: problem_of
+  use equilibrium, only: cost_t
+  use records, only: silent_observer_t
+  use summarise, only: summary_of
+  use summary, only: summary_t
+  use case_columns, only: columns_of, numbers_of
+  use byte_record, only: byte_record_t
+  use state_records, only: put_cost, take_cost
+  use results, only: results_t
+  implicit none
+  private
+  public :: run_sweep
+
+  !> What is kept of one case.
+  type :: case_t
+    logical :: done = .false., converged = .false.
+    !> See `numbers_of`.
+    real(wp), allocatable :: numbers(:)
+    type(cost_t) :: cost
+  end type case_t
+
+contains
+
+  !> Computes every case of scene%sweep and hands its row to `results`, in the order of the values.
+  !> Cases that results%journal has are complete, whatever their order; the others join them as they
+  !> end. A case that fails is a row that says so. Once results cannot be written no case begins.
+  !> failed: how many; cost: of all together.
+  subroutine run_sweep(scene, results, failed, cost)
+    type(scene_t), intent(in) :: scene
+    type(results_t), intent(inout) :: results
+    integer, intent(out) :: failed
+    type(cost_t), intent(out) :: cost
+    type(case_t), allocatable :: cases(:)
+    integer :: i, written
+
+    allocate (cases(size(scene%sweep%values)))
+    written = 0
+    failed = 0
+    call recall_cases()
+    ! Each case has a thread of its own: its kernels and its linear algebra use no more.
+    !$omp parallel do schedule(dynamic, 1)
+    do i = 1, size(cases)
+      if (.not. cases(i)%done) call complete(i)
+    end do
+    !$omp end parallel do
+
+  contains
+
+    !> Enters the cases that an interrupted run has completed.
+    subroutine recall_cases()
+      type(byte_record_t) :: record
+      logical :: found
+      integer :: i
+
+      do
+        call results%journal%next(record, found)
+        if (.not. found) exit
+        call record%take(i)
+        call take_case(record, cases(i))
+        call enter(cases(i))
+        call results%progress%skip('case')
+      end do
+    end subroutine recall_cases
+
+    !> Computes case i and enters it.
+    subroutine complete(i)
+      integer, intent(in) :: i
+      type(case_t) :: fresh
+      type(byte_record_t) :: record
+      logical :: stopped
+
+      !$omp critical (one_at_a_time)
+      stopped = allocated(results%trouble) .or. allocated(results%journal%trouble)
+      !$omp end critical (one_at_a_time)
+      if (stopped) return
+      call run_case(scene, scene%sweep%values(i), fresh)
+      call record%put(i)
+      call put_case(record, fresh)
+      !$omp critical (one_at_a_time)
+      call results%journal%append(record)
+      cases(i) = fresh
+      call results%progress%step('case')
+      call enter(cases(i))
+      !$omp end critical (one_at_a_time)
+    end subroutine complete
+
+    !> Counts a case that is done, and writes the rows whose turn it is.
+    subroutine enter(case)
+      type(case_t), intent(in) :: case
+
+      cost = sum_of(cost, case%cost)
+      if (.not. case%converged) failed = failed + 1
+      do while (written < size(cases))
+        if (.not. cases(written + 1)%done) exit
+        written = written + 1
+        call results%take_case(scene%sweep%key, scene%sweep%values(written), columns_of(scene), &
+          cases(written)%numbers)
+      end do
+    end subroutine enter
+
+  end subroutine run_sweep
+
+  !> The case of the scene with the swept key at a value.
+  subroutine run_case(scene, value, case)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: value
+    type(case_t), intent(out) :: case
+    type(scene_t) :: variant
+    type(problem_t) :: problem
+    type(experiment_result_t) :: outcome
+    type(summary_t) :: summary
+    type(silent_observer_t) :: observer
+    type(failure_t), allocatable :: error
+
+    ! gfortran keeps the lengths of strings that functions return in static storage, which threads
+    ! share: what makes strings is done by one at a time.
+    !$omp critical (one_at_a_time)
+    call swept_scene(scene, value, variant, error)
+    !$omp end critical (one_at_a_time)
+    summary%converged = .false.
+    if (.not. allocated(error)) then
+      problem = problem_of(variant)
+      call run_experiment(variant, problem, observer, outcome)
+    end if
+    !$omp critical (one_at_a_time)
+    if (.not. allocated(error)) summary = summary_of(variant, problem, outcome)
+    case%numbers = numbers_of(summary, scene)
+    !$omp end critical (one_at_a_time)
+    case%done = .true.
+    case%converged = summary%converged
+    case%cost = outcome%cost
+  end subroutine run_case
+
+  !> Packs a case.
+  subroutine put_case(record, case)
+    type(byte_record_t), intent(inout) :: record
+    type(case_t), intent(in) :: case
+
+    call record%put(case%converged)
+    call record%put(case%numbers)
+    call put_cost(record, case%cost)
+  end subroutine put_case
+
+  !> Unpacks what `put_case` packed.
+  subroutine take_case(record, case)
+    type(byte_record_t), intent(inout) :: record
+    type(case_t), intent(out) :: case
+
+    case%done = .true.
+    call record%take(case%converged)
+    call record%take(case%numbers)
+    call take_cost(record, case%cost)
+  end subroutine take_case
+
+  pure function sum_of(a, b) result(total)
+    type(cost_t), intent(in) :: a, b
+    type(cost_t) :: total
+
+    total%operator_products = a%operator_products + b%operator_products
+    total%operator_columns = a%operator_columns + b%operator_columns
+    total%pressure_evaluations = a%pressure_evaluations + b%pressure_evaluations
+    total%factorisations = a%factorisations + b%factorisations
+    total%iterations = a%iterations + b%iterations
+    total%kernel_entries = a%kernel_entries + b%kernel_entries
+    total%states = a%states + b%states
+    total%rejected_steps = a%rejected_steps + b%rejected_steps
+    total%kernel_seconds = a%kernel_seconds + b%kernel_seconds
+    total%solve_seconds = a%solve_seconds + b%solve_seconds
+    total%estimate_seconds = a%estimate_seconds + b%estimate_seconds
+  end function sum_of
+
+end module sweeps

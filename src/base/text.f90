@@ -1,0 +1,211 @@
+!> Small text tools: what messages are made with, and numbers and strings as a deck has them.
+module text
+  use kinds, only: wp
+  implicit none
+  private
+  public :: lower, quoted, unquoted, brief, full, guess, clip, listing, printable
+
+contains
+
+  !> `text` in lower case (ASCII).
+  pure function lower(text) result(small)
+    character(len=*), intent(in) :: text
+    character(len=len(text)) :: small
+    integer :: i
+
+    small = text
+    do i = 1, len(text)
+      if (text(i:i) >= 'A' .and. text(i:i) <= 'Z') small(i:i) = achar(iachar(text(i:i)) + 32)
+    end do
+  end function lower
+
+  !> `text`, the name of a file or the like, on one line and without orders to the terminal: control
+  !> characters become question marks. What is not ASCII stays.
+  pure function printable(text) result(clean)
+    character(len=*), intent(in) :: text
+    character(len=len(text)) :: clean
+    integer :: i
+
+    clean = text
+    do i = 1, len(text)
+      if (iachar(text(i:i)) < 32 .or. iachar(text(i:i)) == 127) clean(i:i) = '?'
+    end do
+  end function printable
+
+  !> `text` as a namelist string: in single quotes, quotes inside doubled.
+  pure function quoted(text) result(literal)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: literal
+    integer :: i
+
+    literal = "'"
+    do i = 1, len(text)
+      literal = literal // text(i:i)
+      if (text(i:i) == "'") literal = literal // "'"
+    end do
+    literal = literal // "'"
+  end function quoted
+
+  !> The text inside the quotes of `literal`, doubled quotes made single.
+  pure function unquoted(literal) result(text)
+    character(len=*), intent(in) :: literal
+    character(len=:), allocatable :: text
+    character(len=len(literal)) :: buffer
+    integer :: i, n
+
+    i = 2
+    n = 0
+    do while (i < len(literal))
+      n = n + 1
+      buffer(n:n) = literal(i:i)
+      i = i + merge(2, 1, literal(i:i) == literal(1:1))
+    end do
+    text = buffer(:n)
+  end function unquoted
+
+  !> `x` with 17 significant digits, so that reading it gives `x` again.
+  pure function full(x) result(text)
+    real(wp), intent(in) :: x
+    character(len=:), allocatable :: text
+    character(len=32) :: buffer
+
+    write (buffer, '(es24.16e3)') x
+    text = trim(adjustl(buffer))
+  end function full
+
+  !> `x` for a message: the fewest digits that still read back as `x`.
+  pure function brief(x) result(text)
+    real(wp), intent(in) :: x
+    character(len=:), allocatable :: text
+    character(len=40) :: buffer, form
+    real(wp) :: back
+    integer :: digits, status, mark, order
+
+    if (abs(x) < 2e9_wp .and. abs(x - anint(x)) <= 0.0_wp) then
+      write (buffer, '(i0)') nint(x)
+      text = trim(buffer)
+      return
+    end if
+    do digits = 0, 16
+      if (abs(x) >= 1e-3_wp .and. abs(x) < 1e4_wp) then
+        write (form, '(a, i0, a)') '(f30.', digits, ')'
+      else
+        write (form, '(a, i0, a)') '(es30.', digits, 'e3)'
+      end if
+      write (buffer, form) x
+      read (buffer, *, iostat=status) back
+      if (status == 0 .and. abs(back - x) <= 0.0_wp) exit
+    end do
+    text = trim(adjustl(buffer))
+    ! 1.E-09 as people write it: 1e-9.
+    mark = index(text, 'E')
+    if (mark == 0) return
+    read (text(mark + 1:), *, iostat=status) order
+    if (status /= 0) return
+    write (buffer, '(i0)') order
+    if (text(mark - 1:mark - 1) == '.') text(mark - 1:mark - 1) = ' '
+    text = trim(text(:mark - 1)) // 'e' // trim(buffer)
+  end function brief
+
+  !> Number of blank-separated words in `list`.
+  pure integer function word_count(list) result(n)
+    character(len=*), intent(in) :: list
+    integer :: i
+
+    n = 0
+    do i = 1, len(list)
+      if (list(i:i) == ' ') cycle
+      if (i == 1) then
+        n = n + 1
+      else if (list(i - 1:i - 1) == ' ') then
+        n = n + 1
+      end if
+    end do
+  end function word_count
+
+  !> Word number `n` of the blank-separated `list`.
+  pure function word_of(list, n) result(word)
+    character(len=*), intent(in) :: list
+    integer, intent(in) :: n
+    character(len=:), allocatable :: word
+    integer :: i, first, length
+
+    first = 1
+    length = 0
+    do i = 1, n
+      first = first + verify(list(first:) // '#', ' ') - 1
+      length = scan(list(first:) // ' ', ' ') - 1
+      if (i < n) first = first + length
+    end do
+    word = list(first:first + length - 1)
+  end function word_of
+
+  !> The words of `list` as `<before>w1<after>, <before>w2<after>, ...`.
+  pure function listing(list, before, after) result(text)
+    character(len=*), intent(in) :: list, before, after
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, word_count(list)
+      if (i > 1) text = text // ', '
+      text = text // before // word_of(list, i) // after
+    end do
+  end function listing
+
+  !> The word of the blank-separated `list` that `word` was probably meant to be, or ''.
+  pure function likely(word, list) result(best)
+    character(len=*), intent(in) :: word, list
+    character(len=:), allocatable :: best
+    integer :: i, distance, smallest
+
+    best = ''
+    if (len(word) > 63) return
+    ! A third of the letters wrong is still a slip of the fingers; more is another word.
+    smallest = max(1, (len(word) + 1)/3) + 1
+    do i = 1, word_count(list)
+      distance = edits(lower(word), word_of(list, i))
+      if (distance >= smallest) cycle
+      smallest = distance
+      best = word_of(list, i)
+    end do
+  end function likely
+
+  !> ' (did you mean "x"?)' where one of the `names` is near `word`, else ''.
+  pure function guess(word, names, before) result(text)
+    character(len=*), intent(in) :: word, names, before
+    character(len=:), allocatable :: text
+
+    text = likely(word, names)
+    if (len(text) > 0) text = ' (did you mean "' // before // text // '"?)'
+  end function guess
+
+  !> Fewest insertions, deletions, changes and swaps of neighbours that turn `a` into `b`.
+  pure integer function edits(a, b)
+    character(len=*), intent(in) :: a, b
+    integer :: d(0:len(a), 0:len(b)), i, j
+
+    d(:, 0) = [(i, i=0, len(a))]
+    d(0, :) = [(j, j=0, len(b))]
+    do j = 1, len(b)
+      do i = 1, len(a)
+        d(i, j) = min(d(i - 1, j) + 1, d(i, j - 1) + 1, &
+                      d(i - 1, j - 1) + merge(0, 1, a(i:i) == b(j:j)))
+        if (i < 2 .or. j < 2) cycle
+        if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) &
+          d(i, j) = min(d(i, j), d(max(i - 2, 0), max(j - 2, 0)) + 1)
+      end do
+    end do
+    edits = d(len(a), len(b))
+  end function edits
+
+  !> The beginning of a token, enough of it to be recognised in a message.
+  pure function clip(token) result(text)
+    character(len=*), intent(in) :: token
+    character(len=:), allocatable :: text
+
+    text = token
+    if (len(token) > 40) text = token(:37) // '...'
+  end function clip
+
+end module text

@@ -1,0 +1,211 @@
+!> Mixing with Anderson acceleration, the mixing ratio replaced by a matrix: the step is
+!> -B^{-1} G with B one LAPACK factorisation of the Jacobian, frozen, which serves many states, and
+!> the least-squares combination of the last few steps on top of it.
+!>
+!> Where B no longer fits (the residual grows, or convergence is slow), it is renewed at the best
+!> state so far and the history dropped. Newton's method is the same iteration with B renewed at
+!> every step and no history.
+module anderson
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: control_t, state_t, cost_t, residual, largest_step, state_from, &
+    unknowns_of, residual_floor, at_h0, at_h0_with_edge
+  use jacobian, only: factorise_jacobian
+  use linear_algebra, only: factorisation_t, solve
+  use solver_options, only: solver_options_t
+  implicit none
+  private
+  public :: frozen_jacobian_t, solve_anderson
+
+  !> A factorisation kept from state to state, and the kind of control that it belongs to.
+  type :: frozen_jacobian_t
+    type(factorisation_t) :: factors
+    integer :: control_kind = 0
+    !> States solved with it.
+    integer :: served = 0
+  end type frozen_jacobian_t
+
+  !> Differences of unknowns and of steps, newest last.
+  type :: history_t
+    integer :: held = 0
+    real(wp), allocatable :: dz(:, :), df(:, :)
+    real(wp), allocatable :: z_before(:), f_before(:)
+  end type history_t
+
+  !> A factorisation that has served this many states and now takes this many iterations is
+  !> renewed: it costs about as much as the iterations that it saves the next states.
+  integer, parameter :: long_service = 15, many_iterations = 5
+  !> Steps rejected before a solution is given up.
+  integer, parameter :: most_rejections = 4
+
+contains
+
+  !> From `state` (gaps, and H0 or c where the control leaves it open) to the equilibrium at
+  !> `control`. On return state%residual says how well the equations hold; converged is
+  !> state%residual <= tolerance (or the floor that rounding sets).
+  subroutine solve_anderson(problem, grid, control, options, frozen, state, converged, cost)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    type(solver_options_t), intent(in) :: options
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: converged
+    type(cost_t), intent(inout) :: cost
+    real(wp), allocatable :: z(:), g(:), f(:), step(:), z_best(:)
+    type(state_t) :: best
+    type(history_t) :: history
+    real(wp) :: length, before, shortest
+    integer :: iteration, since_renewal, rejections
+
+    z = unknowns_of(control, state)
+    allocate (g(size(z)))
+    if (.not. problem%coupling > 0 .and. control%kind == at_h0) then
+      call solve_rigid()
+      return
+    end if
+    if (frozen%control_kind /= control%kind) frozen%factors%valid = .false.
+    if (frozen%factors%valid) frozen%factors%valid = size(frozen%factors%lu, 1) == size(z)
+    best = state_from(size(state%gap))
+    z_best = z
+    converged = .false.
+    before = huge(1.0_wp)
+    shortest = huge(1.0_wp)
+    since_renewal = 0
+    rejections = 0
+    do iteration = 1, options%most_iterations
+      call residual(problem, grid, control, z, g, state, cost)
+      cost%iterations = cost%iterations + 1
+      state%iterations = iteration
+      if (state%residual < best%residual) best = state
+      converged = state%residual <= max(options%tolerance, residual_floor(problem, state))
+      if (converged .or. .not. state%residual < huge(1.0_wp)) exit
+
+      if (.not. frozen%factors%valid .or. since_renewal >= options%patience) call renew()
+      if (.not. frozen%factors%valid) exit
+      f = g
+      call solve(frozen%factors, f)
+      ! The length of the plain step measures the distance from equilibrium; the residual does not,
+      ! for in a stiff contact an error in the gap that no longer matters still moves the pressure
+      ! much.
+      length = step_length(z, f)
+      if (0.1_wp*length > before .and. since_renewal > 0) then
+        cost%rejected_steps = cost%rejected_steps + 1
+        rejections = rejections + 1
+        if (rejections > most_rejections) exit
+        z = z_best
+        call residual(problem, grid, control, z, g, state, cost)
+        call renew()
+        if (.not. frozen%factors%valid) exit
+        f = g
+        call solve(frozen%factors, f)
+        length = step_length(z, f)
+      end if
+      if (length < shortest) then
+        shortest = length
+        z_best = z
+      end if
+      before = length
+      step = accelerated_step(history, options%depth, z, f)
+      step = largest_step(problem, control, z, step)*step
+      z = z + step
+      ! The parabola between the bodies is quadratic in the scale: its second-order part is known,
+      ! and far out it is large.
+      if (control%kind == at_h0_with_edge) &
+        z(:size(z) - 1) = z(:size(z) - 1) + 0.5_wp*(step(size(z))*grid%x(:size(z) - 1))**2
+      since_renewal = since_renewal + 1
+    end do
+    if (.not. converged .and. best%residual < state%residual) then
+      best%iterations = state%iterations
+      state = best
+    end if
+    ! The next state is better off with a new one.
+    frozen%served = frozen%served + 1
+    if (frozen%served >= long_service .and. state%iterations > many_iterations) &
+      frozen%factors%valid = .false.
+
+  contains
+
+    !> Rigid bodies: their gap is known.
+    subroutine solve_rigid()
+      z = control%value + 0.5_wp*(control%scale*grid%x(:size(z)))**2
+      call residual(problem, grid, control, z, g, state, cost)
+      state%iterations = 0
+      converged = state%residual <= max(options%tolerance, residual_floor(problem, state))
+    end subroutine solve_rigid
+
+    !> A factorisation at the present state; what was learnt with the old one is forgotten.
+    subroutine renew()
+      call factorise_jacobian(problem, grid, control, state, frozen%factors, cost)
+      frozen%control_kind = control%kind
+      history%held = 0
+      if (allocated(history%f_before)) deallocate (history%f_before)
+      since_renewal = 0
+      frozen%served = 0
+    end subroutine renew
+
+  end subroutine solve_anderson
+
+  !> The largest relative change that the step -f makes.
+  pure real(wp) function step_length(z, f)
+    real(wp), intent(in) :: z(:), f(:)
+
+    step_length = maxval(abs(f)/(1 + abs(z)))
+  end function step_length
+
+  !> The step of Anderson acceleration from z, where the plain step is -f: the combination of
+  !> the last `depth` steps with the least |f|, by modified Gram-Schmidt, newest first; a
+  !> column that is nearly a combination of newer ones is dropped. Keeps z and f for the next call.
+  function accelerated_step(history, depth, z, f) result(step)
+    type(history_t), intent(inout) :: history
+    integer, intent(in) :: depth
+    real(wp), intent(in) :: z(:), f(:)
+    real(wp) :: step(size(z))
+    real(wp) :: q(size(z), depth), p(size(z), depth), r(size(z)), norm, norm_before, along
+    integer :: j, k, used
+
+    step = -f
+    if (depth == 0) return
+    if (.not. allocated(history%dz)) &
+      allocate (history%dz(size(z), depth), history%df(size(z), depth))
+    if (allocated(history%f_before)) then
+      if (history%held == depth) then
+        history%dz(:, :depth - 1) = history%dz(:, 2:)
+        history%df(:, :depth - 1) = history%df(:, 2:)
+      else
+        history%held = history%held + 1
+      end if
+      history%dz(:, history%held) = z - history%z_before
+      history%df(:, history%held) = f - history%f_before
+    end if
+    history%z_before = z
+    history%f_before = f
+
+    ! q: orthonormal directions of df; p: the combinations of dz that belong to them.
+    used = 0
+    r = f
+    do k = history%held, 1, -1
+      used = used + 1
+      q(:, used) = history%df(:, k)
+      p(:, used) = history%dz(:, k)
+      norm_before = norm2(q(:, used))
+      do j = 1, used - 1
+        along = dot_product(q(:, j), q(:, used))
+        q(:, used) = q(:, used) - along*q(:, j)
+        p(:, used) = p(:, used) - along*p(:, j)
+      end do
+      norm = norm2(q(:, used))
+      if (.not. norm > 1.0e-6_wp*norm_before) then
+        used = used - 1
+        cycle
+      end if
+      q(:, used) = q(:, used)/norm
+      p(:, used) = p(:, used)/norm
+      along = dot_product(q(:, used), r)
+      r = r - along*q(:, used)
+      step = step - along*(p(:, used) - q(:, used))
+    end do
+  end function accelerated_step
+
+end module anderson

@@ -1,0 +1,289 @@
+!> The equations of equilibrium on a discretisation, in the units of `dimensionless_problem`:
+!>
+!>     G_i = H_i - H0 - c^2 x_i^2/2 - 2 coupling c (W P(H))_i = 0
+!>
+!> for the gaps H at the nodes rho = c x. The kernel is homogeneous, so one matrix W serves every
+!> scale c. A control says what is prescribed; where that is not H0 at a fixed scale, one more
+!> unknown (H0 or c) and one more equation (the gap on the axis or at the contact edge) join.
+module equilibrium
+  use kinds, only: wp, pi, long
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t, axis_row, centre_row, first_node
+  use linear_algebra, only: multiply
+  implicit none
+  private
+  public :: control_t, state_t, cost_t, residual, largest_step, state_from, unknowns_of, &
+    residual_floor, load_reach, radius_of_gap, lost_in_rounding, beyond_rounding
+  public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
+
+  !> H0 prescribed at a fixed scale; no further unknown.
+  integer, parameter :: at_h0 = 1
+  !> The gap on the axis prescribed, H0 unknown.
+  integer, parameter :: at_axis_gap = 2
+  !> The contact radius c prescribed, H0 unknown; the edge has the gap of maximum tension.
+  integer, parameter :: at_edge_radius = 3
+  !> H0 prescribed, the contact radius c unknown.
+  integer, parameter :: at_h0_with_edge = 4
+
+  !> No length of an equilibrium, in the law's or in lateral units, is larger; its cube is a number.
+  real(wp), parameter :: largest_unknown = 1.0e80_wp
+
+  !> A residual that rounding excuses, in the law's lengths: beyond it the law is not resolved.
+  real(wp), parameter :: largest_floor = 1.0e-3_wp
+
+  !> Why there is no state in contact where `lost_in_rounding`.
+  character(len=*), parameter :: beyond_rounding = &
+    'adhesion is so strong that rounding hides the force law once the bodies are in contact'
+
+  type :: control_t
+    integer :: kind = at_h0
+    !> What is prescribed: H0, the gap on the axis, or the contact radius.
+    real(wp) :: value = 0
+    !> The scale c of the mesh, where it is not an unknown.
+    real(wp) :: scale = 1
+  end type control_t
+
+  !> One state of the two bodies, dimensionless.
+  type :: state_t
+    real(wp), allocatable :: gap(:), pressure(:)
+    real(wp) :: h0 = 0, scale = 1
+    real(wp) :: axis_gap = 0, load = 0
+    !> Largest |G|, in units of the law's length.
+    real(wp) :: residual = huge(1.0_wp)
+    !> Operator products that this state took.
+    integer :: iterations = 0
+  end type state_t
+
+  !> What was spent; counted where it is spent.
+  type :: cost_t
+    integer(long) :: operator_products = 0, operator_columns = 0, pressure_evaluations = 0
+    integer(long) :: factorisations = 0, iterations = 0, kernel_entries = 0, states = 0
+    integer(long) :: rejected_steps = 0
+    real(wp) :: kernel_seconds = 0, solve_seconds = 0, estimate_seconds = 0
+  end type cost_t
+
+contains
+
+  !> g(:nodes) = G and, where the control has one, g(nodes + 1) = its own equation, for the unknowns
+  !> z = (gaps [, H0 or c]). On return `state` is what z stands for, with its load and residual.
+  !> Where z is outside the law's domain there are neither pressures nor a load, and the residual is
+  !> huge.
+  subroutine residual(problem, grid, control, z, g, state, cost)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    real(wp), intent(in) :: z(:)
+    real(wp), intent(out) :: g(:)
+    type(state_t), intent(inout) :: state
+    type(cost_t), intent(inout) :: cost
+    real(wp) :: raised(first_node - 1 + node_count(control, size(z)))
+    real(wp) :: axis_gap, edge_gap, reach
+    integer :: n, columns
+
+    n = node_count(control, size(z))
+    call unpack(control, z, state%h0, state%scale)
+    state%gap = z(:n)
+    if (.not. defined(problem, z, state)) then
+      g = 0
+      state%pressure = 0*g(:n)
+      state%load = 0
+      state%axis_gap = state%h0
+      state%residual = huge(1.0_wp)
+      return
+    end if
+    state%pressure = problem%law%pressure(state%gap)
+    cost%pressure_evaluations = cost%pressure_evaluations + n
+    raised = 0
+    if (problem%coupling > 0) then
+      columns = acting_columns(state%pressure)
+      call multiply(grid%kernel, columns, state%pressure, raised)
+      raised = 2*problem%coupling*state%scale*raised
+      cost%operator_products = cost%operator_products + 1
+      cost%operator_columns = cost%operator_columns + columns
+    end if
+    g(:n) = state%gap - state%h0 - 0.5_wp*(state%scale*grid%x(:n))**2 - raised(first_node:)
+    axis_gap = state%h0 + raised(axis_row)
+    select case (control%kind)
+    case (at_axis_gap)
+      g(n + 1) = axis_gap - control%value
+    case (at_edge_radius, at_h0_with_edge)
+      edge_gap = state%h0 + 0.5_wp*state%scale**2 + raised(centre_row)
+      g(n + 1) = edge_gap - problem%law%edge_gap
+    end select
+    state%axis_gap = axis_gap
+    ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
+    reach = load_reach(grid, state)
+    state%load = 2*pi*(state%scale**2*dot_product(grid%weight(:n), state%pressure) + &
+      sum(problem%law%energy([state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)])))
+    state%residual = maxval(abs(g))
+    ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
+    if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
+  end subroutine residual
+
+  !> Whether unknowns are such that pressures, and all that follows from them, are numbers.
+  pure logical function defined(problem, z, state)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: z(:)
+    type(state_t), intent(in) :: state
+
+    defined = all(abs(z) <= largest_unknown) .and. &
+      abs(state%h0) <= largest_unknown .and. state%scale > 0
+    if (defined) defined = all(state%gap >= problem%law%smallest_gap)
+  end function defined
+
+  !> The fraction (at most 1) of a step dz from z that keeps every gap within the law's closure
+  !> limit and the contact radius within a third.
+  pure real(wp) function largest_step(problem, control, z, dz) result(fraction)
+    type(problem_t), intent(in) :: problem
+    type(control_t), intent(in) :: control
+    real(wp), intent(in) :: z(:), dz(:)
+    integer :: n
+
+    n = size(z)
+    if (control%kind == at_h0) then
+      fraction = limit(z, dz)
+    else
+      fraction = limit(z(:n - 1), dz(:n - 1))
+    end if
+    if (control%kind == at_h0_with_edge) &
+      fraction = min(fraction, 0.3_wp*z(n)/max(abs(dz(n)), tiny(1.0_wp)))
+
+  contains
+
+    pure real(wp) function limit(gap, step)
+      real(wp), intent(in) :: gap(:), step(:)
+
+      limit = min(1.0_wp, minval((problem%law%closure_fraction*gap + problem%law%closure_length)/ &
+        max(-step, tiny(1.0_wp)*max(1.0_wp, abs(gap)))))
+    end function limit
+
+  end function largest_step
+
+  !> The unknowns of a state under a control: its gaps and, where the control has one, H0 or c.
+  pure function unknowns_of(control, state) result(z)
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    real(wp), allocatable :: z(:)
+
+    select case (control%kind)
+    case (at_h0)
+      z = state%gap
+    case (at_h0_with_edge)
+      z = [state%gap, state%scale]
+    case default
+      z = [state%gap, state%h0]
+    end select
+  end function unknowns_of
+
+  !> Where the part of the mesh that a state uses ends, lateral units.
+  pure real(wp) function load_reach(grid, state)
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+
+    load_reach = state%scale*grid%end_of(size(state%gap))
+  end function load_reach
+
+  !> An empty state on the leading `nodes` nodes of a mesh.
+  pure function state_from(nodes) result(state)
+    integer, intent(in) :: nodes
+    type(state_t) :: state
+
+    allocate (state%gap(nodes), state%pressure(nodes), source=0.0_wp)
+  end function state_from
+
+  !> Position, in lateral units, of the outermost point with the given gap; 0 if all gaps are
+  !> larger.
+  pure real(wp) function radius_of_gap(level, grid, state) result(c)
+    real(wp), intent(in) :: level
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp) :: low, high, middle
+    integer :: j, step
+
+    do j = size(state%gap) - 1, 1, -1
+      if (state%gap(j) < level) exit
+    end do
+    c = 0
+    if (j == 0) then
+      if (.not. state%axis_gap < level) return
+      low = 0
+      high = grid%x(1)
+    else
+      low = grid%x(j)
+      high = grid%x(j + 1)
+    end if
+    do step = 1, 60
+      middle = 0.5_wp*(low + high)
+      if (grid%interpolate(state%gap, middle) < level) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
+    c = state%scale*low
+  end function radius_of_gap
+
+  !> The residual that rounding alone leaves: a few units in the last place of the gaps and of the
+  !> deformation's parts, which are of opposite signs in an adhesive contact (the operator on a
+  !> uniform pressure gives at most 2). Never more than still is an equilibrium of the law.
+  pure real(wp) function residual_floor(problem, state)
+    type(problem_t), intent(in) :: problem
+    type(state_t), intent(in) :: state
+
+    residual_floor = 2*epsilon(1.0_wp)*(abs(state%h0) + maxval(abs(state%gap)) + &
+      4*problem%coupling*state%scale*maxval(abs(state%pressure)))
+    residual_floor = min(residual_floor, largest_floor)
+  end function residual_floor
+
+  !> Whether the deformation of a contact of radius c (lateral units) under the law's largest
+  !> tension, about one unit of pressure, is so large that rounding hides the law.
+  pure logical function lost_in_rounding(problem, c)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: c
+
+    lost_in_rounding = 8*epsilon(1.0_wp)*problem%coupling*problem%law%adhesion*c > largest_floor
+  end function lost_in_rounding
+
+  !> Number of gaps among `size` unknowns.
+  pure integer function node_count(control, size)
+    type(control_t), intent(in) :: control
+    integer, intent(in) :: size
+
+    node_count = size
+    if (control%kind /= at_h0) node_count = size - 1
+  end function node_count
+
+  !> H0 and c behind a control and its unknowns.
+  pure subroutine unpack(control, z, h0, scale)
+    type(control_t), intent(in) :: control
+    real(wp), intent(in) :: z(:)
+    real(wp), intent(out) :: h0, scale
+
+    h0 = z(size(z))
+    scale = control%scale
+    select case (control%kind)
+    case (at_h0)
+      h0 = control%value
+    case (at_edge_radius)
+      scale = control%value
+    case (at_h0_with_edge)
+      scale = h0
+      h0 = control%value
+    end select
+  end subroutine unpack
+
+  !> Number of leading columns beyond which no pressure reaches the rounding of the largest one.
+  pure integer function acting_columns(pressure) result(columns)
+    real(wp), intent(in) :: pressure(:)
+    real(wp) :: least
+
+    ! An infinite pressure or NaN must reach the residual.
+    columns = size(pressure)
+    if (.not. all(abs(pressure) <= huge(1.0_wp))) return
+    least = 1.0e-3_wp*epsilon(1.0_wp)*maxval(abs(pressure))
+    do columns = size(pressure), 1, -1
+      if (abs(pressure(columns)) > least) exit
+    end do
+  end function acting_columns
+
+end module equilibrium

@@ -1,0 +1,135 @@
+!> Derivatives of the equations of equilibrium: the Jacobian, factorised, and how the equations
+!> depend on what a control prescribes.
+module jacobian
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t, axis_row, centre_row, first_node
+  use linear_algebra, only: factorisation_t, factorise
+  use equilibrium, only: control_t, state_t, cost_t, at_h0, at_axis_gap, at_edge_radius, &
+    at_h0_with_edge
+  implicit none
+  private
+  public :: factorise_jacobian, factorise_again, control_derivative
+
+contains
+
+  !> Factors of the Jacobian of `residual` at a state, bordered where the control has an unknown of
+  !> its own: I - 2 coupling c W diag(P'), and the derivatives by H0 or c. `shift` is added to the
+  !> diagonal of the nodes' block.
+  subroutine factorise_jacobian(problem, grid, control, state, factors, cost, shift)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    type(factorisation_t), intent(inout) :: factors
+    type(cost_t), intent(inout) :: cost
+    real(wp), intent(in), optional :: shift
+    real(wp) :: factor(size(state%gap)), diagonal
+    integer :: n, m, j, row
+
+    n = size(state%gap)
+    m = n
+    if (control%kind /= at_h0) m = n + 1
+    if (allocated(factors%lu)) then
+      if (size(factors%lu, 1) /= m) deallocate (factors%lu)
+    end if
+    if (.not. allocated(factors%lu)) allocate (factors%lu(m, m))
+    factor = -2*problem%coupling*state%scale*problem%law%slope(state%gap)
+    cost%pressure_evaluations = cost%pressure_evaluations + n
+    diagonal = 1
+    if (present(shift)) diagonal = 1 + shift
+    row = merge(axis_row, centre_row, control%kind == at_axis_gap)
+    do j = 1, n
+      if (problem%coupling > 0) then
+        factors%lu(:n, j) = factor(j)*grid%kernel(first_node:first_node - 1 + n, j)
+        if (m > n) factors%lu(m, j) = -factor(j)*grid%kernel(row, j)
+      else
+        factors%lu(:, j) = 0
+      end if
+      factors%lu(j, j) = factors%lu(j, j) + diagonal
+    end do
+    if (m > n) call border(problem, grid, control, state, factors%lu(:, m))
+    call factorise(factors)
+    cost%factorisations = cost%factorisations + 1
+    factors%origin = [real(control%kind, wp), control%value, control%scale, diagonal - 1, &
+      state%h0, state%scale, state%gap]
+  end subroutine factorise_jacobian
+
+  !> Factors of the Jacobian that factors%origin tells of, bit by bit what `factorise_jacobian` made
+  !> on the same mesh.
+  subroutine factorise_again(problem, grid, factors)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(factorisation_t), intent(inout) :: factors
+    type(control_t) :: control
+    type(state_t) :: state
+    type(cost_t) :: not_counted
+    real(wp) :: shift
+
+    associate (origin => factors%origin)
+      control = control_t(nint(origin(1)), origin(2), origin(3))
+      shift = origin(4)
+      state%h0 = origin(5)
+      state%scale = origin(6)
+      state%gap = origin(7:)
+    end associate
+    call factorise_jacobian(problem, grid, control, state, factors, not_counted, shift)
+  end subroutine factorise_again
+
+  !> The column of derivatives of `residual` by the control's unknown.
+  pure subroutine border(problem, grid, control, state, column)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: column(:)
+
+    if (control%kind == at_h0_with_edge) then
+      column = scale_derivative(problem, grid, state)
+    else
+      column = -1
+      column(size(column)) = 1
+    end if
+  end subroutine border
+
+  !> Derivative of `residual` by the scale c: -c x^2 - 2 coupling W P at the nodes, and the opposite
+  !> sign, with x = 1, in the equation for the edge. The deformation is read off the gaps, which is
+  !> exact where the residual vanishes and costs no operator product.
+  pure function scale_derivative(problem, grid, state) result(column)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp) :: column(size(state%gap) + 1)
+
+    associate (c => state%scale, n => size(state%gap))
+      column(:n) = -0.5_wp*c*grid%x(:n)**2 - (state%gap - state%h0)/c
+      column(n + 1) = 0.5_wp*c + (problem%law%edge_gap - state%h0)/c
+    end associate
+  end function scale_derivative
+
+  !> Derivative of `residual` by the control's value, at a state: with the factors of the same
+  !> control the tangent of the path is minus their solution for it.
+  pure function control_derivative(problem, grid, control, state) result(derivative)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    real(wp), allocatable :: derivative(:)
+    integer :: n
+
+    n = size(state%gap)
+    select case (control%kind)
+    case (at_h0)
+      allocate (derivative(n), source=-1.0_wp)
+    case (at_h0_with_edge)
+      allocate (derivative(n + 1), source=-1.0_wp)
+      derivative(n + 1) = 1
+    case (at_axis_gap)
+      allocate (derivative(n + 1), source=0.0_wp)
+      derivative(n + 1) = -1
+    case (at_edge_radius)
+      derivative = scale_derivative(problem, grid, state)
+    end select
+  end function control_derivative
+
+end module jacobian

@@ -1,0 +1,78 @@
+!> The paper's iteration: the new deformation mixed with the old one, at a ratio that is lowered
+!> when the central displacement oscillates or its change grows and otherwise raised to a limit.
+!>
+!> In a stiff contact the ratio must fall to about one over the largest eigenvalue of the operator,
+!> and then a small *change* of the displacement says nothing: the iteration may have all but
+!> stopped far from equilibrium. It is therefore judged on the residual; the paper's own rule is
+!> there, as an option, to reproduce the paper.
+module mixing
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: control_t, state_t, cost_t, residual, largest_step, residual_floor, at_h0
+  use solver_options, only: solver_options_t
+  implicit none
+  private
+  public :: solve_mixing
+
+  !> Factors by which the ratio falls and rises, and the smallest ratio: below it a million
+  !> iterations would not relax the softest mode.
+  real(wp), parameter :: fall = 0.5_wp, rise = 1.05_wp, smallest_ratio = 1.0e-6_wp
+  !> Factor by which the change of the central displacement must grow for the ratio to fall. On its
+  !> way to equilibrium the change may grow a little for many iterations, and for the more of them
+  !> the lower the ratio is: lowering it for any growth ends at the smallest ratio, far from
+  !> equilibrium.
+  real(wp), parameter :: growth = 2
+
+contains
+
+  !> From `state` to the equilibrium at a prescribed H0 (control kind at_h0). On return
+  !> state%residual says how well the equations hold; converged says that the chosen rule was met.
+  subroutine solve_mixing(problem, grid, control, options, state, converged, cost)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    type(solver_options_t), intent(in) :: options
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: converged
+    type(cost_t), intent(inout) :: cost
+    real(wp), allocatable :: z(:), g(:)
+    real(wp) :: ratio, change, change_before, fraction
+    integer :: iteration
+
+    converged = .false.
+    if (control%kind /= at_h0) return
+    z = state%gap
+    allocate (g(size(z)))
+    ratio = options%mixing_limit
+    change = 0
+    do iteration = 1, options%most_iterations
+      call residual(problem, grid, control, z, g, state, cost)
+      cost%iterations = cost%iterations + 1
+      state%iterations = iteration
+      if (options%stop_on_change) then
+        converged = iteration > 1 .and. abs(change) <= options%displacement_tolerance .and. &
+          state%residual < huge(1.0_wp)
+      else
+        converged = state%residual <= max(options%tolerance, residual_floor(problem, state))
+      end if
+      if (converged .or. .not. state%residual < huge(1.0_wp)) exit
+
+      ! The first node stands for the axis, where its change is that of the central displacement.
+      change_before = change
+      change = -ratio*g(1)
+      if (iteration > 1) then
+        if (change*change_before < 0 .or. abs(change) > growth*abs(change_before)) then
+          ratio = max(fall*ratio, smallest_ratio)
+          cost%rejected_steps = cost%rejected_steps + 1
+        else
+          ratio = min(rise*ratio, options%mixing_limit)
+        end if
+      end if
+      change = -ratio*g(1)
+      fraction = largest_step(problem, control, z, -ratio*g)
+      z = z - fraction*ratio*g
+    end do
+  end subroutine solve_mixing
+
+end module mixing

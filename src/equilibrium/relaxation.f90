@@ -1,0 +1,99 @@
+!> The state that bodies out of equilibrium come to rest in: dh/dtau = -G at fixed h0, by implicit
+!> steps that lengthen as the residual falls, and so end in Newton's. Follows a jump to where a
+!> quasi-static experiment would land, and leaves unstable equilibria.
+module relaxation
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: control_t, state_t, cost_t, residual, largest_step, residual_floor, &
+    at_h0
+  use jacobian, only: factorise_jacobian
+  use linear_algebra, only: factorisation_t, solve, determinant_sign
+  use solver_options, only: solver_options_t
+  implicit none
+  private
+  public :: relax
+
+  !> Most pseudo-time steps; factorisations that are always allowed (a contact edge that runs across
+  !> a hundred widths of the neck takes some 200), and cubes of the matrix's order that more may
+  !> amount to (some ten seconds).
+  integer, parameter :: most_steps = 2000, few_factorisations = 500
+  real(wp), parameter :: most_cubes = 1.0e11_wp
+  !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth
+  !> and its limits: a residual that grows, as it does while bodies come apart, is no reason for
+  !> steps below the usual one, an unstable mode is. The nudge off an unstable equilibrium, in the
+  !> law's lengths.
+  real(wp), parameter :: first_step = 1, growth = 3, usual_step = 0.3_wp, &
+    shortest_step = 1.0e-3_wp, longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
+  !> Stands for a residual before the first; and the fraction of the smallest gap below which bodies
+  !> that nothing keeps apart have fallen onto each other: the attraction then grows by more than an
+  !> order, and no deformation answers that.
+  real(wp), parameter :: unknown = 1.0e100_wp, fallen = 0.3_wp
+  !> Change of the gaps in one step that follows the fall well enough, in the law's lengths.
+  real(wp), parameter :: travel = 0.3_wp
+
+contains
+
+  !> From `state` to a stable equilibrium at the prescribed H0 (control kind at_h0), in place.
+  subroutine relax(problem, grid, control, options, state, converged, cost)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(control_t), intent(in) :: control
+    type(solver_options_t), intent(in) :: options
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: converged
+    type(cost_t), intent(inout) :: cost
+    type(factorisation_t) :: factors
+    real(wp), allocatable :: z(:), g(:), dz(:)
+    real(wp) :: dtau, before, moved, apart
+    integer :: step, began, allowed
+
+    converged = .false.
+    if (control%kind /= at_h0) return
+    z = state%gap
+    apart = minval(z)
+    allocate (g(size(z)))
+    dtau = first_step
+    before = unknown
+    moved = unknown
+    began = int(cost%factorisations)
+    allowed = max(few_factorisations, int(min(most_cubes/real(size(z), wp)**3, 1.0e6_wp)))
+    do step = 1, most_steps
+      if (cost%factorisations - began >= allowed) return
+      call residual(problem, grid, control, z, g, state, cost)
+      cost%iterations = cost%iterations + 1
+      state%iterations = step
+      if (.not. state%residual < huge(1.0_wp)) return
+      if (problem%law%adhesion > 0 .and. .not. problem%law%edge_gap > 0 .and. &
+        minval(z) < fallen*apart) return
+      if (state%residual <= max(options%tolerance, residual_floor(problem, state))) then
+        call factorise_jacobian(problem, grid, control, state, factors, cost)
+        if (.not. factors%valid) return
+        converged = determinant_sign(factors) > 0
+        if (converged) return
+        ! On an unstable equilibrium nothing drives the bodies away: a nudge towards each other
+        ! does.
+        z = z - nudge
+        dtau = first_step
+        before = unknown
+        cycle
+      end if
+      dtau = dtau*min(growth, max(before/state%residual, travel/moved))
+      dtau = min(max(dtau, usual_step), longest_step)
+      before = state%residual
+      do
+        call factorise_jacobian(problem, grid, control, state, factors, cost, 1/dtau)
+        if (.not. factors%valid) return
+        ! A step so long that an unstable mode would be climbed instead of left is too long.
+        if (determinant_sign(factors) > 0 .or. dtau <= shortest_step) exit
+        dtau = 0.1_wp*dtau
+      end do
+      dz = -g
+      call solve(factors, dz)
+      dz = largest_step(problem, control, z, dz)*dz
+      z = z + dz
+      moved = max(maxval(abs(dz)), tiny(1.0_wp)/epsilon(1.0_wp))
+    end do
+  end subroutine relax
+
+end module relaxation

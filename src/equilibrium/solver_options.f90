@@ -1,0 +1,41 @@
+!> What the three iterations (mixing, Anderson, Newton) are told.
+module solver_options
+  use kinds, only: wp
+  implicit none
+  private
+  public :: solver_options_t, tightened
+
+  !> Well above the rounding of equations whose terms are hundreds of the law's lengths.
+  real(wp), parameter :: tight_tolerance = 1.0e-12_wp
+
+  type :: solver_options_t
+    !> 'mixing', 'anderson' or 'newton'.
+    character(len=8) :: method = 'anderson'
+    !> Largest acceptable residual, in the law's lengths.
+    real(wp) :: tolerance = 1.0e-8_wp
+    !> Previous steps that Anderson acceleration combines.
+    integer :: depth = 5
+    !> Accelerated iterations with one factorisation before it is renewed.
+    integer :: patience = 8
+    integer :: most_iterations = 60
+    !> Mixing: largest ratio; whether it stops on a small change of the central displacement, as in
+    !> the paper, instead of on the residual, and on which change (in the law's lengths).
+    real(wp) :: mixing_limit = 0.2_wp
+    logical :: stop_on_change = .false.
+    real(wp) :: displacement_tolerance = 0
+  end type solver_options_t
+
+contains
+
+  !> The same options with a tolerance near rounding: for the few states whose place on the path,
+  !> not only whose load, must be exact. Where rounding allows no better its floor counts
+  !> (`residual_floor`).
+  pure function tightened(options) result(tight)
+    type(solver_options_t), intent(in) :: options
+    type(solver_options_t) :: tight
+
+    tight = options
+    tight%tolerance = min(options%tolerance, tight_tolerance)
+  end function tightened
+
+end module solver_options

@@ -1,0 +1,211 @@
+!> Stability of an equilibrium at fixed h0: the smallest eigenvalue of the operator, which decides,
+!> and the paper's local criteria, which estimate.
+module stability
+  use kinds, only: wp
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t, first_node
+  use equilibrium, only: control_t, state_t, cost_t
+  use jacobian, only: factorise_jacobian
+  use linear_algebra, only: factorisation_t, solve, determinant_sign, multiply, eigenvalues, &
+    positive_definite, positive_eigenvalues
+  implicit none
+  private
+  public :: smallest_eigenvalue, local_criterion, axis_criterion, unknown
+
+  !> What bounds an eigenvalue lambda, as a part of 1 - lambda and of the operator's largest number,
+  !> 1 or |1 - lambda|, whose rounding no method escapes.
+  type :: margin_t
+    real(wp) :: relative, rounding
+  end type margin_t
+
+  !> How far below the eigenvalue found the shift of the inverse iteration lies, and how far from it
+  !> that may end.
+  type(margin_t), parameter :: close = margin_t(1.0e-6_wp, 1.0e-14_wp)
+  !> The change that ends the inverse iteration, and the largest residual of the pair it ends with.
+  type(margin_t), parameter :: settled = margin_t(1.0e-12_wp, 1.0e-15_wp), &
+    exact = margin_t(1.0e-9_wp, 1.0e-14_wp)
+  !> How far below the eigenvalue the operator made symmetric must have none. Its own smallest one
+  !> was never farther from that of the true operator than 2e-8 on meshes locked to the edge and
+  !> 1e-6 on uniform grids of 100 nodes.
+  type(margin_t), parameter :: lower = margin_t(1.0e-2_wp, 1.0e-12_wp)
+  integer, parameter :: most_iterations = 50
+  !> Pressures that are none, and by which nothing is divided.
+  real(wp), parameter :: least_pressure = 1.0e-100_wp
+
+contains
+
+  !> The smallest eigenvalue of I - 2 coupling c W diag(P'), above 0 where the state is stable at
+  !> fixed h0; the spectrum is real because W is symmetric under the weights, but for what
+  !> discretisation leaves. LAPACK finds all eigenvalues. The smallest is then made as exact as the
+  !> factors of the operator allow, and three conditions have to hold, each on its own: the pair
+  !> found is one of the operator; the determinant has the sign of an even number of eigenvalues
+  !> below; the operator made symmetric has none below, counted by Sylvester's law of inertia. If
+  !> they do not, the eigenvalue is NaN and `certain` .false.
+  subroutine smallest_eigenvalue(problem, grid, state, eigenvalue, certain, cost)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: eigenvalue
+    logical, intent(out) :: certain
+    type(cost_t), intent(inout) :: cost
+    real(wp), dimension(size(state%gap)) :: factor, root
+    real(wp), allocatable :: matrix(:, :)
+    real(wp) :: part(size(state%gap)), widest
+    integer :: n, j
+
+    eigenvalue = 1
+    certain = .true.
+    n = size(state%gap)
+    factor = 2*problem%coupling*state%scale*problem%law%slope(state%gap)
+    ! Rigid bodies, or none that attract: repulsion raises eigenvalues, which accumulate at 1.
+    if (.not. maxval(factor) > 0) return
+    root = sqrt(grid%weight(:n))
+    allocate (matrix(n, n))
+    do j = 1, n
+      matrix(:, j) = root*grid%kernel(first_node:first_node - 1 + n, j)*(factor(j)/root(j))
+    end do
+    call eigenvalues(matrix, part, certain)
+    if (certain) then
+      eigenvalue = 1 - maxval(part)
+      widest = maxval(abs(part))
+      call refine(problem, grid, state, factor, widest, eigenvalue, certain, cost)
+    end if
+    if (certain) certain = none_below(grid, factor, root, &
+      eigenvalue - room(lower, eigenvalue, widest), matrix, cost)
+    if (.not. certain) eigenvalue = unknown()
+  end subroutine smallest_eigenvalue
+
+  !> Inverse iteration from a shift just below the eigenvalue, on the operator itself. certain:
+  !> it ended where it began, with a pair of the operator, and the determinant says that an even
+  !> number of eigenvalues is below the shift.
+  subroutine refine(problem, grid, state, factor, widest, eigenvalue, certain, cost)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: factor(:), widest
+    real(wp), intent(inout) :: eigenvalue
+    logical, intent(out) :: certain
+    type(cost_t), intent(inout) :: cost
+    type(control_t) :: control
+    type(factorisation_t) :: factors
+    real(wp), dimension(size(factor)) :: vector, image
+    real(wp) :: raised(first_node - 1 + size(factor)), first, before, growth, shift
+    integer :: step
+
+    certain = .false.
+    first = eigenvalue
+    shift = first - room(close, first, widest)
+    control%scale = state%scale
+    call factorise_jacobian(problem, grid, control, state, factors, cost, -shift)
+    if (.not. factors%valid) return
+    if (determinant_sign(factors) < 0) return
+    associate (weight => grid%weight(:size(factor)))
+      vector = exp(-grid%x(:size(factor)))
+      do step = 1, most_iterations
+        before = eigenvalue
+        vector = vector/sqrt(sum(weight*vector**2))
+        image = vector
+        call solve(factors, image)
+        growth = sum(weight*vector*image)
+        if (.not. abs(growth) > tiny(growth)) return
+        eigenvalue = shift + 1/growth
+        vector = image
+        if (abs(eigenvalue - before) <= room(settled, first, widest)) exit
+      end do
+      vector = vector/sqrt(sum(weight*vector**2))
+      call multiply(grid%kernel, size(factor), factor*vector, raised)
+      image = (1 - eigenvalue)*vector - raised(first_node:)
+      certain = abs(eigenvalue - first) <= room(close, first, widest) .and. &
+        sqrt(sum(weight*image**2)) <= room(exact, first, widest)
+    end associate
+  end subroutine refine
+
+  !> Whether the operator made symmetric, I - S K S diag(P' theta) with S = sqrt(weights) and K the
+  !> symmetric part of the kernel, has no eigenvalue below s < 1. If K is positive definite, there
+  !> are n+(D) + n+(T) - n of them, with D = theta P', n+ the number of positive eigenvalues, and
+  !> T = |D|^(1/2) S K S |D|^(1/2) - (1 - s) sign(D). `matrix` is for work.
+  logical function none_below(grid, factor, root, s, matrix, cost)
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: factor(:), root(:), s
+    real(wp), intent(inout), contiguous :: matrix(:, :)
+    type(cost_t), intent(inout) :: cost
+    real(wp), dimension(size(factor)) :: diagonal, act
+    integer :: n, i, j
+
+    n = size(factor)
+    associate (kernel => grid%kernel(first_node:first_node - 1 + n, :n))
+      do j = 1, n
+        do i = 1, j
+          matrix(i, j) = 0.5_wp*(root(i)*kernel(i, j)/root(j) + root(j)*kernel(j, i)/root(i))
+          matrix(j, i) = matrix(i, j)
+        end do
+        diagonal(j) = matrix(j, j)
+      end do
+    end associate
+    cost%factorisations = cost%factorisations + 1
+    none_below = positive_definite(matrix)
+    if (.not. none_below) return
+    act = sqrt(abs(factor))
+    do j = 1, n
+      matrix(:j - 1, j) = act(:j - 1)*matrix(:j - 1, j)*act(j)
+      matrix(j, j) = act(j)**2*diagonal(j) - (1 - s)*sign(1.0_wp, factor(j))
+    end do
+    cost%factorisations = cost%factorisations + 1
+    none_below = count(sign(1.0_wp, factor) > 0) + positive_eigenvalues(matrix) == n
+  end function none_below
+
+  !> What a margin is at an eigenvalue of an operator with the given largest |1 - lambda|.
+  pure real(wp) function room(margin, eigenvalue, widest)
+    type(margin_t), intent(in) :: margin
+    real(wp), intent(in) :: eigenvalue, widest
+
+    room = margin%relative*abs(1 - eigenvalue) + margin%rounding*max(1.0_wp, widest)
+  end function room
+
+  !> What stands for a number that there is not.
+  pure real(wp) function unknown()
+    unknown = ieee_value(unknown, ieee_quiet_nan)
+  end function unknown
+
+  !> The left side of (28), |2 u p'/p|, where it is largest; above 1 the criterion calls the state
+  !> unstable. It is derived for surfaces that attract each other, with p < 0 and p' > 0, and is
+  !> taken where this is so: inside the contact edge p passes zero, and the ratio has no bound.
+  !> Contacts with adhesion always violate it just outside that edge. NaN where nothing attracts.
+  pure real(wp) function local_criterion(problem, grid, state) result(value)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    logical :: attracted(size(state%gap))
+
+    value = unknown()
+    associate (two_u => state%h0 + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2 - state%gap, &
+      slope => problem%law%slope(state%gap))
+      attracted = attracts(state%pressure, slope)
+      ! Slopes are below 1e121 and lengths below 1e80.
+      if (any(attracted)) value = maxval(abs(two_u*slope)/max(-state%pressure, least_pressure), &
+        attracted)
+    end associate
+  end function local_criterion
+
+  !> The left side of (29), 2 p'(h(0)) u(0)/p(h(0)); below -1 the criterion calls the state
+  !> unstable. NaN where the bodies do not attract each other on the axis, as in contact.
+  pure real(wp) function axis_criterion(problem, state) result(value)
+    type(problem_t), intent(in) :: problem
+    type(state_t), intent(in) :: state
+    real(wp) :: slope(1), pressure(1)
+
+    value = unknown()
+    slope = problem%law%slope([state%axis_gap])
+    pressure = problem%law%pressure([state%axis_gap])
+    if (all(attracts(pressure, slope))) value = (state%h0 - state%axis_gap)*slope(1)/pressure(1)
+  end function axis_criterion
+
+  !> Whether surfaces attract each other, and less the farther they are apart.
+  elemental logical function attracts(pressure, slope)
+    real(wp), intent(in) :: pressure, slope
+
+    attracts = pressure < -least_pressure .and. slope > 0
+  end function attracts
+
+end module stability

@@ -1,0 +1,282 @@
+!> Carries out what is asked of the elastic problem: the equilibrium path, the h0-stepped cycle.
+!> Effects that are not asked for are not set up.
+module experiment
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use experiment_request, only: request_t
+  use numerics_choice, only: choice_t, choose, fixed_mesh
+  use edge_locked, only: new_mesh_pair, beyond_contact
+  use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
+  use locked_stepper, only: locked_stepper_t, has_path
+  use path_stepper, only: path_stepper_t
+  use unique_stepper, only: unique_stepper_t
+  use fixed_stepper, only: fixed_stepper_t
+  use stepped_branch, only: h0_schedule_t, run_branch
+  use h0_schedule, only: schedule_of
+  use experiment_result, only: experiment_result_t
+  use result_errors, only: judge_locked, judge_fixed
+  use path, only: follow_path
+  use records, only: observer_t
+  use equilibrium, only: cost_t
+  use clock, only: seconds
+  use blas_threads, only: use_threads_for
+  implicit none
+  private
+  public :: run_experiment, path_start, prepare, range_of
+
+  !> States of a stepped path.
+  integer, parameter :: path_states = 100
+
+contains
+
+  !> Runs the path and the cycle; neither may be asked for, and then nothing is done.
+  !> With a keeper, the cycle's steps go through it: it keeps them, and has those of an earlier run.
+  subroutine run_experiment(request, problem, observer, outcome, keeper)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(out) :: outcome
+    class(keeping_stepper_t), intent(inout), optional :: keeper
+    real(wp) :: low, high
+    logical :: fixed
+
+    if (.not. (allocated(request%path) .or. allocated(request%loading))) return
+    call range_of(request, problem, low, high)
+    outcome%chosen = choose(request%numerics, problem, low)
+    fixed = outcome%chosen%grid /= 'edge_locked'
+    if (allocated(request%path) .or. .not. fixed) &
+      call run_locked(request, problem, high, low, .not. fixed, observer, outcome, keeper)
+    if (allocated(request%loading) .and. fixed) &
+      call run_fixed(request, problem, low, observer, outcome, keeper)
+  end subroutine run_experiment
+
+  !> The path, and the cycle if `with_cycle` and the scene has one, in edge-locked coordinates, for
+  !> H0 from high to low (law's lengths).
+  subroutine run_locked(request, problem, high, low, with_cycle, observer, outcome, &
+    keeper)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: high, low
+    logical, intent(in) :: with_cycle
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    class(keeping_stepper_t), intent(inout), optional :: keeper
+    type(path_stepper_t), target :: along_path
+    type(unique_stepper_t), target :: one_by_one
+    class(locked_stepper_t), pointer :: steps
+    real(wp) :: began
+
+    ! Not allocatable: gfortran 12 frees what a polymorphic one of these types never had.
+    if (has_path(problem)) then
+      steps => along_path
+    else
+      steps => one_by_one
+    end if
+    call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
+    ! The path has no use for mixing.
+    if (steps%options%method == 'mixing') steps%options%method = 'anderson'
+    began = seconds()
+    steps%pair = new_mesh_pair(problem, high, low, outcome%chosen%resolution)
+    steps%cost%kernel_seconds = seconds() - began
+    steps%cost%kernel_entries = sum(steps%pair%grid%kernel_entries())
+    outcome%nodes = sum(steps%pair%grid%nodes)
+    call use_threads_for(maxval(steps%pair%grid%nodes))
+    began = seconds()
+    select type (steps)
+    class is (path_stepper_t)
+      call steps%know_path(high, low, allocated(request%path), observer)
+      if (allocated(request%path)) call run_path(request, steps, observer, outcome)
+    class is (unique_stepper_t)
+      if (allocated(request%path)) call run_stepped_path(request, steps, observer, outcome)
+    end select
+    if (allocated(request%loading) .and. with_cycle) &
+      call run_kept_cycle(request, steps, observer, outcome, keeper)
+    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
+    began = seconds()
+    call observer%hear('estimating errors')
+    call judge_locked(steps, high, low, outcome)
+    steps%cost%estimate_seconds = seconds() - began
+    outcome%cost = steps%cost
+  end subroutine run_locked
+
+  !> The cycle on a mesh fixed in space, for H0 down to low.
+  subroutine run_fixed(request, problem, low, observer, outcome, keeper)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: low
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    class(keeping_stepper_t), intent(inout), optional :: keeper
+    type(fixed_stepper_t) :: steps
+    real(wp) :: began
+
+    call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
+    steps%cost = outcome%cost
+    began = seconds()
+    steps%mesh = fixed_mesh(outcome%chosen, problem, low)
+    steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
+    steps%cost%kernel_entries = steps%cost%kernel_entries + steps%mesh%kernel_entries()
+    outcome%nodes = outcome%nodes + steps%mesh%nodes
+    call use_threads_for(steps%mesh%nodes)
+    began = seconds()
+    call run_kept_cycle(request, steps, observer, outcome, keeper)
+    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
+    began = seconds()
+    call observer%hear('estimating errors')
+    call judge_fixed(steps, low, outcome)
+    steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
+    outcome%cost = steps%cost
+  end subroutine run_fixed
+
+  !> What both kinds of steps are told.
+  subroutine prepare(steps, problem, chosen, accuracy)
+    class(stepper_t), intent(inout) :: steps
+    type(problem_t), intent(in) :: problem
+    type(choice_t), intent(in) :: chosen
+    real(wp), intent(in) :: accuracy
+
+    steps%problem = problem
+    steps%options = chosen%options
+    ! Each halving is a state; a jump is not known better than this on a fixed grid anyway.
+    steps%jump_tolerance = max(accuracy, 1.0e-4_wp)
+  end subroutine prepare
+
+  subroutine run_path(request, steps, observer, outcome)
+    class(request_t), intent(in) :: request
+    class(path_stepper_t), intent(inout) :: steps
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    real(wp), allocatable :: profiles(:)
+
+    associate (length => steps%problem%length)
+      allocate (profiles(0))
+      if (allocated(request%profiles)) profiles = request%profiles%h0/length
+      allocate (outcome%path)
+      if (allocated(request%path%h0_start)) then
+        call follow_path(steps, request%path%h0_end/length, profiles, observer, outcome%path, &
+          request%path%h0_start/length)
+      else
+        call follow_path(steps, request%path%h0_end/length, profiles, observer, outcome%path)
+      end if
+    end associate
+  end subroutine run_path
+
+  !> The h0 [m] from which a path is shown: beyond any contact, or as the scene says.
+  function path_start(request, problem) result(start)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    real(wp) :: start
+
+    start = beyond_contact(problem)*problem%length
+    if (.not. allocated(request%path)) return
+    if (allocated(request%path%h0_start)) start = request%path%h0_start
+  end function path_start
+
+  !> The path of a law that does not attract, or of rigid bodies: one state for every h0, so that
+  !> stepping h0 gives it.
+  subroutine run_stepped_path(request, steps, observer, outcome)
+    class(request_t), intent(in) :: request
+    class(unique_stepper_t), intent(inout) :: steps
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    type(branch_point_t) :: position, none(0)
+    type(h0_schedule_t) :: plan
+    real(wp) :: start
+    real(wp), allocatable :: nowhere(:)
+
+    allocate (nowhere(0))
+    associate (length => steps%problem%length)
+      if (allocated(request%path%h0_start)) then
+        start = request%path%h0_start
+      else
+        start = max(steps%far_away()*length, request%path%h0_end + length)
+      end if
+      allocate (outcome%stepped_path)
+      plan = schedule_of('path', start, request%path%h0_end, &
+        abs(start - request%path%h0_end)/path_states, request, length, nowhere)
+      plan%unique = .true.
+      call run_branch(steps, plan, .true., position, observer, nowhere, none, outcome%stepped_path)
+    end associate
+  end subroutine run_stepped_path
+
+  !> The cycle, its steps kept where there is a keeper.
+  subroutine run_kept_cycle(request, steps, observer, outcome, keeper)
+    class(request_t), intent(in) :: request
+    class(stepper_t), intent(inout), target :: steps
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    class(keeping_stepper_t), intent(inout), optional :: keeper
+
+    if (.not. present(keeper)) then
+      call run_cycle(request, steps, observer, outcome)
+      return
+    end if
+    call keeper%keep_steps_of(steps)
+    call run_cycle(request, keeper, observer, outcome)
+    steps%cost%states = steps%cost%states + keeper%cost%states
+    steps%cost%solve_seconds = steps%cost%solve_seconds + keeper%earlier_seconds
+  end subroutine run_kept_cycle
+
+  !> Loading, then an unloading from each turning point.
+  subroutine run_cycle(request, steps, observer, outcome)
+    class(request_t), intent(in) :: request
+    class(stepper_t), intent(inout) :: steps
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    type(h0_schedule_t) :: plan
+    type(branch_point_t) :: position
+    type(branch_point_t), allocatable :: turning(:), none(:)
+    real(wp), allocatable :: from(:), nowhere(:)
+    character(len=24) :: name
+    integer :: k
+
+    allocate (from(0), nowhere(0), none(0))
+    if (allocated(request%unloading)) from = request%unloading%from/steps%problem%length
+    allocate (turning(size(from)))
+    allocate (outcome%loading)
+    plan = schedule_of('loading', request%loading%h0_start, request%loading%h0_end, &
+      request%loading%h0_step, request, steps%problem%length, from)
+    call run_branch(steps, plan, .true., position, observer, from, turning, outcome%loading)
+    if (allocated(request%unloading)) then
+      allocate (outcome%unloading(size(from)))
+      do k = 1, size(from)
+        if (.not. allocated(turning(k)%state%gap)) then
+          outcome%unloading(k)%reason = 'loading did not reach the turning point'
+          cycle
+        end if
+        position = turning(k)
+        ! Not by a function with a result of deferred length: gfortran keeps that length in static
+        ! storage, and the cases of a sweep share it.
+        write (name, '(a, i0)') 'unloading_', k
+        plan = schedule_of(trim(name), request%unloading%from(k), request%unloading%h0_end, &
+          request%unloading%h0_step, request, steps%problem%length, nowhere)
+        call run_branch(steps, plan, .false., position, observer, nowhere, none, &
+          outcome%unloading(k))
+      end do
+    end if
+  end subroutine run_cycle
+
+  !> The range of H0, in the law's lengths, that the scene covers.
+  subroutine range_of(request, problem, low, high)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(out) :: low, high
+
+    low = huge(1.0_wp)
+    high = -huge(1.0_wp)
+    if (allocated(request%loading)) then
+      low = request%loading%h0_end
+      high = request%loading%h0_start
+    end if
+    if (allocated(request%unloading)) high = max(high, request%unloading%h0_end)
+    if (allocated(request%path)) then
+      low = min(low, request%path%h0_end)
+      high = max(high, request%path%h0_end)
+      ! Where the last jump apart leads belongs to the path too.
+      high = max(high, path_start(request, problem), beyond_contact(problem)*problem%length)
+    end if
+    low = low/problem%length
+    high = high/problem%length
+  end subroutine range_of
+
+end module experiment

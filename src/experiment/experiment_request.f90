@@ -1,0 +1,50 @@
+!> What is asked of the experiments, one derived type a group of the deck.
+!>
+!> A group that is optional is an allocatable component of the request: allocated means asked for.
+!> In the same way a value without a default is allocated only where there is one. All SI.
+module experiment_request
+  use kinds, only: wp
+  implicit none
+  private
+  public :: request_t, loading_t, unloading_t, path_range_t, profiles_t, numerics_t
+
+  !> &loading [m]: h0_start > h0_end, h0_step > 0.
+  type :: loading_t
+    real(wp) :: h0_start = 0, h0_end = 0, h0_step = 0
+  end type loading_t
+
+  !> &unloading [m]: h0_end above every turning point `from`.
+  type :: unloading_t
+    real(wp), allocatable :: from(:)
+    real(wp) :: h0_end = 0, h0_step = 0
+  end type unloading_t
+
+  !> &equilibrium_path [m]; h0_start unallocated: the program chooses.
+  type :: path_range_t
+    real(wp), allocatable :: h0_start
+    real(wp) :: h0_end = 0
+  end type path_range_t
+
+  !> &profiles: the h0 [m] at which they are written.
+  type :: profiles_t
+    real(wp), allocatable :: h0(:)
+  end type profiles_t
+
+  !> &numerics; what is unallocated follows from the accuracy.
+  type :: numerics_t
+    character(len=:), allocatable :: method, grid, convergence
+    real(wp) :: accuracy = 0, displacement_tolerance = 0, mixing_limit = 0
+    integer :: max_iterations = 0, anderson_depth = 0
+    integer, allocatable :: nodes, panel_order
+    real(wp), allocatable :: r_max, residual_tolerance
+  end type numerics_t
+
+  type :: request_t
+    type(loading_t), allocatable :: loading
+    type(unloading_t), allocatable :: unloading
+    type(path_range_t), allocatable :: path
+    type(profiles_t), allocatable :: profiles
+    type(numerics_t) :: numerics
+  end type request_t
+
+end module experiment_request

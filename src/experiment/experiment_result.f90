@@ -1,0 +1,24 @@
+!> What the experiments of a scene found, in the units of `dimensionless_problem`.
+module experiment_result
+  use kinds, only: wp
+  use numerics_choice, only: choice_t
+  use equilibrium, only: cost_t
+  use stepped_branch, only: branch_t
+  use path, only: path_t
+  implicit none
+  private
+  public :: experiment_result_t
+
+  type :: experiment_result_t
+    type(choice_t) :: chosen
+    type(path_t), allocatable :: path
+    type(branch_t), allocatable :: stepped_path, loading, unloading(:)
+    !> Lost in a cycle of approach and separation, and how well that is known.
+    real(wp), allocatable :: energy_lost, energy_uncertainty
+    !> Largest estimated relative error of what is reported.
+    real(wp), allocatable :: error_estimate
+    type(cost_t) :: cost
+    integer :: nodes = 0
+  end type experiment_result_t
+
+end module experiment_result

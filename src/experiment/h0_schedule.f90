@@ -1,0 +1,83 @@
+!> The values of h0 that the branches of a scene go through.
+module h0_schedule
+  use kinds, only: wp
+  use experiment_request, only: request_t
+  use stepped_branch, only: h0_schedule_t
+  implicit none
+  private
+  public :: schedule_of, states_planned
+
+contains
+
+  !> Number of equilibria that the cycle asked for will take.
+  integer function states_planned(request)
+    class(request_t), intent(in) :: request
+    integer :: k
+
+    states_planned = 0
+    if (.not. allocated(request%loading)) return
+    associate (l => request%loading)
+      states_planned = nint(min((l%h0_start - l%h0_end)/l%h0_step, 1.0e9_wp)) + 1
+    end associate
+    if (.not. allocated(request%unloading)) return
+    associate (u => request%unloading)
+      do k = 1, size(u%from)
+        states_planned = states_planned + nint(min((u%h0_end - u%from(k))/u%h0_step, 1.0e7_wp)) + 1
+      end do
+    end associate
+  end function states_planned
+
+  !> Values of h0 [m] from start to finish by step, whichever way that is, both ends included, with
+  !> the profiles asked for and the values `also` (law's lengths) in their places.
+  function schedule_of(name, start, finish, step, request, length, also) result(plan)
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: start, finish, step, length, also(:)
+    class(request_t), intent(in) :: request
+    type(h0_schedule_t) :: plan
+    real(wp), allocatable :: h0(:), profiles(:)
+    real(wp) :: sense, same
+    integer :: count, i
+
+    sense = sign(1.0_wp, finish - start)
+    ! A last step that rounding leaves a hair short is not a step.
+    same = 1.0e-6_wp*min(step, abs(finish - start))
+    count = floor(abs(finish - start)/step + 1.0e-6_wp)
+    h0 = [(start + sense*step*i, i=0, count)]
+    if (abs(h0(count + 1) - finish) <= same) then
+      h0(count + 1) = finish
+    else
+      h0 = [h0, finish]
+    end if
+    allocate (profiles(0))
+    if (allocated(request%profiles)) profiles = request%profiles%h0
+    do i = 1, size(also)
+      call include(h0, also(i)*length)
+    end do
+    do i = 1, size(profiles)
+      if ((profiles(i) - start)*(profiles(i) - finish) <= 0) call include(h0, profiles(i))
+    end do
+    plan%name = name
+    plan%h0 = h0/length
+    plan%profile = [(any(abs(profiles - h0(i)) <= same), i=1, size(h0))]
+
+  contains
+
+    subroutine include(values, value)
+      real(wp), allocatable, intent(inout) :: values(:)
+      real(wp), intent(in) :: value
+      integer :: place
+
+      if (any(abs(values - value) <= same)) return
+      place = count_before(values, value)
+      values = [values(:place), value, values(place + 1:)]
+    end subroutine include
+
+    pure integer function count_before(values, value)
+      real(wp), intent(in) :: values(:), value
+
+      count_before = int(sum(merge(1, 0, sense*(values - value) < 0)))
+    end function count_before
+
+  end function schedule_of
+
+end module h0_schedule

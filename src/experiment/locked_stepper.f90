@@ -1,0 +1,134 @@
+!> What quasi-static experiments in edge-locked coordinates have in common: nothing is pinned
+!> between nodes and nothing is stiff, at any adhesion strength. `path_stepper` goes along the
+!> traced path of a law that attracts; `unique_stepper` is for laws and bodies that have one state
+!> for every h0.
+module locked_stepper
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t, over_neck => spacing_over_neck
+  use discretisation, only: discretisation_t
+  use equilibrium, only: state_t, state_from, at_edge_radius, at_h0_with_edge
+  use solver, only: solve_state
+  use edge_locked, only: mesh_pair_t, approach, contact
+  use locked_meshes, only: h0_control, scale_at
+  use continuation, only: node_count
+  use reported, only: error_probe_t
+  use stepper, only: stepper_t, branch_point_t, step_result_t, remember, touching
+  implicit none
+  private
+  public :: locked_stepper_t, has_path
+
+  type, abstract, extends(stepper_t) :: locked_stepper_t
+    type(mesh_pair_t) :: pair
+  contains
+    procedure :: grid
+    procedure :: spacing_over_neck
+    procedure :: witness
+    procedure :: mesh_of
+    procedure :: begin_afar
+    procedure :: far_away
+    procedure :: attempt
+  end type locked_stepper_t
+
+contains
+
+  !> Whether the equilibria of a problem lie on a path that can have folds: the law attracts and the
+  !> bodies yield.
+  pure logical function has_path(problem)
+    type(problem_t), intent(in) :: problem
+
+    has_path = problem%law%adhesion > 0 .and. .not. problem%rigid
+  end function has_path
+
+  !> A state at h0 or, if the bodies would be near each other there, so far apart that they hardly
+  !> deform (rigid bodies: at h0).
+  subroutine begin_afar(self, h0, position, event)
+    class(locked_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(out) :: position
+    type(step_result_t), intent(out) :: event
+    type(state_t) :: state
+    real(wp) :: far
+    integer :: mesh
+
+    mesh = merge(approach, contact, self%pair%traceable)
+    far = max(h0, self%far_away())
+    if (self%problem%rigid) then
+      far = h0
+      if (h0 < self%problem%law%smallest_gap) then
+        event%reason = touching
+        return
+      end if
+    end if
+    associate (grid => self%pair%grid(mesh))
+      state = state_from(node_count(self%pair, mesh, scale_at(self%pair, far)))
+      state%h0 = far
+      state%axis_gap = far
+      state%scale = scale_at(self%pair, far)
+      state%gap = far + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2
+    end associate
+    call self%attempt(far, state, mesh, event)
+    if (.not. event%converged) write (event%reason, '(a, i0, a, es7.1)') &
+      'no equilibrium was found far from contact: after ', state%iterations, &
+      ' iterations the residual was ', state%residual
+    call remember(position, state, mesh, .false.)
+  end subroutine begin_afar
+
+  !> An H0 at which the bodies hardly deform: twice the gap (37) of the jump into contact, in these
+  !> units, or where repulsion hardly acts.
+  pure real(wp) function far_away(self)
+    class(locked_stepper_t), intent(in) :: self
+
+    far_away = max(5.0_wp, 2*(27*self%problem%coupling*self%problem%law%adhesion)**(2.0_wp/7), &
+      self%pair%level + 3)
+  end function far_away
+
+  !> Solves from the guess `state` at h0.
+  subroutine attempt(self, h0, state, mesh, event)
+    class(locked_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(state_t), intent(inout) :: state
+    integer, intent(in) :: mesh
+    type(step_result_t), intent(inout) :: event
+
+    call solve_state(self%problem, self%pair%grid(mesh), h0_control(self%pair, mesh, h0), &
+      self%options, self%frozen, state, event%converged, self%cost)
+  end subroutine attempt
+
+  !> A scale that is prescribed or unknown belongs to the contact, and so does everything where
+  !> there is no other mesh.
+  pure integer function mesh_of(self, kind)
+    class(locked_stepper_t), intent(in) :: self
+    integer, intent(in) :: kind
+
+    mesh_of = approach
+    if (kind == at_h0_with_edge .or. kind == at_edge_radius .or. .not. self%pair%traceable) &
+      mesh_of = contact
+  end function mesh_of
+
+  pure function witness(self, position)
+    class(locked_stepper_t), intent(in) :: self
+    type(branch_point_t), intent(in) :: position
+    type(error_probe_t) :: witness
+
+    witness%mesh = position%mesh
+    witness%control = h0_control(self%pair, position%mesh, position%state%h0)
+    witness%state = position%state
+  end function witness
+
+  function grid(self, position)
+    class(locked_stepper_t), intent(in), target :: self
+    type(branch_point_t), intent(in) :: position
+    type(discretisation_t), pointer :: grid
+
+    grid => self%pair%grid(position%mesh)
+  end function grid
+
+  pure real(wp) function spacing_over_neck(self, position)
+    class(locked_stepper_t), intent(in) :: self
+    type(branch_point_t), intent(in) :: position
+
+    spacing_over_neck = over_neck(self%problem, &
+      position%state%scale*self%pair%grid(position%mesh)%spacing)
+  end function spacing_over_neck
+
+end module locked_stepper

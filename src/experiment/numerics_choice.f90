@@ -1,0 +1,147 @@
+!> Which grid, which iteration and how finely: what follows from the accuracy asked for, and why.
+module numerics_choice
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use uniform_grid, only: new_uniform_grid
+  use panels, only: new_panel_grid, graded_ends
+  use edge_locked, only: resolution_t, largest_radius, contact_level, smallest_feature
+  use experiment_request, only: numerics_t
+  use solver_options, only: solver_options_t
+  implicit none
+  private
+  public :: choice_t, choose, fixed_mesh, companion, resolution_for
+
+  type :: choice_t
+    !> 'edge_locked' panels, or fixed 'uniform' or 'panels'.
+    character(len=:), allocatable :: grid, because
+    type(solver_options_t) :: options
+    type(resolution_t) :: resolution
+    !> Fixed grids: nodes and extent (lateral units).
+    integer :: nodes = 0
+    real(wp) :: extent = 0
+  end type choice_t
+
+  !> Spacing over the smallest feature at which a uniform grid resolves it, and the paper's range of
+  !> nodes, which bounds what is chosen unasked.
+  real(wp), parameter :: comfortable = 0.2_wp
+  integer, parameter :: fewest = 200, most = 1500
+  !> Nodes up to which the error of a uniform grid is estimated on a finer one.
+  integer, parameter :: largest_doubled = 300
+
+contains
+
+  !> For H0 from h0_high down to h0_low (law's lengths).
+  function choose(numerics, problem, h0_low) result(chosen)
+    type(numerics_t), intent(in) :: numerics
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0_low
+    type(choice_t) :: chosen
+    real(wp) :: widest, feature
+
+    associate (options => chosen%options)
+      options%method = numerics%method
+      if (numerics%method == 'auto') options%method = 'anderson'
+      options%tolerance = min(1.0e-8_wp, 0.01_wp*numerics%accuracy)
+      ! Rounding decides where below its tolerance an iteration stops. At 1e-10 that shows in the
+      ! thirteenth digit of a load and costs a tenth more products. Mixing would pay more, and on
+      ! uniform grids the mesh leaves far larger errors.
+      if (options%method /= 'mixing' .and. numerics%grid /= 'uniform') &
+        options%tolerance = min(options%tolerance, 1.0e-10_wp)
+      if (allocated(numerics%residual_tolerance)) options%tolerance = numerics%residual_tolerance
+      options%depth = numerics%anderson_depth
+      options%mixing_limit = numerics%mixing_limit
+      options%stop_on_change = numerics%convergence == 'displacement_change'
+      options%displacement_tolerance = numerics%displacement_tolerance/problem%length
+      if (options%method == 'mixing') then
+        options%most_iterations = numerics%max_iterations
+      else
+        options%most_iterations = min(numerics%max_iterations, options%most_iterations)
+      end if
+    end associate
+
+    chosen%resolution = resolution_for(numerics%accuracy)
+    if (allocated(numerics%panel_order)) chosen%resolution%order = numerics%panel_order
+    if (numerics%grid == 'uniform') then
+      chosen%grid = 'uniform'
+      chosen%because = 'the deck asks for it'
+    else if (chosen%options%method == 'mixing' .and. numerics%grid == 'panels') then
+      chosen%grid = 'panels'
+      chosen%because = 'mixing needs a mesh that is fixed in space'
+    else if (chosen%options%method == 'mixing') then
+      chosen%grid = 'uniform'
+      chosen%because = 'it is the grid of the mixing iteration in the paper'
+    else
+      chosen%grid = 'edge_locked'
+      chosen%because = 'panels locked to the contact edge converge at any adhesion strength'
+      if (problem%rigid) chosen%because = 'the bodies are rigid: the mesh only integrates the load'
+      if (.not. problem%law%adhesion > 0) &
+        chosen%because = 'panels scaled with the contact converge spectrally'
+    end if
+    if (chosen%grid == 'edge_locked') return
+
+    widest = largest_radius(problem, h0_low, contact_level(problem))
+    feature = smallest_feature(problem, widest)
+    chosen%extent = 1.5_wp*widest + 8
+    if (allocated(numerics%r_max)) chosen%extent = numerics%r_max/problem%lateral
+    ! The bounds before the whole number: where bodies adhere strongly the quotient is beyond any.
+    chosen%nodes = ceiling(min(real(most, wp), max(real(fewest, wp), &
+      chosen%extent/(comfortable*feature))))
+    if (allocated(numerics%nodes)) chosen%nodes = numerics%nodes
+  end function choose
+
+  !> Order and fineness of panels for a relative accuracy of load and displacement, from the
+  !> measured error (docs/accuracy.md).
+  pure function resolution_for(accuracy) result(resolution)
+    real(wp), intent(in) :: accuracy
+    type(resolution_t) :: resolution
+
+    resolution%order = min(16, max(6, nint(4.6_wp - 0.8_wp*log10(accuracy))))
+    resolution%accuracy = 0.1_wp*accuracy
+  end function resolution_for
+
+  !> The mesh of a fixed grid: equal spacing, or equal panels as far as the contact reaches and
+  !> doubling ones beyond.
+  function fixed_mesh(chosen, problem, h0_low) result(mesh)
+    type(choice_t), intent(in) :: chosen
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0_low
+    type(discretisation_t) :: mesh
+    real(wp) :: widest, finest
+    real(wp), allocatable :: outer(:)
+    integer :: count, j
+
+    if (chosen%grid == 'uniform') then
+      mesh = new_uniform_grid(chosen%nodes, chosen%extent, .not. problem%rigid)
+      return
+    end if
+    widest = min(largest_radius(problem, h0_low, contact_level(problem)), chosen%extent)
+    finest = chosen%resolution%fineness*smallest_feature(problem, widest)
+    ! No more nodes than a uniform grid would have been given.
+    count = ceiling(min(widest/finest, real(max(1, chosen%nodes/chosen%resolution%order), wp)))
+    finest = widest/count
+    outer = widest + graded_ends(0.0_wp, max(chosen%extent, 2*widest) - widest, finest, 1.0_wp, &
+      chosen%extent)
+    mesh = new_panel_grid(0.0_wp, [[(finest*j, j=0, count - 1)], outer], chosen%resolution%order, &
+      .not. problem%rigid)
+  end function fixed_mesh
+
+  !> Another choice of a fixed grid, to estimate the error by: panels of two more nodes; twice the
+  !> nodes on the same length and a fifth farther out, or where that would cost more than the run,
+  !> half of them and a fifth less far.
+  pure function companion(chosen)
+    type(choice_t), intent(in) :: chosen
+    type(choice_t) :: companion
+
+    companion = chosen
+    companion%resolution%order = chosen%resolution%order + 2
+    if (chosen%nodes <= largest_doubled) then
+      companion%extent = 1.2_wp*chosen%extent
+      companion%nodes = 12*chosen%nodes/5
+    else
+      companion%extent = chosen%extent/1.2_wp
+      companion%nodes = 5*chosen%nodes/12
+    end if
+  end function companion
+
+end module numerics_choice

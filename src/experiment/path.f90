@@ -1,0 +1,230 @@
+!> What the equilibrium path shows from bodies far apart, or a given h0, to a contact at a given h0:
+!> stable and unstable states, every fold in h0, every extremum of the load.
+module path
+  use kinds, only: wp
+  use dimensionless_problem, only: spacing_over_neck
+  use equilibrium, only: state_t
+  use edge_locked, only: contact
+  use traced_path, only: traced_path_t
+  use known_path, only: known_path_t, interval_at
+  use locked_meshes, only: h0_control
+  use path_stepper, only: path_stepper_t
+  use reported, only: reported_t, reported_state, error_probe_t, add_reported
+  use records, only: observer_t, record_of, stable_yes, stable_no
+  implicit none
+  private
+  public :: path_t, follow_path
+
+  !> In the units of `dimensionless_problem`, in the order from afar inward.
+  type :: path_t
+    integer :: states = 0
+    !> Folds in h0, and the number of unstable modes after each; extrema of the load.
+    type(reported_t), allocatable :: fold(:), extremum(:)
+    integer, allocatable :: unstable_after(:)
+    !> Largest tension, the pull-off at controlled load; the last state, if it is stable; the states
+    !> whose profiles were asked for, in the order of the path.
+    type(reported_t), allocatable :: lowest, finish, profile(:)
+    !> The stable pieces on which it begins and ends; 0 where that is unstable.
+    integer :: first_piece = 0, last_piece = 0
+    real(wp) :: worst_residual = 0, worst_spacing = 0
+    !> Whether it ends in the fall of bodies that nothing keeps apart.
+    logical :: fallen = .false.
+    !> Why the path ends before its end; empty where it does not.
+    character(len=160) :: reason = ''
+  end type path_t
+
+  !> One row: its state and mesh, the point of the path that it is (0: none), its unstable modes,
+  !> and whether it is solved.
+  type :: row_t
+    type(state_t) :: state
+    integer :: mesh = 1, point = 0, modes = 0
+    logical :: converged = .true.
+  end type row_t
+
+contains
+
+  !> The part of the path that `steps` knows from h0_start, or where that is absent from its
+  !> beginning, to the contact at h0_end. States go to the observer, and profiles where the path
+  !> crosses the values `profiles`.
+  subroutine follow_path(steps, h0_end, profiles, observer, path, h0_start)
+    class(path_stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: h0_end, profiles(:)
+    class(observer_t), intent(inout) :: observer
+    type(path_t), intent(out) :: path
+    real(wp), intent(in), optional :: h0_start
+    type(row_t) :: row
+    real(wp), allocatable :: stops(:)
+    real(wp) :: from, until
+    integer :: i, k, first, last
+    logical :: ends_between
+
+    allocate (path%fold(0), path%extremum(0), path%unstable_after(0), path%profile(0))
+    path%fallen = steps%known%fallen
+    if (.not. path%fallen) path%reason = steps%known%ends_because
+    first = 1
+    if (present(h0_start)) first = first_crossing(steps%known%path, h0_start)
+    call find_end(steps%known, h0_end, last, ends_between)
+    do i = first, last
+      row = row_of_point(steps, i)
+      if (i == first .and. present(h0_start)) row = row_between(steps, i, h0_start)
+      if (i == first) path%first_piece = piece_of(steps%known, i)
+      call take(steps, row, any(abs(profiles - row%state%h0) <= 0), observer, path)
+      if (i == last .and. .not. ends_between) exit
+      from = row%state%h0
+      until = h0_end
+      if (i < last) until = steps%known%path%point(i + 1)%state%h0
+      stops = along(pack(profiles, (profiles - from)*(profiles - until) < 0), from)
+      do k = 1, size(stops)
+        call take(steps, row_between(steps, i, stops(k)), .true., observer, path)
+      end do
+      if (i < last) cycle
+      row = row_between(steps, i, h0_end)
+      call take(steps, row, any(abs(profiles - h0_end) <= 0), observer, path)
+    end do
+    if (path%states == 0) return
+    path%last_piece = piece_of(steps%known, last)
+    if (row%modes == 0 .and. row%converged) path%finish = reported_row(steps, row)
+    steps%cost%states = steps%cost%states + path%states
+  end subroutine follow_path
+
+  !> The first point after which the path comes to h0; behind the last where it never does.
+  pure integer function first_crossing(path, h0) result(i)
+    type(traced_path_t), intent(in) :: path
+    real(wp), intent(in) :: h0
+
+    do i = 1, path%held - 1
+      if (path%point(i)%state%h0 >= h0 .and. path%point(i + 1)%state%h0 <= h0) return
+    end do
+    i = path%held + 1
+  end function first_crossing
+
+  !> The last point before the contact at h0_end; ends_between: the end is between that and the
+  !> next. A contact that exists only below h0_end ends behind its fold.
+  pure subroutine find_end(known, h0_end, last, ends_between)
+    type(known_path_t), intent(in) :: known
+    real(wp), intent(in) :: h0_end
+    integer, intent(out) :: last
+    logical, intent(out) :: ends_between
+
+    last = known%path%held
+    ends_between = .false.
+    if (known%ends_because /= '' .or. size(known%piece) == 0) return
+    associate (piece => known%piece(size(known%piece)))
+      ends_between = h0_end <= piece%high
+      last = min(piece%first + 1, piece%last)
+    end associate
+    if (ends_between) last = interval_at(known, size(known%piece), h0_end)
+  end subroutine find_end
+
+  !> Values in the order in which h0 passes them from `start`, all on one side of it.
+  pure function along(values, start) result(sorted)
+    real(wp), intent(in) :: values(:), start
+    real(wp), allocatable :: sorted(:)
+    real(wp) :: value
+    integer :: i, j
+
+    sorted = values
+    do i = 2, size(sorted)
+      value = sorted(i)
+      do j = i - 1, 1, -1
+        if (abs(sorted(j) - start) <= abs(value - start)) exit
+        sorted(j + 1) = sorted(j)
+      end do
+      sorted(j + 1) = value
+    end do
+  end function along
+
+  !> The stable piece on which the path goes on from point i; 0 where it is unstable.
+  pure integer function piece_of(known, i) result(k)
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: i
+
+    do k = size(known%piece), 1, -1
+      if (i >= known%piece(k)%first .and. i <= known%piece(k)%last) return
+    end do
+  end function piece_of
+
+  function row_of_point(steps, i) result(row)
+    type(path_stepper_t), intent(in) :: steps
+    integer, intent(in) :: i
+    type(row_t) :: row
+
+    row%point = i
+    row%modes = steps%known%path%modes_at(i)
+    row%mesh = steps%known%path%point(i)%mesh
+    row%state = steps%known%path%point(i)%state
+  end function row_of_point
+
+  !> The row at h0 between point i and the next.
+  function row_between(steps, i, h0) result(row)
+    class(path_stepper_t), intent(inout) :: steps
+    integer, intent(in) :: i
+    real(wp), intent(in) :: h0
+    type(row_t) :: row
+
+    row%modes = steps%known%path%point(i)%modes
+    call steps%state_at_h0(i, h0, row%mesh, row%state, row%converged)
+  end function row_between
+
+  !> A row as one that is reported.
+  function reported_row(steps, row) result(reported)
+    type(path_stepper_t), intent(in) :: steps
+    type(row_t), intent(in) :: row
+    type(reported_t) :: reported
+    type(error_probe_t) :: witness
+
+    witness%mesh = row%mesh
+    witness%control = h0_control(steps%pair, row%mesh, row%state%h0)
+    witness%state = row%state
+    reported = reported_state(witness)
+    if (row%point == 0) return
+    associate (point => steps%known%path%point(row%point))
+      if (point%fold .or. point%load_extremum) reported%point = row%point
+    end associate
+  end function reported_row
+
+  !> Gives a row to the observer and keeps what is reported of it.
+  subroutine take(steps, row, profile, observer, path)
+    type(path_stepper_t), intent(in) :: steps
+    type(row_t), intent(in) :: row
+    logical, intent(in) :: profile
+    class(observer_t), intent(inout) :: observer
+    type(path_t), intent(inout) :: path
+    type(reported_t) :: reported
+
+    associate (grid => steps%pair%grid(row%mesh), state => row%state)
+      call observer%take(record_of('path', steps%problem, grid, state, &
+        merge(stable_yes, stable_no, row%modes == 0), row%converged), steps%problem, grid, state, &
+        profile)
+      path%states = path%states + 1
+      path%worst_residual = max(path%worst_residual, state%residual)
+      if (row%mesh == contact) path%worst_spacing = max(path%worst_spacing, &
+        spacing_over_neck(steps%problem, state%scale*grid%spacing))
+    end associate
+    if (.not. row%converged) then
+      if (path%reason == '') path%reason = 'a state at a given h0 did not converge'
+      return
+    end if
+    reported = reported_row(steps, row)
+    if (profile) call add_reported(path%profile, reported)
+    if (lowers(path%lowest)) path%lowest = reported
+    if (row%point == 0) return
+    associate (point => steps%known%path%point(row%point))
+      if (point%load_extremum) call add_reported(path%extremum, reported)
+      if (.not. point%fold) return
+      call add_reported(path%fold, reported)
+      path%unstable_after = [path%unstable_after, point%modes]
+    end associate
+
+  contains
+
+    logical function lowers(lowest)
+      type(reported_t), allocatable, intent(in) :: lowest
+
+      lowers = .true.
+      if (allocated(lowest)) lowers = reported%load < lowest%load
+    end function lowers
+
+  end subroutine take
+
+end module path

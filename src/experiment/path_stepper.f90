@@ -1,0 +1,252 @@
+!> A quasi-static experiment under a law that attracts. All equilibria lie on one path, which is
+!> traced before the experiment: it says on which stable piece an experiment is, how far that goes
+!> and where a jump leads, and what the largest tension on the way is.
+!>
+!> The iteration solves the states; its result counts where it is the one that the path has. Usually
+!> that is a few accelerated iterations from the extrapolated state, with one factorisation for many
+!> steps; beside a fold the state is looked for along the path.
+module path_stepper
+  use kinds, only: wp
+  use listener, only: listener_t
+  use equilibrium, only: state_t
+  use anderson, only: frozen_jacobian_t
+  use edge_locked, only: contact
+  use locked_meshes, only: nodes_to_use
+  use locked_stepper, only: locked_stepper_t
+  use continuation, only: coordinate_of, between
+  use traced_path, only: traced_path_t
+  use solve_at_h0, only: neighbours_t, neighbours_of, coordinate_at_h0, guess_at_h0, solve_between
+  use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
+  use stepper, only: branch_point_t, step_result_t, extreme_t, remember
+  implicit none
+  private
+  public :: path_stepper_t
+
+  type, extends(locked_stepper_t) :: path_stepper_t
+    !> The path, once `know_path` has traced it.
+    type(known_path_t) :: known
+  contains
+    procedure :: approach_to
+    procedure :: step_to
+    procedure :: know_path
+    procedure :: state_at_h0
+    procedure, private :: step_over
+    procedure, private :: solve_on_piece
+  end type path_stepper_t
+
+  !> Beside a fold h0 moves with the square of the coordinate and iterations at fixed h0 do not
+  !> converge: the part of the last piece before one in which a state is looked for along the path.
+  real(wp), parameter :: beside_fold = 0.3_wp
+  !> Change of the path's coordinate by which a state may miss its piece: meshes of more or fewer
+  !> nodes differ by their errors.
+  real(wp), parameter :: slack = 1.0e-3_wp
+
+contains
+
+  !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
+  !> h0_low; into_contact: until it is also on the mesh for contact. To be called before the first
+  !> step. The listener hears how far it is.
+  subroutine know_path(self, h0_high, h0_low, into_contact, listener)
+    class(path_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0_high, h0_low
+    logical, intent(in) :: into_contact
+    class(listener_t), intent(inout) :: listener
+    type(branch_point_t) :: position
+    type(step_result_t) :: event
+
+    call self%begin_afar(h0_high, position, event)
+    if (event%reason == '') then
+      call trace(self%problem, self%pair, self%options, position%state, h0_low, into_contact, &
+        listener, self%known, self%cost)
+    else
+      self%known%ends_because = event%reason
+      allocate (self%known%piece(0))
+    end if
+    self%frozen%factors%valid = .false.
+  end subroutine know_path
+
+  subroutine approach_to(self, h0, position, event)
+    class(path_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(out) :: position
+    type(step_result_t), intent(out) :: event
+
+    position%piece = 1
+    call self%step_to(h0, position, event)
+    ! What the approach passed before the experiment began is not part of it.
+    event%jumped = .false.
+    event%fold = 0
+    if (allocated(event%lowest)) event%lowest = extreme_t(position%state%load, h0)
+  end subroutine approach_to
+
+  !> Goes to h0 along the stable pieces of the path, over the folds that are in the way, and notes
+  !> the first jump and the largest tension of the way.
+  subroutine step_to(self, h0, position, event)
+    class(path_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(out) :: event
+    type(extreme_t) :: lowest
+    real(wp) :: from
+
+    lowest%load = huge(1.0_wp)
+    if (size(self%known%piece) == 0) event%reason = self%known%ends_because
+    if (event%reason /= '') return
+    from = h0
+    if (position%held > 0) from = position%state%h0
+    do while (h0 > self%known%piece(position%piece)%high .or. &
+      h0 < self%known%piece(position%piece)%low)
+      call self%step_over(h0 < self%known%piece(position%piece)%low, from, position, lowest, event)
+      if (event%reason == '') cycle
+      if (event%jumped) event%lowest = lowest
+      return
+    end do
+    call lower_to_point(self%known%path, lowest_point(self%known, position%piece, from, h0), &
+      lowest)
+    call self%solve_on_piece(h0, position, event)
+    if (event%converged .and. position%state%load < lowest%load) &
+      lowest = extreme_t(position%state%load, h0)
+    event%lowest = lowest
+  end subroutine step_to
+
+  !> Leaves the position's piece over the fold at its inner or outer end, and lands. from: the h0
+  !> that the piece is left from, then that of the fold.
+  subroutine step_over(self, inward, from, position, lowest, event)
+    class(path_stepper_t), intent(in) :: self
+    logical, intent(in) :: inward
+    real(wp), intent(inout) :: from
+    type(branch_point_t), intent(inout) :: position
+    type(extreme_t), intent(inout) :: lowest
+    type(step_result_t), intent(inout) :: event
+    type(landing_t) :: landing
+
+    if (inward) then
+      landing = self%known%inward(position%piece)
+    else
+      landing = self%known%outward(position%piece)
+    end if
+    if (landing%fold > 0) then
+      associate (fold => self%known%path%point(landing%fold)%state)
+        call lower_to_point(self%known%path, lowest_point(self%known, position%piece, from, &
+          fold%h0), lowest)
+        if (.not. event%jumped) then
+          event%jumped = .true.
+          event%jump_h0 = fold%h0
+          event%jump_load = fold%load
+          event%fold = landing%fold
+        end if
+        from = fold%h0
+      end associate
+    end if
+    if (landing%piece == 0) then
+      event%reason = self%known%ends_because
+      if (event%reason == '') event%reason = 'this h0 is beyond the path that was traced'
+      return
+    end if
+    if (landing%state%load < lowest%load) &
+      lowest = extreme_t(landing%state%load, from, landing%fold, .true.)
+    position%piece = landing%piece
+    position%held = 0
+  end subroutine step_over
+
+  !> Lets a point of the path be the largest tension if it is; 0 is none.
+  pure subroutine lower_to_point(path, point, lowest)
+    type(traced_path_t), intent(in) :: path
+    integer, intent(in) :: point
+    type(extreme_t), intent(inout) :: lowest
+
+    if (point == 0) return
+    associate (state => path%point(point)%state)
+      if (state%load < lowest%load) lowest = extreme_t(state%load, state%h0, point)
+    end associate
+  end subroutine lower_to_point
+
+  !> The state at h0 on the position's piece: iterated at fixed h0 and, where that does not arrive
+  !> at the state that the path has, or beside a fold, looked for along the path.
+  subroutine solve_on_piece(self, h0, position, event)
+    class(path_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+    type(neighbours_t) :: near
+    type(state_t) :: state
+    type(frozen_jacobian_t) :: frozen
+    real(wp) :: s, ends(2)
+    integer :: i, nodes, present
+    logical :: jumped
+
+    jumped = event%jumped
+    i = interval_at(self%known, position%piece, h0)
+    near = neighbours_of(self%known%path, i)
+    s = coordinate_at_h0(near, h0)
+    ends = near%coordinate(near%lower:near%lower + 1)
+    if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
+      present = 0
+      if (near%mesh == position%mesh .and. position%held > 0) present = size(position%state%gap)
+      nodes = nodes_to_use(self%pair, near%mesh, merge(exp(s), 1.0_wp, near%mesh == contact), &
+        present)
+      if (near%mesh == position%mesh .and. goes_on(position, h0)) then
+        state = between(self%pair%grid(near%mesh), position%h0(:position%held), &
+          position%past(:position%held), h0, nodes)
+      else
+        state = guess_at_h0(self%pair, near, s, nodes)
+      end if
+      call self%attempt(h0, state, near%mesh, event)
+      if (event%converged) then
+        s = coordinate_of(self%problem, near%mesh, state)
+        event%converged = s >= minval(ends) - slack .and. s <= maxval(ends) + slack
+      end if
+    end if
+    if (.not. event%converged) call solve_between(self%problem, self%pair, near, h0, self%options, &
+      frozen, s, state, event%converged, self%cost)
+    call remember(position, state, near%mesh, jumped)
+  end subroutine solve_on_piece
+
+  !> Whether the coordinate s in the piece after point i, between `ends`, is so near a fold that h0
+  !> hardly moves.
+  pure logical function is_beside_fold(self, i, piece, s, ends) result(beside)
+    class(path_stepper_t), intent(in) :: self
+    integer, intent(in) :: i, piece
+    real(wp), intent(in) :: s, ends(2)
+
+    associate (width => abs(ends(2) - ends(1)))
+      beside = .false.
+      if (self%known%piece(piece)%begins_in_fold .and. i == self%known%piece(piece)%first) &
+        beside = abs(s - ends(1)) < beside_fold*width
+      if (self%known%piece(piece)%ends_in_fold .and. i + 1 == self%known%piece(piece)%last) &
+        beside = beside .or. abs(s - ends(2)) < beside_fold*width
+    end associate
+  end function is_beside_fold
+
+  !> Whether h0 goes on from the last two states of a position by a step that is not much longer
+  !> than the last: then these tell more of the next state than the points of the path.
+  pure logical function goes_on(position, h0)
+    type(branch_point_t), intent(in) :: position
+    real(wp), intent(in) :: h0
+
+    goes_on = .false.
+    if (position%held < 2) return
+    associate (last => position%h0(position%held), before => position%h0(position%held - 1))
+      goes_on = abs(h0 - last) <= 2*abs(last - before)
+    end associate
+  end function goes_on
+
+  !> The state at h0 on the piece of the path after point i, however near a fold.
+  subroutine state_at_h0(self, i, h0, mesh, state, converged)
+    class(path_stepper_t), intent(inout) :: self
+    integer, intent(in) :: i
+    real(wp), intent(in) :: h0
+    integer, intent(out) :: mesh
+    type(state_t), intent(out) :: state
+    logical, intent(out) :: converged
+    type(neighbours_t) :: near
+    type(frozen_jacobian_t) :: frozen
+    real(wp) :: s
+
+    near = neighbours_of(self%known%path, i)
+    mesh = near%mesh
+    call solve_between(self%problem, self%pair, near, h0, self%options, frozen, s, state, &
+      converged, self%cost)
+  end subroutine state_at_h0
+
+end module path_stepper

@@ -1,0 +1,79 @@
+!> What the next state on a mesh fixed in space is expected to be.
+module prediction
+  use kinds, only: wp
+  use force_law, only: force_law_t
+  use discretisation, only: discretisation_t
+  use interpolation, only: polynomial_weights
+  use equilibrium, only: state_t, radius_of_gap
+  use stepper, only: branch_point_t
+  use continuation, only: between
+  implicit none
+  private
+  public :: extrapolated, moved_with_edge, towards_fold
+
+contains
+
+  !> The state at h0 extrapolated from a position's past, node by node.
+  function extrapolated(mesh, position, h0) result(expected)
+    type(discretisation_t), intent(in) :: mesh
+    type(branch_point_t), intent(in) :: position
+    real(wp), intent(in) :: h0
+    type(state_t) :: expected
+
+    expected = between(mesh, position%h0(:position%held), position%past(:position%held), h0, &
+      mesh%nodes)
+    if (position%held == 1) expected%gap = expected%gap + (h0 - position%state%h0)
+    expected%h0 = h0
+  end function extrapolated
+
+  !> The same with the deformation extrapolated at equal distances over the contact radius, itself
+  !> extrapolated: what is sharp at the edge moves with it. Without contact, node by node.
+  function moved_with_edge(law, mesh, position, h0) result(expected)
+    class(force_law_t), intent(in) :: law
+    type(discretisation_t), intent(in) :: mesh
+    type(branch_point_t), intent(in) :: position
+    real(wp), intent(in) :: h0
+    type(state_t) :: expected
+    real(wp) :: weight(position%held), radius(position%held), c
+    real(wp), allocatable :: deformation(:), parabola(:)
+    integer :: i, k
+
+    expected = extrapolated(mesh, position, h0)
+    do k = 1, position%held
+      radius(k) = radius_of_gap(law%edge_gap, mesh, position%past(k))
+    end do
+    if (position%held < 2 .or. .not. minval(radius) > 0) return
+    weight = polynomial_weights(position%h0(:position%held), h0)
+    c = dot_product(weight, radius)
+    ! An edge that is extrapolated to half or twice where it was is worth nothing.
+    if (.not. (c > 0.5_wp*minval(radius) .and. c < 2*maxval(radius))) return
+    parabola = 0.5_wp*mesh%x(:mesh%nodes)**2
+    expected%gap = h0 + parabola
+    do k = 1, position%held
+      deformation = position%past(k)%gap - position%h0(k) - parabola
+      do i = 1, mesh%nodes
+        expected%gap(i) = expected%gap(i) + weight(k)*mesh%interpolate(deformation, &
+          min(mesh%x(i)*radius(k)/c, mesh%x(mesh%nodes)))
+      end do
+    end do
+    if (minval(expected%gap) < 0.5_wp*minval(position%state%gap)) &
+      expected = extrapolated(mesh, position, h0)
+  end function moved_with_edge
+
+  !> The state expected at h0 on a branch that changes at the rate dH/dH0 and has a fold at a
+  !> distance: it goes there as the square root of what is left of the way.
+  pure function towards_fold(state, rate, h0, distance) result(expected)
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: rate(:), h0, distance
+    type(state_t) :: expected
+    real(wp) :: way
+
+    way = min(abs(h0 - state%h0)/distance, 1.0_wp)
+    expected = state
+    expected%h0 = h0
+    expected%gap = state%gap + 2*sign(distance, h0 - state%h0)*(1 - sqrt(1 - way))*rate
+    if (minval(expected%gap) < 0.5_wp*minval(state%gap) .and. minval(state%gap) > 0) &
+      expected%gap = state%gap
+  end function towards_fold
+
+end module prediction

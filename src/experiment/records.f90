@@ -1,0 +1,99 @@
+!> What an experiment hands to whoever keeps its results: one record an equilibrium, in SI units.
+module records
+  use kinds, only: wp
+  use listener, only: listener_t
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: state_t, radius_of_gap
+  implicit none
+  private
+  public :: record_t, observer_t, silent_observer_t, theory_row_t, record_of
+  public :: stable_yes, stable_no, stable_unasked
+
+  !> The column `stable`.
+  integer, parameter :: stable_yes = 1, stable_no = 0, stable_unasked = -1
+  !> In contact is, as in the paper's Fig. 6, what is nearer than this many gaps at rest.
+  real(wp), parameter :: contact_gap = 1.1_wp
+
+  type :: record_t
+    character(len=:), allocatable :: branch
+    !> [m], [m], [m], [N], [m]; the residual is in units of the law's length.
+    real(wp) :: h0 = 0, h_centre = 0, displacement = 0, load = 0, contact_radius = 0
+    integer :: stable = stable_unasked
+    real(wp) :: residual = 0
+    integer :: iterations = 0
+    !> Whether the equations hold to the tolerance that was asked for.
+    logical :: converged = .true.
+    !> Smallest eigenvalue and the left sides of (28) and (29); only with &stability.
+    real(wp), allocatable :: eigenvalue, local_criterion, axis_criterion
+  end type record_t
+
+  !> One row of a table of theories, SI units; NaN for what a theory does not say.
+  type :: theory_row_t
+    character(len=:), allocatable :: theory
+    real(wp) :: h0 = 0, displacement = 0, load = 0, contact_radius = 0
+  end type theory_row_t
+
+  !> Takes records as they are computed.
+  type, abstract, extends(listener_t) :: observer_t
+  contains
+    procedure(take_record), deferred :: take
+  end type observer_t
+
+  !> Takes nothing, for runs of which only the summary counts.
+  type, extends(observer_t) :: silent_observer_t
+  contains
+    procedure :: take => take_nothing
+  end type silent_observer_t
+
+  abstract interface
+    !> state and grid are given for whoever wants the profile; profile says that the scene asks for
+    !> it.
+    subroutine take_record(self, record, problem, grid, state, profile)
+      import :: observer_t, record_t, problem_t, discretisation_t, state_t
+      class(observer_t), intent(inout) :: self
+      type(record_t), intent(in) :: record
+      type(problem_t), intent(in) :: problem
+      type(discretisation_t), intent(in) :: grid
+      type(state_t), intent(in) :: state
+      logical, intent(in) :: profile
+    end subroutine take_record
+  end interface
+
+contains
+
+  subroutine take_nothing(self, record, problem, grid, state, profile)
+    class(silent_observer_t), intent(inout) :: self
+    type(record_t), intent(in) :: record
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    logical, intent(in) :: profile
+  end subroutine take_nothing
+
+  !> The record of a state.
+  pure function record_of(branch, problem, grid, state, stable, converged) result(record)
+    character(len=*), intent(in) :: branch
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: stable
+    logical, intent(in) :: converged
+    type(record_t) :: record
+
+    record%branch = branch
+    record%h0 = state%h0*problem%length
+    record%h_centre = state%axis_gap*problem%length
+    record%displacement = (state%axis_gap - state%h0)*problem%length
+    record%load = state%load*problem%load
+    if (problem%law%rest_gap > 0) record%contact_radius = problem%lateral* &
+      radius_of_gap(contact_gap*problem%law%rest_gap, grid, state)
+    record%stable = stable
+    ! What is not an equilibrium is neither stable nor unstable.
+    if (.not. converged) record%stable = stable_unasked
+    record%residual = state%residual
+    record%iterations = state%iterations
+    record%converged = converged
+  end function record_of
+
+end module records

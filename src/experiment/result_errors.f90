@@ -1,0 +1,236 @@
+!> Errors of all that an outcome reports, number by number, and the largest of them.
+module result_errors
+  use kinds, only: wp
+  use discretisation, only: discretisation_t
+  use numerics_choice, only: fixed_mesh, companion
+  use edge_locked, only: mesh_pair_t, new_mesh_pair, resolution_t
+  use fixed_stepper, only: fixed_stepper_t
+  use locked_stepper, only: locked_stepper_t
+  use path_stepper, only: path_stepper_t
+  use stepper, only: stepper_t
+  use hysteresis, only: lost_energy_t, energy_lost
+  use reported, only: reported_t, relative_error
+  use error_estimate, only: judge_at_h0, rounding
+  use path_errors, only: judge_on_path, finer_nodes
+  use stepped_branch, only: branch_t
+  use path, only: path_t
+  use experiment_result, only: experiment_result_t
+  implicit none
+  private
+  public :: judge_locked, judge_fixed
+
+  !> Panels: nodes that the finer mesh has more in each, and its reach over the mesh's. States take
+  !> whole panels, so that theirs may be up to twice that of the mesh; `finer_nodes` goes beyond it.
+  integer, parameter :: more_nodes = 2
+  real(wp), parameter :: farther = 4
+  !> Differences are raised by this much for the error of the finer mesh: a tenth or less for
+  !> panels, a third for a uniform grid, which is of second order and of lower order in places; and
+  !> because other states may be somewhat worse than those compared. Against a grid twice as coarse
+  !> the difference itself is two to three times the error.
+  real(wp), parameter :: margin = 2, margin_fixed = 2.5_wp, margin_coarser = 1.2_wp
+
+  !> How a reported state is judged: again on the path of `steps`, if it has one, or else at its h0,
+  !> on the finer meshes.
+  type :: judge_t
+    class(stepper_t), pointer :: steps => null()
+    type(mesh_pair_t) :: fine
+    real(wp) :: margin = margin
+    real(wp) :: largest = rounding
+    logical :: judged = .false.
+  end type judge_t
+
+contains
+
+  !> Judges what edge-locked steps have found, for H0 from high to low. Nothing is set up where
+  !> nothing is reported.
+  subroutine judge_locked(steps, high, low, outcome)
+    class(locked_stepper_t), intent(inout), target :: steps
+    real(wp), intent(in) :: high, low
+    type(experiment_result_t), intent(inout) :: outcome
+    type(judge_t) :: judge
+    type(resolution_t) :: finer
+
+    if (.not. reports(outcome)) return
+    judge%steps => steps
+    finer = outcome%chosen%resolution
+    finer%order = finer%order + more_nodes
+    finer%farther = farther
+    judge%fine = new_mesh_pair(steps%problem, high, low, finer)
+    steps%cost%kernel_entries = steps%cost%kernel_entries + sum(judge%fine%grid%kernel_entries())
+    if (allocated(outcome%path)) call judge_path(judge, outcome%path)
+    if (allocated(outcome%stepped_path)) call judge_branch(judge, outcome%stepped_path)
+    call judge_cycle(judge, outcome)
+    select type (steps)
+    class is (path_stepper_t)
+      call judge_energy(judge, steps, outcome)
+    end select
+    call conclude(judge, outcome)
+  end subroutine judge_locked
+
+  !> Judges the cycle that steps on a fixed mesh have found, for H0 down to low: against a mesh that
+  !> is finer or, where that would cost too much, coarser.
+  subroutine judge_fixed(steps, low, outcome)
+    type(fixed_stepper_t), intent(inout), target :: steps
+    real(wp), intent(in) :: low
+    type(experiment_result_t), intent(inout) :: outcome
+    type(judge_t) :: judge
+
+    if (.not. reports(outcome)) return
+    judge%steps => steps
+    judge%fine%grid(1) = fixed_mesh(companion(outcome%chosen), steps%problem, low)
+    judge%margin = merge(margin_fixed, margin_coarser, judge%fine%grid(1)%nodes > steps%mesh%nodes)
+    steps%cost%kernel_entries = steps%cost%kernel_entries + judge%fine%grid(1)%kernel_entries()
+    call judge_cycle(judge, outcome)
+    call conclude(judge, outcome)
+  end subroutine judge_fixed
+
+  !> Whether there is anything to judge.
+  pure logical function reports(outcome)
+    type(experiment_result_t), intent(in) :: outcome
+
+    reports = .false.
+    if (allocated(outcome%path)) reports = outcome%path%states > 0
+    if (allocated(outcome%stepped_path)) reports = reports .or. outcome%stepped_path%states > 0
+    if (allocated(outcome%loading)) reports = reports .or. outcome%loading%states > 0
+    if (allocated(outcome%unloading)) reports = reports .or. any(outcome%unloading%states > 0)
+  end function reports
+
+  subroutine judge_cycle(judge, outcome)
+    type(judge_t), intent(inout) :: judge
+    type(experiment_result_t), intent(inout) :: outcome
+    integer :: k
+
+    if (allocated(outcome%loading)) call judge_branch(judge, outcome%loading)
+    if (.not. allocated(outcome%unloading)) return
+    do k = 1, size(outcome%unloading)
+      call judge_branch(judge, outcome%unloading(k))
+    end do
+  end subroutine judge_cycle
+
+  !> Of nothing there is no error; a path that was judged before counts too.
+  subroutine conclude(judge, outcome)
+    type(judge_t), intent(in) :: judge
+    type(experiment_result_t), intent(inout) :: outcome
+
+    if (.not. judge%judged) return
+    if (allocated(outcome%error_estimate)) then
+      outcome%error_estimate = max(outcome%error_estimate, judge%largest)
+    else
+      outcome%error_estimate = judge%largest
+    end if
+  end subroutine conclude
+
+  subroutine judge_path(judge, path)
+    type(judge_t), intent(inout) :: judge
+    type(path_t), intent(inout) :: path
+
+    call judge_list(judge, path%fold, .false.)
+    call judge_list(judge, path%extremum, .false.)
+    call judge_list(judge, path%profile, .true.)
+    if (allocated(path%lowest)) call judge_one(judge, path%lowest, .false.)
+    ! How a fall ends is of no interest and on no mesh.
+    if (allocated(path%finish) .and. .not. path%fallen) call judge_one(judge, path%finish, .false.)
+  end subroutine judge_path
+
+  subroutine judge_branch(judge, branch)
+    type(judge_t), intent(inout) :: judge
+    type(branch_t), intent(inout) :: branch
+
+    if (allocated(branch%lowest)) call judge_one(judge, branch%lowest, .false.)
+    if (allocated(branch%jump)) call judge_one(judge, branch%jump, .false.)
+    if (allocated(branch%finish)) call judge_one(judge, branch%finish, .false.)
+    if (allocated(branch%profile)) call judge_list(judge, branch%profile, .true.)
+    if (allocated(branch%sample)) call judge_list(judge, branch%sample, .false.)
+  end subroutine judge_branch
+
+  subroutine judge_list(judge, list, with_profile)
+    type(judge_t), intent(inout) :: judge
+    type(reported_t), intent(inout) :: list(:)
+    logical, intent(in) :: with_profile
+    integer :: i
+
+    do i = 1, size(list)
+      call judge_one(judge, list(i), with_profile)
+    end do
+  end subroutine judge_list
+
+  !> Judges one reported state; one without a state, such as a jump that was bracketed, is left.
+  subroutine judge_one(judge, reported, with_profile)
+    type(judge_t), intent(inout) :: judge
+    type(reported_t), intent(inout) :: reported
+    logical, intent(in) :: with_profile
+
+    if (reported%point == 0 .and. .not. allocated(reported%witness)) return
+    associate (fine => judge%fine, margin => judge%margin)
+      select type (steps => judge%steps)
+      class is (path_stepper_t)
+        call judge_on_path(steps%problem, steps%pair, fine, margin, steps%options%tolerance, &
+          with_profile, steps%known, reported, steps%cost)
+      class is (locked_stepper_t)
+        associate (mesh => reported%witness%mesh)
+          call judge_at_h0(steps%problem, steps%pair%grid(mesh), fine%grid(mesh), &
+            finer_nodes(steps%pair, fine, mesh, reported%witness%state), margin, &
+            steps%options%tolerance, reported, steps%cost)
+        end associate
+      class is (fixed_stepper_t)
+        call judge_at_h0(steps%problem, steps%mesh, fine%grid(1), fine%grid(1)%nodes, margin, &
+          steps%options%tolerance, reported, steps%cost)
+      end select
+    end associate
+    if (allocated(reported%error) .and. .not. with_profile) reported%error%profile = 0
+    judge%largest = max(judge%largest, relative_error(reported))
+    judge%judged = .true.
+  end subroutine judge_one
+
+  !> The energy lost in the cycle of a path that goes from afar through all its jumps, or of a
+  !> loading and the first unloading that come back to where they began.
+  subroutine judge_energy(judge, steps, outcome)
+    type(judge_t), intent(inout) :: judge
+    class(path_stepper_t), intent(inout) :: steps
+    type(experiment_result_t), intent(inout) :: outcome
+    type(lost_energy_t) :: lost
+    real(wp) :: lowest
+    integer :: turned, k
+    logical :: whole
+
+    turned = 0
+    lowest = -huge(1.0_wp)
+    if (allocated(outcome%path)) then
+      if (outcome%path%first_piece == 1 .and. allocated(outcome%path%finish)) then
+        turned = outcome%path%last_piece
+        lowest = outcome%path%finish%h0
+      end if
+    else if (allocated(outcome%loading) .and. allocated(outcome%unloading)) then
+      associate (there => outcome%loading, back => outcome%unloading(1))
+        if (there%first_piece == 1 .and. back%last_piece == 1) turned = back%first_piece
+      end associate
+    end if
+    if (turned < 2) return
+    do k = 1, turned - 1
+      call judge_jump(steps%known%inward(k)%fold)
+      call judge_jump(steps%known%outward(k + 1)%fold)
+    end do
+    call energy_lost(steps%problem, steps%pair, steps%known, 1, turned, lowest, &
+      lost, whole)
+    if (whole) call energy_lost(steps%problem, steps%pair, steps%known, turned, 1, lowest, &
+      lost, whole)
+    if (.not. whole) return
+    outcome%energy_lost = lost%energy
+    outcome%energy_uncertainty = judge%margin*abs(lost%energy - lost%fine_energy) + lost%rounding
+
+  contains
+
+    subroutine judge_jump(fold)
+      integer, intent(in) :: fold
+      type(reported_t) :: landed
+
+      if (fold == 0) return
+      landed%point = fold
+      landed%landing = .true.
+      call judge_on_path(steps%problem, steps%pair, judge%fine, judge%margin, &
+        steps%options%tolerance, .false., steps%known, landed, steps%cost)
+    end subroutine judge_jump
+
+  end subroutine judge_energy
+
+end module result_errors

@@ -1,0 +1,163 @@
+!> One branch of an h0-stepped experiment: from one h0 to the next, the deformation carried over
+!> from step to step.
+module stepped_branch
+  use kinds, only: wp
+  use equilibrium, only: state_t, residual_floor
+  use stepper, only: stepper_t, branch_point_t, step_result_t
+  use tension_search, only: tension_search_t
+  use reported, only: reported_t, reported_state, add_reported
+  use records, only: observer_t, record_of, stable_yes, stable_unasked
+  implicit none
+  private
+  public :: h0_schedule_t, branch_t, run_branch
+
+  !> The values of h0 to go through, and those whose profile is wanted; in the law's lengths.
+  type :: h0_schedule_t
+    character(len=:), allocatable :: name
+    real(wp), allocatable :: h0(:)
+    logical, allocatable :: profile(:)
+    !> There is one state for every h0, so that each is known to be stable.
+    logical :: unique = .false.
+  end type h0_schedule_t
+
+  !> What a branch showed, in the units of `dimensionless_problem`. Unallocated: there was none.
+  type :: branch_t
+    !> Largest tension (a negative load).
+    type(reported_t), allocatable :: lowest
+    !> The first jump: h0 and the load just before it; and how well h0 is known where the path is
+    !> not.
+    type(reported_t), allocatable :: jump
+    real(wp) :: jump_uncertainty = 0
+    !> The last equilibrium; no state that did not converge counts as one.
+    type(reported_t), allocatable :: finish
+    !> States whose profile was asked for; where the path is not known, first and middle state,
+    !> whose errors stand for those of all.
+    type(reported_t), allocatable :: profile(:), sample(:)
+    !> The stable pieces of the path on which it begins and ends; 0 where that is not known.
+    integer :: first_piece = 0, last_piece = 0
+    real(wp) :: worst_residual = 0, worst_spacing = 0
+    integer :: states = 0, unconverged = 0
+    !> First h0 that did not converge, and why the branch ended early; empty if it did not.
+    real(wp) :: first_unconverged = 0
+    character(len=160) :: reason = ''
+  end type branch_t
+
+contains
+
+  !> Goes through plan%h0. A new experiment (fresh) begins by an approach from afar at the first
+  !> value; otherwise it goes on from `position`. Positions at the steps nearest to the values
+  !> `keep` are handed back in `kept`: a plan takes values that differ by a rounded step for the
+  !> same.
+  subroutine run_branch(steps, plan, fresh, position, observer, keep, kept, branch)
+    class(stepper_t), intent(inout) :: steps
+    type(h0_schedule_t), intent(in) :: plan
+    logical, intent(in) :: fresh
+    type(branch_point_t), intent(inout) :: position
+    class(observer_t), intent(inout) :: observer
+    real(wp), intent(in) :: keep(:)
+    type(branch_point_t), intent(out) :: kept(:)
+    type(branch_t), intent(out) :: branch
+    type(tension_search_t) :: search
+    type(branch_point_t) :: previous
+    type(step_result_t) :: event
+    real(wp) :: last_h0
+    integer :: i, k, place(size(keep))
+
+    do k = 1, size(keep)
+      place(k) = minloc(abs(plan%h0 - keep(k)), 1)
+    end do
+    last_h0 = plan%h0(1)
+    if (.not. fresh) then
+      last_h0 = position%state%h0
+      branch%first_piece = position%piece
+    end if
+    do i = 1, size(plan%h0)
+      previous = position
+      if (fresh .and. i == 1) then
+        call steps%approach_to(plan%h0(i), position, event)
+        branch%first_piece = position%piece
+      else
+        call steps%step_to(plan%h0(i), position, event)
+      end if
+      steps%cost%states = steps%cost%states + 1
+      call note(branch, steps, position, event, plan%h0(i))
+      call search%note_jump(steps, event)
+      if (event%reason /= '') exit
+      call observer%take(record_of(plan%name, steps%problem, steps%grid(position), position%state, &
+        merge(stable_yes, stable_unasked, plan%unique), holds(steps, position%state)), &
+        steps%problem, steps%grid(position), position%state, plan%profile(i))
+      if (event%converged) then
+        branch%finish = reported_state(steps%witness(position))
+        branch%last_piece = position%piece
+        if (plan%profile(i)) call add_reported(branch%profile, branch%finish)
+        if (position%piece == 0 .and. any(i == [1, (1 + size(plan%h0))/2])) &
+          call add_reported(branch%sample, branch%finish)
+      end if
+      do k = 1, size(keep)
+        if (place(k) == i) kept(k) = position
+      end do
+      if (.not. allocated(event%lowest)) &
+        call search%note_state(steps, last_h0, plan%h0(i), previous, position, event)
+      last_h0 = plan%h0(i)
+    end do
+    call search%finish(steps, last_h0)
+    if (allocated(branch%lowest) .or. .not. allocated(search%lowest)) return
+    branch%lowest = search%lowest
+    branch%lowest%searched = .true.
+  end subroutine run_branch
+
+  !> Whether a state is an equilibrium, which the paper's stopping rule does not say.
+  pure logical function holds(steps, state)
+    class(stepper_t), intent(in) :: steps
+    type(state_t), intent(in) :: state
+
+    holds = state%residual <= max(steps%options%tolerance, residual_floor(steps%problem, state))
+  end function holds
+
+  !> Keeps the first, the worst and the lowest of what happened.
+  subroutine note(branch, steps, position, event, h0)
+    type(branch_t), intent(inout) :: branch
+    class(stepper_t), intent(in) :: steps
+    type(branch_point_t), intent(in) :: position
+    type(step_result_t), intent(in) :: event
+    real(wp), intent(in) :: h0
+
+    if (event%jumped .and. .not. allocated(branch%jump)) then
+      branch%jump = reported_t(h0=event%jump_h0, load=event%jump_load, point=event%fold)
+      branch%jump_uncertainty = event%jump_uncertainty
+    end if
+    if (allocated(event%lowest)) call lower(branch, steps, position, event)
+    branch%reason = event%reason
+    if (event%reason /= '') return
+    branch%states = branch%states + 1
+    if (.not. event%converged) then
+      if (branch%unconverged == 0) branch%first_unconverged = h0
+      branch%unconverged = branch%unconverged + 1
+    end if
+    branch%worst_residual = max(branch%worst_residual, position%state%residual)
+    if (position%state%axis_gap < steps%problem%law%edge_gap) &
+      branch%worst_spacing = max(branch%worst_spacing, steps%spacing_over_neck(position))
+  end subroutine note
+
+  !> Lets the largest tension of a step on a known path be the branch's if it is.
+  subroutine lower(branch, steps, position, event)
+    type(branch_t), intent(inout) :: branch
+    class(stepper_t), intent(in) :: steps
+    type(branch_point_t), intent(in) :: position
+    type(step_result_t), intent(in) :: event
+
+    associate (lowest => event%lowest)
+      if (.not. lowest%load < 0) return
+      if (allocated(branch%lowest)) then
+        if (lowest%load >= branch%lowest%load) return
+      end if
+      if (lowest%point == 0) then
+        branch%lowest = reported_state(steps%witness(position))
+      else
+        branch%lowest = reported_t(h0=lowest%h0, load=lowest%load, point=lowest%point, &
+          landing=lowest%landing)
+      end if
+    end associate
+  end subroutine lower
+
+end module stepped_branch

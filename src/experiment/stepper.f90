@@ -1,0 +1,179 @@
+!> What a quasi-static experiment at controlled h0 asks of whoever solves it: start as the bodies
+!> approach from afar, then go from one h0 to the next, and say when they jumped.
+module stepper
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: state_t, cost_t
+  use reported, only: error_probe_t
+  use anderson, only: frozen_jacobian_t
+  use solver_options, only: solver_options_t
+  implicit none
+  private
+  public :: stepper_t, keeping_stepper_t, branch_point_t, step_result_t, extreme_t, memory, &
+    remember, touching
+
+  !> Why rigid bodies have no state below the smallest gap of their law.
+  character(len=*), parameter :: touching = &
+    'rigid bodies would touch: so near (h0 <= 0, or far below it) this law has no pressure'
+
+  !> States kept for extrapolation in h0.
+  integer, parameter :: memory = 4
+
+  !> Where an experiment is: the present state and as much of its past as the next step can use.
+  !> Copied to come back to it (turning points, refinements), and packed whole by `state_records`.
+  type :: branch_point_t
+    type(state_t) :: state
+    !> Which of the solver's meshes the state lives on, and which stable piece of the path, where
+    !> that is known.
+    integer :: mesh = 1, piece = 0
+    integer :: held = 0
+    real(wp) :: h0(memory) = 0
+    type(state_t) :: past(memory)
+  end type branch_point_t
+
+  !> The largest tension of a step: the load, where, and the point of the path that it belongs to,
+  !> or whose landing it belongs to; 0 for the state that the step ends in.
+  type :: extreme_t
+    real(wp) :: load = 0, h0 = 0
+    integer :: point = 0
+    logical :: landing = .false.
+  end type extreme_t
+
+  !> What happened in a step; packed whole by `state_records`.
+  type :: step_result_t
+    logical :: converged = .false.
+    !> The state jumped; from where (h0, and the load just before), and how well that is known.
+    logical :: jumped = .false.
+    real(wp) :: jump_h0 = 0, jump_load = 0, jump_uncertainty = 0
+    !> The fold that the first jump starts from, as a point of the path; 0 where that is not known.
+    integer :: fold = 0
+    !> The largest tension on the way, where the path that the step follows is known.
+    type(extreme_t), allocatable :: lowest
+    !> Why there is no state, for the user; empty otherwise.
+    character(len=160) :: reason = ''
+  end type step_result_t
+
+  type, abstract :: stepper_t
+    type(problem_t) :: problem
+    type(solver_options_t) :: options
+    type(frozen_jacobian_t) :: frozen
+    type(cost_t) :: cost
+    !> How closely jumps are to be located, in the law's lengths.
+    real(wp) :: jump_tolerance = 1.0e-6_wp
+  contains
+    procedure(begin_at), deferred :: approach_to
+    procedure(go_to), deferred :: step_to
+    !> The discretisation on which a position's state lives.
+    procedure(grid_of), deferred :: grid
+    !> Distance between nodes at the edge over the width of the neck, for a state; 0 without a neck.
+    procedure(spacing_of), deferred :: spacing_over_neck
+    !> The witness of a position's state: what its h0 was prescribed as.
+    procedure(witness_of), deferred :: witness
+    !> Which of the meshes the Jacobian for a kind of control lives on.
+    procedure :: mesh_of
+  end type stepper_t
+
+  !> A stepper between an experiment and whoever solves, which keeps the steps.
+  type, abstract, extends(stepper_t) :: keeping_stepper_t
+    class(stepper_t), pointer :: solver => null()
+    !> Time [s] that the steps of an earlier run once took.
+    real(wp) :: earlier_seconds = 0
+  contains
+    procedure :: keep_steps_of
+  end type keeping_stepper_t
+
+  abstract interface
+    !> The state at h0 that an approach from afar arrives at.
+    subroutine begin_at(self, h0, position, event)
+      import :: stepper_t, branch_point_t, step_result_t, wp
+      class(stepper_t), intent(inout) :: self
+      real(wp), intent(in) :: h0
+      type(branch_point_t), intent(out) :: position
+      type(step_result_t), intent(out) :: event
+    end subroutine begin_at
+
+    !> From the position to h0. Not converged: position%state is the best that was found and its
+    !> residual says how good that is.
+    subroutine go_to(self, h0, position, event)
+      import :: stepper_t, branch_point_t, step_result_t, wp
+      class(stepper_t), intent(inout) :: self
+      real(wp), intent(in) :: h0
+      type(branch_point_t), intent(inout) :: position
+      type(step_result_t), intent(out) :: event
+    end subroutine go_to
+
+    function grid_of(self, position) result(grid)
+      import :: stepper_t, branch_point_t, discretisation_t
+      class(stepper_t), intent(in), target :: self
+      type(branch_point_t), intent(in) :: position
+      type(discretisation_t), pointer :: grid
+    end function grid_of
+
+    pure real(wp) function spacing_of(self, position)
+      import :: stepper_t, branch_point_t, wp
+      class(stepper_t), intent(in) :: self
+      type(branch_point_t), intent(in) :: position
+    end function spacing_of
+
+    pure function witness_of(self, position) result(witness)
+      import :: stepper_t, branch_point_t, error_probe_t
+      class(stepper_t), intent(in) :: self
+      type(branch_point_t), intent(in) :: position
+      type(error_probe_t) :: witness
+    end function witness_of
+  end interface
+
+contains
+
+  !> Makes `solver` the one whose steps are kept.
+  subroutine keep_steps_of(self, solver)
+    class(keeping_stepper_t), intent(inout) :: self
+    class(stepper_t), intent(in), target :: solver
+
+    self%solver => solver
+    self%problem = solver%problem
+    self%options = solver%options
+    self%jump_tolerance = solver%jump_tolerance
+  end subroutine keep_steps_of
+
+  !> With one mesh there is no choice.
+  pure integer function mesh_of(self, kind)
+    class(stepper_t), intent(in) :: self
+    integer, intent(in) :: kind
+
+    mesh_of = 1
+  end function mesh_of
+
+  !> Makes `state` the position's present one; on another mesh, or after a jump, the past is
+  !> forgotten.
+  subroutine remember(position, state, mesh, jumped)
+    type(branch_point_t), intent(inout) :: position
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: mesh
+    logical, intent(in) :: jumped
+    integer :: j
+
+    if (mesh /= position%mesh .or. jumped) position%held = 0
+    ! A turn of the experiment comes back over the same values.
+    do j = 1, position%held
+      if (abs(position%h0(j) - state%h0) <= 1.0e-12_wp*max(1.0_wp, abs(state%h0))) then
+        position%h0(j:position%held - 1) = position%h0(j + 1:position%held)
+        position%past(j:position%held - 1) = position%past(j + 1:position%held)
+        position%held = position%held - 1
+        exit
+      end if
+    end do
+    if (position%held == memory) then
+      position%h0(:memory - 1) = position%h0(2:)
+      position%past(:memory - 1) = position%past(2:)
+      position%held = memory - 1
+    end if
+    position%held = position%held + 1
+    position%h0(position%held) = state%h0
+    position%past(position%held) = state
+    position%state = state
+    position%mesh = mesh
+  end subroutine remember
+
+end module stepper

@@ -1,0 +1,253 @@
+!> The largest tension of a branch whose path is not known: between its steps it is searched by
+!> solving more states. (On edge-locked meshes the traced path has it.)
+module tension_search
+  use kinds, only: wp
+  use interpolation, only: interpolated_maximum
+  use stepper, only: stepper_t, branch_point_t, step_result_t
+  use reported, only: reported_t, reported_state
+  implicit none
+  private
+  public :: tension_search_t
+
+  !> A stretch of a branch without a jump: its state of largest tension so far, the one before it,
+  !> and the values of h0 between which the largest tension of all lies (the neighbours of that
+  !> state, or a jump).
+  type :: stretch_t
+    type(branch_point_t) :: lowest, previous
+    real(wp) :: before = 0, after = 0
+    logical :: open = .false.
+    !> The contact edge jumped from node to node on the way, or may have.
+    logical :: jagged = .false.
+  end type stretch_t
+
+  type :: tension_search_t
+    !> The largest tension so far; unallocated where nothing attracted.
+    type(reported_t), allocatable :: lowest
+    type(stretch_t), private :: stretch, deferred
+    integer, private :: ended = 0
+  contains
+    procedure :: note_jump
+    procedure :: note_state
+    procedure :: finish
+    procedure, private :: lower
+    procedure, private :: end_stretch
+    procedure, private :: refine
+    procedure, private :: search_jump_by_jump
+  end type tension_search_t
+
+  !> Stretches of a branch that are searched at once; of what an unresolved contact edge, jumping
+  !> from node to node, adds to them only the one of largest tension is searched, at the end.
+  integer, parameter :: searched_at_once = 3
+
+  !> Rounds of refinement of the maximum tension, and the relative change of load that ends them.
+  !> An extremum at an end of the stretch is approached to this fraction of the bracket: it is a
+  !> jump, whose load is known, or an end of the experiment.
+  integer, parameter :: most_rounds = 15
+  real(wp), parameter :: load_tolerance = 1.0e-10_wp, enough = 1.0e-3_wp
+  !> Smallest bracket that is searched, relative or in the law's lengths.
+  real(wp), parameter :: closest = 1.0e-9_wp
+  !> Steps short enough for every jump of the contact edge to be located, in the law's lengths.
+  real(wp), parameter :: short_step = 0.1_wp
+
+contains
+
+  !> Lets a load at h0 be the largest tension if it is; position: the state that has it.
+  subroutine lower(self, steps, load, h0, position)
+    class(tension_search_t), intent(inout) :: self
+    class(stepper_t), intent(in) :: steps
+    real(wp), intent(in) :: load, h0
+    type(branch_point_t), intent(in), optional :: position
+
+    if (.not. load < 0) return
+    if (allocated(self%lowest)) then
+      if (load >= self%lowest%load) return
+    end if
+    if (present(position)) then
+      self%lowest = reported_state(steps%witness(position))
+    else
+      self%lowest = reported_t(h0=h0, load=load)
+    end if
+  end subroutine lower
+
+  !> The last state before a jump may be the one of largest tension.
+  subroutine note_jump(self, steps, event)
+    class(tension_search_t), intent(inout) :: self
+    class(stepper_t), intent(in) :: steps
+    type(step_result_t), intent(in) :: event
+
+    if (event%jumped) call self%lower(steps, event%jump_load, event%jump_h0)
+  end subroutine note_jump
+
+  !> Takes the step from `previous` at last_h0 to `position` at h0.
+  subroutine note_state(self, steps, last_h0, h0, previous, position, event)
+    class(tension_search_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: last_h0, h0
+    type(branch_point_t), intent(in) :: previous, position
+    type(step_result_t), intent(in) :: event
+    real(wp) :: began
+
+    associate (stretch => self%stretch)
+      if (.not. event%converged) then
+        ! Neither a tension nor a place to search from.
+        call self%end_stretch(steps, last_h0)
+      else if (event%jumped .or. .not. stretch%open) then
+        began = last_h0
+        if (event%jumped) then
+          began = event%jump_h0
+          ! On the way in the tension grows up to the jump itself.
+          if (h0 < event%jump_h0 .and. stretch%open) &
+            stretch%open = event%jump_load >= stretch%lowest%state%load
+        end if
+        call self%end_stretch(steps, began)
+        stretch = stretch_t(position, previous, began, h0, .true.)
+      else if (position%state%load < stretch%lowest%state%load) then
+        stretch = stretch_t(position, previous, last_h0, h0, .true., stretch%jagged)
+      else if (abs(stretch%after - stretch%lowest%state%h0) <= 0.0_wp) then
+        stretch%after = h0
+      end if
+      if (.not. event%jumped .and. event%jump_uncertainty > 0) stretch%jagged = .true.
+    end associate
+  end subroutine note_state
+
+  !> Ends the branch at last_h0.
+  subroutine finish(self, steps, last_h0)
+    class(tension_search_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: last_h0
+
+    call self%end_stretch(steps, last_h0)
+    if (self%deferred%open) call self%refine(steps, self%deferred)
+  end subroutine finish
+
+  !> Refines the largest tension of the stretch, which ends at `finish`, or keeps it for later as
+  !> `deferred`, which is the best of those.
+  subroutine end_stretch(self, steps, finish)
+    class(tension_search_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: finish
+    type(stretch_t) :: stretch
+
+    if (.not. self%stretch%open) return
+    self%stretch%open = .false.
+    stretch = self%stretch
+    if (stretch%lowest%state%load < 0) then
+      call self%lower(steps, stretch%lowest%state%load, stretch%lowest%state%h0, stretch%lowest)
+    else if (.not. steps%problem%law%adhesion > 0) then
+      return
+    end if
+    if (abs(stretch%after - stretch%lowest%state%h0) <= 0.0_wp) stretch%after = finish
+    self%ended = self%ended + 1
+    if (self%ended <= searched_at_once) then
+      call self%refine(steps, stretch)
+      return
+    end if
+    if (self%deferred%open) then
+      if (stretch%lowest%state%load >= self%deferred%lowest%state%load) return
+    end if
+    self%deferred = stretch
+    self%deferred%open = .true.
+  end subroutine end_stretch
+
+  !> Searches the largest tension between stretch%before and stretch%after: the polynomial through
+  !> the states nearest to the lowest is searched, the state there computed and added, and so on;
+  !> where that leads nowhere the larger side is halved, for on a coarse path the extremum may lie
+  !> on either.
+  subroutine refine(self, steps, stretch)
+    class(tension_search_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: steps
+    type(stretch_t), intent(in) :: stretch
+    type(branch_point_t) :: best, trial
+    type(step_result_t) :: event
+    real(wp), allocatable :: h0(:), load(:)
+    real(wp) :: low, high, left, right, next, width, gained
+    integer :: round
+
+    best = stretch%lowest
+    h0 = [best%state%h0]
+    load = [best%state%load]
+    low = min(stretch%before, stretch%after)
+    high = max(stretch%before, stretch%after)
+    width = high - low
+    ! Between steps as close as this there is nothing to find that rounding would not hide.
+    if (.not. width > closest*max(1.0_wp, abs(low), abs(high))) return
+    ! Nor between states that the paper's rule has stopped anywhere: what is computed there is one
+    ! more of them, and not of this experiment.
+    if (steps%options%stop_on_change .and. steps%options%method == 'mixing') return
+    if (stretch%jagged) then
+      call self%search_jump_by_jump(steps, stretch)
+      return
+    end if
+    do round = 1, most_rounds
+      left = max(low, maxval([low, pack(h0, h0 < best%state%h0)]))
+      right = min(high, minval([high, pack(h0, h0 > best%state%h0)]))
+      next = interpolated_maximum(h0, -load, left, right)
+      if (size(h0) < 3 .or. minval(abs(h0 - next)) <= 1.0e-3_wp*(right - left)) then
+        ! The polynomial has nothing to add: is the extremum there, or has one side not been looked
+        ! at?
+        if (any(h0 < best%state%h0) .and. any(h0 > best%state%h0) .and. &
+          right - left < enough*width) exit
+        next = merge(0.5_wp*(left + best%state%h0), 0.5_wp*(right + best%state%h0), &
+          best%state%h0 - left > right - best%state%h0)
+      end if
+      trial = best
+      call steps%step_to(next, trial, event)
+      if (event%jumped .or. .not. event%converged) then
+        ! The stretch does not reach there, but to the jump, where its tension may be largest.
+        if (event%jumped) next = event%jump_h0
+        if (next < best%state%h0) low = next
+        if (next > best%state%h0) high = next
+        if ((next - best%state%h0)*(stretch%after - stretch%before) > 0) &
+          call self%note_jump(steps, event)
+        cycle
+      end if
+      h0 = [h0, next]
+      load = [load, trial%state%load]
+      gained = best%state%load - trial%state%load
+      if (gained > 0) best = trial
+      if (size(h0) > 3 .and. abs(gained) <= load_tolerance*abs(best%state%load)) exit
+      call keep_nearest(h0, load)
+    end do
+    call self%lower(steps, best%state%load, best%state%h0, best)
+  end subroutine refine
+
+  !> Goes once more from stretch%before to stretch%after, or from the lowest state where a jump came
+  !> before it, with every jump of the contact edge located: the tension is largest just before one.
+  subroutine search_jump_by_jump(self, steps, stretch)
+    class(tension_search_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: steps
+    type(stretch_t), intent(in) :: stretch
+    type(branch_point_t) :: position, best
+    type(step_result_t) :: event
+    real(wp) :: start
+    integer :: i, count
+
+    best = stretch%lowest
+    position = stretch%lowest
+    if (allocated(stretch%previous%state%gap)) then
+      if (abs(stretch%previous%state%h0 - stretch%before) <= 0.0_wp) position = stretch%previous
+    end if
+    start = position%state%h0
+    count = ceiling(abs(stretch%after - start)/short_step)
+    do i = 1, count
+      call steps%step_to(start + (stretch%after - start)*i/count, position, event)
+      if (.not. event%converged .or. event%reason /= '') exit
+      call self%note_jump(steps, event)
+      if (position%state%load < best%state%load) best = position
+    end do
+    call self%lower(steps, best%state%load, best%state%h0, best)
+  end subroutine search_jump_by_jump
+
+  !> Drops values until the five nearest to the lowest load are left.
+  pure subroutine keep_nearest(h0, load)
+    real(wp), allocatable, intent(inout) :: h0(:), load(:)
+    integer :: farthest
+
+    do while (size(h0) > 5)
+      farthest = maxloc(abs(h0 - h0(minloc(load, 1))), 1)
+      h0 = [h0(:farthest - 1), h0(farthest + 1:)]
+      load = [load(:farthest - 1), load(farthest + 1:)]
+    end do
+  end subroutine keep_nearest
+
+end module tension_search

@@ -1,0 +1,101 @@
+!> A quasi-static experiment in edge-locked coordinates where every h0 has one state: under a law
+!> that does not attract, or between rigid bodies.
+module unique_stepper
+  use kinds, only: wp
+  use equilibrium, only: state_t
+  use edge_locked, only: contact
+  use locked_meshes, only: nodes_to_use, scale_at
+  use locked_stepper, only: locked_stepper_t
+  use continuation, only: between
+  use stepper, only: branch_point_t, step_result_t, remember, touching
+  implicit none
+  private
+  public :: unique_stepper_t
+
+  type, extends(locked_stepper_t) :: unique_stepper_t
+  contains
+    procedure :: approach_to
+    procedure :: step_to
+    procedure, private :: guess
+    procedure, private :: step_in_pieces
+  end type unique_stepper_t
+
+  !> Smallest step in h0, in the law's lengths, that is tried.
+  real(wp), parameter :: smallest_creep = 1.0e-6_wp
+
+contains
+
+  subroutine approach_to(self, h0, position, event)
+    class(unique_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(out) :: position
+    type(step_result_t), intent(out) :: event
+
+    call self%begin_afar(h0, position, event)
+    if (event%reason == '' .and. position%state%h0 > h0) call self%step_to(h0, position, event)
+  end subroutine approach_to
+
+  subroutine step_to(self, h0, position, event)
+    class(unique_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(out) :: event
+    type(state_t) :: state
+
+    if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
+      event%reason = touching
+      return
+    end if
+    state = self%guess(h0, position)
+    call self%attempt(h0, state, position%mesh, event)
+    if (event%converged) then
+      call remember(position, state, position%mesh, .false.)
+    else
+      call self%step_in_pieces(h0, position, event)
+    end if
+  end subroutine step_to
+
+  !> The state that those behind let expect at h0.
+  pure function guess(self, h0, position)
+    class(unique_stepper_t), intent(in) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(in) :: position
+    type(state_t) :: guess
+
+    guess = between(self%pair%grid(position%mesh), position%h0(:position%held), &
+      position%past(:position%held), h0, nodes_to_use(self%pair, position%mesh, &
+      scale_at(self%pair, h0), size(position%state%gap)))
+  end function guess
+
+  !> Reaches h0 in shorter steps: a step is only ever too long.
+  subroutine step_in_pieces(self, h0, position, event)
+    class(unique_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+    type(state_t) :: state
+    real(wp) :: next, step
+
+    step = 0.25_wp*(h0 - position%state%h0)
+    do
+      next = position%state%h0 + step
+      if (abs(h0 - position%state%h0) <= 1.5_wp*abs(step)) next = h0
+      state = self%guess(next, position)
+      self%frozen%factors%valid = .false.
+      call self%attempt(next, state, position%mesh, event)
+      if (event%converged) then
+        call remember(position, state, position%mesh, .false.)
+        if (abs(next - h0) <= 0.0_wp) return
+        step = 2*step
+      else
+        step = 0.3_wp*step
+        if (abs(step) < smallest_creep) then
+          event%reason = 'no step, however small, converged'
+          position%state = state
+          return
+        end if
+      end if
+    end do
+  end subroutine step_in_pieces
+
+end module unique_stepper

@@ -1,0 +1,30 @@
+!> The two elastic bodies, seen as one.
+module bodies
+  use kinds, only: wp
+  implicit none
+  private
+  public :: composite_stiffness, compliance_shares
+
+contains
+
+  !> Stiffness E/(1-nu^2) [Pa] of two identical bodies that deform together as these two do.
+  !> `young` [Pa] and `poisson` hold one value a body. The compliances add, so that (1-nu^2)/E of
+  !> the identical bodies is the arithmetic mean of the two bodies' values; the usual composite
+  !> modulus E* is half of this stiffness. A body may be stiffer than the other by any factor.
+  pure function composite_stiffness(young, poisson) result(stiffness)
+    real(wp), intent(in) :: young(2), poisson(2)
+    real(wp) :: stiffness
+
+    stiffness = 2/sum((1 - poisson)*(1 + poisson)/young)
+  end function composite_stiffness
+
+  !> What each of two bodies deforms by over what identical bodies of the composite stiffness do:
+  !> its compliance over the mean. Arguments as above.
+  pure function compliance_shares(young, poisson) result(share)
+    real(wp), intent(in) :: young(2), poisson(2)
+    real(wp) :: share(2)
+
+    share = composite_stiffness(young, poisson)*(1 - poisson)*(1 + poisson)/young
+  end function compliance_shares
+
+end module bodies

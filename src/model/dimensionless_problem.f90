@@ -1,0 +1,94 @@
+!> The problem without its units. With gaps in units of the law's length L, lateral positions in
+!> sqrt(R L) and pressures in the law's unit, (14)-(18) of the paper become
+!>
+!>     H(rho) = H0 + rho^2/2 + 2 coupling Int P(H) k rho' drho' ,
+!>
+!> with one parameter, coupling = (1-nu^2)/E sqrt(R/L) pressure_unit: sigma (40) for the
+!> Lennard-Jones law, Lambda (39) at h0 = 0 for the exponential one, 0 for rigid bodies.
+module dimensionless_problem
+  use kinds, only: wp
+  use force_law, only: force_law_t
+  implicit none
+  private
+  public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
+    surface_energy, largest_tension
+
+  type :: problem_t
+    class(force_law_t), allocatable :: law
+    real(wp) :: coupling = 0
+    !> Units: gap [m], lateral position [m], pressure [Pa], load [N].
+    real(wp) :: length = 1, lateral = 1, pressure = 1, load = 1
+    !> Bodies, SI: R, and E/(1-nu^2) of two identical bodies.
+    real(wp) :: radius = 1, stiffness = 1
+    logical :: rigid = .false.
+    !> What each body deforms by over what it is for identical ones.
+    real(wp) :: share(2) = 1
+  end type problem_t
+
+  !> Width of the neck times sigma, lateral units.
+  real(wp), parameter :: neck = 0.375_wp
+
+contains
+
+  !> radius [m] and stiffness [Pa] as in `bodies`; stiffness is not used for rigid bodies.
+  pure function new_problem(law, radius, stiffness, rigid) result(problem)
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: radius, stiffness
+    logical, intent(in) :: rigid
+    type(problem_t) :: problem
+
+    allocate (problem%law, source=law)
+    problem%length = law%length
+    problem%lateral = sqrt(radius*law%length)
+    problem%pressure = law%pressure_unit
+    problem%load = law%pressure_unit*radius*law%length
+    problem%radius = radius
+    problem%stiffness = stiffness
+    problem%rigid = rigid
+    if (.not. rigid) problem%coupling = law%pressure_unit/stiffness*sqrt(radius/law%length)
+  end function new_problem
+
+  !> Width of the zone outside the contact edge over which the tension decays, lateral units:
+  !> 0.75 E* L^2/gamma = 0.375/sigma; huge where bodies are rigid or nothing attracts.
+  pure real(wp) function neck_width(problem)
+    type(problem_t), intent(in) :: problem
+
+    neck_width = huge(1.0_wp)
+    if (problem%coupling*problem%law%adhesion > 0) &
+      neck_width = neck/(problem%coupling*problem%law%adhesion)
+  end function neck_width
+
+  !> A distance between nodes (lateral units) over the width of the neck; 0 where there is no neck.
+  pure real(wp) function spacing_over_neck(problem, spacing)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: spacing
+
+    spacing_over_neck = spacing*problem%coupling*problem%law%adhesion/neck
+  end function spacing_over_neck
+
+  !> Tabor's parameter (R gamma^2/(E*^2 L^3))^(1/3) = (4 sigma^2)^(1/3); 0 without adhesion.
+  pure real(wp) function tabor_parameter(problem)
+    type(problem_t), intent(in) :: problem
+
+    tabor_parameter = (4*(problem%coupling*problem%law%adhesion)**2)**(1.0_wp/3)
+  end function tabor_parameter
+
+  !> gamma [J/m^2], the depth of the energy minimum; 0 for a law that does not attract.
+  pure real(wp) function surface_energy(problem)
+    type(problem_t), intent(in) :: problem
+
+    surface_energy = problem%law%adhesion*problem%pressure*problem%length
+  end function surface_energy
+
+  !> Largest tension of the law [Pa], that at the contact edge; 0 for a law without a largest one.
+  pure real(wp) function largest_tension(problem)
+    type(problem_t), intent(in) :: problem
+    real(wp) :: pressure(1)
+
+    largest_tension = 0
+    if (.not. problem%law%edge_gap > 0) return
+    pressure = problem%law%pressure([problem%law%edge_gap])
+    largest_tension = -pressure(1)*problem%pressure
+  end function largest_tension
+
+end module dimensionless_problem

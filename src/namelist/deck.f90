@@ -1,0 +1,166 @@
+!> Any namelist file, read against a table of the groups and keys it may hold.
+!>
+!> `read_deck` finds every mistake that one key can make by itself; what keys must do together is
+!> for the caller, who reports it with `mistake` so that it carries file, line, group and key too.
+module deck
+  use failure, only: failure_t
+  use text, only: lower, guess, listing, clip
+  use deck_source, only: load_source
+  use deck_scan, only: span_t, entry_t, scan_t, scan_deck
+  use deck_keys, only: key_spec, ignored_group, allowed, names_of
+  use deck_values, only: assumed, given, interpret, convert
+  use deck_store, only: deck_t
+  implicit none
+  private
+  public :: deck_t, read_deck
+
+  !> Beyond this many mistakes the reader of the messages has enough to do.
+  integer, parameter :: most_mistakes = 20
+
+contains
+
+  !> Reads `file` against the table `specs`. `error` lists the mistakes found, each as
+  !> `FILE:LINE: &group: key "x": what is wrong, what is allowed` with the line and a caret below.
+  subroutine read_deck(file, specs, deck, error)
+    character(len=*), intent(in) :: file
+    type(key_spec), intent(in) :: specs(:)
+    type(deck_t), intent(out) :: deck
+    type(failure_t), allocatable, intent(out) :: error
+    type(scan_t) :: found
+    integer :: mistakes
+
+    deck%specs = specs
+    allocate (deck%values(size(specs)))
+    call load_source(file, deck%source, error)
+    if (allocated(error)) return
+    call scan_deck(deck%source, found, error)
+    if (allocated(error)) return
+    call take_entries(deck, found, mistakes, error)
+    if (mistakes < most_mistakes) call complete(deck, error)
+  end subroutine read_deck
+
+  !> Enters what the scanner found into the table's values.
+  subroutine take_entries(deck, found, mistakes, error)
+    type(deck_t), intent(inout) :: deck
+    type(scan_t), intent(in) :: found
+    integer, intent(out) :: mistakes
+    type(failure_t), allocatable, intent(inout) :: error
+    integer :: rows(found%n_groups), i, at
+    character(len=:), allocatable :: name, what
+
+    mistakes = 0
+    do i = 1, found%n_groups
+      call open_group(deck, found%groups(i), rows(i), what)
+      if (allocated(what)) call report('', '', found%groups(i)%first - 1)
+      if (mistakes == most_mistakes) return
+    end do
+    do i = 1, found%n_entries
+      associate (row => rows(found%entries(i)%group))
+        ! Nothing can be said about the keys of a group that is unknown, repeated or skipped.
+        if (row == 0) cycle
+        if (deck%specs(row)%kind == ignored_group) cycle
+        name = deck%source%part(found%entries(i)%name%first, found%entries(i)%name%last)
+        call take_entry(deck, found, found%entries(i), trim(deck%specs(row)%group), at, what)
+        if (allocated(what)) call report(trim(deck%specs(row)%group), lower(clip(name)), at)
+      end associate
+      if (mistakes == most_mistakes) return
+    end do
+
+  contains
+
+    subroutine report(group, key, where)
+      character(len=*), intent(in) :: group, key
+      integer, intent(in) :: where
+
+      mistakes = mistakes + 1
+      call deck%source%complain(where, group, key, what, error)
+      if (mistakes == most_mistakes) &
+        error%message = error%message // new_line('a') // 'further mistakes are not shown'
+    end subroutine report
+
+  end subroutine take_entries
+
+  !> Finds the row of a group (0 where it has none that may be used) and marks it as met.
+  subroutine open_group(deck, name, row, what)
+    type(deck_t), intent(inout) :: deck
+    type(span_t), intent(in) :: name
+    integer, intent(out) :: row
+    character(len=:), allocatable, intent(out) :: what
+    character(len=:), allocatable :: word
+    character(len=12) :: line
+
+    word = lower(deck%source%part(name%first, name%last))
+    row = deck%row_of(word, '')
+    if (row == 0) then
+      what = 'unknown group "&' // clip(word) // '"' // &
+             guess(word, names_of(deck%specs, ''), '&') // '; groups are ' // &
+             listing(names_of(deck%specs, ''), '&', '')
+    else if (deck%values(row)%status == given) then
+      write (line, '(i0)') deck%source%line_at(deck%values(row)%at)
+      what = 'a second &' // word // '; the first is on line ' // trim(line)
+      row = 0
+    else
+      deck%values(row)%status = given
+      deck%values(row)%at = name%first - 1
+    end if
+  end subroutine open_group
+
+  !> Enters one assignment; `what` says what is wrong with it, if anything, and `at` where.
+  subroutine take_entry(deck, found, entry, group, at, what)
+    type(deck_t), intent(inout) :: deck
+    type(scan_t), intent(in) :: found
+    type(entry_t), intent(in) :: entry
+    character(len=*), intent(in) :: group
+    integer, intent(out) :: at
+    character(len=:), allocatable, intent(out) :: what
+    character(len=:), allocatable :: name, keys
+    character(len=12) :: line
+    integer :: row
+
+    at = entry%name%first
+    name = lower(deck%source%part(entry%name%first, entry%name%last))
+    row = deck%row_of(group, name)
+    if (row == 0) then
+      keys = names_of(deck%specs, group)
+      what = 'no such key'
+      if (len(keys) == 0) what = what // '; &' // group // ' has no keys'
+      if (len(keys) > 0) what = what // guess(name, keys, '') // '; keys of &' // group // ' are ' &
+        // listing(keys, '', '')
+    else if (deck%values(row)%status == given) then
+      write (line, '(i0)') deck%source%line_at(deck%values(row)%at)
+      what = 'given twice; the first is on line ' // trim(line)
+    else
+      deck%values(row)%at = at
+      deck%values(row)%status = given
+      call interpret(deck%source, deck%specs(row), &
+                     found%items(entry%first_item:entry%first_item + entry%n_items - 1), &
+                     deck%values(row), at, what)
+      if (allocated(what)) what = what // '; allowed: ' // allowed(deck%specs(row))
+    end if
+  end subroutine take_entry
+
+  !> Fills in the table's defaults and reports what is required but missing.
+  subroutine complete(deck, error)
+    type(deck_t), intent(inout) :: deck
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: group, key, what
+    integer :: i
+
+    do i = 1, size(deck%specs)
+      if (deck%values(i)%status == given) cycle
+      group = trim(deck%specs(i)%group)
+      key = trim(deck%specs(i)%key)
+      if (deck%specs(i)%required) then
+        if (len(key) == 0) then
+          call deck%mistake(group, '', 'this group is missing; every deck needs it', error)
+        else if (deck%has_group(group)) then
+          call deck%mistake(group, key, 'missing; give it ' // allowed(deck%specs(i)), error)
+        end if
+      else if (len_trim(deck%specs(i)%default) > 0) then
+        call convert(deck%specs(i), trim(deck%specs(i)%default), deck%values(i), what)
+        deck%values(i)%status = assumed
+      end if
+    end do
+  end subroutine complete
+
+end module deck

@@ -1,0 +1,132 @@
+!> Numbers and logicals as they stand in a deck: strict readers for one token.
+module deck_number
+  use kinds, only: wp, long
+  use text, only: lower, clip
+  implicit none
+  private
+  public :: parse_real, parse_integer, parse_logical
+
+  !> Decimal orders outside +-50 are refused: no length, pressure or energy is near, and products
+  !> and quotients of six numbers stay finite.
+  integer, parameter :: largest_order = 50
+  !> Farther out than the digits of a token can make good.
+  integer, parameter :: beyond = 1000000
+  !> More digits than any double needs, so a longer token is a slip and not a number.
+  integer, parameter :: longest_number = 100
+
+contains
+
+  !> Reads one real number: sign, digits with at most one point, exponent with `e` or `d`.
+  !> `what` is allocated and says what is wrong where `token` is anything else.
+  pure subroutine parse_real(token, value, what)
+    character(len=*), intent(in) :: token
+    real(wp), intent(out) :: value
+    character(len=:), allocatable, intent(out) :: what
+    character(len=len(token)) :: small
+    integer :: i, mark, point, before, after, order, status
+
+    value = 0.0_wp
+    small = lower(token)
+    i = 1
+    if (len(small) > 0) i = merge(2, 1, scan(small(1:1), '+-') == 1)
+    if (any(small(min(i, len(small) + 1):) == ['nan     ', 'inf     ', 'infinity'])) then
+      what = token // ' is not a finite number'
+      return
+    end if
+    what = clip(token) // ' is not a number'
+    if (len(token) > longest_number) return
+    mark = scan(small, 'ed')
+    if (mark == 0) mark = len(small) + 1
+    if (mark <= i) return
+    if (verify(small(i:mark - 1), '0123456789.') /= 0) return
+    point = index(small(i:mark - 1), '.')
+    if (index(small(i:mark - 1), '.', back=.true.) /= point) return
+    before = merge(point - 1, mark - i, point > 0)
+    after = mark - i - before - merge(1, 0, point > 0)
+    if (before + after == 0) return
+
+    order = 0
+    if (mark <= len(small)) then
+      call parse_integer(small(mark + 1:), order, what)
+      if (allocated(what)) then
+        what = token // ' is not a number'
+        if (verify(small(mark + 1:), '+-0123456789') /= 0) return
+        if (scan(small(mark + 1:), '0123456789') == 0) return
+        if (scan(small(mark + 2:), '+-') /= 0) return
+        what = token // ' is too large or too small; numbers have decimal orders from -50 to 50'
+        return
+      end if
+      small(mark:mark) = 'e'
+    end if
+    i = scan(small(:mark - 1), '123456789')
+    if (i > 0) then
+      ! Clipped first, since a sum with the largest integer would overflow.
+      order = max(-beyond, min(beyond, order)) + leading_order(small(:mark - 1), i)
+      if (abs(order) > largest_order) then
+        what = token // ' is too ' // merge('large', 'small', order > 0) // &
+               '; numbers have decimal orders from -50 to 50'
+        return
+      end if
+    else
+      ! A zero needs no exponent, and 0e999 must not reach the reader.
+      small = '0'
+    end if
+    read (small, *, iostat=status) value
+    what = token // ' is not a number'
+    if (status /= 0) return
+    if (.not. abs(value) <= huge(value)) return
+    deallocate (what)
+  end subroutine parse_real
+
+  !> Decimal order of the first digit that is not zero, standing at `first` in `digits`.
+  pure integer function leading_order(digits, first) result(order)
+    character(len=*), intent(in) :: digits
+    integer, intent(in) :: first
+    integer :: point
+
+    point = index(digits, '.')
+    if (point == 0) point = len(digits) + 1
+    order = merge(point - first - 1, point - first, first < point)
+  end function leading_order
+
+  !> Reads one whole number; `what` as in `parse_real`.
+  pure subroutine parse_integer(token, value, what)
+    character(len=*), intent(in) :: token
+    integer, intent(out) :: value
+    character(len=:), allocatable, intent(out) :: what
+    integer(long) :: wide
+    integer :: i, status
+
+    value = 0
+    what = clip(token) // ' is not a whole number'
+    if (len(token) == 0) return
+    i = merge(2, 1, scan(token(1:1), '+-') == 1)
+    if (len(token) < i) return
+    if (verify(token(i:), '0123456789') /= 0) return
+    what = clip(token) // ' is too large for a whole number'
+    if (len(token) > 18) return
+    read (token, *, iostat=status) wide
+    if (status /= 0) return
+    if (abs(wide) > huge(value)) return
+    value = int(wide)
+    deallocate (what)
+  end subroutine parse_integer
+
+  !> Reads `.true.`, `.false.`, `true`, `false`, `.t.`, `.f.`, `t` or `f`; `what` as above.
+  pure subroutine parse_logical(token, value, what)
+    character(len=*), intent(in) :: token
+    logical, intent(out) :: value
+    character(len=:), allocatable, intent(out) :: what
+
+    value = .false.
+    select case (lower(token))
+    case ('.true.', 'true', '.t.', 't')
+      value = .true.
+    case ('.false.', 'false', '.f.', 'f')
+      value = .false.
+    case default
+      what = clip(token) // ' is neither .true. nor .false.'
+    end select
+  end subroutine parse_logical
+
+end module deck_number

@@ -1,0 +1,164 @@
+!> The text of a deck as one string, and messages that point into it.
+!>
+!> Files are read by system calls: a Fortran `open` passes over blanks at the end of a name and so
+!> finds another file.
+module deck_source
+  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
+  use failure, only: failure_t, fail, bad_input, file_trouble
+  use c_library, only: c_open_input, c_read, c_close, sort_of, reason, not_there
+  use text, only: printable
+  implicit none
+  private
+  public :: source_t, load_source
+
+  character(len=*), parameter :: newline = new_line('a')
+  !> Ten thousand sweep values take a quarter of this; anything larger is not a deck.
+  integer, parameter :: largest_deck = 1048576
+
+  !> A deck's text, line ends made uniform.
+  type :: source_t
+    !> Name of the file, fit for a message.
+    character(len=:), allocatable :: file
+    character(len=:), allocatable :: text
+  contains
+    procedure :: part
+    procedure :: line_at
+    procedure :: complain
+  end type source_t
+
+contains
+
+  !> Reads `file` whole. Fails on files that are missing, unreadable, a folder, too large or not
+  !> plain text.
+  subroutine load_source(file, source, error)
+    character(len=*), intent(in) :: file
+    type(source_t), intent(out) :: source
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: bytes
+    integer(c_int) :: descriptor, status
+    integer :: n
+
+    source%file = printable(file)
+    source%text = ''
+    if (len_trim(file) == 0) then
+      call fail(error, file_trouble, 'a deck needs a file name')
+      return
+    end if
+    descriptor = c_open_input(file // c_null_char)
+    if (descriptor < 0) then
+      if (sort_of(descriptor) == not_there) then
+        call fail(error, file_trouble, source%file // ': no such file')
+      else
+        call fail(error, file_trouble, source%file // ': cannot be opened: ' // reason(descriptor))
+      end if
+      return
+    end if
+    allocate (character(len=largest_deck + 1) :: bytes)
+    n = int(c_read(descriptor, bytes, int(len(bytes), c_long)))
+    status = c_close(descriptor)
+    if (n < 0) then
+      call fail(error, file_trouble, source%file // ': cannot be read: ' // reason(int(n, c_int)))
+    else if (n > largest_deck) then
+      call fail(error, bad_input, source%file // ': larger than 1 MiB, so not a deck')
+    else
+      call straighten(bytes(:n), source%text)
+      n = index(source%text, achar(0))
+      if (n > 0) call source%complain(n, '', '', 'a NUL byte: a deck is plain text', error)
+    end if
+  end subroutine load_source
+
+  !> Makes every line end a single line feed (CR LF and CR are others') and drops a byte-order mark.
+  pure subroutine straighten(bytes, text)
+    character(len=*), intent(in) :: bytes
+    character(len=:), allocatable, intent(out) :: text
+    character(len=*), parameter :: mark = char(239) // char(187) // char(191)
+    character(len=1), parameter :: return = achar(13)
+    integer :: i, n, first
+
+    first = 1
+    if (len(bytes) >= 3) then
+      if (bytes(:3) == mark) first = 4
+    end if
+    text = bytes(first:)
+    n = 0
+    do i = first, len(bytes)
+      if (bytes(i:i) == newline .and. i > first) then
+        if (bytes(i - 1:i - 1) == return) cycle
+      end if
+      n = n + 1
+      text(n:n) = bytes(i:i)
+      if (bytes(i:i) == return) text(n:n) = newline
+    end do
+    text = text(:n)
+  end subroutine straighten
+
+  !> The text from position `first` to `last`.
+  pure function part(self, first, last) result(text)
+    class(source_t), intent(in) :: self
+    integer, intent(in) :: first, last
+    character(len=:), allocatable :: text
+
+    text = self%text(first:last)
+  end function part
+
+  !> Number of the line in which position `at` of the text stands.
+  pure integer function line_at(self, at)
+    class(source_t), intent(in) :: self
+    integer, intent(in) :: at
+    integer :: i
+
+    line_at = 1
+    do i = 1, min(at - 1, len(self%text))
+      if (self%text(i:i) == newline) line_at = line_at + 1
+    end do
+  end function line_at
+
+  !> Adds `FILE:LINE: &group: key "key": what`, the line itself and a caret below position `at` to
+  !> `error`, which may hold earlier mistakes. `group` and `key` may be blank.
+  pure subroutine complain(self, at, group, key, what, error)
+    class(source_t), intent(in) :: self
+    integer, intent(in) :: at
+    character(len=*), intent(in) :: group, key, what
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: message
+    character(len=12) :: line
+
+    write (line, '(i0)') self%line_at(at)
+    message = self%file // ':' // trim(line) // ': '
+    if (len_trim(group) > 0) message = message // '&' // trim(group) // ': '
+    if (len_trim(key) > 0) message = message // 'key "' // trim(key) // '": '
+    message = message // what // excerpt(self%text, at, trim(line))
+    if (allocated(error)) then
+      error%message = error%message // newline // message
+    else
+      call fail(error, bad_input, message)
+    end if
+  end subroutine complain
+
+  !> The line around position `at`, numbered, with a caret in the line below it.
+  pure function excerpt(text, at, number) result(lines)
+    character(len=*), intent(in) :: text, number
+    integer, intent(in) :: at
+    character(len=:), allocatable :: lines
+    !> So much of a long line is shown, and so much of it before the caret.
+    integer, parameter :: width = 90, lead = 60
+    character(len=:), allocatable :: shown
+    integer :: first, last, caret, i
+
+    lines = ''
+    if (at < 1 .or. at > len(text) + 1 .or. len(text) == 0) return
+    first = index(text(:at - 1), newline, back=.true.) + 1
+    last = at + scan(text(at:) // newline, newline) - 2
+    if (at - first > lead) first = at - lead
+    last = min(last, first + width - 1)
+    shown = text(first:last)
+    do i = 1, len(shown)
+      if (iachar(shown(i:i)) == 9) shown(i:i) = ' '
+      if (iachar(shown(i:i)) < 32 .or. iachar(shown(i:i)) > 126) shown(i:i) = '?'
+    end do
+    caret = at - first
+    lines = newline // '    ' // number // ' | ' // trim(shown) // &
+            newline // '    ' // repeat(' ', len(number)) // ' | ' // repeat(' ', caret) // '^'
+  end function excerpt
+
+end module deck_source

@@ -1,0 +1,340 @@
+!> A deck in memory: what each key holds, where it stands in the file, and the deck written out.
+module deck_store
+  use kinds, only: wp
+  use failure, only: failure_t, fail, bad_input
+  use text, only: lower, quoted, brief, guess, listing, clip
+  use deck_source, only: source_t
+  use deck_keys, only: key_spec, group_row, real_value, real_list, integer_value, allowed
+  use deck_values, only: value_t, unset, assumed, given, outside, assignment_text
+  implicit none
+  private
+  public :: deck_t
+
+  !> Kinds of keys that a sweep may vary.
+  integer, parameter :: numeric(3) = [real_value, real_list, integer_value]
+
+  !> A deck that has been read. The components are `read_deck`'s to fill; use the procedures.
+  type :: deck_t
+    type(source_t) :: source
+    type(key_spec), allocatable :: specs(:)
+    type(value_t), allocatable :: values(:)
+  contains
+    procedure :: has_group
+    procedure :: is_set
+    procedure, private :: get_real, get_reals, get_integer, get_logical, get_text
+    !> `call deck%get(group, key, value)`: the value the deck gives, or the default. Without either
+    !> a scalar keeps what it had, a list is empty and a text ''. `value` is a real, an allocatable
+    !> list of reals, an integer, a logical or an allocatable text, as the table has it.
+    generic :: get => get_real, get_reals, get_integer, get_logical, get_text
+    procedure, private :: assume_real, assume_reals, assume_text
+    !> `call deck%assume(group, key, value)`: the default of a key, where it follows from other
+    !> keys; it is written by `resolved` and gives way to what the deck says.
+    generic :: assume => assume_real, assume_reals, assume_text
+    procedure, private :: get_optional_real, get_optional_integer
+    !> The same for a scalar that is allocated only where the key has a value.
+    generic :: get_optional => get_optional_real, get_optional_integer
+    procedure :: find_number
+    procedure :: set_real
+    procedure :: drop_group
+    procedure :: mistake
+    procedure :: resolved
+    procedure :: row_of
+    procedure, private :: held, silent
+    procedure, private :: place
+  end type deck_t
+
+contains
+
+  !> Whether the deck holds `&group`.
+  pure logical function has_group(self, group)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group
+    integer :: row
+
+    has_group = .false.
+    row = self%row_of(group, '')
+    if (row > 0) has_group = self%values(row)%status == given
+  end function has_group
+
+  !> Whether the deck itself, not a default, gives the key a value.
+  pure logical function is_set(self, group, key)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    integer :: row
+
+    is_set = .false.
+    row = self%row_of(group, key)
+    if (row > 0) is_set = self%values(row)%status == given
+  end function is_set
+
+  !> Position in the text of the key, or of the group where the deck does not give the key or
+  !> `key` is ''; 0 where it gives neither.
+  pure integer function place(self, group, key)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    integer :: row
+
+    place = 0
+    row = self%row_of(group, key)
+    if (row > 0) place = self%values(row)%at
+    if (place > 0) return
+    row = self%row_of(group, '')
+    if (row > 0) place = self%values(row)%at
+  end function place
+
+  !> Adds a mistake of `group` and `key` (both may be '') to `error`.
+  pure subroutine mistake(self, group, key, what, error)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key, what
+    type(failure_t), allocatable, intent(inout) :: error
+
+    call self%source%complain(self%place(group, key), group, key, what, error)
+  end subroutine mistake
+
+  pure subroutine get_real(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    real(wp), intent(inout) :: value
+    integer :: row
+
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%reals(1)
+  end subroutine get_real
+
+  pure subroutine get_reals(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    real(wp), allocatable, intent(inout) :: value(:)
+    integer :: row
+
+    value = [real(wp) ::]
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%reals
+  end subroutine get_reals
+
+  pure subroutine get_integer(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    integer, intent(inout) :: value
+    integer :: row
+
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%whole
+  end subroutine get_integer
+
+  pure subroutine get_logical(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    logical, intent(inout) :: value
+    integer :: row
+
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%flag
+  end subroutine get_logical
+
+  pure subroutine get_text(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    character(len=:), allocatable, intent(inout) :: value
+    integer :: row
+
+    value = ''
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%text
+  end subroutine get_text
+
+  pure subroutine get_optional_real(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    real(wp), allocatable, intent(inout) :: value
+    integer :: row
+
+    if (allocated(value)) deallocate (value)
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%reals(1)
+  end subroutine get_optional_real
+
+  pure subroutine get_optional_integer(self, group, key, value)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    integer, allocatable, intent(inout) :: value
+    integer :: row
+
+    if (allocated(value)) deallocate (value)
+    row = self%held(group, key)
+    if (row > 0) value = self%values(row)%whole
+  end subroutine get_optional_integer
+
+  pure subroutine assume_real(self, group, key, value)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, key
+    real(wp), intent(in) :: value
+
+    call self%assume(group, key, [value])
+  end subroutine assume_real
+
+  pure subroutine assume_reals(self, group, key, value)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, key
+    real(wp), intent(in) :: value(:)
+    integer :: row
+
+    row = self%silent(group, key)
+    if (row == 0) return
+    self%values(row)%reals = value
+    self%values(row)%status = assumed
+  end subroutine assume_reals
+
+  pure subroutine assume_text(self, group, key, value)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, key, value
+    integer :: row
+
+    row = self%silent(group, key)
+    if (row == 0) return
+    self%values(row)%text = value
+    self%values(row)%status = assumed
+  end subroutine assume_text
+
+  !> Row of the key `path` ("force.hamaker"). Fails where the table has no such key, the key does
+  !> not hold numbers or the deck lacks its group; `error` then says so without a place in the file,
+  !> which is the caller's to add.
+  subroutine find_number(self, path, row, error)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: row
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: name, group
+    integer :: dot
+
+    name = trim(lower(path))
+    dot = index(name // '.', '.')
+    group = name(:dot - 1)
+    row = 0
+    if (dot < len(name)) row = self%row_of(group, name(dot + 1:))
+    if (row > 0) then
+      if (all(self%specs(row)%kind /= numeric)) row = 0
+    end if
+    if (row == 0) then
+      call fail(error, bad_input, quoted(clip(path)) // ' is not a key that holds a number' // &
+                guess(name, numbers_of(self), '') // '; allowed: ' // &
+                listing(numbers_of(self), '', ''))
+    else if (.not. in_use(self, group)) then
+      call fail(error, bad_input, 'the deck has no &' // group // ' for ' // quoted(name))
+    end if
+  end subroutine find_number
+
+  !> Whether the deck has a group or its defaults always hold.
+  pure logical function in_use(self, group)
+    type(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group
+
+    in_use = self%has_group(group) .or. self%specs(self%row_of(group, ''))%always
+  end function in_use
+
+  !> Blank-separated 'group.key' of every key that holds numbers, of the groups in use.
+  pure function numbers_of(self) result(names)
+    type(deck_t), intent(in) :: self
+    character(len=:), allocatable :: names
+    integer :: i
+
+    names = ''
+    do i = 1, size(self%specs)
+      if (all(self%specs(i)%kind /= numeric)) cycle
+      if (.not. in_use(self, trim(self%specs(i)%group))) cycle
+      names = names // ' ' // trim(self%specs(i)%group) // '.' // trim(self%specs(i)%key)
+    end do
+  end function numbers_of
+
+  !> Gives the key `path` another value (a list: this one value), as if the deck said so. Fails as
+  !> `find_number` does and where the value is out of range.
+  subroutine set_real(self, path, value, error)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    real(wp), intent(in) :: value
+    type(failure_t), allocatable, intent(out) :: error
+    integer :: row
+    logical :: refused
+
+    call self%find_number(path, row, error)
+    if (allocated(error)) return
+    associate (spec => self%specs(row), stored => self%values(row))
+      refused = outside(spec, value)
+      ! Steps of a range make whole numbers only up to rounding.
+      if (spec%kind == integer_value .and. .not. refused) &
+        refused = abs(value - anint(value)) > 1e-9_wp*abs(value)
+      if (refused) then
+        call fail(error, bad_input, brief(value) // ' is out of range for ' // quoted(path) // &
+                  '; allowed: ' // allowed(spec))
+        return
+      end if
+      if (spec%kind == integer_value) stored%whole = nint(value)
+      if (spec%kind /= integer_value) stored%reals = [value]
+      stored%status = given
+    end associate
+  end subroutine set_real
+
+  !> Forgets `&group` and everything in it.
+  subroutine drop_group(self, group)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: group
+    integer :: i
+
+    do i = 1, size(self%specs)
+      if (self%specs(i)%group == group) self%values(i) = value_t()
+    end do
+  end subroutine drop_group
+
+  !> The deck as read, defaults included, so that it can be read again. Groups appear that the deck
+  !> names or whose defaults always hold.
+  pure function resolved(self) result(text)
+    class(deck_t), intent(in) :: self
+    character(len=:), allocatable :: text
+    integer :: i, j
+
+    text = ''
+    do i = 1, size(self%specs)
+      if (self%specs(i)%kind /= group_row) cycle
+      if (.not. (self%specs(i)%always .or. self%values(i)%status == given)) cycle
+      text = text // '&' // trim(self%specs(i)%group) // new_line('a')
+      do j = i + 1, size(self%specs)
+        if (self%specs(j)%group /= self%specs(i)%group) exit
+        if (self%values(j)%status /= unset) &
+          text = text // assignment_text(self%specs(j), self%values(j))
+      end do
+      text = text // '/' // new_line('a')
+    end do
+  end function resolved
+
+  !> Row of a key that has a value, or 0.
+  pure integer function held(self, group, key) result(row)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+
+    row = self%row_of(group, key)
+    if (row == 0) return
+    if (self%values(row)%status == unset) row = 0
+  end function held
+
+  !> Row of a key to which the deck itself gives no value, or 0.
+  pure integer function silent(self, group, key) result(row)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+
+    row = self%row_of(group, key)
+    if (row == 0) return
+    if (self%values(row)%status == given) row = 0
+  end function silent
+
+  !> Row of `group` and `key` in the table, of the group itself for an empty `key`; 0 without one.
+  pure integer function row_of(self, group, key)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+
+    do row_of = 1, size(self%specs)
+      if (self%specs(row_of)%group == group .and. self%specs(row_of)%key == key) return
+    end do
+    row_of = 0
+  end function row_of
+
+end module deck_store

@@ -1,0 +1,158 @@
+!> One key's value: made from the tokens of an assignment, checked against the key's row of the
+!> table, and written again.
+module deck_values
+  use kinds, only: wp
+  use text, only: lower, quoted, unquoted, full, guess, clip
+  use deck_number, only: parse_real, parse_integer, parse_logical
+  use deck_source, only: source_t
+  use deck_scan, only: span_t
+  use deck_keys, only: key_spec, real_value, real_list, integer_value, logical_value, word_value, &
+                       text_value
+  implicit none
+  private
+  public :: value_t, unset, assumed, given, interpret, convert, outside, assignment_text
+
+  !> Where a value comes from: nowhere, the table or the program, the deck.
+  integer, parameter :: unset = 0, assumed = 1, given = 2
+  !> What one key holds; only the component of the key's kind is used. For the row of a group, `at`
+  !> is where the deck opens it.
+  type :: value_t
+    integer :: status = unset
+    integer :: at = 0
+    real(wp), allocatable :: reals(:)
+    integer :: whole = 0
+    logical :: flag = .false.
+    character(len=:), allocatable :: text
+  end type value_t
+
+contains
+
+  !> Turns the items of an assignment into a value of the kind that `spec` asks for; `what` says
+  !> what is wrong, if anything, and `at` where.
+  subroutine interpret(source, spec, items, value, at, what)
+    type(source_t), intent(in) :: source
+    type(key_spec), intent(in) :: spec
+    type(span_t), intent(in) :: items(:)
+    type(value_t), intent(inout) :: value
+    integer, intent(inout) :: at
+    character(len=:), allocatable, intent(out) :: what
+    character(len=:), allocatable :: token
+    character(len=12) :: count
+    logical :: literal
+    integer :: i
+
+    if (spec%kind == real_list) then
+      allocate (value%reals(0))
+    else if (size(items) > 1) then
+      at = items(2)%first
+      write (count, '(i0)') size(items)
+      what = trim(count) // ' values where one is expected'
+      return
+    end if
+    do i = 1, size(items)
+      at = items(i)%first
+      token = source%part(items(i)%first, items(i)%last)
+      literal = token(1:1) == '''' .or. token(1:1) == '"'
+      if (literal .and. spec%kind /= word_value .and. spec%kind /= text_value) then
+        what = clip(token) // ' is text in quotes'
+      else if (.not. literal .and. (spec%kind == word_value .or. spec%kind == text_value)) then
+        what = clip(token) // ' is not in quotes'
+      else
+        if (literal) token = unquoted(token)
+        call convert(spec, token, value, what)
+      end if
+      if (allocated(what)) return
+    end do
+  end subroutine interpret
+
+  !> Converts one token, without quotes, and checks it against the bounds of `spec`; list elements
+  !> are appended.
+  subroutine convert(spec, token, value, what)
+    type(key_spec), intent(in) :: spec
+    character(len=*), intent(in) :: token
+    type(value_t), intent(inout) :: value
+    character(len=:), allocatable, intent(out) :: what
+    character(len=:), allocatable :: hint
+    real(wp) :: x
+    integer :: star, times, i
+
+    select case (spec%kind)
+    case (real_value, real_list)
+      ! A repeat count, as other writers of namelists make them: 3*1.0.
+      star = index(token, '*')
+      times = 1
+      if (star > 0) call parse_integer(token(:star - 1), times, what)
+      if (allocated(what) .or. times < 1 .or. star == len(token)) then
+        what = clip(token) // ' is not a number'
+        return
+      end if
+      call parse_real(token(star + 1:), x, what)
+      if (allocated(what)) return
+      if (outside(spec, x)) then
+        what = clip(token) // ' is out of range'
+      else if (spec%kind == real_value) then
+        if (star > 0) what = clip(token) // ' is a list of repeated values where one is expected'
+        value%reals = [x]
+      else if (times > spec%most - size(value%reals)) then
+        what = 'too many values'
+      else
+        value%reals = [value%reals, [(x, i=1, times)]]
+      end if
+    case (integer_value)
+      call parse_integer(token, value%whole, what)
+      if (allocated(what)) return
+      if (outside(spec, real(value%whole, wp))) what = clip(token) // ' is out of range'
+    case (logical_value)
+      call parse_logical(token, value%flag, what)
+    case (word_value)
+      value%text = trim(lower(token))
+      if (len(value%text) > 0 .and. index(' ' // trim(spec%choices) // ' ', &
+                                          ' ' // value%text // ' ') > 0 .and. &
+          index(value%text, ' ') == 0) return
+      hint = guess(value%text, spec%choices, '')
+      what = quoted(clip(token)) // ' is not known' // hint
+    case (text_value)
+      value%text = trim(token)
+      if (len(value%text) > spec%most) what = 'the text is too long'
+    end select
+  end subroutine convert
+
+  !> Whether `x` breaks the bounds of `spec`; true for NaN.
+  pure logical function outside(spec, x)
+    type(key_spec), intent(in) :: spec
+    real(wp), intent(in) :: x
+
+    outside = .not. (x >= spec%low .and. x <= spec%high)
+    if (spec%low_open .and. x <= spec%low) outside = .true.
+    if (spec%high_open .and. x >= spec%high) outside = .true.
+  end function outside
+
+  !> One assignment, as a deck has it; long lists go on in further lines.
+  pure function assignment_text(spec, value) result(text)
+    type(key_spec), intent(in) :: spec
+    type(value_t), intent(in) :: value
+    character(len=:), allocatable :: text
+    character(len=12) :: number
+    integer :: i
+
+    text = '  ' // trim(spec%key) // ' = '
+    select case (spec%kind)
+    case (real_value, real_list)
+      do i = 1, size(value%reals)
+        if (i > 1) text = text // ','
+        if (mod(i, 4) == 1 .and. i > 1) text = text // new_line('a') // '   '
+        if (i > 1) text = text // ' '
+        text = text // full(value%reals(i))
+      end do
+    case (integer_value)
+      write (number, '(i0)') value%whole
+      text = text // trim(number)
+    case (logical_value)
+      text = text // trim(merge('.true. ', '.false.', value%flag))
+    case default
+      text = text // quoted(value%text)
+    end select
+    text = text // new_line('a')
+  end function assignment_text
+
+end module deck_values

@@ -1,0 +1,169 @@
+!> Assignments as they stand in a namelist group, made from values that may not exist.
+module namelist_writer
+  use kinds, only: wp, long
+  use text, only: full, quoted
+  use text_file, only: plain
+  implicit none
+  private
+  public :: line_t, assignment_of
+
+  !> One line of text.
+  type :: line_t
+    character(len=:), allocatable :: text
+  end type line_t
+
+  !> assignment_of(key, value): the lines `  key = value`, each with its end, for a value that is
+  !> allocated, and nothing otherwise. Reals read back as the same numbers.
+  interface assignment_of
+    module procedure :: of_real, of_reals, of_integer, of_long, of_integers, of_logical, of_text, &
+      of_lines
+  end interface assignment_of
+
+contains
+
+  pure function of_real(key, value) result(text)
+    character(len=*), intent(in) :: key
+    real(wp), allocatable, intent(in) :: value
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (allocated(value)) text = single(key, full(value))
+  end function of_real
+
+  pure function of_reals(key, values) result(text)
+    character(len=*), intent(in) :: key
+    real(wp), allocatable, intent(in) :: values(:)
+    character(len=:), allocatable :: text
+    type(line_t), allocatable :: items(:)
+    integer :: i
+
+    text = ''
+    if (.not. allocated(values)) return
+    allocate (items(size(values)))
+    do i = 1, size(values)
+      items(i)%text = full(values(i))
+    end do
+    text = written(key, items)
+  end function of_reals
+
+  pure function of_integer(key, value) result(text)
+    character(len=*), intent(in) :: key
+    integer, allocatable, intent(in) :: value
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (allocated(value)) text = of_long(key, int(value, long))
+  end function of_integer
+
+  pure function of_long(key, value) result(text)
+    character(len=*), intent(in) :: key
+    integer(long), intent(in) :: value
+    character(len=:), allocatable :: text
+    character(len=24) :: buffer
+
+    write (buffer, '(i0)') value
+    text = single(key, trim(buffer))
+  end function of_long
+
+  pure function of_integers(key, values) result(text)
+    character(len=*), intent(in) :: key
+    integer, allocatable, intent(in) :: values(:)
+    character(len=:), allocatable :: text
+    character(len=12) :: buffer
+    type(line_t), allocatable :: items(:)
+    integer :: i
+
+    text = ''
+    if (.not. allocated(values)) return
+    allocate (items(size(values)))
+    do i = 1, size(values)
+      write (buffer, '(i0)') values(i)
+      items(i)%text = trim(buffer)
+    end do
+    text = written(key, items)
+  end function of_integers
+
+  pure function of_logical(key, value) result(text)
+    character(len=*), intent(in) :: key
+    logical, allocatable, intent(in) :: value
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (allocated(value)) text = single(key, trim(merge('.true. ', '.false.', value)))
+  end function of_logical
+
+  pure function of_text(key, value) result(text)
+    character(len=*), intent(in) :: key
+    character(len=:), allocatable, intent(in) :: value
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (allocated(value)) text = single(key, literal(value))
+  end function of_text
+
+  pure function of_lines(key, values) result(text)
+    character(len=*), intent(in) :: key
+    type(line_t), allocatable, intent(in) :: values(:)
+    character(len=:), allocatable :: text
+    type(line_t), allocatable :: items(:)
+    integer :: i
+
+    text = ''
+    if (.not. allocated(values)) return
+    allocate (items(size(values)))
+    do i = 1, size(values)
+      items(i)%text = literal(values(i)%text)
+    end do
+    text = written(key, items)
+  end function of_lines
+
+  !> `text` as a string that all readers take. gfortran looks for the beginning of a group even
+  !> inside the strings of other groups, so that none may look like one.
+  pure function literal(text)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: literal
+    character(len=:), allocatable :: clean
+    integer :: i
+
+    clean = plain(text)
+    do i = len(clean) - 1, 1, -1
+      if (scan(clean(i:i), '&$') == 1 .and. clean(i + 1:i + 1) /= ' ') &
+        clean = clean(:i) // ' ' // clean(i + 1:)
+    end do
+    literal = quoted(trim(clean))
+  end function literal
+
+  !> The assignment of one item to the key.
+  pure function single(key, item) result(text)
+    character(len=*), intent(in) :: key, item
+    character(len=:), allocatable :: text
+
+    text = '  ' // key // ' = ' // item // new_line('a')
+  end function single
+
+  !> The assignment of the items to the key, in lines of moderate length; nothing without items.
+  pure function written(key, items) result(text)
+    character(len=*), intent(in) :: key
+    type(line_t), intent(in) :: items(:)
+    character(len=:), allocatable :: text
+    !> Where lines end, except those of a single longer item.
+    integer, parameter :: last_column = 80
+    integer :: i, column
+
+    text = ''
+    if (size(items) == 0) return
+    text = '  ' // key // ' ='
+    column = len(text)
+    do i = 1, size(items)
+      if (i > 1) text = text // ','
+      if (i > 1 .and. column + len(items(i)%text) > last_column) then
+        text = text // new_line('a') // '   '
+        column = 3
+      end if
+      text = text // ' ' // items(i)%text
+      column = column + len(items(i)%text) + 2
+    end do
+    text = text // new_line('a')
+  end function written
+
+end module namelist_writer

@@ -1,0 +1,266 @@
+!> Follows the equilibrium path from afar into contact, stable and unstable, in coordinates in which
+!> it has no folds: the gap on the axis before contact, the contact radius in contact
+!> (`edge_locked`). Each step is
+!> extrapolated from the last states and corrected by the accelerated iteration.
+module continuation
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use interpolation, only: polynomial_weights
+  use discretisation, only: discretisation_t
+  use equilibrium, only: control_t, state_t, cost_t, at_axis_gap, at_edge_radius, &
+    radius_of_gap
+  use solver_options, only: solver_options_t
+  use anderson, only: frozen_jacobian_t, solve_anderson
+  use edge_locked, only: mesh_pair_t, approach, contact
+  use regridding, only: regrid
+  implicit none
+  private
+  public :: continuation_t, new_continuation, path_control, coordinate_of, move_to_mesh, &
+    state_at, between, &
+    node_count
+
+  !> States kept for the extrapolation, and limits of a step (relative change of the coordinate).
+  integer, parameter :: memory = 4
+  real(wp), parameter :: smallest_step = 1.0e-6_wp
+
+  type :: continuation_t
+    !> The mesh in use, `approach` or `contact`.
+    integer :: mesh = approach
+    real(wp) :: step = 0.05_wp, largest_step = 0.15_wp
+    type(frozen_jacobian_t) :: frozen
+    !> The last states on this mesh and their coordinates, newest last.
+    integer :: held = 0
+    real(wp) :: coordinate(memory) = 0
+    type(state_t) :: past(memory)
+  contains
+    procedure :: advance
+    procedure, private :: remember
+    procedure :: change_mesh
+  end type continuation_t
+
+contains
+
+  !> A tracer that starts from an equilibrium on one of the meshes.
+  function new_continuation(problem, state, mesh, largest_step) result(tracer)
+    type(problem_t), intent(in) :: problem
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: largest_step
+    type(continuation_t) :: tracer
+
+    tracer%mesh = mesh
+    tracer%largest_step = largest_step
+    tracer%step = 0.3_wp*largest_step
+    call tracer%remember(problem, state)
+  end function new_continuation
+
+  !> Whether the coordinate grows along the way towards contact: the gap on the axis shrinks, the
+  !> contact radius grows.
+  pure integer function sense_of(self)
+    class(continuation_t), intent(in) :: self
+
+    sense_of = merge(-1, 1, self%mesh == approach)
+  end function sense_of
+
+  !> The next state of the path, on the same mesh. lost: no step, however small, converged.
+  subroutine advance(self, problem, pair, options, lost, cost)
+    class(continuation_t), intent(inout) :: self
+    type(problem_t), intent(in) :: problem
+    type(mesh_pair_t), intent(in) :: pair
+    type(solver_options_t), intent(in) :: options
+    logical, intent(out) :: lost
+    type(cost_t), intent(inout) :: cost
+    type(state_t) :: trial
+    real(wp) :: s
+    logical :: converged
+
+    lost = .false.
+    do
+      s = self%coordinate(self%held) + sense_of(self)*self%step
+      call state_at(problem, pair, self%mesh, s, self%coordinate(:self%held), &
+        self%past(:self%held), &
+        options, self%frozen, trial, converged, cost)
+      if (converged) exit
+      cost%rejected_steps = cost%rejected_steps + 1
+      self%frozen%factors%valid = .false.
+      self%step = 0.3_wp*self%step
+      lost = self%step < smallest_step
+      if (lost) return
+    end do
+    if (trial%iterations <= 6) self%step = min(1.4_wp*self%step, self%largest_step)
+    if (trial%iterations > 12) self%step = 0.7_wp*self%step
+    call self%remember(problem, trial)
+  end subroutine advance
+
+  !> The control that prescribes the path's coordinate s on a mesh: the logarithm of the gap on the
+  !> axis above nine tenths of the gap at rest, or of the contact radius.
+  pure function path_control(problem, mesh, s) result(control)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    type(control_t) :: control
+
+    if (mesh == approach) then
+      control%kind = at_axis_gap
+      control%value = exp(s) + 0.9_wp*problem%law%rest_gap
+    else
+      control%kind = at_edge_radius
+      control%value = exp(s)
+    end if
+  end function path_control
+
+  !> Inverse of `path_control` for a state.
+  pure real(wp) function coordinate_of(problem, mesh, state) result(s)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+
+    if (mesh == approach) then
+      ! Nearer than nine tenths no state is on this mesh, but one may be asked about.
+      s = log(max(state%axis_gap - 0.9_wp*problem%law%rest_gap, tiny(1.0_wp)))
+    else
+      s = log(state%scale)
+    end if
+  end function coordinate_of
+
+  !> Solves a state of one mesh again on the other, at the same contact radius or axis gap.
+  !> done = .false. where it has no contact edge to lock to, or did not converge.
+  subroutine move_to_mesh(problem, pair, from, to, options, frozen, state, done, cost)
+    type(problem_t), intent(in) :: problem
+    type(mesh_pair_t), intent(in) :: pair
+    integer, intent(in) :: from, to
+    type(solver_options_t), intent(in) :: options
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: done
+    type(cost_t), intent(inout) :: cost
+    real(wp) :: c
+
+    c = 1
+    if (to == contact) c = radius_of_gap(problem%law%edge_gap, pair%grid(from), state)
+    done = c > 0
+    if (.not. done) return
+    state = regrid(state, pair%grid(from), pair%grid(to), c, node_count(pair, to, c))
+    call solve_anderson(problem, pair%grid(to), &
+      path_control(problem, to, coordinate_of(problem, to, state)), options, frozen, state, &
+      done, cost)
+  end subroutine move_to_mesh
+
+  !> Nodes of a mesh that are in use at the scale c.
+  pure integer function node_count(pair, mesh, c)
+    type(mesh_pair_t), intent(in) :: pair
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: c
+
+    node_count = pair%grid(mesh)%nodes
+    if (mesh == contact) node_count = pair%grid(mesh)%nodes_within(pair%reach/c)
+  end function node_count
+
+  !> State at the coordinate s: interpolated or extrapolated from states of the same mesh and
+  !> corrected.
+  subroutine state_at(problem, pair, mesh, s, coordinate, states, options, frozen, state, &
+    converged, &
+    cost)
+    type(problem_t), intent(in) :: problem
+    type(mesh_pair_t), intent(in) :: pair
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s, coordinate(:)
+    type(state_t), intent(in) :: states(:)
+    type(solver_options_t), intent(in) :: options
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(state_t), intent(out) :: state
+    logical, intent(out) :: converged
+    type(cost_t), intent(inout) :: cost
+    type(control_t) :: control
+
+    control = path_control(problem, mesh, s)
+    state = between(pair%grid(mesh), coordinate, states, s, &
+      node_count(pair, mesh, merge(control%value, 1.0_wp, mesh == contact)))
+    call solve_anderson(problem, pair%grid(mesh), control, options, frozen, state, converged, cost)
+  end subroutine state_at
+
+  !> The polynomial through states at the given coordinates, evaluated at s, on `nodes` nodes.
+  pure function between(grid, coordinate, states, s, nodes) result(guess)
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: coordinate(:), s
+    type(state_t), intent(in) :: states(:)
+    integer, intent(in) :: nodes
+    type(state_t) :: guess, term
+    real(wp) :: weight(size(states)), h0, scale
+    real(wp) :: gap(nodes)
+    integer :: j, nearest
+
+    gap = 0
+    h0 = 0
+    scale = 0
+    weight = polynomial_weights(coordinate, s)
+    do j = 1, size(states)
+      term = states(j)
+      if (size(term%gap) /= nodes) term = regrid(states(j), grid, grid, states(j)%scale, nodes)
+      gap = gap + weight(j)*term%gap
+      h0 = h0 + weight(j)*term%h0
+      scale = scale + weight(j)*term%scale
+    end do
+    ! An extrapolation that leaves the law's domain is worth less than the nearest state.
+    nearest = minloc(abs(coordinate - s), 1)
+    term = states(nearest)
+    if (size(term%gap) /= nodes) term = regrid(term, grid, grid, term%scale, nodes)
+    guess = term
+    guess%pressure = 0*gap
+    if (minval(gap) < 0.5_wp*minval(term%gap) .and. minval(term%gap) > 0) return
+    guess%gap = gap
+    guess%h0 = h0
+    if (scale > 0.5_wp*term%scale) guess%scale = scale
+  end function between
+
+  !> Makes a state the newest.
+  subroutine remember(self, problem, state)
+    class(continuation_t), intent(inout) :: self
+    type(problem_t), intent(in) :: problem
+    type(state_t), intent(in) :: state
+
+    if (self%held == memory) then
+      self%past(:memory - 1) = self%past(2:)
+      self%coordinate(:memory - 1) = self%coordinate(2:)
+    else
+      self%held = self%held + 1
+    end if
+    self%past(self%held) = state
+    self%coordinate(self%held) = coordinate_of(problem, self%mesh, state)
+  end subroutine remember
+
+  !> Passes to the mesh for contact once the contact radius has crossed the passage (to be called
+  !> after each `advance`), taking the last two states along, so that three neighbours on one mesh
+  !> surround every fold.
+  subroutine change_mesh(self, problem, pair, options, lost, cost)
+    class(continuation_t), intent(inout) :: self
+    type(problem_t), intent(in) :: problem
+    type(mesh_pair_t), intent(in) :: pair
+    type(solver_options_t), intent(in) :: options
+    logical, intent(out) :: lost
+    type(cost_t), intent(inout) :: cost
+    type(state_t) :: taken(2)
+    integer :: j
+    logical :: done(2)
+
+    lost = .false.
+    if (.not. problem%law%edge_gap > 0 .or. self%mesh == contact) return
+    if (radius_of_gap(problem%law%edge_gap, pair%grid(approach), self%past(self%held)) &
+      < pair%passage) return
+    self%frozen%factors%valid = .false.
+    done(1) = .false.
+    do j = max(1, self%held - 1), self%held
+      taken(2 - self%held + j) = self%past(j)
+      call move_to_mesh(problem, pair, approach, contact, options, self%frozen, &
+        taken(2 - self%held + j), done(2 - self%held + j), cost)
+    end do
+    lost = .not. done(2)
+    self%mesh = contact
+    self%held = 0
+    do j = 1, 2
+      if (done(j)) call self%remember(problem, taken(j))
+    end do
+    self%step = 0.5_wp*self%step
+  end subroutine change_mesh
+
+end module continuation

@@ -1,0 +1,237 @@
+!> The equilibrium path as an experiment needs it: traced as far as the experiment goes, with its
+!> stable pieces, on which a quasi-static experiment at controlled h0 moves, and where the bodies
+!> land when it leaves one over a fold.
+module known_path
+  use kinds, only: wp
+  use listener, only: listener_t
+  use dimensionless_problem, only: problem_t
+  use equilibrium, only: state_t, cost_t, lost_in_rounding, beyond_rounding
+  use solver_options, only: solver_options_t
+  use anderson, only: frozen_jacobian_t
+  use edge_locked, only: mesh_pair_t, approach, contact, largest_radius
+  use continuation, only: continuation_t, new_continuation
+  use traced_path, only: traced_path_t, extend, collapsed
+  use reported, only: error_t, measure_t
+  use solve_at_h0, only: neighbours_t, neighbours_of, solve_between
+  implicit none
+  private
+  public :: known_path_t, landing_t, trace, interval_at, lowest_point, landing_over
+
+  !> A piece from point `first` to point `last` of the path, h0 falling from `high` to `low`. Its
+  !> ends are folds, or the ends of the path.
+  type :: stable_piece_t
+    integer :: first = 0, last = 0
+    real(wp) :: high = 0, low = 0
+    logical :: begins_in_fold = .false., ends_in_fold = .false.
+  end type stable_piece_t
+
+  !> Where a jump leads: the fold that it starts from (a point of the path; 0: there is none), the
+  !> piece that it ends on (0: there is none) and the state there, at the h0 of the fold.
+  type :: landing_t
+    integer :: fold = 0, piece = 0
+    integer :: mesh = 1
+    real(wp) :: coordinate = 0
+    type(state_t) :: state
+    logical :: converged = .false.
+    !> As for a point of the path.
+    type(measure_t), allocatable :: fine
+    type(error_t), allocatable :: error
+  end type landing_t
+
+  type :: known_path_t
+    type(traced_path_t) :: path
+    !> From afar inward; and the landings from each over the fold at its inner and outer end.
+    type(stable_piece_t), allocatable :: piece(:)
+    type(landing_t), allocatable :: inward(:), outward(:)
+    !> Why the path ends before it should; empty where it does not. Whether it ends in the fall of
+    !> bodies that nothing keeps apart.
+    character(len=160) :: ends_because = ''
+    logical :: fallen = .false.
+  end type known_path_t
+
+  !> Relative change of the path's coordinate in a step; small enough for a smooth curve. Most
+  !> points of a path before it is given up as going nowhere.
+  real(wp), parameter :: path_step = 0.12_wp
+  integer, parameter :: longest = 5000
+  !> Residual, in the law's lengths, that the points of the path have at most, whatever the deck
+  !> allows the experiment's states.
+  real(wp), parameter :: path_tolerance = 1.0e-8_wp
+
+contains
+
+  !> Traces the path from a state far from contact, on the mesh for the approach, until it is stable
+  !> at h0_low; into_contact: until it is also on the mesh for contact.
+  subroutine trace(problem, pair, options, start, h0_low, into_contact, listener, known, cost)
+    type(problem_t), intent(in) :: problem
+    type(mesh_pair_t), intent(in) :: pair
+    type(solver_options_t), intent(in) :: options
+    type(state_t), intent(in) :: start
+    real(wp), intent(in) :: h0_low
+    logical, intent(in) :: into_contact
+    class(listener_t), intent(inout) :: listener
+    type(known_path_t), intent(inout) :: known
+    type(cost_t), intent(inout) :: cost
+    type(continuation_t) :: walker
+    type(solver_options_t) :: for_path
+    character(len=40) :: so_far
+    logical :: lost, blind, finished
+    integer :: k
+
+    ! Where rounding hides the contact the path is of use up to its first fold.
+    blind = lost_in_rounding(problem, largest_radius(problem, h0_low, pair%level))
+    for_path = options
+    for_path%tolerance = min(options%tolerance, path_tolerance)
+    walker = new_continuation(problem, start, approach, path_step)
+    finished = .false.
+    do while (known%ends_because == '' .and. .not. finished)
+      call extend(known%path, walker, problem, pair, for_path, lost, cost)
+      write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
+      call listener%hear(trim(so_far))
+      known%fallen = collapsed(problem, known%path)
+      if (lost .or. known%path%held >= longest) then
+        known%ends_because = 'the equilibrium path was lost: no step, however small, converged'
+      else if (known%fallen) then
+        known%ends_because = 'no stable equilibrium exists beyond this h0'
+      else if (blind .and. any(known%path%point(:known%path%held)%fold)) then
+        known%ends_because = beyond_rounding
+      end if
+      ! What lies before the last point but one is final.
+      associate (n => known%path%held)
+        associate (last => known%path%point(n), before => known%path%point(n - 1))
+          finished = last%modes == 0 .and. max(last%state%h0, before%state%h0) <= h0_low .and. &
+            (last%mesh == contact .or. .not. into_contact)
+        end associate
+      end associate
+    end do
+    known%piece = pieces_of(known%path)
+    allocate (known%inward(size(known%piece)), known%outward(size(known%piece)))
+    do k = 1, size(known%piece)
+      call land(problem, pair, known, k, .true., options, known%inward(k), cost)
+      call land(problem, pair, known, k, .false., options, known%outward(k), cost)
+    end do
+  end subroutine trace
+
+  !> The stable pieces of a path, from afar inward.
+  pure function pieces_of(path) result(pieces)
+    type(traced_path_t), intent(in) :: path
+    type(stable_piece_t), allocatable :: pieces(:)
+    type(stable_piece_t) :: piece
+    integer :: i
+
+    allocate (pieces(0))
+    i = 1
+    do while (i < path%held)
+      if (path%point(i)%modes > 0) then
+        i = i + 1
+        cycle
+      end if
+      piece%first = i
+      do while (i < path%held)
+        if (path%point(i)%modes > 0) exit
+        i = i + 1
+      end do
+      piece%last = i
+      piece%high = path%point(piece%first)%state%h0
+      piece%low = path%point(piece%last)%state%h0
+      piece%begins_in_fold = path%point(piece%first)%fold
+      piece%ends_in_fold = path%point(piece%last)%fold
+      pieces = [pieces, piece]
+    end do
+  end function pieces_of
+
+  !> The piece nearest to `from` that a jump at h0 leads to: inward, the later ones, or outward; 0
+  !> if there is none.
+  pure integer function piece_containing(pieces, from, inward, h0) result(found)
+    type(stable_piece_t), intent(in) :: pieces(:)
+    integer, intent(in) :: from
+    logical, intent(in) :: inward
+    real(wp), intent(in) :: h0
+    integer :: k, sense
+
+    sense = merge(1, -1, inward)
+    found = 0
+    k = from + sense
+    do while (k >= 1 .and. k <= size(pieces))
+      if (h0 >= pieces(k)%low .and. h0 <= pieces(k)%high) then
+        found = k
+        return
+      end if
+      k = k + sense
+    end do
+  end function piece_containing
+
+  !> The point of a piece after which h0 lies. (Where the path changes its mesh, h0 differs by the
+  !> meshes' errors, and a value may lie between.)
+  pure integer function interval_at(known, piece, h0) result(i)
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: h0
+
+    do i = known%piece(piece)%first, known%piece(piece)%last - 2
+      if (known%path%point(i + 1)%state%h0 <= h0) return
+    end do
+  end function interval_at
+
+  !> Where the bodies land that leave a piece over the fold at its inner or outer end.
+  subroutine land(problem, pair, known, from, inward, options, landing, cost)
+    type(problem_t), intent(in) :: problem
+    type(mesh_pair_t), intent(in) :: pair
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: from
+    logical, intent(in) :: inward
+    type(solver_options_t), intent(in) :: options
+    type(landing_t), intent(out) :: landing
+    type(cost_t), intent(inout) :: cost
+    type(neighbours_t) :: near
+    type(frozen_jacobian_t) :: frozen
+    real(wp) :: h0
+
+    associate (left => known%piece(from))
+      if (.not. merge(left%ends_in_fold, left%begins_in_fold, inward)) return
+      landing%fold = merge(left%last, left%first, inward)
+    end associate
+    h0 = known%path%point(landing%fold)%state%h0
+    landing%piece = piece_containing(known%piece, from, inward, h0)
+    if (landing%piece == 0) return
+    near = neighbours_of(known%path, interval_at(known, landing%piece, h0))
+    landing%mesh = near%mesh
+    call solve_between(problem, pair, near, h0, options, frozen, landing%coordinate, &
+      landing%state, &
+      landing%converged, cost)
+  end subroutine land
+
+  !> The landing over a fold: inward(k) or outward(k), with inside telling which; k = 0 where the
+  !> fold is no end of a stable piece.
+  pure subroutine landing_over(known, fold, k, inside)
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: fold
+    integer, intent(out) :: k
+    logical, intent(out) :: inside
+
+    k = findloc(known%inward%fold, fold, 1)
+    inside = k > 0
+    if (.not. inside) k = findloc(known%outward%fold, fold, 1)
+  end subroutine landing_over
+
+  !> The point of largest tension among the extrema of the load and the folds of a piece, h0 being
+  !> between two values; 0 if there is none.
+  pure integer function lowest_point(known, piece, from, to) result(lowest)
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: from, to
+    integer :: i
+
+    lowest = 0
+    do i = known%piece(piece)%first, known%piece(piece)%last
+      associate (point => known%path%point(i))
+        if (.not. (point%load_extremum .or. point%fold)) cycle
+        if ((point%state%h0 - from)*(point%state%h0 - to) > 0) cycle
+        if (lowest > 0) then
+          if (point%state%load >= known%path%point(lowest)%state%load) cycle
+        end if
+        lowest = i
+      end associate
+    end do
+  end function lowest_point
+
+end module known_path

@@ -1,0 +1,103 @@
+!> Extrema of h0 or of the load along the equilibrium path, to the solver's tolerance.
+module path_extremum
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use equilibrium, only: state_t, cost_t
+  use solver_options, only: solver_options_t
+  use anderson, only: frozen_jacobian_t
+  use edge_locked, only: mesh_pair_t
+  use path_slopes, only: slopes_along_path
+  use interpolation, only: interpolated_maximum
+  use continuation, only: state_at, path_control
+  implicit none
+  private
+  public :: extremum_t, polish_extremum, of_h0, of_load
+
+  !> The quantities that have extrema.
+  integer, parameter :: of_h0 = 1, of_load = 2
+  !> Secants for an extremum, and the change of the path's coordinate below which it is found.
+  integer, parameter :: most_rounds = 12
+  real(wp), parameter :: root_tolerance = 1.0e-10_wp
+
+  !> An extremum on one of the meshes: its place on the path and its state; 1 for a maximum, -1 for
+  !> a minimum; the derivative of the load by the path's coordinate there, up to a positive factor.
+  type :: extremum_t
+    real(wp) :: coordinate = 0
+    type(state_t) :: state
+    integer :: sense = 1
+    real(wp) :: load_slope = 0
+  end type extremum_t
+
+contains
+
+  !> The extremum of h0 or load that the last three of some states of the path surround: a root of
+  !> its exact derivative along the path, begun at the extremum of the polynomial through the states
+  !> and found by secants. lost: a solve failed.
+  subroutine polish_extremum(problem, pair, mesh, quantity, coordinate, states, options, found, &
+    lost, &
+    cost)
+    type(problem_t), intent(in) :: problem
+    type(mesh_pair_t), intent(in) :: pair
+    integer, intent(in) :: mesh, quantity
+    real(wp), intent(in) :: coordinate(:)
+    type(state_t), intent(in) :: states(:)
+    type(solver_options_t), intent(in) :: options
+    type(extremum_t), intent(out) :: found
+    logical, intent(out) :: lost
+    type(cost_t), intent(inout) :: cost
+    type(state_t) :: trial
+    type(frozen_jacobian_t) :: frozen
+    real(wp) :: slopes(2), slope, slope_size, slope_before, s, s_before, s_next, low, high
+    integer :: round, n
+    logical :: converged
+
+    n = size(states)
+    associate (value => merge(states%h0, states%load, quantity == of_h0))
+      found%sense = merge(1, -1, value(n - 1) > value(n))
+      low = minval(coordinate(n - 2:))
+      high = maxval(coordinate(n - 2:))
+      s = interpolated_maximum(coordinate, found%sense*value, low, high)
+    end associate
+    slope_size = huge(1.0_wp)
+    do round = 1, most_rounds
+      call state_at(problem, pair, mesh, s, coordinate, states, options, frozen, trial, converged, &
+        cost)
+      lost = .not. converged
+      if (lost) return
+      call slopes_along_path(problem, pair%grid(mesh), path_control(problem, mesh, s), trial, &
+        frozen, &
+        slopes(1), slopes(2), converged, cost)
+      lost = .not. converged
+      if (lost) return
+      slope = slopes(quantity)
+      if (abs(slope) < slope_size) then
+        slope_size = abs(slope)
+        found%state = trial
+        found%coordinate = s
+        found%load_slope = slopes(2)
+      else if (round > 2) then
+        ! Rounding rules once the derivative no longer falls; the first two only set the secant up.
+        exit
+      end if
+      ! A maximum has its rising side before it.
+      if ((slope > 0) .eqv. (found%sense > 0)) then
+        low = s
+      else
+        high = s
+      end if
+      if (round == 1) then
+        s_next = s + sign(1.0e-4_wp*(high - low) + 1.0e-7_wp, found%sense*slope)
+      else if (abs(slope - slope_before) > tiny(slope)) then
+        s_next = s - slope*(s - s_before)/(slope - slope_before)
+      else
+        exit
+      end if
+      if (s_next < low .or. s_next > high) s_next = 0.5_wp*(low + high)
+      if (abs(s_next - s) < root_tolerance) exit
+      s_before = s
+      slope_before = slope
+      s = s_next
+    end do
+  end subroutine polish_extremum
+
+end module path_extremum

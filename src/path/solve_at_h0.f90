@@ -1,0 +1,196 @@
+!> From the traced path to the equilibrium at a wanted h0: along the path every state converges, so
+!> that h0 is met by moving along it, however near a fold is.
+module solve_at_h0
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use interpolation, only: polynomial_value
+  use discretisation, only: discretisation_t
+  use equilibrium, only: control_t, state_t, cost_t, residual_floor, at_h0_with_edge
+  use solver_options, only: solver_options_t, tightened
+  use anderson, only: frozen_jacobian_t, solve_anderson
+  use edge_locked, only: mesh_pair_t, contact
+  use continuation, only: state_at, between, coordinate_of
+  use traced_path, only: traced_path_t
+  implicit none
+  private
+  public :: neighbours_t, neighbours_of, coordinate_at_h0, guess_at_h0, solve_between
+
+  !> Points of the path that an interpolation uses: those of the piece, and one or two on either
+  !> side.
+  integer, parameter :: most_points = 6
+  !> How near to the wanted h0 a state has to be, relative or in the law's lengths: rounding leaves
+  !> no more. What is that near to an end of the piece is the end.
+  real(wp), parameter :: near_enough = 2.0e-13_wp
+  integer, parameter :: most_rounds = 30, bisections = 60
+  !> Change of the coordinate over which a state is the same one but for rounding.
+  real(wp), parameter :: same_place = 1.0e-8_wp
+
+  !> Points about a piece of the path, on one mesh; the piece is from the one numbered `lower` to
+  !> the next.
+  type :: neighbours_t
+    integer :: mesh = 1, held = 0, lower = 0
+    real(wp) :: coordinate(most_points) = 0
+    type(state_t) :: state(most_points)
+  end type neighbours_t
+
+contains
+
+  !> The points about the piece from point i of a path to the next, in order along it.
+  pure function neighbours_of(path, i) result(near)
+    type(traced_path_t), intent(in) :: path
+    integer, intent(in) :: i
+    type(neighbours_t) :: near
+    type(state_t) :: state
+    real(wp) :: s
+    integer :: j
+    logical :: there
+
+    near%mesh = path%mesh_between(i)
+    do j = max(1, i - 1), min(path%held, i + 2)
+      call path%seen_on(j, near%mesh, state, s, there)
+      if (.not. there) cycle
+      near%held = near%held + 1
+      near%coordinate(near%held) = s
+      near%state(near%held) = state
+      if (j == i) near%lower = near%held
+    end do
+  end function neighbours_of
+
+  !> Where between the ends of the piece the polynomial through the neighbours is at h0.
+  pure real(wp) function coordinate_at_h0(near, h0) result(s)
+    type(neighbours_t), intent(in) :: near
+    real(wp), intent(in) :: h0
+    real(wp) :: a, b, above
+    integer :: step
+
+    associate (n => near%held, k => near%lower)
+      a = near%coordinate(k)
+      b = near%coordinate(k + 1)
+      above = near%state(k)%h0 - h0
+      do step = 1, bisections
+        s = 0.5_wp*(a + b)
+        if ((polynomial_value(near%coordinate(:n), near%state(:n)%h0, s) - h0)*above > 0) then
+          a = s
+        else
+          b = s
+        end if
+      end do
+    end associate
+  end function coordinate_at_h0
+
+  !> The state that the neighbours let expect at the coordinate s, on `nodes` nodes of their mesh.
+  pure function guess_at_h0(pair, near, s, nodes) result(guess)
+    type(mesh_pair_t), intent(in) :: pair
+    type(neighbours_t), intent(in) :: near
+    real(wp), intent(in) :: s
+    integer, intent(in) :: nodes
+    type(state_t) :: guess
+
+    guess = between(pair%grid(near%mesh), near%coordinate(:near%held), near%state(:near%held), s, &
+      nodes)
+  end function guess_at_h0
+
+  !> The state at h0 on the piece, on which h0 goes one way: the polynomial through the neighbours
+  !> says where, the state there is solved and joins them, and so on; every other round halves the
+  !> piece where that gains little. s: its coordinate. Outside the piece, which is what rounding may
+  !> ask for, it is the nearer end.
+  subroutine solve_between(problem, pair, near, h0, options, frozen, s, state, converged, cost)
+    type(problem_t), intent(in) :: problem
+    type(mesh_pair_t), intent(in) :: pair
+    type(neighbours_t), intent(inout) :: near
+    real(wp), intent(in) :: h0
+    type(solver_options_t), intent(in) :: options
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    real(wp), intent(out) :: s
+    type(state_t), intent(out) :: state
+    logical, intent(out) :: converged
+    type(cost_t), intent(inout) :: cost
+    type(state_t) :: trial
+    real(wp) :: width
+    integer :: round
+
+    state = near%state(near%lower)
+    if (abs(near%state(near%lower + 1)%h0 - h0) < abs(state%h0 - h0)) &
+      state = near%state(near%lower + 1)
+    frozen%factors%valid = .false.
+    width = huge(1.0_wp)
+    do round = 1, most_rounds
+      if (abs(state%h0 - h0) <= near_enough*max(1.0_wp, abs(h0))) exit
+      associate (ends => near%state(near%lower:near%lower + 1)%h0, &
+        at => near%coordinate(near%lower:near%lower + 1))
+        ! Outside the piece, or the piece has shrunk to nothing.
+        if ((ends(1) - h0)*(ends(2) - h0) > 0) exit
+        if (.not. abs(at(2) - at(1)) > 4*spacing(maxval(abs(at)))) exit
+        s = coordinate_at_h0(near, h0)
+        ! Interpolation approaches from one side; halving brings the other end nearer.
+        if (mod(round, 2) == 0 .and. abs(at(2) - at(1)) > 0.5_wp*width) s = 0.5_wp*(at(1) + at(2))
+        width = abs(at(2) - at(1))
+        if (abs(s - at(1)) <= 0 .or. abs(s - at(2)) <= 0) exit
+      end associate
+      call state_at(problem, pair, near%mesh, s, near%coordinate(:near%held), &
+        near%state(:near%held), tightened(options), frozen, trial, converged, cost)
+      if (.not. (converged .or. trial%residual <= options%tolerance)) exit
+      if (abs(trial%h0 - h0) < abs(state%h0 - h0)) state = trial
+      call join(near, s, trial, (trial%h0 - h0)*(near%state(near%lower)%h0 - h0) > 0)
+    end do
+    s = coordinate_of(problem, near%mesh, state)
+    if (abs(state%h0 - h0) > max(options%tolerance, residual_floor(problem, state))) &
+      call finish_at_h0(problem, pair%grid(near%mesh), near%mesh, h0, options, frozen, s, state, &
+      cost)
+    ! What is left of the way is rounding; the equations at h0 itself are off by it.
+    state%residual = max(state%residual, abs(state%h0 - h0))
+    converged = state%residual <= max(options%tolerance, residual_floor(problem, state))
+    state%h0 = h0
+  end subroutine solve_between
+
+  !> Where the contact is wide and far from a fold, h0 changes by more than the tolerance with the
+  !> last digit of the coordinate; there it can be prescribed.
+  subroutine finish_at_h0(problem, grid, mesh, h0, options, frozen, s, state, cost)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: h0
+    type(solver_options_t), intent(in) :: options
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    real(wp), intent(in) :: s
+    type(state_t), intent(inout) :: state
+    type(cost_t), intent(inout) :: cost
+    type(control_t) :: control
+    type(state_t) :: trial
+    logical :: arrived
+
+    control%value = h0
+    if (mesh == contact) control%kind = at_h0_with_edge
+    trial = state
+    call solve_anderson(problem, grid, control, options, frozen, trial, arrived, cost)
+    if (arrived .and. abs(coordinate_of(problem, mesh, trial) - s) < same_place) state = trial
+  end subroutine finish_at_h0
+
+  !> Adds a state inside the piece; with_lower: it takes the place of the piece's lower end, else of
+  !> the upper. The farthest neighbour makes room.
+  subroutine join(near, s, state, with_lower)
+    type(neighbours_t), intent(inout) :: near
+    real(wp), intent(in) :: s
+    type(state_t), intent(in) :: state
+    logical, intent(in) :: with_lower
+    integer :: j
+
+    if (near%held == most_points) then
+      if (near%lower > most_points/2) then
+        near%coordinate(:most_points - 1) = near%coordinate(2:)
+        near%state(:most_points - 1) = near%state(2:)
+        near%lower = near%lower - 1
+      end if
+      near%held = most_points - 1
+    end if
+    do j = near%held, near%lower + 1, -1
+      near%coordinate(j + 1) = near%coordinate(j)
+      near%state(j + 1) = near%state(j)
+    end do
+    near%held = near%held + 1
+    near%coordinate(near%lower + 1) = s
+    near%state(near%lower + 1) = state
+    if (with_lower) near%lower = near%lower + 1
+  end subroutine join
+
+end module solve_at_h0

@@ -1,0 +1,70 @@
+!> The classical theories over the range of a scene, as rows of a table.
+module classical_rows
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t, surface_energy, largest_tension
+  use classical, only: hertz_load_at_displacement, hertz_radius_at_displacement, &
+    jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
+  use maugis, only: maugis_load, maugis_radius_at_displacement
+  use scene_groups, only: range_t
+  use records, only: theory_row_t
+  implicit none
+  private
+  public :: rows_of_classical
+
+contains
+
+  !> Hertz and, for a law that attracts, JKR and DMT, at range%count values of h0 [m]; for one whose
+  !> tension has a largest value, Maugis-Dugdale with that value as its strength and with the law's
+  !> surface energy. The theories put touching bodies at no separation, so the displacement is -h0;
+  !> the state is the one that is stable there, and where a theory has none there is no row. `from`
+  !> [m] stands in for a range without a start. None for rigid bodies, which have no displacement.
+  function rows_of_classical(problem, range, from) result(rows)
+    type(problem_t), intent(in) :: problem
+    type(range_t), intent(in) :: range
+    real(wp), intent(in) :: from
+    type(theory_row_t), allocatable :: rows(:)
+    real(wp) :: start, h0, delta, gamma, strength, a
+    integer :: i
+
+    allocate (rows(0))
+    if (problem%rigid) return
+    start = from
+    if (allocated(range%h0_start)) start = range%h0_start
+    gamma = surface_energy(problem)
+    strength = largest_tension(problem)
+    associate (r => problem%radius, y => problem%stiffness)
+      do i = 1, range%count
+        h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
+        delta = -h0
+        call add('hertz', hertz_load_at_displacement(delta, r, y), &
+          hertz_radius_at_displacement(delta, r))
+        if (.not. gamma > 0) cycle
+        call add('jkr', jkr_load_at_displacement(delta, r, y, gamma), &
+          jkr_radius_at_displacement(delta, r, y, gamma))
+        call add('dmt', dmt_load_at_displacement(delta, r, y, gamma), &
+          hertz_radius_at_displacement(delta, r))
+        if (.not. strength > 0) cycle
+        a = maugis_radius_at_displacement(delta, r, y, gamma, strength)
+        if (.not. ieee_is_nan(a)) &
+          call add('maugis_dugdale', maugis_load(a, r, y, gamma, strength), a)
+      end do
+    end associate
+
+  contains
+
+    subroutine add(theory, load, contact_radius)
+      character(len=*), intent(in) :: theory
+      real(wp), intent(in) :: load, contact_radius
+      type(theory_row_t) :: row
+
+      ! A theory without a state here says NaN.
+      if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
+      ! A structure constructor inside an array constructor would leak in gfortran.
+      row = theory_row_t(theory, h0, delta, load, contact_radius)
+      rows = [rows, row]
+    end subroutine add
+
+  end function rows_of_classical
+
+end module classical_rows

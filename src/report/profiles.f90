@@ -1,0 +1,85 @@
+!> Profiles of single states: separation, deformation, pressure and energy against r.
+module profiles
+  use kinds, only: wp
+  use failure, only: failure_t
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: state_t
+  use tables, only: table_t, cells
+  implicit none
+  private
+  public :: columns_of_profiles, write_profile
+
+  !> Columns of the table of profiles.
+  character(len=*), parameter :: profile_columns(*) = [character(len=96) :: &
+    'branch [] as in curve.csv', &
+    'h0 [m] separation that undeformed bodies would have on the axis', &
+    'r [m] distance from the axis', &
+    'separation [m]', &
+    'deformation [m] of each surface, outward positive; of unlike bodies the mean', &
+    'pressure [Pa] negative: attraction', &
+    'energy [J/m^2] of the surface force']
+
+  !> Of bodies that are not alike.
+  character(len=*), parameter :: unlike_columns(*) = [character(len=96) :: &
+    'deformation_1 [m] of the first body''s surface, outward positive', &
+    'deformation_2 [m] of the second body''s']
+
+contains
+
+  !> The columns of the table.
+  pure function columns_of_profiles(problem) result(columns)
+    type(problem_t), intent(in) :: problem
+    character(len=96), allocatable :: columns(:)
+
+    if (alike(problem)) then
+      columns = profile_columns
+    else
+      columns = [profile_columns, unlike_columns]
+    end if
+  end function columns_of_profiles
+
+  !> Whether both bodies deform by as much.
+  pure logical function alike(problem)
+    type(problem_t), intent(in) :: problem
+
+    alike = .not. abs(problem%share(1) - problem%share(2)) > 0
+  end function alike
+
+  !> Adds a state to a table of profiles: the axis, then its nodes. `h0` is in metres.
+  subroutine write_profile(table, branch, h0, problem, grid, state, error)
+    type(table_t), intent(inout) :: table
+    character(len=*), intent(in) :: branch
+    real(wp), intent(in) :: h0
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), dimension(size(state%gap) + 1) :: r, gap, deformation, pressure, energy
+    character(len=:), allocatable :: row
+    integer :: j
+
+    if (.not. table%has_begun()) return
+    associate (n => size(state%gap), law => problem%law)
+      r = [0.0_wp, state%scale*grid%x(:n)]
+      gap = [state%axis_gap, state%gap]
+      pressure = [law%pressure([state%axis_gap]), state%pressure]
+      energy = law%energy(gap)
+      ! h = h0 + r^2/(2R) - 2u.
+      deformation = -0.5_wp*(gap - state%h0 - 0.5_wp*r**2)
+    end associate
+    do j = 1, size(r)
+      ! A mesh may have a node on the axis.
+      if (j == 2 .and. .not. r(j) > 0) cycle
+      row = branch // ',' // cells([h0, r(j)*problem%lateral, gap(j)*problem%length, &
+        deformation(j)*problem%length, pressure(j)*problem%pressure, &
+        energy(j)*problem%pressure*problem%length])
+      if (.not. alike(problem)) &
+        row = row // ',' // cells(problem%share*deformation(j)*problem%length)
+      call table%row(row, error)
+      if (allocated(error)) return
+    end do
+    call table%flush(error)
+  end subroutine write_profile
+
+end module profiles

@@ -1,0 +1,81 @@
+!> What the user has to know of the numbers in a summary: whether the mesh resolves the neck, and
+!> whether they are as good as the deck asks for.
+module quality_warnings
+  use kinds, only: wp
+  use scene_groups, only: scene_t
+  use experiment_result, only: experiment_result_t
+  use summary, only: summary_t
+  implicit none
+  private
+  public :: judge_resolution, judge_accuracy, short_number
+
+  !> Nodes may lie this many necks apart at the contact edge: beyond it the edge is pinned between
+  !> them.
+  real(wp), parameter :: resolved_spacing = 0.2_wp
+
+  !> Relative error above which the numbers of a grid that the deck has chosen get a warning; it is
+  !> chosen to show such errors.
+  real(wp), parameter :: meaningless = 0.1_wp
+  !> An estimate carries a margin of two and more; only beyond this many times the accuracy is it
+  !> clear that the accuracy is missed.
+  real(wp), parameter :: clearly = 3
+  !> A residual that nobody need hear of.
+  real(wp), parameter :: usual_residual = 1.0e-8_wp
+
+contains
+
+  !> Whether the neck is resolved, and what to do if not.
+  subroutine judge_resolution(summary)
+    type(summary_t), intent(inout) :: summary
+
+    if (.not. allocated(summary%spacing_over_neck)) return
+    summary%resolved = summary%spacing_over_neck <= resolved_spacing
+    if (summary%resolved) return
+    call summary%warn('under-resolved: nodes are '//short_number(summary%spacing_over_neck)// &
+      ' neck widths apart at the contact edge, which is then pinned between them; use '// &
+      short_number(summary%spacing_over_neck/resolved_spacing)// &
+      ' times as many nodes or grid = ''panels''')
+  end subroutine judge_resolution
+
+  !> Whether the numbers are as good as the deck asks for; on a grid that the deck has chosen,
+  !> whether they are any good. And whether residuals count as converged because rounding allows no
+  !> better, though they may show in a displacement of one of the law's lengths.
+  subroutine judge_accuracy(scene, outcome, summary)
+    type(scene_t), intent(in) :: scene
+    type(experiment_result_t), intent(in) :: outcome
+    type(summary_t), intent(inout) :: summary
+    real(wp) :: enough
+    logical :: on_change
+
+    on_change = outcome%chosen%options%stop_on_change .and. &
+      outcome%chosen%options%method == 'mixing'
+    associate (tolerance => outcome%chosen%options%tolerance)
+      if (summary%converged .and. .not. on_change .and. &
+        summary%worst_residual > max(tolerance, scene%numerics%accuracy, usual_residual)) &
+        call summary%warn('rounding leaves residuals of up to '// &
+        short_number(summary%worst_residual)// &
+        ' lengths of the force law, above the tolerance of '//short_number(tolerance))
+    end associate
+    if (.not. allocated(summary%error_estimate)) return
+    enough = clearly*scene%numerics%accuracy
+    if (outcome%chosen%grid /= 'edge_locked') enough = max(enough, meaningless)
+    if (summary%error_estimate >= 1) then
+      call summary%warn('the error could not be estimated: a finer mesh has no such states, or '// &
+        'these did not converge; the numbers may mean nothing')
+    else if (summary%error_estimate > enough) then
+      call summary%warn('the error is estimated as '//short_number(summary%error_estimate)// &
+        ', above the accuracy of '//short_number(scene%numerics%accuracy)//' asked for')
+    end if
+  end subroutine judge_accuracy
+
+  !> A number for a message, to three digits.
+  pure function short_number(x) result(text)
+    real(wp), intent(in) :: x
+    character(len=:), allocatable :: text
+    character(len=24) :: buffer
+
+    write (buffer, '(g12.3)') x
+    text = trim(adjustl(buffer))
+  end function short_number
+
+end module quality_warnings

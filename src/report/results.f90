@@ -1,0 +1,345 @@
+!> The results of one run: a folder with the curve, the profiles, the tables and the summary.
+!>
+!> All of them are written to `.partial` files, the curve and the profiles row by row; `finish`
+!> gives the whole set its names (`publication`). Until then the results of an earlier run stay as
+!> they are, and what an interrupted run leaves is partial by name. One run at a time has the
+!> folder; what it finds goes into a journal, so that another can go on from there.
+module results
+  use kinds, only: wp
+  use failure, only: failure_t, fail, file_trouble
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: state_t, cost_t
+  use records, only: record_t, observer_t, theory_row_t
+  use deck, only: deck_t
+  use files, only: make_folder, file_exists
+  use folder_lock, only: folder_lock_t
+  use publication, only: publish, result_files, journal_name
+  use journal, only: journal_t
+  use run_identity, only: difference_between
+  use text_file, only: output_t, partial
+  use tables, only: table_t, cells
+  use profiles, only: columns_of_profiles, write_profile
+  use summary, only: summary_t, summary_text
+  use progress, only: progress_t
+  implicit none
+  private
+  public :: results_t, journal_of
+
+  !> Takes what a run has to show, between `open` and `finish`. The first thing that goes wrong is
+  !> kept in `trouble`; after it nothing more is written. Not to be copied while files are open.
+  type, extends(observer_t) :: results_t
+    !> Unallocated while all is well.
+    type(failure_t), allocatable :: trouble
+    !> Once started, it counts a step with every record of a cycle. The states of a path come all at
+    !> once, when the work is done, and are not counted.
+    type(progress_t) :: progress
+    !> What the run has found so far, and what an interrupted one had.
+    type(journal_t) :: journal
+    !> Keeps other runs out of the folder.
+    type(folder_lock_t) :: lock
+    character(len=:), allocatable, private :: folder, title, version
+    type(table_t), private :: curve, shapes, cases
+    !> Which of `result_files` this run has made.
+    logical, private :: made(size(result_files)) = .false.
+  contains
+    procedure :: open => open_results
+    procedure :: take
+    procedure :: hear
+    procedure :: take_case
+    procedure :: write_theory
+    procedure :: write_summary
+    procedure :: finish
+    procedure, private :: claim
+    procedure, private :: check_presence
+    procedure, private :: path_of
+    procedure, private :: mark
+  end type results_t
+
+  character(len=*), parameter :: curve_columns(*) = [character(len=96) :: &
+    'branch [] loading, unloading_1, unloading_2, ..., or path', &
+    'h0 [m] separation that undeformed bodies would have on the axis', &
+    'h_centre [m] separation on the axis', &
+    'displacement [m] h_centre - h0', &
+    'load [N] negative: tension', &
+    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
+    'stable [] 1, 0, or -1 where not asked for', &
+    'residual [] largest error of the equations, in units of the length of the force law', &
+    'iterations [] products with the elastic operator', &
+    'converged [] 1; 0 where the residual is larger than asked for: the row is no equilibrium']
+  !> Added by &stability.
+  character(len=*), parameter :: stability_columns(*) = [character(len=96) :: &
+    'smallest_eigenvalue [] of the operator at fixed h0; negative: unstable', &
+    'criterion_28 [] largest |2 u p''/p| where surfaces attract; above 1: unstable by (28)', &
+    'criterion_29 [] 2 p'' u/p on an axis that attracts; below -1: unstable by (29)']
+  character(len=*), parameter :: theory_columns(*) = [character(len=96) :: &
+    'theory [] where the row comes from', &
+    'h0 [m] separation that undeformed bodies would have on the axis', &
+    'displacement [m] separation on the axis less h0', &
+    'load [N] negative: tension', &
+    'contact_radius [m]']
+
+contains
+
+  !> Makes the folder, which from then on is this run's alone, opens its journal and, as asked,
+  !> begins the curve (with columns for stability or without) and the profiles (`shapes`), so that a
+  !> place where nothing can be written shows before anything is computed. `owner` is the run's
+  !> identity; resume: the journal that an interrupted run has left, if there is one, is gone on
+  !> with.
+  subroutine open_results(self, folder, title, version, problem, curve, shapes, stability, owner, &
+    resume, error)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: folder, title, version, owner
+    type(problem_t), intent(in) :: problem
+    logical, intent(in) :: curve, shapes, stability, resume
+    type(failure_t), allocatable, intent(out) :: error
+
+    if (allocated(self%trouble)) deallocate (self%trouble)
+    self%folder = folder
+    if (len(folder) == 0) self%folder = '.'
+    self%title = title
+    self%version = version
+    self%made = .false.
+    call self%claim(owner, resume, error)
+    if (curve .and. .not. allocated(error)) then
+      call self%mark('curve.csv')
+      if (stability) then
+        call self%curve%begin(self%path_of('curve.csv'), title, version, &
+          [curve_columns, stability_columns], error)
+      else
+        call self%curve%begin(self%path_of('curve.csv'), title, version, curve_columns, error)
+      end if
+    end if
+    if (shapes .and. .not. allocated(error)) then
+      call self%mark('profiles.csv')
+      call self%shapes%begin(self%path_of('profiles.csv'), title, version, &
+        columns_of_profiles(problem), error)
+    end if
+    ! What is put on the disk later needs its name there.
+    if (.not. allocated(error)) call self%lock%sync(error)
+    if (.not. allocated(error)) return
+    self%trouble = error
+    call self%lock%release()
+  end subroutine open_results
+
+  !> Makes the folder, keeps others out of it and opens the journal.
+  subroutine claim(self, owner, resume, error)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: owner
+    logical, intent(in) :: resume
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: path, other
+    logical :: left_over
+
+    call make_folder(self%folder, error)
+    if (.not. allocated(error)) call self%lock%take(self%folder, error)
+    if (allocated(error)) return
+    path = journal_of(self%folder)
+    left_over = file_exists(path)
+    if (.not. (resume .and. left_over)) then
+      call self%journal%begin(path, owner, error)
+      return
+    end if
+    call self%journal%go_on(path, owner, other, error)
+    if (allocated(other)) call fail(error, file_trouble, 'cannot go on: what was interrupted ' // &
+      'is of another ' // difference_between(other, owner))
+  end subroutine claim
+
+  !> Path of the journal in a folder of results.
+  pure function journal_of(folder) result(path)
+    character(len=*), intent(in) :: folder
+    character(len=:), allocatable :: path
+
+    path = folder // '/' // journal_name
+  end function journal_of
+
+  !> Shows what is being done.
+  subroutine hear(self, what)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: what
+
+    call self%progress%note(what)
+  end subroutine hear
+
+  !> Adds a record to the curve and, if `profile`, the state to the profiles.
+  subroutine take(self, record, problem, grid, state, profile)
+    class(results_t), intent(inout) :: self
+    type(record_t), intent(in) :: record
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    logical, intent(in) :: profile
+    character(len=24) :: stable, iterations
+
+    if (record%branch == 'path') then
+      call self%progress%note(record%branch)
+    else if (self%journal%is_behind()) then
+      call self%progress%skip(record%branch)
+    else
+      call self%progress%step(record%branch)
+    end if
+    if (allocated(self%trouble)) return
+    write (stable, '(i0)') record%stable
+    write (iterations, '(i0)') record%iterations
+    call self%curve%row(record%branch // ',' // cells([record%h0, record%h_centre, &
+      record%displacement, record%load, record%contact_radius]) // ',' // trim(stable) // ',' // &
+      cells([record%residual]) // ',' // trim(iterations) // &
+      merge(',1', ',0', record%converged) // stability_cells(record), self%trouble)
+    if (.not. allocated(self%trouble)) call self%curve%flush(self%trouble)
+    if (profile .and. .not. allocated(self%trouble)) call write_profile(self%shapes, &
+      record%branch, record%h0, problem, grid, state, self%trouble)
+  end subroutine take
+
+  !> The cells of `stability_columns`; empty for a record without them.
+  pure function stability_cells(record) result(text)
+    type(record_t), intent(in) :: record
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (allocated(record%eigenvalue)) text = ',' // cells([record%eigenvalue, &
+      record%local_criterion, record%axis_criterion])
+  end function stability_cells
+
+  !> Adds a case of a sweep, the value of its key and its numbers, to `sweep.csv`. `key` is
+  !> 'group.key', `columns` are those of the numbers.
+  subroutine take_case(self, key, value, columns, numbers)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: key, columns(:)
+    real(wp), intent(in) :: value, numbers(:)
+    character(len=max(len(columns), len(key) + 24)) :: header(1 + size(columns))
+
+    if (allocated(self%trouble)) return
+    if (.not. self%cases%has_begun()) then
+      call self%mark('sweep.csv')
+      header(1) = key // ' in the unit of the key'
+      header(2:) = columns
+      call self%cases%begin(self%path_of('sweep.csv'), self%title, self%version, header, &
+        self%trouble)
+    end if
+    if (.not. allocated(self%trouble)) &
+      call self%cases%row(cells([value, numbers]), self%trouble)
+    if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
+  end subroutine take_case
+
+  !> Writes the table `name` ('classical.csv' or 'approximations.csv').
+  subroutine write_theory(self, name, rows)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    type(theory_row_t), intent(in) :: rows(:)
+    type(table_t) :: table
+    integer :: i
+
+    if (allocated(self%trouble)) return
+    call self%mark(name)
+    call table%begin(self%path_of(name), self%title, self%version, theory_columns, self%trouble)
+    do i = 1, size(rows)
+      if (allocated(self%trouble)) return
+      call table%row(rows(i)%theory // ',' // cells([rows(i)%h0, rows(i)%displacement, &
+        rows(i)%load, rows(i)%contact_radius]), self%trouble)
+    end do
+    if (.not. allocated(self%trouble)) call table%close(self%trouble)
+  end subroutine write_theory
+
+  !> Writes the summary. Its title and version, where not allocated, are those of `open`.
+  subroutine write_summary(self, summary, cost, deck)
+    class(results_t), intent(inout) :: self
+    type(summary_t), intent(in) :: summary
+    type(cost_t), intent(in) :: cost
+    type(deck_t), intent(in) :: deck
+    type(summary_t) :: complete
+    type(output_t) :: file
+    type(failure_t), allocatable :: missing
+
+    if (allocated(self%trouble)) return
+    complete = summary
+    if (.not. allocated(complete%title)) complete%title = self%title
+    if (.not. allocated(complete%version)) complete%version = self%version
+    ! A folder that has taken the name of this run's may hold another's summary.
+    call self%check_presence(missing)
+    if (allocated(missing)) then
+      call move_alloc(missing, self%trouble)
+      return
+    end if
+    call self%mark('summary.nml')
+    call file%open(self%path_of('summary.nml') // partial, self%trouble)
+    if (.not. allocated(self%trouble)) &
+      call file%put(summary_text(complete, cost) // deck%resolved(), self%trouble)
+    if (.not. allocated(self%trouble)) call file%close(self%trouble)
+  end subroutine write_summary
+
+  !> Ends the progress and gives the files of this run their names; those of an earlier run which
+  !> this one has not made disappear, and so does the journal, at last. With `trouble`, the
+  !> journal's included, the partial files stay and `error` tells why. The folder is then free.
+  subroutine finish(self, error)
+    class(results_t), intent(inout) :: self
+    type(failure_t), allocatable, intent(out) :: error
+
+    call self%progress%finish()
+    call self%journal%close()
+    if (.not. allocated(self%trouble) .and. allocated(self%journal%trouble)) &
+      self%trouble = self%journal%trouble
+    call end_table(self%curve, self%trouble)
+    call end_table(self%shapes, self%trouble)
+    call end_table(self%cases, self%trouble)
+    if (allocated(self%trouble)) then
+      error = self%trouble
+    else if (any(self%made)) then
+      call self%check_presence(error)
+      if (.not. allocated(error)) call publish(self%lock, self%made, error)
+    end if
+    call self%lock%release()
+  end subroutine finish
+
+  !> Fails where a file that this run has begun is no longer in the folder it was begun in.
+  subroutine check_presence(self, error)
+    class(results_t), intent(in) :: self
+    type(failure_t), allocatable, intent(inout) :: error
+    integer :: i
+
+    if (.not. self%lock%contains_file(journal_name)) call complain(journal_name)
+    do i = 1, size(result_files)
+      if (allocated(error)) return
+      if (.not. self%made(i)) cycle
+      if (.not. self%lock%contains_file(trim(result_files(i)) // partial)) &
+        call complain(trim(result_files(i)) // partial)
+    end do
+
+  contains
+
+    subroutine complain(name)
+      character(len=*), intent(in) :: name
+
+      call fail(error, file_trouble, self%path_of(name) // ' was removed or moved away during ' // &
+        'the run; see that nothing does so')
+    end subroutine complain
+
+  end subroutine check_presence
+
+  !> Closes a table; the first error stays.
+  subroutine end_table(table, error)
+    type(table_t), intent(inout) :: table
+    type(failure_t), allocatable, intent(inout) :: error
+    type(failure_t), allocatable :: another
+
+    call table%close(another)
+    if (allocated(another) .and. .not. allocated(error)) call move_alloc(another, error)
+  end subroutine end_table
+
+  !> Notes that this run makes the file `name`.
+  pure subroutine mark(self, name)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+
+    where (result_files == name) self%made = .true.
+  end subroutine mark
+
+  !> Path of a file of the folder.
+  pure function path_of(self, name) result(path)
+    class(results_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: path
+
+    path = self%folder // '/' // name
+  end function path_of
+
+end module results

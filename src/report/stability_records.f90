@@ -1,0 +1,110 @@
+!> An observer that adds the stability of each state to its record and passes it on. Only scenes
+!> with &stability have one. What the record says of stability already stays: the path counts
+!> unstable modes, and eigenvalue and count have to agree.
+module stability_records
+  use kinds, only: wp
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use equilibrium, only: state_t, cost_t
+  use records, only: observer_t, record_t, stable_yes, stable_no, stable_unasked
+  use journal, only: journal_t
+  use byte_record, only: byte_record_t
+  use state_records, only: put_cost, take_cost
+  use stability, only: smallest_eigenvalue, local_criterion, axis_criterion, unknown
+  implicit none
+  private
+  public :: stability_recorder_t
+
+  type, extends(observer_t) :: stability_recorder_t
+    !> Whom the completed records go to.
+    class(observer_t), pointer :: next => null()
+    !> What the eigenvalues took.
+    type(cost_t) :: cost
+    !> States whose eigenvalue is not certain, and those where it contradicts the record.
+    integer :: uncertain = 0, contradicted = 0
+    !> Relative accuracy that the scene asks for.
+    real(wp) :: accuracy = 0
+    !> Where they are kept.
+    type(journal_t), pointer :: journal => null()
+  contains
+    procedure :: take
+    procedure :: hear
+    procedure, private :: find_eigenvalue
+  end type stability_recorder_t
+
+  !> What a record of an eigenvalue begins with.
+  character(len=*), parameter :: mark = 'eigenvalue'
+  !> An eigenvalue that contradicts nothing, over the accuracy: at a fold it is zero but for what
+  !> the mesh leaves, 7e-6 at most where 1e-4 was asked for.
+  real(wp), parameter :: zero = 100
+
+contains
+
+  subroutine hear(self, what)
+    class(stability_recorder_t), intent(inout) :: self
+    character(len=*), intent(in) :: what
+
+    call self%next%hear(what)
+  end subroutine hear
+
+  subroutine take(self, record, problem, grid, state, profile)
+    class(stability_recorder_t), intent(inout) :: self
+    type(record_t), intent(in) :: record
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    logical, intent(in) :: profile
+    type(record_t) :: completed
+    real(wp) :: eigenvalue
+    logical :: certain
+
+    completed = record
+    completed%eigenvalue = unknown()
+    completed%local_criterion = unknown()
+    completed%axis_criterion = unknown()
+    ! What is no equilibrium is neither stable nor unstable.
+    if (record%converged) then
+      call self%find_eigenvalue(problem, grid, state, eigenvalue, certain)
+      completed%eigenvalue = eigenvalue
+      completed%local_criterion = local_criterion(problem, grid, state)
+      completed%axis_criterion = axis_criterion(problem, state)
+      if (.not. certain) then
+        self%uncertain = self%uncertain + 1
+      else if (record%stable == stable_unasked) then
+        completed%stable = merge(stable_yes, stable_no, eigenvalue > 0)
+      else if (abs(eigenvalue) > zero*self%accuracy) then
+        if ((record%stable == stable_yes) .neqv. (eigenvalue > 0)) &
+          self%contradicted = self%contradicted + 1
+      end if
+    end if
+    call self%next%take(completed, problem, grid, state, profile)
+  end subroutine take
+
+  !> The smallest eigenvalue of a state; from the journal, where that has it.
+  subroutine find_eigenvalue(self, problem, grid, state, eigenvalue, certain)
+    class(stability_recorder_t), intent(inout) :: self
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: eigenvalue
+    logical, intent(out) :: certain
+    type(byte_record_t) :: record
+    logical :: known
+
+    call self%journal%next_of(mark, record, known)
+    if (known) then
+      call record%take(eigenvalue)
+      call take_cost(record, self%cost)
+      if (record%exhausted) call self%journal%reject()
+      certain = .not. ieee_is_nan(eigenvalue)
+    else
+      call smallest_eigenvalue(problem, grid, state, eigenvalue, certain, self%cost)
+      call record%put(mark)
+      call record%put(eigenvalue)
+      call put_cost(record, self%cost)
+      call self%journal%append(record)
+    end if
+  end subroutine find_eigenvalue
+
+end module stability_records

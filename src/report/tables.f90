@@ -1,0 +1,93 @@
+!> Tables as comma-separated values, written row by row to a `.partial` file; whoever has it made
+!> gives it its name when it is whole.
+module tables
+  use kinds, only: wp
+  use failure, only: failure_t
+  use text, only: full
+  use text_file, only: output_t, partial, plain
+  implicit none
+  private
+  public :: table_t, cells
+
+  !> A table being written. Procedures do nothing while it has not begun.
+  type :: table_t
+    private
+    type(output_t) :: file
+  contains
+    procedure :: begin
+    procedure :: has_begun
+    procedure :: row
+    procedure :: flush => flush_table
+    procedure :: close => close_table
+  end type table_t
+
+contains
+
+  !> Begins the table `path`, for now `path`.partial: lines that start with '#' (title, version,
+  !> what each column is), then the names of the columns. A column is described as 'name [unit] what
+  !> it is'.
+  subroutine begin(self, path, title, version, columns, error)
+    class(table_t), intent(inout) :: self
+    character(len=*), intent(in) :: path, title, version, columns(:)
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: text, names
+    integer :: i
+
+    text = trim('# title: ' // plain(title)) // new_line('a') // &
+      '# version: snapin ' // plain(version) // new_line('a')
+    names = ''
+    do i = 1, size(columns)
+      text = text // '# ' // trim(columns(i)) // new_line('a')
+      if (i > 1) names = names // ','
+      names = names // columns(i)(:scan(columns(i) // ' ', ' ') - 1)
+    end do
+    call self%file%open(path // partial, error)
+    if (.not. allocated(error)) call self%file%line(text // names, error)
+    if (.not. allocated(error)) call self%file%flush(error)
+  end subroutine begin
+
+  !> Whether rows can be written.
+  pure logical function has_begun(self)
+    class(table_t), intent(in) :: self
+
+    has_begun = self%file%is_open()
+  end function has_begun
+
+  !> Writes one row, made with `cells`.
+  subroutine row(self, text, error)
+    class(table_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+    type(failure_t), allocatable, intent(out) :: error
+
+    call self%file%line(text, error)
+  end subroutine row
+
+  !> Makes the rows so far survive whatever happens to this process.
+  subroutine flush_table(self, error)
+    class(table_t), intent(inout) :: self
+    type(failure_t), allocatable, intent(out) :: error
+
+    call self%file%flush(error)
+  end subroutine flush_table
+
+  !> Ends the table, or what there is of it.
+  subroutine close_table(self, error)
+    class(table_t), intent(inout) :: self
+    type(failure_t), allocatable, intent(out) :: error
+
+    call self%file%close(error)
+  end subroutine close_table
+
+  !> Numbers as cells that read back as the same numbers; a NaN is `NaN`.
+  pure function cells(values) result(text)
+    real(wp), intent(in) :: values(:)
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = full(values(1))
+    do i = 2, size(values)
+      text = text // ',' // full(values(i))
+    end do
+  end function cells
+
+end module tables

@@ -1,0 +1,214 @@
+!> Numbers and texts packed into one row of 64-bit words, and back, bit by bit the same.
+module byte_record
+  use kinds, only: wp, long
+  implicit none
+  private
+  public :: byte_record_t, checksum
+
+  !> What is put in comes out in the same order.
+  type :: byte_record_t
+    !> words(:held) are in use.
+    integer(long), allocatable :: words(:)
+    integer :: held = 0
+    !> Whether more was taken out than had been put in; what was taken then is zero or empty.
+    logical :: exhausted = .false.
+    integer, private :: taken = 0
+  contains
+    procedure :: clear
+    generic :: put => put_long, put_integer, put_real, put_reals, put_logical, put_text
+    generic :: take => take_long, take_integer, take_real, take_reals, take_logical, take_text
+    procedure, private :: put_long, put_integer, put_real, put_reals, put_logical, put_text
+    procedure, private :: take_long, take_integer, take_real, take_reals, take_logical, take_text
+    procedure, private :: put_words
+    procedure, private :: take_words
+  end type byte_record_t
+
+  !> Characters in a word.
+  integer, parameter :: letters = storage_size(0_long)/8
+
+contains
+
+  !> Empties it.
+  subroutine clear(self)
+    class(byte_record_t), intent(inout) :: self
+
+    self%held = 0
+    self%taken = 0
+    self%exhausted = .false.
+  end subroutine clear
+
+  subroutine put_words(self, words)
+    class(byte_record_t), intent(inout) :: self
+    integer(long), intent(in) :: words(:)
+    integer(long), allocatable :: larger(:)
+
+    if (.not. allocated(self%words)) allocate (self%words(64))
+    if (self%held + size(words) > size(self%words)) then
+      allocate (larger(2*(self%held + size(words))))
+      larger(:self%held) = self%words(:self%held)
+      call move_alloc(larger, self%words)
+    end if
+    self%words(self%held + 1:self%held + size(words)) = words
+    self%held = self%held + size(words)
+  end subroutine put_words
+
+  subroutine take_words(self, words)
+    class(byte_record_t), intent(inout) :: self
+    integer(long), intent(out) :: words(:)
+
+    words = 0
+    if (size(words) > self%held - self%taken) then
+      self%exhausted = .true.
+      return
+    end if
+    words = self%words(self%taken + 1:self%taken + size(words))
+    self%taken = self%taken + size(words)
+  end subroutine take_words
+
+  subroutine put_long(self, value)
+    class(byte_record_t), intent(inout) :: self
+    integer(long), intent(in) :: value
+
+    call self%put_words([value])
+  end subroutine put_long
+
+  subroutine put_integer(self, value)
+    class(byte_record_t), intent(inout) :: self
+    integer, intent(in) :: value
+
+    call self%put_words([int(value, long)])
+  end subroutine put_integer
+
+  subroutine put_logical(self, value)
+    class(byte_record_t), intent(inout) :: self
+    logical, intent(in) :: value
+
+    call self%put_words([merge(1_long, 0_long, value)])
+  end subroutine put_logical
+
+  subroutine put_real(self, value)
+    class(byte_record_t), intent(inout) :: self
+    real(wp), intent(in) :: value
+
+    call self%put_words([transfer(value, 0_long)])
+  end subroutine put_real
+
+  !> The number of values goes with them.
+  subroutine put_reals(self, values)
+    class(byte_record_t), intent(inout) :: self
+    real(wp), intent(in) :: values(:)
+
+    call self%put(size(values))
+    call self%put_words(transfer(values, [0_long], size(values)))
+  end subroutine put_reals
+
+  !> Its length goes with it.
+  subroutine put_text(self, text)
+    class(byte_record_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+    integer :: count
+
+    count = (len(text) + letters - 1)/letters
+    call self%put(len(text))
+    call self%put_words(transfer(text // repeat(' ', count*letters - len(text)), [0_long], count))
+  end subroutine put_text
+
+  subroutine take_long(self, value)
+    class(byte_record_t), intent(inout) :: self
+    integer(long), intent(out) :: value
+    integer(long) :: words(1)
+
+    call self%take_words(words)
+    value = words(1)
+  end subroutine take_long
+
+  subroutine take_integer(self, value)
+    class(byte_record_t), intent(inout) :: self
+    integer, intent(out) :: value
+    integer(long) :: words(1)
+
+    call self%take_words(words)
+    value = int(words(1))
+  end subroutine take_integer
+
+  subroutine take_logical(self, value)
+    class(byte_record_t), intent(inout) :: self
+    logical, intent(out) :: value
+    integer(long) :: words(1)
+
+    call self%take_words(words)
+    value = words(1) /= 0
+  end subroutine take_logical
+
+  subroutine take_real(self, value)
+    class(byte_record_t), intent(inout) :: self
+    real(wp), intent(out) :: value
+    integer(long) :: words(1)
+
+    call self%take_words(words)
+    value = transfer(words(1), value)
+  end subroutine take_real
+
+  subroutine take_reals(self, values)
+    class(byte_record_t), intent(inout) :: self
+    real(wp), allocatable, intent(out) :: values(:)
+    integer(long), allocatable :: words(:)
+    integer :: count
+
+    call take_count(self, count)
+    allocate (words(count), values(count))
+    call self%take_words(words)
+    values = transfer(words, values, count)
+  end subroutine take_reals
+
+  subroutine take_text(self, text)
+    class(byte_record_t), intent(inout) :: self
+    character(len=:), allocatable, intent(out) :: text
+    integer(long), allocatable :: words(:)
+    integer :: length, count
+
+    call take_count(self, length)
+    count = (length + letters - 1)/letters
+    allocate (words(count))
+    call self%take_words(words)
+    allocate (character(len=length) :: text)
+    text = transfer(words, repeat(' ', count*letters))
+  end subroutine take_text
+
+  !> A number of items, never more than could be held.
+  subroutine take_count(self, count)
+    class(byte_record_t), intent(inout) :: self
+    integer, intent(out) :: count
+
+    call self%take(count)
+    if (count >= 0 .and. count <= letters*self%held) return
+    self%exhausted = .true.
+    count = 0
+  end subroutine take_count
+
+  !> A checksum of 32 bits. Every half word changes it one to one, so that a single wrong one never
+  !> goes unseen; the shift brings upper bits down, or two wrong signs could cancel. The products
+  !> stay below 2^63. (The multiplier is MurmurHash's.)
+  pure integer(long) function checksum(words)
+    integer(long), intent(in) :: words(:)
+    integer(long), parameter :: mask = int(z'ffffffff', long), multiplier = int(z'5bd1e995', long)
+    integer :: i
+
+    checksum = size(words)
+    do i = 1, size(words)
+      call add(iand(words(i), mask))
+      call add(ishft(words(i), -32))
+    end do
+
+  contains
+
+    pure subroutine add(half)
+      integer(long), intent(in) :: half
+
+      checksum = iand(ieor(checksum, half)*multiplier, mask)
+      checksum = ieor(checksum, ishft(checksum, -15))
+    end subroutine add
+
+  end function checksum
+
+end module byte_record

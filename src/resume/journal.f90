@@ -1,0 +1,265 @@
+!> A file to which a run adds what it has found as it goes, so that another can go on from there
+!> after it was killed.
+!>
+!> A journal begins with a text that says whose it is; records follow. Each has its length, a
+!> checksum, and the time since the run began, and is handed to the system at once: what follows the
+!> last whole record was being written when the run was killed, and is cut off. Every few seconds it
+!> is put on the disk, so that a power failure costs no more than these. It is written by system
+!> calls for the reason given in `text_file`.
+module journal
+  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
+  use kinds, only: wp, long
+  use failure, only: failure_t, fail, file_trouble
+  use c_library, only: c_open_output, c_read, c_write, c_sync, c_close, c_size, c_go_to, &
+    c_truncate, system_failure
+  use byte_record, only: byte_record_t, checksum
+  use clock, only: seconds
+  implicit none
+  private
+  public :: journal_t
+
+  !> Not to be copied while it is open. After the first thing that goes wrong, which is kept in
+  !> `trouble`, nothing more is written.
+  type :: journal_t
+    type(failure_t), allocatable :: trouble
+    !> Whole records that an earlier run has left, and the time [s] it took until the last of them.
+    integer :: inherited = 0
+    real(wp) :: earlier = 0
+    character(len=:), allocatable, private :: path
+    integer(c_int), private :: descriptor = -1
+    !> Records of the earlier run that are still to be handed out.
+    integer, private :: waiting = 0
+    !> Words in the file when it was opened.
+    integer(long), private :: room = 0
+    !> Times [s]: when it was opened, when it was last put on the disk.
+    real(wp), private :: began = 0, synced = 0
+  contains
+    procedure :: begin
+    procedure :: go_on
+    procedure :: is_open
+    procedure :: is_behind
+    procedure :: next
+    procedure :: next_of
+    procedure :: reject
+    procedure :: append
+    procedure :: close => close_journal
+    procedure, private :: read_frame
+  end type journal_t
+
+  !> Words before the packed ones: how many these are, the checksum of all else, the time.
+  integer, parameter :: frame = 3, word = storage_size(0_long)/8
+  !> Seconds of work that a power failure may cost. Waiting for a disk takes a hundredth of one.
+  real(wp), parameter :: sync_interval = 2
+
+contains
+
+  !> Creates the journal `path`, or empties it; `owner` says whose it is.
+  subroutine begin(self, path, owner, error)
+    class(journal_t), intent(inout) :: self
+    character(len=*), intent(in) :: path, owner
+    type(failure_t), allocatable, intent(out) :: error
+    type(byte_record_t) :: heading
+
+    call start(self, path, 0_c_int, error)
+    if (allocated(error)) return
+    call heading%put(owner)
+    call self%append(heading)
+    if (allocated(self%trouble)) error = self%trouble
+  end subroutine begin
+
+  !> Opens the journal `path` that an earlier run has left: `next` hands out its records, then
+  !> `append` goes on. Where its owner is not `owner`, the journal stays as it is and closed, and
+  !> `other` is the owner; one that ends within its heading is begun anew.
+  subroutine go_on(self, path, owner, other, error)
+    class(journal_t), intent(inout) :: self
+    character(len=*), intent(in) :: path, owner
+    character(len=:), allocatable, intent(out) :: other
+    type(failure_t), allocatable, intent(out) :: error
+    type(byte_record_t) :: record
+    integer(c_long) :: whole, first
+    integer(c_int) :: status
+    logical :: found
+
+    call start(self, path, 1_c_int, error)
+    if (allocated(error)) return
+    whole = 0
+    call self%read_frame(record, whole, found)
+    if (.not. found) then
+      call self%close()
+      call self%begin(path, owner, error)
+      return
+    end if
+    call record%take(other)
+    if (other /= owner) then
+      call self%close()
+      return
+    end if
+    deallocate (other)
+    first = whole
+    do
+      call self%read_frame(record, whole, found)
+      if (.not. found) exit
+      self%inherited = self%inherited + 1
+    end do
+    self%waiting = self%inherited
+    status = c_truncate(self%descriptor, whole)
+    if (status == 0) status = c_go_to(self%descriptor, first)
+    if (status == 0) return
+    call system_failure('cannot write ' // path, status, error)
+    call self%close()
+  end subroutine go_on
+
+  !> Opens the file, empty or (keep: 1) as it is, and forgets what was before.
+  subroutine start(self, path, keep, error)
+    class(journal_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    integer(c_int), intent(in) :: keep
+    type(failure_t), allocatable, intent(out) :: error
+
+    call self%close()
+    if (allocated(self%trouble)) deallocate (self%trouble)
+    self%inherited = 0
+    self%earlier = 0
+    self%waiting = 0
+    self%began = seconds()
+    self%synced = self%began
+    self%path = path
+    self%descriptor = c_open_output(path // c_null_char, keep)
+    if (.not. self%is_open()) then
+      call system_failure('cannot write ' // path, self%descriptor, error)
+      return
+    end if
+    self%room = c_size(self%descriptor)/word
+  end subroutine start
+
+  !> Whether records can be read or added.
+  pure logical function is_open(self)
+    class(journal_t), intent(in) :: self
+
+    is_open = self%descriptor >= 0
+  end function is_open
+
+  !> Whether records of the earlier run are still to be handed out.
+  pure logical function is_behind(self)
+    class(journal_t), intent(in) :: self
+
+    is_behind = self%waiting > 0 .and. self%is_open()
+  end function is_behind
+
+  !> The next record of the earlier run; not found: there are no more, and `append` may begin.
+  subroutine next(self, record, found)
+    class(journal_t), intent(inout) :: self
+    type(byte_record_t), intent(inout) :: record
+    logical, intent(out) :: found
+    integer(c_long) :: whole
+
+    found = .false.
+    if (.not. self%is_behind()) return
+    whole = 0
+    call self%read_frame(record, whole, found)
+    self%waiting = self%waiting - 1
+    ! It was there when the journal was opened.
+    if (found) return
+    call fail(self%trouble, file_trouble, 'cannot read ' // self%path)
+    call self%close()
+  end subroutine next
+
+  !> The next record, which must begin with the text `mark`.
+  subroutine next_of(self, mark, record, found)
+    class(journal_t), intent(inout) :: self
+    character(len=*), intent(in) :: mark
+    type(byte_record_t), intent(inout) :: record
+    logical, intent(out) :: found
+    character(len=:), allocatable :: kind
+
+    call self%next(record, found)
+    if (.not. found) return
+    call record%take(kind)
+    if (kind /= mark) call self%reject()
+  end subroutine next_of
+
+  !> Takes the records for those of another run: nothing can be done with them.
+  subroutine reject(self)
+    class(journal_t), intent(inout) :: self
+
+    call fail(self%trouble, file_trouble, self%path // &
+      ' does not tell of this run; remove it and start over')
+    call self%close()
+  end subroutine reject
+
+  !> Adds a record and hands it to the system, so that it survives this process, and now and then to
+  !> the disk. Not before `next`
+  !> has handed out all there were.
+  subroutine append(self, record)
+    class(journal_t), intent(inout) :: self
+    type(byte_record_t), intent(in) :: record
+    integer(long) :: words(frame + record%held)
+    character :: bytes(word*size(words))
+    integer(c_int) :: status
+
+    if (.not. self%is_open()) return
+    words(1) = record%held
+    words(2) = 0
+    words(3) = transfer(self%earlier + seconds() - self%began, 0_long)
+    words(frame + 1:) = record%words(:record%held)
+    words(2) = checksum(words)
+    bytes = transfer(words, bytes)
+    status = c_write(self%descriptor, bytes, size(bytes, kind=c_long))
+    if (status == 0 .and. seconds() - self%synced > sync_interval) then
+      status = c_sync(self%descriptor)
+      self%synced = seconds()
+    end if
+    if (status == 0) return
+    call system_failure('cannot write ' // self%path, status, self%trouble)
+    call self%close()
+  end subroutine append
+
+  !> Puts it on the disk and closes it; nothing is done where none is open.
+  subroutine close_journal(self)
+    class(journal_t), intent(inout) :: self
+    integer(c_int) :: status
+
+    if (.not. self%is_open()) return
+    ! No result depends on it: what could be lost here is time.
+    status = c_sync(self%descriptor)
+    status = c_close(self%descriptor)
+    self%descriptor = -1
+  end subroutine close_journal
+
+  !> Reads the record at the present place and moves `whole` [bytes] to its end; not found where the
+  !> file ends or what is there is not a whole record.
+  subroutine read_frame(self, record, whole, found)
+    class(journal_t), intent(inout) :: self
+    type(byte_record_t), intent(inout) :: record
+    integer(c_long), intent(inout) :: whole
+    logical, intent(out) :: found
+    integer(long) :: head(frame)
+    integer(long), allocatable :: words(:)
+
+    found = .false.
+    call record%clear()
+    if (.not. read_words(self%descriptor, head)) return
+    if (head(1) < 0 .or. head(1) > self%room) return
+    allocate (words(frame + head(1)))
+    words(:frame) = head
+    words(2) = 0
+    if (.not. read_words(self%descriptor, words(frame + 1:))) return
+    if (checksum(words) /= head(2)) return
+    record%words = words(frame + 1:)
+    record%held = int(head(1))
+    self%earlier = transfer(head(3), self%earlier)
+    whole = whole + size(words)*word
+    found = .true.
+  end subroutine read_frame
+
+  !> Reads words; .false. where the file ends before.
+  logical function read_words(descriptor, words) result(complete)
+    integer(c_int), intent(in) :: descriptor
+    integer(long), intent(out) :: words(:)
+    character :: bytes(word*size(words))
+
+    complete = c_read(descriptor, bytes, size(bytes, kind=c_long)) == size(bytes)
+    if (complete) words = transfer(bytes, words)
+  end function read_words
+
+end module journal

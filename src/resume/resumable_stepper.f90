@@ -1,0 +1,172 @@
+!> A quasi-static experiment whose steps are kept in a journal. Those that an interrupted run has
+!> left there are taken from it instead of being solved; whoever drives the experiment does all it
+!> does and does not notice. Then the solver goes on as if it had never stopped.
+module resumable_stepper
+  use kinds, only: wp
+  use discretisation, only: discretisation_t
+  use equilibrium, only: cost_t
+  use jacobian, only: factorise_again
+  use stepper, only: keeping_stepper_t, branch_point_t, step_result_t
+  use reported, only: error_probe_t
+  use journal, only: journal_t
+  use byte_record, only: byte_record_t
+  use state_records, only: put_cost, take_cost, put_position, take_position, put_event, &
+    take_event, put_frozen, take_frozen
+  use clock, only: seconds
+  implicit none
+  private
+  public :: resumable_stepper_t
+
+  type, extends(keeping_stepper_t) :: resumable_stepper_t
+    !> Where the steps are kept.
+    type(journal_t), pointer :: journal => null()
+    !> Time [s] that those solved since took.
+    real(wp) :: own_seconds = 0
+    !> Whether the solver still lacks the factors of the last record.
+    logical, private :: behind = .false.
+    !> The factorisation that the journal knows of, as counted in it.
+    integer, private :: known = -1
+  contains
+    procedure :: approach_to
+    procedure :: step_to
+    procedure :: grid
+    procedure :: spacing_over_neck
+    procedure :: witness
+    procedure, private :: recall
+    procedure, private :: catch_up
+    procedure, private :: keep
+  end type resumable_stepper_t
+
+  !> What a record of a step begins with.
+  character(len=*), parameter :: mark = 'step'
+
+contains
+
+  subroutine approach_to(self, h0, position, event)
+    class(resumable_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(out) :: position
+    type(step_result_t), intent(out) :: event
+    type(branch_point_t) :: nowhere
+    real(wp) :: began
+
+    if (self%recall(h0, nowhere, position, event)) return
+    began = seconds()
+    call self%catch_up()
+    call self%solver%approach_to(h0, position, event)
+    call self%keep(h0, nowhere, position, event, began)
+  end subroutine approach_to
+
+  subroutine step_to(self, h0, position, event)
+    class(resumable_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(out) :: event
+    type(branch_point_t) :: before
+    real(wp) :: began
+
+    before = position
+    if (self%recall(h0, before, position, event)) return
+    began = seconds()
+    call self%catch_up()
+    call self%solver%step_to(h0, position, event)
+    call self%keep(h0, before, position, event, began)
+  end subroutine step_to
+
+  !> Takes a step from `before` to h0 out of the journal. .false. where it has no more: then the
+  !> step is to be solved. A journal that cannot be gone on with ends the experiment.
+  logical function recall(self, h0, before, position, event) result(known)
+    class(resumable_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(in) :: before
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+    type(byte_record_t) :: record
+    type(cost_t) :: cost
+    real(wp) :: kept_h0
+    logical :: fits
+
+    call self%journal%next_of(mark, record, known)
+    if (known) then
+      call record%take(kept_h0)
+      fits = abs(kept_h0 - h0) <= 0
+      call take_position(record, self%problem%law, before, position)
+      call take_event(record, event)
+      call take_frozen(record, self%solver%frozen)
+      call take_cost(record, cost)
+      self%earlier_seconds = cost%solve_seconds
+      ! Times are this run's own.
+      cost%kernel_seconds = self%solver%cost%kernel_seconds
+      cost%solve_seconds = self%solver%cost%solve_seconds
+      cost%estimate_seconds = self%solver%cost%estimate_seconds
+      self%solver%cost = cost
+      self%behind = .true.
+      if (record%exhausted .or. .not. fits) call self%journal%reject()
+    end if
+    if (.not. allocated(self%journal%trouble)) return
+    known = .true.
+    event = step_result_t(reason='what was found can no longer be kept')
+  end function recall
+
+  !> Gives the solver the factorisation that it had at the end of the last record.
+  subroutine catch_up(self)
+    class(resumable_stepper_t), intent(inout) :: self
+    type(branch_point_t) :: on_mesh
+
+    if (.not. self%behind) return
+    self%behind = .false.
+    associate (factors => self%solver%frozen%factors)
+      if (factors%valid) then
+        on_mesh%mesh = self%solver%mesh_of(nint(factors%origin(1)))
+        call factorise_again(self%problem, self%solver%grid(on_mesh), factors)
+      end if
+      self%known = factors%made
+    end associate
+  end subroutine catch_up
+
+  !> Adds a step to the journal; it was begun at the time `began`.
+  subroutine keep(self, h0, before, position, event, began)
+    class(resumable_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0, began
+    type(branch_point_t), intent(in) :: before, position
+    type(step_result_t), intent(in) :: event
+    type(byte_record_t) :: record
+    type(cost_t) :: cost
+
+    call record%put(mark)
+    call record%put(h0)
+    call put_position(record, self%problem%law, before, position)
+    call put_event(record, event)
+    call put_frozen(record, self%solver%frozen, self%known == self%solver%frozen%factors%made)
+    self%known = self%solver%frozen%factors%made
+    self%own_seconds = self%own_seconds + seconds() - began
+    cost = self%solver%cost
+    cost%solve_seconds = self%earlier_seconds + self%own_seconds
+    call put_cost(record, cost)
+    call self%journal%append(record)
+  end subroutine keep
+
+  function grid(self, position)
+    class(resumable_stepper_t), intent(in), target :: self
+    type(branch_point_t), intent(in) :: position
+    type(discretisation_t), pointer :: grid
+
+    grid => self%solver%grid(position)
+  end function grid
+
+  pure real(wp) function spacing_over_neck(self, position)
+    class(resumable_stepper_t), intent(in) :: self
+    type(branch_point_t), intent(in) :: position
+
+    spacing_over_neck = self%solver%spacing_over_neck(position)
+  end function spacing_over_neck
+
+  pure function witness(self, position)
+    class(resumable_stepper_t), intent(in) :: self
+    type(branch_point_t), intent(in) :: position
+    type(error_probe_t) :: witness
+
+    witness = self%solver%witness(position)
+  end function witness
+
+end module resumable_stepper

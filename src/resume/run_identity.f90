@@ -1,0 +1,160 @@
+!> What a run's numbers depend on, as a text, and what differs between two of them: an interrupted
+!> run can only be gone on with by one that would have done the same.
+module run_identity
+  use, intrinsic :: iso_c_binding, only: c_associated, c_f_procpointer, c_funptr, c_ptr
+  use kinds, only: wp, long
+  use build_info, only: version, compiler, blas, options
+  use c_library, only: procedure_named, text_at
+  use text, only: brief
+  use deck_number, only: parse_real
+  use byte_record, only: checksum
+  implicit none
+  private
+  public :: identity_of, difference_between
+
+  abstract interface
+    function text_of_library() bind(c) result(place)
+      import :: c_ptr
+      type(c_ptr) :: place
+    end function text_of_library
+  end interface
+
+  character(len=1), parameter :: nl = new_line('a')
+  !> How the lines before the deck begin.
+  character(len=*), parameter :: program_line = 'program: ', libraries_line = 'libraries: ', &
+    threads_line = 'threads: '
+
+contains
+
+  !> The identity of a run of `deck`, the text of a deck as resolved, in this program; threads:
+  !> those in use, 0 where the numbers do not depend on them.
+  function identity_of(deck, threads) result(text)
+    character(len=*), intent(in) :: deck
+    integer, intent(in) :: threads
+    character(len=:), allocatable :: text
+
+    text = program_line // version // ' (build ' // build_number() // ')' // nl // &
+      libraries_line // compiler // ', ' // blas_in_use() // ', ' // options // nl
+    if (threads > 0) text = text // threads_line // brief(real(threads, wp)) // nl
+    text = text // deck
+  end function identity_of
+
+  !> The first difference between two identities, and what to do to get on, in words.
+  function difference_between(then, now) result(text)
+    character(len=*), intent(in) :: then, now
+    character(len=:), allocatable :: text
+    character(len=:), allocatable :: old, new, group
+    integer :: i, j
+
+    i = 1
+    j = 1
+    group = ''
+    do
+      call next_line(then, i, old)
+      call next_line(now, j, new)
+      if (old /= new) exit
+      if (i > len(then) .and. j > len(now)) exit
+      if (index(old, '&') == 1) group = old
+    end do
+    if (index(old, program_line) == 1) then
+      text = 'program ' // old(len(program_line) + 1:) // ', this is ' // &
+        new(len(program_line) + 1:) // '; go on with that one'
+    else if (index(old, libraries_line) == 1) then
+      text = 'program made of ' // old(len(libraries_line) + 1:) // ', this one is made of ' // &
+        new(len(libraries_line) + 1:) // '; go on with that one'
+    else if (index(old, threads_line) == 1) then
+      text = 'run with ' // old(len(threads_line) + 1:) // ' threads, this one has ' // &
+        new(len(threads_line) + 1:) // '; set OMP_NUM_THREADS=' // old(len(threads_line) + 1:)
+    else
+      text = 'deck, ' // change(group, old, new, now) // '; put that back'
+    end if
+    text = text // ', or start over without --resume'
+  end function difference_between
+
+  !> How a deck that has the line `old` in a group differs from the deck `now`, which has `new`.
+  function change(group, old, new, now) result(text)
+    character(len=*), intent(in) :: group, old, new, now
+    character(len=:), allocatable :: text
+    integer :: a, b
+
+    a = index(old, ' = ')
+    b = index(new, ' = ')
+    if (a > 0 .and. b > 0 .and. old(:max(a, 1)) == new(:max(b, 1))) then
+      text = group // ' ' // adjusted(old(:a)) // ' = ' // value(old(a + 3:)) // ' instead of ' // &
+        value(new(b + 3:))
+    else if (index(old, '&') == 1 .and. index(now, nl // old // nl) == 0) then
+      text = 'one with ' // old
+    else if (index(new, '&') == 1) then
+      text = 'one without ' // new
+    else
+      text = 'another ' // group
+    end if
+  end function change
+
+  !> The value of an assignment with as few digits as it has.
+  function value(text) result(short)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: short
+    character(len=:), allocatable :: what
+    real(wp) :: number
+
+    call parse_real(text, number, what)
+    short = text
+    if (.not. allocated(what)) short = brief(number)
+  end function value
+
+  pure function adjusted(text) result(bare)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: bare
+
+    bare = trim(adjustl(text))
+  end function adjusted
+
+  !> The line of a text that begins at i, which moves on to the next; empty at the end.
+  subroutine next_line(text, i, line)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: i
+    character(len=:), allocatable, intent(out) :: line
+    integer :: length
+
+    line = ''
+    if (i > len(text)) return
+    length = index(text(i:) // nl, nl) - 1
+    line = text(i:i + length - 1)
+    i = i + length + 1
+  end subroutine next_line
+
+  !> The library that does the linear algebra; OpenBLAS says for which processor too, on which last
+  !> digits depend.
+  function blas_in_use() result(text)
+    character(len=:), allocatable :: text
+    procedure(text_of_library), pointer :: ask
+    type(c_funptr) :: address
+
+    text = blas
+    address = procedure_named('openblas_get_config')
+    if (.not. c_associated(address)) return
+    call c_f_procpointer(address, ask)
+    text = text_at(ask())
+  end function blas_in_use
+
+  !> Tells programs of the same version apart: a checksum of the running program's file, where the
+  !> system gives it.
+  function build_number() result(text)
+    character(len=8) :: text
+    integer(long), allocatable :: words(:)
+    integer(long) :: length
+    integer :: unit, status
+
+    text = 'unknown'
+    open (newunit=unit, file='/proc/self/exe', status='old', action='read', access='stream', &
+      form='unformatted', iostat=status)
+    if (status /= 0) return
+    inquire (unit, size=length)
+    allocate (words(max(length, 0_long)/8))
+    read (unit, iostat=status) words
+    close (unit)
+    if (status == 0) write (text, '(z8.8)') checksum(words)
+  end function build_number
+
+end module run_identity

@@ -1,0 +1,284 @@
+!> States of an experiment as records of a journal, and back, bit by bit the same.
+!>
+!> A step leaves one new state; the others that a position holds it had before. These are packed as
+!> the place where they were, and a pressure that follows from its gap is not packed at all, so that
+!> a record takes little more than one row of gaps.
+module state_records
+  use kinds, only: wp, long
+  use force_law, only: force_law_t
+  use equilibrium, only: state_t, cost_t
+  use stepper, only: branch_point_t, step_result_t
+  use anderson, only: frozen_jacobian_t
+  use byte_record, only: byte_record_t
+  implicit none
+  private
+  public :: put_cost, take_cost, put_position, take_position, put_event, take_event, put_frozen, &
+    take_frozen
+
+  !> What follows in a record instead of a place: a state of its own, or none.
+  integer, parameter :: new_state = 0, no_state = -1
+
+contains
+
+  !> Packs the position that a step from `before` has led to.
+  subroutine put_position(record, law, before, position)
+    type(byte_record_t), intent(inout) :: record
+    class(force_law_t), intent(in) :: law
+    type(branch_point_t), intent(in) :: before, position
+    integer :: k, place
+
+    call record%put(position%mesh)
+    call record%put(position%piece)
+    call record%put(position%held)
+    do k = 1, position%held
+      call record%put(position%h0(k))
+      call put_known(position%past(k))
+    end do
+    place = 0
+    do k = 1, position%held
+      if (same(position%past(k), position%state)) place = k
+    end do
+    call record%put(place)
+    if (place == 0) call put_known(position%state)
+
+  contains
+
+    !> Packs a state or where `before` has it: its past from 1, the present one after them.
+    subroutine put_known(state)
+      type(state_t), intent(in) :: state
+      integer :: j
+
+      do j = 1, before%held
+        if (.not. same(before%past(j), state)) cycle
+        call record%put(j)
+        return
+      end do
+      if (same(before%state, state)) then
+        call record%put(before%held + 1)
+      else
+        call put_state(record, law, state)
+      end if
+    end subroutine put_known
+
+  end subroutine put_position
+
+  !> Unpacks what `put_position` packed, with the same `before`.
+  subroutine take_position(record, law, before, position)
+    type(byte_record_t), intent(inout) :: record
+    class(force_law_t), intent(in) :: law
+    type(branch_point_t), intent(in) :: before
+    type(branch_point_t), intent(out) :: position
+    integer :: k, place
+
+    call record%take(position%mesh)
+    call record%take(position%piece)
+    call record%take(position%held)
+    position%held = min(max(position%held, 0), size(position%past))
+    do k = 1, position%held
+      call record%take(position%h0(k))
+      call take_known(position%past(k))
+    end do
+    call record%take(place)
+    if (place >= 1 .and. place <= position%held) then
+      position%state = position%past(place)
+    else
+      call take_known(position%state)
+    end if
+
+  contains
+
+    subroutine take_known(state)
+      type(state_t), intent(out) :: state
+      integer :: place
+
+      call record%take(place)
+      if (place >= 1 .and. place <= before%held) then
+        state = before%past(place)
+      else if (place == before%held + 1) then
+        state = before%state
+      else if (place == new_state) then
+        call take_state(record, law, state)
+      end if
+    end subroutine take_known
+
+  end subroutine take_position
+
+  !> Whether two states are the same, bit by bit.
+  pure logical function same(a, b)
+    type(state_t), intent(in) :: a, b
+
+    same = .false.
+    if (.not. (allocated(a%gap) .and. allocated(b%gap))) return
+    if (size(a%gap) /= size(b%gap) .or. a%iterations /= b%iterations) return
+    same = identical([a%h0, a%scale, a%axis_gap, a%load, a%residual], &
+      [b%h0, b%scale, b%axis_gap, b%load, b%residual])
+    if (same) same = identical(a%gap, b%gap)
+    if (same) same = identical(a%pressure, b%pressure)
+  end function same
+
+  !> Whether numbers are the same, bit by bit.
+  pure logical function identical(a, b)
+    real(wp), intent(in) :: a(:), b(:)
+    integer :: i
+
+    identical = size(a) == size(b)
+    if (.not. identical) return
+    do i = 1, size(a)
+      if (transfer(a(i), 0_long) /= transfer(b(i), 0_long)) then
+        identical = .false.
+        return
+      end if
+    end do
+  end function identical
+
+  !> Packs a state, if there is one.
+  subroutine put_state(record, law, state)
+    type(byte_record_t), intent(inout) :: record
+    class(force_law_t), intent(in) :: law
+    type(state_t), intent(in) :: state
+    logical :: follows
+
+    call record%put(merge(new_state, no_state, allocated(state%gap)))
+    if (.not. allocated(state%gap)) return
+    call record%put(state%gap)
+    follows = identical(law%pressure(state%gap), state%pressure)
+    call record%put(follows)
+    if (.not. follows) call record%put(state%pressure)
+    call record%put(state%h0)
+    call record%put(state%scale)
+    call record%put(state%axis_gap)
+    call record%put(state%load)
+    call record%put(state%residual)
+    call record%put(state%iterations)
+  end subroutine put_state
+
+  !> Unpacks what `put_state` packed after its first word, which said that there is a state.
+  subroutine take_state(record, law, state)
+    type(byte_record_t), intent(inout) :: record
+    class(force_law_t), intent(in) :: law
+    type(state_t), intent(out) :: state
+    logical :: follows
+
+    call record%take(state%gap)
+    call record%take(follows)
+    if (follows) then
+      state%pressure = law%pressure(state%gap)
+    else
+      call record%take(state%pressure)
+    end if
+    call record%take(state%h0)
+    call record%take(state%scale)
+    call record%take(state%axis_gap)
+    call record%take(state%load)
+    call record%take(state%residual)
+    call record%take(state%iterations)
+  end subroutine take_state
+
+  !> Packs what happened in a step.
+  subroutine put_event(record, event)
+    type(byte_record_t), intent(inout) :: record
+    type(step_result_t), intent(in) :: event
+
+    call record%put(event%converged)
+    call record%put(event%jumped)
+    call record%put(event%jump_h0)
+    call record%put(event%jump_load)
+    call record%put(event%jump_uncertainty)
+    call record%put(trim(event%reason))
+    call record%put(event%fold)
+    call record%put(allocated(event%lowest))
+    if (.not. allocated(event%lowest)) return
+    call record%put(event%lowest%load)
+    call record%put(event%lowest%h0)
+    call record%put(event%lowest%point)
+    call record%put(event%lowest%landing)
+  end subroutine put_event
+
+  !> Unpacks what `put_event` packed.
+  subroutine take_event(record, event)
+    type(byte_record_t), intent(inout) :: record
+    type(step_result_t), intent(out) :: event
+    character(len=:), allocatable :: reason
+    logical :: known
+
+    call record%take(event%converged)
+    call record%take(event%jumped)
+    call record%take(event%jump_h0)
+    call record%take(event%jump_load)
+    call record%take(event%jump_uncertainty)
+    call record%take(reason)
+    event%reason = reason
+    call record%take(event%fold)
+    call record%take(known)
+    if (.not. known) return
+    allocate (event%lowest)
+    call record%take(event%lowest%load)
+    call record%take(event%lowest%h0)
+    call record%take(event%lowest%point)
+    call record%take(event%lowest%landing)
+  end subroutine take_event
+
+  !> Packs a factorisation as what it was made from; known: the records before have that.
+  subroutine put_frozen(record, frozen, known)
+    type(byte_record_t), intent(inout) :: record
+    type(frozen_jacobian_t), intent(in) :: frozen
+    logical, intent(in) :: known
+
+    call record%put(frozen%factors%valid)
+    call record%put(frozen%control_kind)
+    call record%put(frozen%served)
+    call record%put(known .or. .not. allocated(frozen%factors%origin))
+    if (.not. known .and. allocated(frozen%factors%origin)) call record%put(frozen%factors%origin)
+  end subroutine put_frozen
+
+  !> Unpacks what `put_frozen` packed, all but the factors: frozen%factors%valid says whether there
+  !> were any.
+  subroutine take_frozen(record, frozen)
+    type(byte_record_t), intent(inout) :: record
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    logical :: known
+
+    call record%take(frozen%factors%valid)
+    call record%take(frozen%control_kind)
+    call record%take(frozen%served)
+    call record%take(known)
+    if (.not. known) call record%take(frozen%factors%origin)
+  end subroutine take_frozen
+
+  !> Packs what was spent.
+  subroutine put_cost(record, cost)
+    type(byte_record_t), intent(inout) :: record
+    type(cost_t), intent(in) :: cost
+
+    call record%put(cost%operator_products)
+    call record%put(cost%operator_columns)
+    call record%put(cost%pressure_evaluations)
+    call record%put(cost%factorisations)
+    call record%put(cost%iterations)
+    call record%put(cost%kernel_entries)
+    call record%put(cost%states)
+    call record%put(cost%rejected_steps)
+    call record%put(cost%kernel_seconds)
+    call record%put(cost%solve_seconds)
+    call record%put(cost%estimate_seconds)
+  end subroutine put_cost
+
+  !> Unpacks what `put_cost` packed.
+  subroutine take_cost(record, cost)
+    type(byte_record_t), intent(inout) :: record
+    type(cost_t), intent(out) :: cost
+
+    call record%take(cost%operator_products)
+    call record%take(cost%operator_columns)
+    call record%take(cost%pressure_evaluations)
+    call record%take(cost%factorisations)
+    call record%take(cost%iterations)
+    call record%take(cost%kernel_entries)
+    call record%take(cost%states)
+    call record%take(cost%rejected_steps)
+    call record%take(cost%kernel_seconds)
+    call record%take(cost%solve_seconds)
+    call record%take(cost%estimate_seconds)
+  end subroutine take_cost
+
+end module state_records

@@ -1,0 +1,59 @@
+!> This program's groups, one derived type each; those of the experiments are in
+!> `experiment_request`. What is optional is allocatable there and here.
+module scene_groups
+  use kinds, only: wp
+  use deck, only: deck_t
+  use experiment_request, only: request_t
+  implicit none
+  private
+  public :: scene_t, bodies_t, force_t, range_t, stability_t, sweep_t
+
+  !> &bodies
+  type :: bodies_t
+    !> R of the gap h0 + r^2/(2R) [m].
+    real(wp) :: radius = 0
+    !> E/(1-nu^2) of two identical bodies equivalent to these [Pa]; without meaning if `rigid`.
+    real(wp) :: stiffness = 0
+    !> Compliance of each body over their mean.
+    real(wp) :: share(2) = 1
+    logical :: rigid = .false.
+  end type bodies_t
+
+  !> &force; only the parameters of its law are set.
+  type :: force_t
+    character(len=:), allocatable :: law
+    character(len=:), allocatable :: part
+    real(wp) :: hamaker = 0, z0 = 0, p0 = 0, decay_length = 0
+  end type force_t
+
+  !> &approximations and &classical: `count` points over a range of h0 [m]; h0_start unallocated:
+  !> from where the equilibrium path starts.
+  type :: range_t
+    real(wp), allocatable :: h0_start
+    real(wp) :: h0_end = 0
+    integer :: count = 0
+  end type range_t
+
+  !> &stability has no keys.
+  type :: stability_t
+  end type stability_t
+
+  !> &sweep: the key as 'group.key' and every value it takes, however they were given.
+  type :: sweep_t
+    character(len=:), allocatable :: key
+    real(wp), allocatable :: values(:)
+  end type sweep_t
+
+  !> All that a deck asks for: of the experiments, and beside them.
+  type, extends(request_t) :: scene_t
+    !> The deck itself, with every default filled in.
+    type(deck_t) :: deck
+    character(len=:), allocatable :: title
+    type(bodies_t) :: bodies
+    type(force_t) :: force
+    type(range_t), allocatable :: approximations, classical
+    type(stability_t), allocatable :: stability
+    type(sweep_t), allocatable :: sweep
+  end type scene_t
+
+end module scene_groups

@@ -1,0 +1,204 @@
+!> Deformation that varies slowly: u(r) = u(0) wherever the surfaces interact, (21) of the paper.
+!> Displacement (22) and load (23) then follow from the gap on the axis alone: for any law by
+!> quadrature, and in the paper's closed forms.
+!>
+!> Everything is in the units of `dimensionless_problem`. With c the coupling, delta = 2 sqrt(2) c
+!> J(h), where J is the integral of p(h')/sqrt(h' - h) over h' from h on.
+module slow_deformation
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: wp, pi
+  use exponential, only: exponential_t
+  use lennard_jones, only: lennard_jones_t
+  use dimensionless_problem, only: problem_t
+  implicit none
+  private
+  public :: by_quadrature, closed_form, attraction_only, has_form
+  public :: slow_displacement, slow_slope, slow_load
+
+  !> Forms of (22) and (23): by quadrature; (31) and (32), or (35a) and (36a), the latter for either
+  !> part alone too; (35b) and (36b), the attraction of Lennard-Jones without its repulsion.
+  integer, parameter :: by_quadrature = 1, closed_form = 2, attraction_only = 3
+
+contains
+
+  !> Whether the law has this form: a closed one is known, or it has the attraction of (35b).
+  pure logical function has_form(problem, form)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: form
+
+    has_form = form == by_quadrature
+    select type (law => problem%law)
+    type is (exponential_t)
+      has_form = form /= attraction_only
+    type is (lennard_jones_t)
+      has_form = form /= attraction_only .or. law%attractive > 0
+    end select
+  end function has_form
+
+  !> delta = h(0) - h0 at a gap on the axis: (22), (31), (35a) or (35b). NaN where there is no such
+  !> form.
+  elemental real(wp) function slow_displacement(problem, form, gap) result(delta)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: form
+    real(wp), intent(in) :: gap
+
+    delta = response(problem, form, gap, .false.)
+  end function slow_displacement
+
+  !> The derivative of the displacement by the gap; h0 = gap - delta folds where it is 1.
+  elemental real(wp) function slow_slope(problem, form, gap) result(slope)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: form
+    real(wp), intent(in) :: gap
+
+    slope = response(problem, form, gap, .true.)
+  end function slow_slope
+
+  !> Load at a gap on the axis: Derjaguin's 2 pi E_s, (23), with the law's own energy for
+  !> `by_quadrature`, else (32), (36a) or (36b). Exact for rigid bodies. NaN where there is no such
+  !> form.
+  elemental real(wp) function slow_load(problem, form, gap) result(load)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: form
+    real(wp), intent(in) :: gap
+    real(wp) :: energy(1)
+
+    if (form == by_quadrature) then
+      energy = problem%law%energy([gap])
+      load = 2*pi*energy(1)
+      return
+    end if
+    load = nan()
+    if (.not. has_form(problem, form)) return
+    select type (law => problem%law)
+    type is (exponential_t)
+      load = 2*pi*decay(gap)
+    type is (lennard_jones_t)
+      load = 8*pi/3/gap**2*(repulsion(law, form)/gap**6/4 - law%attractive)
+    end select
+  end function slow_load
+
+  !> 2 sqrt(2) c J(h) in this form, or with `of_slope` its derivative.
+  elemental real(wp) function response(problem, form, gap, of_slope)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: form
+    real(wp), intent(in) :: gap
+    logical, intent(in) :: of_slope
+    real(wp) :: integral, near, far
+
+    response = nan()
+    if (.not. has_form(problem, form)) return
+    response = 0
+    if (.not. problem%coupling > 0) return
+    integral = 0
+    if (form == by_quadrature) then
+      integral = axis_integral(problem, gap, of_slope)
+    else
+      select type (law => problem%law)
+      type is (exponential_t)
+        integral = merge(-sqrt(pi), sqrt(pi), of_slope)*decay(gap)
+      type is (lennard_jones_t)
+        near = 16*repulsion(law, form)/3*cosine_integral(8)/gap**8.5_wp
+        far = 16*law%attractive/3*cosine_integral(2)/gap**2.5_wp
+        integral = near - far
+        if (of_slope) integral = (2.5_wp*far - 8.5_wp*near)/gap
+      end select
+    end if
+    response = 2*sqrt(2.0_wp)*problem%coupling*integral
+  end function response
+
+  !> J(h) by quadrature, or with `of_slope` the same integral of p', which is its derivative. With
+  !> h' = h + s^2 it is the integral of p(h + s^2) over all s. With s = scale sinh(t) the integrand
+  !> falls exponentially or faster for algebraic and exponential laws alike, and the trapezoidal
+  !> rule in t converges exponentially. The error is a few epsilon times the integral of the
+  !> integrand's magnitude.
+  pure real(wp) function axis_integral(problem, gap, of_slope) result(integral)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: gap
+    logical, intent(in) :: of_slope
+    !> Two rules that agree to this, one of twice as many points, leave nothing to be gained.
+    real(wp), parameter :: agreement = 1.0e-13_wp
+    !> A block of points below this part of the whole is followed by nothing of weight.
+    real(wp), parameter :: negligible = 1.0e-18_wp
+    integer, parameter :: block = 16, halvings = 8
+    real(wp) :: scale, step, before, points, magnitude, more
+    integer :: level
+
+    ! A law may be singular where the gap closes, at s = i sqrt(gap); else nothing about it is much
+    ! narrower than its length.
+    scale = 1
+    if (gap > 0) scale = sqrt(min(gap, 1.0_wp))
+    step = 0.5_wp
+    call add_points(0.0_wp, points, magnitude)
+    integral = step*points
+    do level = 1, halvings
+      before = integral
+      call add_points(step/2, points, more)
+      magnitude = max(magnitude, more)
+      integral = (before + step*points)/2
+      if (abs(integral - before) <= agreement*step*magnitude) return
+      step = step/2
+    end do
+
+  contains
+
+    !> Twice the sum of the integrand at t = first, first + step, ..., of which t = 0 counts once,
+    !> and of its magnitude.
+    pure subroutine add_points(first, points, magnitude)
+      real(wp), intent(in) :: first
+      real(wp), intent(out) :: points, magnitude
+      real(wp) :: t(block), value(block)
+      integer :: k
+
+      points = 0
+      magnitude = 0
+      t = first + step*[(k, k=0, block - 1)]
+      do
+        if (of_slope) then
+          value = problem%law%slope(gap + (scale*sinh(t))**2)
+        else
+          value = problem%law%pressure(gap + (scale*sinh(t))**2)
+        end if
+        value = 2*scale*cosh(t)*value
+        if (.not. t(1) > 0) value(1) = value(1)/2
+        points = points + sum(value)
+        magnitude = magnitude + sum(abs(value))
+        if (.not. sum(abs(value)) > negligible*magnitude) exit
+        t = t + block*step
+      end do
+    end subroutine add_points
+
+  end function axis_integral
+
+  !> Weight of the repulsion in a closed form.
+  elemental real(wp) function repulsion(law, form)
+    type(lennard_jones_t), intent(in) :: law
+    integer, intent(in) :: form
+
+    repulsion = merge(0.0_wp, law%repulsive, form == attraction_only)
+  end function repulsion
+
+  !> I_m = pi (2m)!/(2 (2^m m!)^2) of (35), the integral of cos^2m over a quarter turn.
+  elemental real(wp) function cosine_integral(m) result(i)
+    integer, intent(in) :: m
+    integer :: k
+
+    i = pi/2
+    do k = 1, m
+      i = i*(2*k - 1)/(2*k)
+    end do
+  end function cosine_integral
+
+  !> exp(-gap), finite at any gap.
+  elemental real(wp) function decay(gap)
+    real(wp), intent(in) :: gap
+    real(wp), parameter :: largest_exponent = 700
+
+    decay = exp(min(-gap, largest_exponent))
+  end function decay
+
+  elemental real(wp) function nan()
+    nan = ieee_value(nan, ieee_quiet_nan)
+  end function nan
+
+end module slow_deformation

@@ -1,0 +1,211 @@
+!> Gaps on the axis that the approximation of slowly varying deformation is asked for: the one at an
+!> h0, and those at which it lets approaching bodies jump.
+!>
+!> Everything is in the units of `dimensionless_problem`.
+module slow_jumps
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: wp, pi
+  use dimensionless_problem, only: problem_t
+  use slow_deformation, only: attraction_only, has_form, slow_displacement, slow_slope
+  implicit none
+  private
+  public :: gap_of_h0, criterion_gap, equation_37_gap, fold_gap
+
+  !> What a gap is searched for: an h0, a fold of h0, the stability criterion (29).
+  integer, parameter :: at_h0 = 1, at_fold = 2, at_criterion = 3
+
+  !> Steps of a search, as a fraction of the change of gap over which a law may be linearised, and
+  !> how many: enough for a gap of the algebraic law to fall by 26 orders of magnitude.
+  real(wp), parameter :: search_step = 0.1_wp
+  integer, parameter :: most_steps = 2000
+  !> Halvings that take an interval of any size to rounding.
+  integer, parameter :: most_halvings = 100
+
+contains
+
+  !> The largest gap on the axis, not below `lowest`, at which the approximation has this h0; NaN
+  !> where there is none.
+  pure real(wp) function gap_of_h0(problem, form, h0, lowest) result(gap)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: form
+    real(wp), intent(in) :: h0, lowest
+
+    gap = largest_gap(problem, form, at_h0, h0, lowest)
+  end function gap_of_h0
+
+  !> The gap on the axis at which approaching bodies come to violate the stability criterion (29),
+  !> 2 p' u(0)/p = -1, with the displacement of this form. NaN where they never do: the law does
+  !> not attract, or too little for these bodies.
+  pure real(wp) function criterion_gap(problem, form) result(gap)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: form
+
+    gap = nan()
+    if (problem%law%adhesion > 0) gap = largest_gap(problem, form, at_criterion, 0.0_wp, &
+      rest_of(problem))
+  end function criterion_gap
+
+  !> The same for the attraction of Lennard-Jones alone, where p'/p = -3/h, in closed form, (37).
+  !> NaN without attraction. It does not tell whether the full law has a jump.
+  pure real(wp) function equation_37_gap(problem) result(gap)
+    type(problem_t), intent(in) :: problem
+
+    gap = nan()
+    if (problem%coupling > 0 .and. has_form(problem, attraction_only)) &
+      gap = (6*sqrt(2.0_wp)*pi*problem%coupling)**(2.0_wp/7)
+  end function equation_37_gap
+
+  !> The gap on the axis at which h0 = gap - delta has its fold: there approaching bodies lose their
+  !> equilibrium in the approximation itself. NaN where there is none. With -delta = C h^(-5/2),
+  !> (35b), it is at 1 = (5/2) C h^(-7/2); (37) has 3, the pressure's exponent, for 5/2.
+  pure real(wp) function fold_gap(problem, form) result(gap)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: form
+
+    if (form == attraction_only) then
+      gap = equation_37_gap(problem)*(5.0_wp/6)**(2.0_wp/7)
+      return
+    end if
+    gap = nan()
+    if (problem%law%adhesion > 0) gap = largest_gap(problem, form, at_fold, 0.0_wp, &
+      rest_of(problem))
+  end function fold_gap
+
+  !> How near jumps are looked for: to where the law stops attracting, if it does.
+  pure real(wp) function rest_of(problem)
+    type(problem_t), intent(in) :: problem
+
+    rest_of = -huge(1.0_wp)
+    if (problem%law%rest_gap > 0) rest_of = problem%law%rest_gap
+  end function rest_of
+
+  !> The largest gap not below `nearest` at which the excess is zero; far away it is negative. NaN
+  !> where there is none.
+  pure real(wp) function largest_gap(problem, form, condition, h0, nearest) result(found)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: form, condition
+    real(wp), intent(in) :: h0, nearest
+    !> Beyond several gaps of most tension, once that little is left of what reaches 1 at a jump, it
+    !> falls to zero without turning.
+    real(wp), parameter :: edges = 4, settled = -0.999_wp
+    real(wp) :: lowest, gap, next, stride, value, top, above_top, below_top
+    integer :: step
+
+    found = nan()
+    lowest = max(nearest, problem%law%smallest_gap)
+    if (.not. has_form(problem, form)) return
+    if (condition /= at_h0 .and. .not. problem%coupling > 0) return
+    gap = edges*max(problem%law%edge_gap, 1.0_wp)
+    if (condition == at_h0) gap = max(h0, lowest, 1.0_wp)
+    stride = linear_range(gap)
+    do step = 1, most_steps
+      if (excess(gap) < merge(0.0_wp, settled, condition == at_h0)) exit
+      gap = gap + stride
+      stride = 2*stride
+    end do
+
+    ! Inwards, to the first change of sign.
+    top = -huge(1.0_wp)
+    above_top = gap
+    below_top = gap
+    do step = 1, most_steps
+      if (gap <= lowest) exit
+      next = inwards(gap)
+      value = excess(next)
+      if (value >= 0) then
+        found = root(next, gap)
+        return
+      end if
+      if (value > top) then
+        top = value
+        above_top = gap
+        below_top = inwards(next)
+      end if
+      gap = next
+    end do
+    ! Between two steps the excess may just reach zero and turn.
+    gap = maximum(below_top, above_top)
+    if (excess(gap) >= 0) found = root(gap, above_top)
+
+  contains
+
+    !> Negative beyond the gap that is searched for, positive short of it.
+    pure real(wp) function excess(gap)
+      real(wp), intent(in) :: gap
+      real(wp) :: pressure(1), slope(1)
+
+      select case (condition)
+      case (at_h0)
+        excess = h0 - (gap - slow_displacement(problem, form, gap))
+      case (at_fold)
+        excess = slow_slope(problem, form, gap) - 1
+      case default
+        ! The criterion is for bodies that attract each other.
+        excess = -1
+        pressure = problem%law%pressure([gap])
+        slope = problem%law%slope([gap])
+        if (pressure(1) < 0) &
+          excess = slow_displacement(problem, form, gap)*slope(1)/pressure(1) - 1
+      end select
+    end function excess
+
+    !> Change of gap within which the law may be linearised.
+    pure real(wp) function linear_range(gap)
+      real(wp), intent(in) :: gap
+
+      linear_range = problem%law%closure_fraction*gap + problem%law%closure_length
+    end function linear_range
+
+    !> The next gap of the search.
+    pure real(wp) function inwards(gap)
+      real(wp), intent(in) :: gap
+
+      inwards = max(gap - search_step*linear_range(gap), lowest)
+    end function inwards
+
+    !> Where the excess changes its sign between two gaps, by bisection.
+    pure real(wp) function root(near, far)
+      real(wp), intent(in) :: near, far
+      real(wp) :: low, high
+      integer :: halving
+
+      low = near
+      high = far
+      do halving = 1, most_halvings
+        root = low + (high - low)/2
+        if (root <= low .or. root >= high) exit
+        if (excess(root) >= 0) then
+          low = root
+        else
+          high = root
+        end if
+      end do
+    end function root
+
+    !> Where the excess is largest between two gaps, by golden section, to half the digits: it is
+    !> flat there.
+    pure real(wp) function maximum(low, high)
+      real(wp), intent(in) :: low, high
+      real(wp), parameter :: golden = 0.618033988749894848_wp
+      real(wp) :: a, b
+      integer :: step
+
+      a = low
+      b = high
+      do step = 1, 40
+        if (excess(b - golden*(b - a)) > excess(a + golden*(b - a))) then
+          b = a + golden*(b - a)
+        else
+          a = b - golden*(b - a)
+        end if
+      end do
+      maximum = a + (b - a)/2
+    end function maximum
+
+  end function largest_gap
+
+  elemental real(wp) function nan()
+    nan = ieee_value(nan, ieee_quiet_nan)
+  end function nan
+
+end module slow_jumps

@@ -1,0 +1,48 @@
+"""Claims about the rooms of src/: a module uses its own room and those above it, never one below."""
+
+import re
+
+import pytest
+from conftest import ROOT
+
+SOURCE = ROOT / "src"
+# The order in which src/meson.build goes through the rooms is the order in which they may use each
+# other.
+ROOMS = re.findall(r"^subdir\('(\w+)'\)", (SOURCE / "meson.build").read_text(), re.MULTILINE)
+MODULES = {path.stem: path for path in SOURCE.rglob("*.f90")}
+
+
+def room_of(name):
+    return MODULES[name].relative_to(SOURCE).parts[0]
+
+
+def used_by(name):
+    """The modules of this project that a module names in its use lines."""
+    found = re.findall(r"^ *use +(\w+)", MODULES[name].read_text(), re.MULTILINE | re.IGNORECASE)
+    return {other for other in found if other in MODULES}
+
+
+def test_every_module_is_in_a_room_that_meson_knows():
+    assert {room_of(name) for name in MODULES} == set(ROOMS)
+    for path in MODULES.values():
+        if path.stem != "snapin":
+            assert f"'{path.name}'" in (path.parent / "meson.build").read_text(), path
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_no_import_runs_backwards(room):
+    later = set(ROOMS[ROOMS.index(room) + 1 :])
+    backwards = [
+        f"{name} uses {other} of {room_of(other)}"
+        for name in MODULES
+        if room_of(name) == room
+        for other in used_by(name)
+        if room_of(other) in later
+    ]
+    assert not backwards
+
+
+def test_a_module_is_named_like_its_file():
+    for name, path in MODULES.items():
+        declared = re.search(r"^(?:module|program) (\w+)", path.read_text(), re.MULTILINE)
+        assert declared[1] == name
