@@ -20,16 +20,16 @@ contains
     type(scene_t), intent(in) :: scene
     character(len=width), allocatable :: columns(:)
     character(len=:), allocatable :: number
+    integer, allocatable :: single(:)
     integer :: i, k, n
 
+    single = single_columns(scene)
     ! Filled item by item: gfortran 12 overruns constructors of strings made on the way.
-    allocate (columns(count(is_column(scene, rows)) + turning_points(scene)*count(each_turn(rows))))
-    n = 0
-    do i = 1, size(rows)
-      if (.not. is_column(scene, rows(i))) cycle
-      n = n + 1
-      columns(n) = described(rows(i), '')
+    allocate (columns(size(single) + turning_points(scene)*count(each_turn(rows))))
+    do n = 1, size(single)
+      columns(n) = described(rows(single(n)), '')
     end do
+    n = size(single)
     do k = 1, turning_points(scene)
       number = brief(real(k, wp))
       do i = 1, size(rows)
@@ -46,16 +46,15 @@ contains
     type(summary_t), intent(in) :: summary
     type(scene_t), intent(in) :: scene
     real(wp), allocatable :: values(:)
+    integer, allocatable :: single(:)
     integer :: i, k
 
-    allocate (values(0))
-    do i = 1, size(rows)
-      if (.not. is_column(scene, rows(i))) cycle
-      if (summary%has(rows(i)%key)) then
-        values = [values, summary%number(rows(i)%key)]
-      else
-        values = [values, ieee_value(1.0_wp, ieee_quiet_nan)]
-      end if
+    single = single_columns(scene)
+    allocate (values(size(single)), source=ieee_value(1.0_wp, ieee_quiet_nan))
+    do i = 1, size(single)
+      associate (key => rows(single(i))%key)
+        if (summary%has(key)) values(i) = summary%number(key)
+      end associate
     end do
     do k = 1, turning_points(scene)
       do i = 1, size(rows)
@@ -64,22 +63,19 @@ contains
     end do
   end function numbers_of
 
-  !> Whether a row is a column of its own in a sweep of the scene.
-  elemental logical function is_column(scene, row)
+  !> The rows that are columns of their own in a sweep of the scene: first those of every sweep, then
+  !> those that a group adds.
+  pure function single_columns(scene) result(single)
     type(scene_t), intent(in) :: scene
-    type(row_t), intent(in) :: row
+    integer, allocatable :: single(:)
+    integer :: i
 
-    select case (row%sweep)
-    case ('always')
-      is_column = .true.
-    case ('classical')
-      is_column = allocated(scene%classical)
-    case ('approximations')
-      is_column = allocated(scene%approximations)
-    case default
-      is_column = .false.
-    end select
-  end function is_column
+    single = pack([(i, i=1, size(rows))], rows%sweep == 'always')
+    if (allocated(scene%classical)) &
+      single = [single, pack([(i, i=1, size(rows))], rows%sweep == 'classical')]
+    if (allocated(scene%approximations)) &
+      single = [single, pack([(i, i=1, size(rows))], rows%sweep == 'approximations')]
+  end function single_columns
 
   !> Whether a row is one column for each turning point.
   elemental logical function each_turn(row)
