@@ -147,6 +147,7 @@ contains
     type(column_recorder_t) :: rows
     type(experiment_result_t) :: outcome
     type(summary_t) :: summary
+    real(c_double), allocatable :: found(:)
 
     stat = 0
     message = ''
@@ -169,10 +170,12 @@ contains
     if (allocated(outcome%stepped_path)) reason = outcome%stepped_path%reason
     summary = summary_of(scene, problem, outcome)
     call tell(summary, highest, error_estimate, warnings)
-    if (.not. allocated(summary%folds_h0)) return
-    fold_count = int(min(int(n), size(summary%folds_h0)), c_int)
-    folds(:fold_count, 1) = summary%folds_h0(:fold_count)
-    folds(:fold_count, 2) = summary%folds_load(:fold_count)
+    fold_count = int(min(int(n), size(summary%numbers('folds_h0'))), c_int)
+    if (fold_count == 0) return
+    found = summary%numbers('folds_h0')
+    folds(:fold_count, 1) = found(:fold_count)
+    found = summary%numbers('folds_load')
+    folds(:fold_count, 2) = found(:fold_count)
   end subroutine equilibrium_path
 
   !> Goes through h0 (law's lengths) as through loadings and unloadings of a deck: a stretch goes
@@ -312,8 +315,9 @@ contains
     highest = nothing()
     error_estimate = nothing()
     warnings = ''
-    if (allocated(summary%max_tension)) highest = [summary%max_tension, summary%max_tension_h0]
-    if (allocated(summary%error_estimate)) error_estimate = summary%error_estimate
+    if (summary%has('max_tension')) &
+      highest = [summary%number('max_tension'), summary%number('max_tension_h0')]
+    if (summary%has('error_estimate')) error_estimate = summary%number('error_estimate')
     if (.not. allocated(summary%warnings)) return
     do i = 1, size(summary%warnings)
       if (i > 1) warnings = trim(warnings)//new_line('a')

@@ -1,6 +1,6 @@
 !> One deck from scene to results: the effects that the scene calls for, and no others.
 module simulation
-  use kinds, only: wp
+  use kinds, only: wp, long
   use failure, only: failure_t
   use build_info, only: version, compiler, blas, options
   use dimensionless_problem, only: problem_t
@@ -127,11 +127,11 @@ contains
       approximation_rows(problem, scene%approximations, path_start(scene, problem)))
     summary = summary_of(scene, problem, outcome)
     if (expected%too_large /= '') then
-      summary%converged = .false.
+      call summary%set('converged', .false.)
       call summary%warn(expected%too_large)
     end if
     if (failed > 0) then
-      summary%converged = .false.
+      call summary%set('converged', .false.)
       call summary%warn(number(failed)//' of '//number(size(scene%sweep%values))// &
         ' cases failed: their rows in sweep.csv say converged = 0')
     end if
@@ -139,12 +139,12 @@ contains
       number(recorder%uncertain)//' states could not be verified: their rows have NaN')
     if (recorder%contradicted > 0) call summary%warn('the eigenvalue of '// &
       number(recorder%contradicted)//' states contradicts their column stable')
-    summary%version = version
-    summary%compiler = compiler
-    summary%blas = blas
-    summary%build_options = options
-    summary%threads = thread_count()
-    summary%wall_seconds = results%journal%earlier + seconds() - began
+    call summary%set('version', version)
+    call summary%set('compiler', compiler)
+    call summary%set('blas', blas)
+    call summary%set('build_options', options)
+    call summary%set('threads', int(thread_count(), long))
+    call summary%set('wall_seconds', results%journal%earlier + seconds() - began)
     call results%write_summary(summary, outcome%cost, scene%deck)
     call results%finish(error)
     if (allocated(error)) then
@@ -156,10 +156,10 @@ contains
         call say(out_dir//': warning: '//summary%warnings(i)%text, quiet)
       end do
     end if
-    if (allocated(summary%grid)) call say(out_dir//': grid '//summary%grid//', method '// &
-      summary%method//': '//summary%chosen_because, quiet)
+    if (summary%has('grid')) call say(out_dir//': grid '//summary%text('grid')//', method '// &
+      summary%text('method')//': '//summary%text('chosen_because'), quiet)
     call say(report(out_dir, summary, outcome), quiet)
-    if (summary%converged) exit_code = 0
+    if (summary%is_true('converged')) exit_code = 0
   end subroutine run_scene
 
   !> A count for a message.
@@ -177,15 +177,17 @@ contains
     type(experiment_result_t), intent(in) :: outcome
     character(len=:), allocatable :: text
     character(len=160) :: buffer
+    real(wp) :: took
 
-    write (buffer, '(i0, a, f0.2, a)') outcome%cost%states, ' states in ', summary%wall_seconds, &
+    took = summary%number('wall_seconds')
+    write (buffer, '(i0, a, f0.2, a)') outcome%cost%states, ' states in ', took, &
       ' s'
-    if (summary%wall_seconds < 1) write (buffer, '(i0, a, f5.3, a)') outcome%cost%states, &
-      ' states in ', summary%wall_seconds, ' s'
+    if (took < 1) write (buffer, '(i0, a, f5.3, a)') outcome%cost%states, &
+      ' states in ', took, ' s'
     text = trim(buffer)
-    if (allocated(summary%max_tension)) then
-      write (buffer, '(a, es11.4, a, es12.4, a)') ', largest tension', summary%max_tension, &
-        ' N at h0 =', summary%max_tension_h0, ' m'
+    if (summary%has('max_tension')) then
+      write (buffer, '(a, es11.4, a, es12.4, a)') ', largest tension', &
+        summary%number('max_tension'), ' N at h0 =', summary%number('max_tension_h0'), ' m'
       text = text//trim(buffer)
     end if
     text = out_dir//': '//text

@@ -126,7 +126,7 @@ contains
     !$omp critical (one_at_a_time)
     call swept_scene(scene, value, variant, error)
     !$omp end critical (one_at_a_time)
-    summary%converged = .false.
+    call summary%set('converged', .false.)
     if (.not. allocated(error)) then
       problem = problem_of(variant)
       call run_experiment(variant, problem, observer, outcome)
@@ -136,7 +136,7 @@ contains
     case%numbers = numbers_of(summary, scene)
     !$omp end critical (one_at_a_time)
     case%done = .true.
-    case%converged = summary%converged
+    case%converged = summary%is_true('converged')
     case%cost = outcome%cost
   end subroutine run_case
 

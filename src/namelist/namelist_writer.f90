@@ -15,20 +15,10 @@ module namelist_writer
   !> assignment_of(key, value): the lines `  key = value`, each with its end, for a value that is
   !> allocated, and nothing otherwise. Reals read back as the same numbers.
   interface assignment_of
-    module procedure :: of_real, of_reals, of_integer, of_long, of_integers, of_logical, of_text, &
-      of_lines
+    module procedure :: of_reals, of_counts, of_logical, of_text, of_lines
   end interface assignment_of
 
 contains
-
-  pure function of_real(key, value) result(text)
-    character(len=*), intent(in) :: key
-    real(wp), allocatable, intent(in) :: value
-    character(len=:), allocatable :: text
-
-    text = ''
-    if (allocated(value)) text = single(key, full(value))
-  end function of_real
 
   pure function of_reals(key, values) result(text)
     character(len=*), intent(in) :: key
@@ -46,30 +36,11 @@ contains
     text = written(key, items)
   end function of_reals
 
-  pure function of_integer(key, value) result(text)
+  pure function of_counts(key, values) result(text)
     character(len=*), intent(in) :: key
-    integer, allocatable, intent(in) :: value
-    character(len=:), allocatable :: text
-
-    text = ''
-    if (allocated(value)) text = of_long(key, int(value, long))
-  end function of_integer
-
-  pure function of_long(key, value) result(text)
-    character(len=*), intent(in) :: key
-    integer(long), intent(in) :: value
+    integer(long), allocatable, intent(in) :: values(:)
     character(len=:), allocatable :: text
     character(len=24) :: buffer
-
-    write (buffer, '(i0)') value
-    text = single(key, trim(buffer))
-  end function of_long
-
-  pure function of_integers(key, values) result(text)
-    character(len=*), intent(in) :: key
-    integer, allocatable, intent(in) :: values(:)
-    character(len=:), allocatable :: text
-    character(len=12) :: buffer
     type(line_t), allocatable :: items(:)
     integer :: i
 
@@ -81,7 +52,7 @@ contains
       items(i)%text = trim(buffer)
     end do
     text = written(key, items)
-  end function of_integers
+  end function of_counts
 
   pure function of_logical(key, value) result(text)
     character(len=*), intent(in) :: key

@@ -27,13 +27,15 @@ contains
   !> Whether the neck is resolved, and what to do if not.
   subroutine judge_resolution(summary)
     type(summary_t), intent(inout) :: summary
+    real(wp) :: spacing
 
-    if (.not. allocated(summary%spacing_over_neck)) return
-    summary%resolved = summary%spacing_over_neck <= resolved_spacing
-    if (summary%resolved) return
-    call summary%warn('under-resolved: nodes are '//short_number(summary%spacing_over_neck)// &
+    if (.not. summary%has('spacing_over_neck')) return
+    spacing = summary%number('spacing_over_neck')
+    call summary%set('resolved', spacing <= resolved_spacing)
+    if (spacing <= resolved_spacing) return
+    call summary%warn('under-resolved: nodes are '//short_number(spacing)// &
       ' neck widths apart at the contact edge, which is then pinned between them; use '// &
-      short_number(summary%spacing_over_neck/resolved_spacing)// &
+      short_number(spacing/resolved_spacing)// &
       ' times as many nodes or grid = ''panels''')
   end subroutine judge_resolution
 
@@ -44,26 +46,28 @@ contains
     type(scene_t), intent(in) :: scene
     type(experiment_result_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
-    real(wp) :: enough
+    real(wp) :: enough, estimate
     logical :: on_change
 
     on_change = outcome%chosen%options%stop_on_change .and. &
       outcome%chosen%options%method == 'mixing'
     associate (tolerance => outcome%chosen%options%tolerance)
-      if (summary%converged .and. .not. on_change .and. &
-        summary%worst_residual > max(tolerance, scene%numerics%accuracy, usual_residual)) &
+      if (summary%is_true('converged') .and. .not. on_change .and. &
+        summary%number('worst_residual') > &
+        max(tolerance, scene%numerics%accuracy, usual_residual)) &
         call summary%warn('rounding leaves residuals of up to '// &
-        short_number(summary%worst_residual)// &
+        short_number(summary%number('worst_residual'))// &
         ' lengths of the force law, above the tolerance of '//short_number(tolerance))
     end associate
-    if (.not. allocated(summary%error_estimate)) return
+    if (.not. summary%has('error_estimate')) return
+    estimate = summary%number('error_estimate')
     enough = clearly*scene%numerics%accuracy
     if (outcome%chosen%grid /= 'edge_locked') enough = max(enough, meaningless)
-    if (summary%error_estimate >= 1) then
+    if (estimate >= 1) then
       call summary%warn('the error could not be estimated: a finer mesh has no such states, or '// &
         'these did not converge; the numbers may mean nothing')
-    else if (summary%error_estimate > enough) then
-      call summary%warn('the error is estimated as '//short_number(summary%error_estimate)// &
+    else if (estimate > enough) then
+      call summary%warn('the error is estimated as '//short_number(estimate)// &
         ', above the accuracy of '//short_number(scene%numerics%accuracy)//' asked for')
     end if
   end subroutine judge_accuracy

@@ -252,8 +252,9 @@ contains
 
     if (allocated(self%trouble)) return
     complete = summary
-    if (.not. allocated(complete%title)) complete%title = self%title
-    if (.not. allocated(complete%version)) complete%version = self%version
+    call complete%set('title', self%title)
+    call complete%set('version', self%version)
+    call complete%take_cost(cost)
     ! A folder that has taken the name of this run's may hold another's summary.
     call self%check_presence(missing)
     if (allocated(missing)) then
@@ -263,7 +264,7 @@ contains
     call self%mark('summary.nml')
     call file%open(self%path_of('summary.nml') // partial, self%trouble)
     if (.not. allocated(self%trouble)) &
-      call file%put(summary_text(complete, cost) // deck%resolved(), self%trouble)
+      call file%put(summary_text(complete) // deck%resolved(), self%trouble)
     if (.not. allocated(self%trouble)) call file%close(self%trouble)
   end subroutine write_summary
 

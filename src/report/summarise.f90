@@ -2,7 +2,7 @@
 !> is not as it should be.
 module summarise
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp
+  use kinds, only: wp, long
   use dimensionless_problem, only: problem_t, tabor_parameter, surface_energy, largest_tension
   use classical, only: jkr_pull_off, dmt_pull_off
   use maugis, only: maugis_lambda, maugis_pull_off
@@ -28,23 +28,24 @@ contains
     type(summary_t) :: summary
     integer :: k
 
-    summary%title = scene%title
-    summary%converged = .true.
+    call summary%set('title', scene%title)
+    call summary%set('converged', .true.)
     call describe(scene, problem, summary)
     if (allocated(outcome%chosen%grid)) then
-      summary%grid = outcome%chosen%grid
-      summary%method = trim(outcome%chosen%options%method)
-      summary%chosen_because = outcome%chosen%because
-      summary%nodes = outcome%nodes
-      summary%worst_residual = 0
-      if (allocated(outcome%error_estimate)) summary%error_estimate = outcome%error_estimate
+      call summary%set('grid', outcome%chosen%grid)
+      call summary%set('method', trim(outcome%chosen%options%method))
+      call summary%set('chosen_because', outcome%chosen%because)
+      call summary%set('nodes', int(outcome%nodes, long))
+      call summary%set('worst_residual', 0.0_wp)
+      if (allocated(outcome%error_estimate)) &
+        call summary%set('error_estimate', outcome%error_estimate)
     end if
     if (allocated(outcome%stepped_path)) &
       call take_branch(problem, 'path', outcome%stepped_path, summary)
     if (allocated(outcome%loading)) then
       call take_branch(problem, 'loading', outcome%loading, summary)
-      if (allocated(outcome%loading%jump)) call take_jump_in(problem, outcome%loading%jump, &
-        summary, outcome%loading%jump_uncertainty)
+      if (allocated(outcome%loading%jump)) call take_jump(problem, 'jump_in', &
+        outcome%loading%jump, outcome%loading%jump_uncertainty, summary)
     end if
     if (allocated(outcome%unloading)) then
       do k = 1, size(outcome%unloading)
@@ -61,11 +62,11 @@ contains
     if (outcome%chosen%options%stop_on_change .and. outcome%chosen%options%method == 'mixing') then
       call summary%warn('the iteration was stopped on a small change of the displacement, '// &
         'which is not convergence: the largest residual left is '// &
-        short_number(summary%worst_residual)// &
+        short_number(summary%number('worst_residual'))// &
         ' lengths of the force law')
       ! Equations that were not asked to hold may hold all the same.
-      summary%converged = ended_as_planned(outcome) .and. &
-        summary%worst_residual <= outcome%chosen%options%tolerance
+      call summary%set('converged', ended_as_planned(outcome) .and. &
+        summary%number('worst_residual') <= outcome%chosen%options%tolerance)
     end if
   end function summary_of
 
@@ -87,15 +88,15 @@ contains
     type(summary_t), intent(inout) :: summary
 
     if (problem%law%adhesion > 0) then
-      summary%surface_energy = surface_energy(problem)
-      summary%jkr_pull_off = -jkr_pull_off(problem%radius, summary%surface_energy)
-      summary%dmt_pull_off = -dmt_pull_off(problem%radius, summary%surface_energy)
+      call summary%set('surface_energy', surface_energy(problem))
+      call summary%set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
+      call summary%set('dmt_pull_off', -dmt_pull_off(problem%radius, surface_energy(problem)))
       if (.not. problem%rigid) then
-        summary%sigma = problem%coupling*problem%law%adhesion
-        summary%tabor = tabor_parameter(problem)
+        call summary%set('sigma', problem%coupling*problem%law%adhesion)
+        call summary%set('tabor', tabor_parameter(problem))
       end if
     else if (scene%force%law == 'exponential' .and. .not. problem%rigid) then
-      summary%big_lambda = problem%coupling
+      call summary%set('big_lambda', problem%coupling)
     end if
     if (allocated(scene%classical)) call take_maugis(problem, summary)
     if (allocated(scene%approximations)) call estimate_jumps(problem, summary)
@@ -110,8 +111,10 @@ contains
     gamma = surface_energy(problem)
     strength = largest_tension(problem)
     if (problem%rigid .or. .not. (gamma > 0 .and. strength > 0)) return
-    summary%maugis_lambda = maugis_lambda(problem%radius, problem%stiffness, gamma, strength)
-    summary%maugis_pull_off = -maugis_pull_off(problem%radius, problem%stiffness, gamma, strength)
+    call summary%set('maugis_lambda', &
+      maugis_lambda(problem%radius, problem%stiffness, gamma, strength))
+    call summary%set('maugis_pull_off', &
+      -maugis_pull_off(problem%radius, problem%stiffness, gamma, strength))
   end subroutine take_maugis
 
   !> Where approaching bodies jump in the approximation of slow deformation.
@@ -121,26 +124,26 @@ contains
     type(jumps_t) :: jumps
 
     jumps = jumps_of(problem)
-    call take(jumps%criterion, summary%jump_criterion_29_h0, summary%jump_criterion_29_load)
-    call take(jumps%equation_37, summary%jump_equation_37_h0, summary%jump_equation_37_load)
-    if (allocated(jumps%equation_37)) summary%jump_equation_37_gap = jumps%equation_37%gap
-    call take(jumps%fold_attraction, summary%fold_attractive_only_h0, &
-      summary%fold_attractive_only_load)
+    call take(jumps%criterion, 'jump_criterion_29')
+    call take(jumps%equation_37, 'jump_equation_37')
+    if (allocated(jumps%equation_37)) &
+      call summary%set('jump_equation_37_gap', jumps%equation_37%gap)
+    call take(jumps%fold_attraction, 'fold_attractive_only')
     if (allocated(jumps%fold)) then
       ! That of a law without a closed form has another name, in approximations.csv alone.
       if (jumps%fold%theory == 'fold_closed_form') &
-        call take(jumps%fold, summary%fold_closed_form_h0, summary%fold_closed_form_load)
+        call take(jumps%fold, 'fold_closed_form')
     end if
 
   contains
 
-    subroutine take(jump, h0, load)
+    subroutine take(jump, key)
       type(jump_t), allocatable, intent(in) :: jump
-      real(wp), allocatable, intent(inout) :: h0, load
+      character(len=*), intent(in) :: key
 
       if (.not. allocated(jump)) return
-      h0 = jump%h0
-      load = jump%load
+      call summary%set(key//'_h0', jump%h0)
+      call summary%set(key//'_load', jump%load)
     end subroutine take
 
   end subroutine estimate_jumps
@@ -154,17 +157,18 @@ contains
 
     if (allocated(branch%lowest)) call raise_tension(problem, branch%lowest, summary)
     if (allocated(branch%profile)) call take_profiles(branch%profile, summary)
-    summary%worst_residual = max(summary%worst_residual, branch%worst_residual)
+    call summary%set('worst_residual', max(summary%number('worst_residual'), &
+        branch%worst_residual))
     call widen_spacing(summary, branch%worst_spacing)
     if (branch%unconverged > 0) then
-      summary%converged = .false.
+      call summary%set('converged', .false.)
       call summary%warn(name//': '//brief(real(branch%unconverged, wp))//' of '// &
         brief(real(branch%states, wp))//' states did not converge, the first at h0 = '// &
         short_number(branch%first_unconverged*problem%length)//' m; the largest residual is '// &
         short_number(branch%worst_residual)//' lengths of the force law')
     end if
     if (branch%reason /= '') then
-      summary%converged = .false.
+      call summary%set('converged', .false.)
       call summary%warn(name//' ended early: '//trim(branch%reason))
     end if
   end subroutine take_branch
@@ -174,84 +178,74 @@ contains
     type(problem_t), intent(in) :: problem
     type(branch_t), intent(in) :: branches(:)
     type(summary_t), intent(inout) :: summary
-    real(wp) :: nothing
+    real(wp), dimension(size(branches)) :: tension, tension_h0, tension_error, tension_h0_error, &
+      jump_h0, jump_h0_error
     integer :: k
 
-    nothing = ieee_value(nothing, ieee_quiet_nan)
-    summary%unload_from = scene%unloading%from
-    allocate (summary%unload_max_tension(size(branches)), source=nothing)
-    summary%unload_max_tension_h0 = summary%unload_max_tension
-    summary%unload_jump_out_h0 = summary%unload_max_tension
-    summary%unload_max_tension_error = summary%unload_max_tension
-    summary%unload_max_tension_h0_error = summary%unload_max_tension
-    summary%unload_jump_out_h0_error = summary%unload_max_tension
+    tension = ieee_value(1.0_wp, ieee_quiet_nan)
+    tension_h0 = tension
+    tension_error = tension
+    tension_h0_error = tension
+    jump_h0 = tension
+    jump_h0_error = tension
     do k = 1, size(branches)
       if (allocated(branches(k)%lowest)) then
         associate (lowest => branches(k)%lowest)
-          summary%unload_max_tension(k) = -lowest%load*problem%load
-          summary%unload_max_tension_h0(k) = lowest%h0*problem%length
+          tension(k) = -lowest%load*problem%load
+          tension_h0(k) = lowest%h0*problem%length
           if (allocated(lowest%error)) then
-            summary%unload_max_tension_error(k) = lowest%error%load*problem%load
-            if (.not. lowest%searched) &
-              summary%unload_max_tension_h0_error(k) = lowest%error%h0*problem%length
+            tension_error(k) = lowest%error%load*problem%load
+            if (.not. lowest%searched) tension_h0_error(k) = lowest%error%h0*problem%length
           end if
         end associate
       end if
       if (.not. allocated(branches(k)%jump)) cycle
       associate (jump => branches(k)%jump)
-        summary%unload_jump_out_h0(k) = jump%h0*problem%length
-        if (allocated(jump%error)) &
-          summary%unload_jump_out_h0_error(k) = jump%error%h0*problem%length
+        jump_h0(k) = jump%h0*problem%length
+        if (allocated(jump%error)) jump_h0_error(k) = jump%error%h0*problem%length
       end associate
-      if (.not. allocated(summary%jump_out_h0)) &
-        call take_jump_out(problem, branches(k)%jump, summary, branches(k)%jump_uncertainty)
+      if (.not. summary%has('jump_out_h0')) &
+        call take_jump(problem, 'jump_out', branches(k)%jump, branches(k)%jump_uncertainty, summary)
     end do
+    call summary%set('unload_from', scene%unloading%from)
+    call summary%set('unload_max_tension', tension)
+    call summary%set('unload_max_tension_h0', tension_h0)
+    call summary%set('unload_jump_out_h0', jump_h0)
+    call summary%set('unload_max_tension_error', tension_error)
+    call summary%set('unload_max_tension_h0_error', tension_h0_error)
+    call summary%set('unload_jump_out_h0_error', jump_h0_error)
   end subroutine take_unloading
 
-  !> A jump into contact; uncertainty: how well its h0 is known where it was bracketed.
-  subroutine take_jump_in(problem, jump, summary, uncertainty)
+  !> A jump, under the keys that begin with `name`; uncertainty: how well its h0 is known where it
+  !> was bracketed.
+  subroutine take_jump(problem, name, jump, uncertainty, summary)
     type(problem_t), intent(in) :: problem
+    character(len=*), intent(in) :: name
     type(reported_t), intent(in) :: jump
-    type(summary_t), intent(inout) :: summary
     real(wp), intent(in) :: uncertainty
-
-    summary%jump_in_h0 = jump%h0*problem%length
-    summary%jump_in_load = jump%load*problem%load
-    if (allocated(summary%jump_in_uncertainty)) deallocate (summary%jump_in_uncertainty)
-    if (uncertainty > 0) summary%jump_in_uncertainty = uncertainty*problem%length
-    if (.not. allocated(jump%error)) return
-    summary%jump_in_h0_error = jump%error%h0*problem%length
-    summary%jump_in_load_error = jump%error%load*problem%load
-  end subroutine take_jump_in
-
-  !> The same for a jump out of contact.
-  subroutine take_jump_out(problem, jump, summary, uncertainty)
-    type(problem_t), intent(in) :: problem
-    type(reported_t), intent(in) :: jump
     type(summary_t), intent(inout) :: summary
-    real(wp), intent(in) :: uncertainty
 
-    summary%jump_out_h0 = jump%h0*problem%length
-    summary%jump_out_load = jump%load*problem%load
-    if (allocated(summary%jump_out_uncertainty)) deallocate (summary%jump_out_uncertainty)
-    if (uncertainty > 0) summary%jump_out_uncertainty = uncertainty*problem%length
+    call summary%set(name//'_h0', jump%h0*problem%length)
+    call summary%set(name//'_load', jump%load*problem%load)
+    call summary%drop(name//'_uncertainty')
+    if (uncertainty > 0) call summary%set(name//'_uncertainty', uncertainty*problem%length)
     if (.not. allocated(jump%error)) return
-    summary%jump_out_h0_error = jump%error%h0*problem%length
-    summary%jump_out_load_error = jump%error%load*problem%load
-  end subroutine take_jump_out
+    call summary%set(name//'_h0_error', jump%error%h0*problem%length)
+    call summary%set(name//'_load_error', jump%error%load*problem%load)
+  end subroutine take_jump
 
   !> Errors of profiles, added to those of other branches.
   subroutine take_profiles(profile, summary)
     type(reported_t), intent(in) :: profile(:)
     type(summary_t), intent(inout) :: summary
+    real(wp), allocatable :: errors(:)
     integer :: k
 
-    if (.not. allocated(summary%profiles_error)) allocate (summary%profiles_error(0))
+    errors = summary%numbers('profiles_error')
     do k = 1, size(profile)
-      if (allocated(profile(k)%error)) &
-        summary%profiles_error = [summary%profiles_error, profile(k)%error%profile]
+      if (allocated(profile(k)%error)) errors = [errors, profile(k)%error%profile]
     end do
-    if (size(summary%profiles_error) == 0) deallocate (summary%profiles_error)
+    if (size(errors) > 0) call summary%set('profiles_error', errors)
   end subroutine take_profiles
 
   subroutine take_path(problem, outcome, summary)
@@ -260,10 +254,11 @@ contains
     type(summary_t), intent(inout) :: summary
 
     associate (path => outcome%path)
-      summary%worst_residual = max(summary%worst_residual, path%worst_residual)
+      call summary%set('worst_residual', max(summary%number('worst_residual'), &
+        path%worst_residual))
       call widen_spacing(summary, path%worst_spacing)
       if (path%reason /= '') then
-        summary%converged = .false.
+        call summary%set('converged', .false.)
         call summary%warn('path: '//trim(path%reason))
       end if
       if (path%fallen) call summary%warn('path: nothing keeps the bodies apart under this law: '// &
@@ -272,37 +267,39 @@ contains
         if (path%lowest%load < 0) call raise_tension(problem, path%lowest, summary)
       end if
       call take_profiles(path%profile, summary)
-      summary%folds_h0 = path%fold%h0*problem%length
-      summary%folds_load = path%fold%load*problem%load
-      summary%folds_stable = merge(1, 0, path%unstable_after == 0)
-      summary%load_folds_h0 = path%extremum%h0*problem%length
-      summary%load_folds_load = path%extremum%load*problem%load
-      allocate (summary%folds_h0_error(0), summary%folds_load_error(0), &
-        summary%load_folds_h0_error(0), summary%load_folds_load_error(0))
-      call add_errors(path%fold, summary%folds_h0_error, summary%folds_load_error)
-      call add_errors(path%extremum, summary%load_folds_h0_error, summary%load_folds_load_error)
+      call summary%set('folds_stable', merge(1, 0, path%unstable_after == 0))
+      call take_list('folds', path%fold)
+      call take_list('load_folds', path%extremum)
       associate (n => size(path%fold))
         if (n == 0) return
         ! What a stretch of the path begins with may be another fold.
-        if (path%first_piece == 1) call take_jump_in(problem, path%fold(1), summary, 0.0_wp)
+        if (path%first_piece == 1) &
+          call take_jump(problem, 'jump_in', path%fold(1), 0.0_wp, summary)
         if (path%unstable_after(n) == 0) &
-          call take_jump_out(problem, path%fold(n), summary, 0.0_wp)
+          call take_jump(problem, 'jump_out', path%fold(n), 0.0_wp, summary)
       end associate
     end associate
 
   contains
 
-    subroutine add_errors(list, h0_error, load_error)
+    subroutine take_list(name, list)
+      character(len=*), intent(in) :: name
       type(reported_t), intent(in) :: list(:)
-      real(wp), allocatable, intent(inout) :: h0_error(:), load_error(:)
+      real(wp) :: h0_error(size(list)), load_error(size(list))
       integer :: k
 
+      call summary%set(name//'_h0', list%h0*problem%length)
+      call summary%set(name//'_load', list%load*problem%load)
+      h0_error = ieee_value(1.0_wp, ieee_quiet_nan)
+      load_error = h0_error
       do k = 1, size(list)
         if (.not. allocated(list(k)%error)) cycle
-        h0_error = [h0_error, list(k)%error%h0*problem%length]
-        load_error = [load_error, list(k)%error%load*problem%load]
+        h0_error(k) = list(k)%error%h0*problem%length
+        load_error(k) = list(k)%error%load*problem%load
       end do
-    end subroutine add_errors
+      call summary%set(name//'_h0_error', h0_error)
+      call summary%set(name//'_load_error', load_error)
+    end subroutine take_list
 
   end subroutine take_path
 
@@ -313,8 +310,9 @@ contains
     type(summary_t), intent(inout) :: summary
 
     if (.not. allocated(outcome%energy_lost)) return
-    summary%energy_lost = outcome%energy_lost*problem%load*problem%length
-    summary%energy_lost_uncertainty = outcome%energy_uncertainty*problem%load*problem%length
+    call summary%set('energy_lost', outcome%energy_lost*problem%load*problem%length)
+    call summary%set('energy_lost_uncertainty', &
+      outcome%energy_uncertainty*problem%load*problem%length)
   end subroutine take_energy
 
   !> Where the loading ends or, without one, the path.
@@ -332,12 +330,12 @@ contains
       if (allocated(outcome%path%finish)) at = outcome%path%finish
     end if
     if (.not. allocated(at)) return
-    summary%end_h0 = at%h0*problem%length
-    summary%end_displacement = at%displacement*problem%length
-    summary%end_load = at%load*problem%load
+    call summary%set('end_h0', at%h0*problem%length)
+    call summary%set('end_displacement', at%displacement*problem%length)
+    call summary%set('end_load', at%load*problem%load)
     if (.not. allocated(at%error)) return
-    summary%end_displacement_error = at%error%displacement*problem%length
-    summary%end_load_error = at%error%load*problem%load
+    call summary%set('end_displacement_error', at%error%displacement*problem%length)
+    call summary%set('end_load_error', at%error%load*problem%load)
   end subroutine take_end
 
   !> Keeps the largest tension, positive.
@@ -346,17 +344,17 @@ contains
     type(reported_t), intent(in) :: lowest
     type(summary_t), intent(inout) :: summary
 
-    if (allocated(summary%max_tension)) then
-      if (-lowest%load*problem%load <= summary%max_tension) return
-      if (allocated(summary%max_tension_error)) deallocate (summary%max_tension_error)
-      if (allocated(summary%max_tension_h0_error)) deallocate (summary%max_tension_h0_error)
+    if (summary%has('max_tension')) then
+      if (-lowest%load*problem%load <= summary%number('max_tension')) return
+      call summary%drop('max_tension_error')
+      call summary%drop('max_tension_h0_error')
     end if
-    summary%max_tension = -lowest%load*problem%load
-    summary%max_tension_h0 = lowest%h0*problem%length
+    call summary%set('max_tension', -lowest%load*problem%load)
+    call summary%set('max_tension_h0', lowest%h0*problem%length)
     if (.not. allocated(lowest%error)) return
-    summary%max_tension_error = lowest%error%load*problem%load
+    call summary%set('max_tension_error', lowest%error%load*problem%load)
     if (.not. lowest%searched) &
-      summary%max_tension_h0_error = lowest%error%h0*problem%length
+      call summary%set('max_tension_h0_error', lowest%error%h0*problem%length)
   end subroutine raise_tension
 
   subroutine widen_spacing(summary, spacing)
@@ -364,8 +362,7 @@ contains
     real(wp), intent(in) :: spacing
 
     if (.not. spacing > 0) return
-    if (.not. allocated(summary%spacing_over_neck)) summary%spacing_over_neck = 0
-    summary%spacing_over_neck = max(summary%spacing_over_neck, spacing)
+    call summary%set('spacing_over_neck', max(summary%number('spacing_over_neck'), spacing))
   end subroutine widen_spacing
 
 end module summarise
