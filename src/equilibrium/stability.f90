@@ -21,10 +21,10 @@ module stability
 
   !> How far below the eigenvalue found the shift of the inverse iteration lies, and how far from it
   !> that may end.
-  type(margin_t), parameter :: close = margin_t(1.0e-6_wp, 1.0e-14_wp)
+  type(margin_t), parameter :: close = margin_t(1.0e-6_wp, 1.0e-12_wp)
   !> The change that ends the inverse iteration, and the largest residual of the pair it ends with.
-  type(margin_t), parameter :: settled = margin_t(1.0e-12_wp, 1.0e-15_wp), &
-    exact = margin_t(1.0e-9_wp, 1.0e-14_wp)
+  type(margin_t), parameter :: settled = margin_t(1.0e-12_wp, 1.0e-14_wp), &
+    exact = margin_t(1.0e-9_wp, 1.0e-12_wp)
   !> How far below the eigenvalue the operator made symmetric must have none. Its own smallest one
   !> was never farther from that of the true operator than 2e-8 on meshes locked to the edge and
   !> 1e-6 on uniform grids of 100 nodes.

@@ -16,13 +16,17 @@ module error_estimate
   use reported, only: reported_t, error_t
   implicit none
   private
-  public :: judge_at_h0, to_rounding, unknown_error, profile_error, nearly_solved, rounding
+  public :: judge_at_h0, to_rounding, unknown_error, profile_error, nearly_solved, rounding, &
+    worst_residual
 
   !> Rounding of a whole calculation, below which no error is claimed.
   real(wp), parameter :: rounding = 1.0e-13_wp
   !> A residual that leaves no doubt which state it is of; a change of h0 small enough for a
   !> derivative and large against rounding (law's lengths).
   real(wp), parameter :: nearly_solved = 1.0e-6_wp, shift = 1.0e-5_wp
+  !> A residual that differs from node to node may move a state by this many times as much as one
+  !> that is the same everywhere, which acts like a change of h0.
+  real(wp), parameter :: worst_residual = 3
 
 contains
 
@@ -65,14 +69,14 @@ contains
       if (.not. (converged .or. state%residual < nearly_solved)) return
       error = error_t(load=margin*abs(state%load - reported%load) + rounding*abs(reported%load), &
         displacement=margin*abs(state%axis_gap - state%h0 - reported%displacement), &
-        profile=margin*profile_error(mesh, witness%state, fine, state))
+        profile=margin*profile_error(problem, mesh, witness%state, fine, state))
       if (.not. problem%coupling > 0) return
       control = witness%control
       control%value = control%value + shift
       shifted = state
       call solve_anderson(problem, fine, control, to_rounding(), frozen, shifted, converged, cost)
       if (.not. (converged .or. shifted%residual < nearly_solved)) return
-      left = max(tolerance, witness%state%residual)/shift
+      left = worst_residual*max(tolerance, witness%state%residual)/shift
       error%load = error%load + left*abs(shifted%load - state%load)
       error%displacement = error%displacement + &
         left*abs((shifted%axis_gap - shifted%h0) - (state%axis_gap - state%h0))
@@ -80,8 +84,9 @@ contains
   end subroutine judge_at_h0
 
   !> The largest difference of gaps, and of pressures over the largest of them, between a state and
-  !> one on a finer mesh, at its nodes.
-  pure real(wp) function profile_error(mesh, state, fine, right) result(largest)
+  !> one on a finer mesh, on the axis and at its nodes.
+  pure real(wp) function profile_error(problem, mesh, state, fine, right) result(largest)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: mesh, fine
     type(state_t), intent(in) :: state, right
     real(wp) :: x, last, strongest
@@ -89,7 +94,9 @@ contains
 
     last = fine%x(size(right%gap))
     strongest = max(maxval(abs(right%pressure)), tiny(1.0_wp))
-    largest = 0
+    largest = max(abs(right%axis_gap - state%axis_gap), &
+      maxval(abs(problem%law%pressure([right%axis_gap]) - &
+      problem%law%pressure([state%axis_gap])))/strongest)
     do j = 1, size(state%gap)
       x = state%scale*mesh%x(j)/right%scale
       if (x > last) exit

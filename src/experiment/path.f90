@@ -98,22 +98,24 @@ contains
     i = path%held + 1
   end function first_crossing
 
-  !> The last point before the contact at h0_end; ends_between: the end is between that and the
-  !> next. A contact that exists only below h0_end ends behind its fold.
+  !> The last point before the innermost stable equilibrium at h0_end; ends_between: the end is
+  !> between that and the next.
   pure subroutine find_end(known, h0_end, last, ends_between)
     type(known_path_t), intent(in) :: known
     real(wp), intent(in) :: h0_end
     integer, intent(out) :: last
     logical, intent(out) :: ends_between
+    integer :: k
 
     last = known%path%held
     ends_between = .false.
-    if (known%ends_because /= '' .or. size(known%piece) == 0) return
-    associate (piece => known%piece(size(known%piece)))
-      ends_between = h0_end <= piece%high
-      last = min(piece%first + 1, piece%last)
-    end associate
-    if (ends_between) last = interval_at(known, size(known%piece), h0_end)
+    if (known%ends_because /= '') return
+    do k = size(known%piece), 1, -1
+      ends_between = h0_end >= known%piece(k)%low .and. h0_end <= known%piece(k)%high
+      if (.not. ends_between) cycle
+      last = interval_at(known, k, h0_end)
+      return
+    end do
   end subroutine find_end
 
   !> Values in the order in which h0 passes them from `start`, all on one side of it.

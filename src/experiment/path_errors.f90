@@ -16,7 +16,8 @@ module path_errors
   use potential_energy, only: energy_of
   use known_path, only: known_path_t, landing_t, landing_over
   use reported, only: reported_t, error_t, measure_t
-  use error_estimate, only: to_rounding, unknown_error, profile_error, nearly_solved, rounding
+  use error_estimate, only: to_rounding, unknown_error, profile_error, nearly_solved, rounding, &
+    worst_residual
   implicit none
   private
   public :: judge_on_path, finer_nodes
@@ -72,6 +73,13 @@ contains
         call judge_landing(problem, pair, fine, margin, known, known%outward(k), cost)
         reported%error = known%outward(k)%error
       end if
+    else if (reported%point > 0 .and. with_profile) then
+      ! The point's own errors leave the profile out.
+      associate (point => known%path%point(reported%point))
+        call judge(problem, pair, fine, point%mesh, &
+          merge(extremum_of_h0, extremum_of_load, point%fold), point%state, point%state%h0, &
+          margin, tight, .true., on_fine, reported%error, cost)
+      end associate
     else if (reported%point > 0) then
       call judge_point(problem, pair, fine, margin, known, reported%point, cost)
       reported%error = known%path%point(reported%point)%error
@@ -174,7 +182,8 @@ contains
     error = error_t(h0=margin*abs(on_fine%h0 - own%h0), load=margin*abs(on_fine%load - own%load), &
       displacement=margin*abs(on_fine%displacement - own%displacement))
     ! What the iteration leaves moves a state at a given h0 as if that were off.
-    moved = measure_at(near, distance_to(near, at_h0, on_fine%h0 + tolerance))
+    moved = measure_at(near, distance_to(near, at_h0, &
+      on_fine%h0 + worst_residual*tolerance))
     if (kind == at_h0) then
       error%h0 = 0
       error%load = error%load + abs(moved%load - on_fine%load)
@@ -182,14 +191,15 @@ contains
     else
       error%h0 = error%h0 + tolerance
     end if
-    error%load = error%load + rounding*abs(own%load)
+    error%load = error%load + (rounding + worst_residual*tight)*abs(own%load)
     error%displacement = error%displacement + tolerance + rounding*abs(own%displacement)
     if (.not. with_profile) return
     near%s = near%s + distance
     right = near%state
     call solve_fine(problem, fine, mesh, near%s, right, found, cost)
     error%profile = 1
-    if (found) error%profile = margin*profile_error(pair%grid(mesh), state, fine%grid(mesh), right)
+    if (found) error%profile = margin*profile_error(problem, pair%grid(mesh), state, &
+      fine%grid(mesh), right)
   end subroutine judge
 
   !> Expands the path at near%s, from the guess near%state; found = .false. where the finer mesh has

@@ -73,6 +73,8 @@ contains
 
     position%piece = 1
     call self%step_to(h0, position, event)
+    if (event%reason /= '' .and. event%jumped) event%reason = &
+      'the bodies have fallen onto each other before the h0 where it is to start'
     ! What the approach passed before the experiment began is not part of it.
     event%jumped = .false.
     event%fold = 0

@@ -13,6 +13,7 @@ module result_errors
   use error_estimate, only: judge_at_h0, rounding
   use path_errors, only: judge_on_path, finer_nodes
   use stepped_branch, only: branch_t
+  use tension_search, only: load_tolerance
   use path, only: path_t
   use experiment_result, only: experiment_result_t
   implicit none
@@ -27,7 +28,8 @@ module result_errors
   !> panels, a third for a uniform grid, which is of second order and of lower order in places; and
   !> because other states may be somewhat worse than those compared. Against a grid twice as coarse
   !> the difference itself is two to three times the error.
-  real(wp), parameter :: margin = 2, margin_fixed = 2.5_wp, margin_coarser = 1.2_wp
+  real(wp), parameter :: margin = 2, margin_fixed = 2.5_wp, margin_coarser = 1.2_wp, &
+    margin_unlocked = 4
 
   !> How a reported state is judged: again on the path of `steps`, if it has one, or else at its h0,
   !> on the finer meshes.
@@ -55,6 +57,9 @@ contains
     finer = outcome%chosen%resolution
     finer%order = finer%order + more_nodes
     finer%farther = farther
+    ! Without a contact edge nothing locks the mesh to what is sharp in a fall, and two nodes more
+    ! gain less.
+    if (.not. steps%problem%law%edge_gap > 0) judge%margin = margin_unlocked
     judge%fine = new_mesh_pair(steps%problem, high, low, finer)
     steps%cost%kernel_entries = steps%cost%kernel_entries + sum(judge%fine%grid%kernel_entries())
     if (allocated(outcome%path)) call judge_path(judge, outcome%path)
@@ -178,6 +183,8 @@ contains
       end select
     end associate
     if (allocated(reported%error) .and. .not. with_profile) reported%error%profile = 0
+    if (allocated(reported%error) .and. reported%searched) &
+      reported%error%load = reported%error%load + load_tolerance*abs(reported%load)
     judge%largest = max(judge%largest, relative_error(reported))
     judge%judged = .true.
   end subroutine judge_one

@@ -7,7 +7,7 @@ module tension_search
   use reported, only: reported_t, reported_state
   implicit none
   private
-  public :: tension_search_t
+  public :: tension_search_t, load_tolerance
 
   !> A stretch of a branch without a jump: its state of largest tension so far, the one before it,
   !> and the values of h0 between which the largest tension of all lies (the neighbours of that

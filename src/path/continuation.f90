@@ -157,10 +157,9 @@ contains
   end function node_count
 
   !> State at the coordinate s: interpolated or extrapolated from states of the same mesh and
-  !> corrected.
+  !> corrected. nodes: of the mesh; where absent, as many as reach far enough.
   subroutine state_at(problem, pair, mesh, s, coordinate, states, options, frozen, state, &
-    converged, &
-    cost)
+    converged, cost, nodes)
     type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair
     integer, intent(in) :: mesh
@@ -171,11 +170,14 @@ contains
     type(state_t), intent(out) :: state
     logical, intent(out) :: converged
     type(cost_t), intent(inout) :: cost
+    integer, intent(in), optional :: nodes
     type(control_t) :: control
+    integer :: used
 
     control = path_control(problem, mesh, s)
-    state = between(pair%grid(mesh), coordinate, states, s, &
-      node_count(pair, mesh, merge(control%value, 1.0_wp, mesh == contact)))
+    used = node_count(pair, mesh, merge(control%value, 1.0_wp, mesh == contact))
+    if (present(nodes)) used = nodes
+    state = between(pair%grid(mesh), coordinate, states, s, used)
     call solve_anderson(problem, pair%grid(mesh), control, options, frozen, state, converged, cost)
   end subroutine state_at
 

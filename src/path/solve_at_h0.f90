@@ -107,12 +107,24 @@ contains
     type(cost_t), intent(inout) :: cost
     type(state_t) :: trial
     real(wp) :: width
-    integer :: round
+    integer :: round, far, nodes
 
     state = near%state(near%lower)
-    if (abs(near%state(near%lower + 1)%h0 - h0) < abs(state%h0 - h0)) &
-      state = near%state(near%lower + 1)
+    far = near%lower + 1
+    if (abs(near%state(far)%h0 - h0) < abs(state%h0 - h0)) then
+      state = near%state(far)
+      far = near%lower
+    end if
     frozen%factors%valid = .false.
+    nodes = size(state%gap)
+    if (size(near%state(far)%gap) /= nodes) then
+      ! More or fewer nodes beyond the edge move h0 by the error of the reach: beside a fold that is
+      ! far, and the curve would have a step.
+      call state_at(problem, pair, near%mesh, near%coordinate(far), &
+        near%coordinate(:near%held), near%state(:near%held), tightened(options), frozen, trial, &
+        converged, cost, nodes)
+      if (converged) near%state(far) = trial
+    end if
     width = huge(1.0_wp)
     do round = 1, most_rounds
       if (abs(state%h0 - h0) <= near_enough*max(1.0_wp, abs(h0))) exit
@@ -128,7 +140,7 @@ contains
         if (abs(s - at(1)) <= 0 .or. abs(s - at(2)) <= 0) exit
       end associate
       call state_at(problem, pair, near%mesh, s, near%coordinate(:near%held), &
-        near%state(:near%held), tightened(options), frozen, trial, converged, cost)
+        near%state(:near%held), tightened(options), frozen, trial, converged, cost, nodes)
       if (.not. (converged .or. trial%residual <= options%tolerance)) exit
       if (abs(trial%h0 - h0) < abs(state%h0 - h0)) state = trial
       call join(near, s, trial, (trial%h0 - h0)*(near%state(near%lower)%h0 - h0) > 0)

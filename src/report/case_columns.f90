@@ -63,8 +63,8 @@ contains
     end do
   end function numbers_of
 
-  !> The rows that are columns of their own in a sweep of the scene: first those of every sweep, then
-  !> those that a group adds.
+  !> The rows that are columns of their own in a sweep of the scene: first those of every sweep,
+  !> then those that a group adds.
   pure function single_columns(scene) result(single)
     type(scene_t), intent(in) :: scene
     integer, allocatable :: single(:)
