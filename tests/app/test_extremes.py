@@ -339,7 +339,7 @@ def test_the_same_deck_gives_the_same_bytes(snapin, tmp_path, text):
 
 def shared_from():
     """Nodes from which on products and factors are shared between threads."""
-    text = (ROOT / "src" / "blas_threads.f90").read_text()
+    text = (ROOT / "src" / "system" / "blas_threads.f90").read_text()
     return int(re.search(r":: worthwhile = (\d+)", text)[1])
 
 
