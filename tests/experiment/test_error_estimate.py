@@ -2,7 +2,7 @@
 
 import f90nml
 import pytest
-from support.scenes import exponential, lennard_jones
+from support.scenes import exponential, lennard_jones, read_table
 
 # Below this the reference is no better than the run.
 KNOWN = 3e-11
@@ -19,15 +19,12 @@ def measured(snapin, folder, name, deck):
         for key in ("max_tension", "jump_in_h0", "jump_out_h0")
         if key in summary
     }
-    rows = [
-        line.split(",")
-        for line in (folder / "results" / name / "curve.csv").read_text().splitlines()
-        if line.startswith(("loading", "path"))
-    ]
-    found["displacement at the end"] = float(rows[-1][3])
-    found["load at the end"] = float(rows[-1][4])
-    if rows[0][0] == "loading":
-        found["load at the start"] = float(rows[0][4])
+    curve = read_table(folder / "results" / name / "curve.csv")
+    rows = [k for k, branch in enumerate(curve["branch"]) if branch.startswith(("loading", "path"))]
+    found["displacement at the end"] = curve["displacement"][rows[-1]]
+    found["load at the end"] = curve["load"][rows[-1]]
+    if curve["branch"][rows[0]] == "loading":
+        found["load at the start"] = curve["load"][rows[0]]
     return found, summary["error_estimate"]
 
 

@@ -6,11 +6,16 @@ the paper is gamma itself, h0 is in units of z0, and loads come out in units of 
 
 import math
 import os
+import pathlib
+import sys
 from typing import NamedTuple
 
 import f90nml
-import numpy as np
 from support.processes import HANG
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "pywrap" / "plots"))
+
+import read_results  # noqa: E402 (found through the line above)
 
 JKR = 1.5 * math.pi  # Pull-off of JKR theory in units of gamma R.
 
@@ -71,11 +76,14 @@ def loading(start, end, step):
 
 
 class Table(NamedTuple):
-    """A CSV file of results: its '#' lines, the names in its header, and its columns."""
+    """A CSV file of results: its '#' lines, and its columns by name."""
 
     comments: list
-    names: list
     columns: dict
+
+    @property
+    def names(self):
+        return list(self.columns)
 
     def __getitem__(self, name):
         return self.columns[name]
@@ -87,18 +95,17 @@ class Table(NamedTuple):
         """The columns of one branch (or theory) alone."""
         mine = self.columns[self.names[0]] == branch
         columns = {name: column[mine] for name, column in self.columns.items()}
-        return Table(self.comments, self.names, columns)
+        return Table(self.comments, columns)
 
 
 def read_table(path):
-    """Read a CSV file of results; columns of numbers become arrays of them."""
+    """Read a CSV file of results as the plots do."""
+    columns = read_results.read_table(path.parent, path.name)
     lines = path.read_text().splitlines()
     comments = [line for line in lines if line.startswith("#")]
-    names, *cells = (line.split(",") for line in lines[len(comments) :])
-    columns = {}
-    for name, column in zip(names, np.array(cells, dtype=str).reshape(-1, len(names)).T):
-        columns[name] = column if name in ("branch", "theory") else column.astype(float)
-    return Table(comments, names, columns)
+    # All '#' lines come before the header, and no name is there twice.
+    assert lines[len(comments)].split(",") == list(columns), path
+    return Table(comments, columns)
 
 
 class Run(NamedTuple):

@@ -1,20 +1,19 @@
 """The committed table of the Lennard-Jones contact, and what it shows at both ends."""
 
-import csv
 import math
 
 import f90nml
 import numpy as np
 import pytest
 from conftest import ROOT
-from support.scenes import lennard_jones
+from support.scenes import lennard_jones, read_table
 
 
 def table():
     """The committed table: one dictionary of numbers a row."""
-    lines = (ROOT / "docs" / "table_lennard_jones.csv").read_text().splitlines()
-    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-    return [{key: float(value) for key, value in row.items()} for row in rows]
+    columns = read_table(ROOT / "docs" / "table_lennard_jones.csv").columns
+    rows = zip(*(column.tolist() for column in columns.values()))
+    return [dict(zip(columns, row)) for row in rows]
 
 
 def summary(snapin, folder, deck):
