@@ -14,8 +14,8 @@ os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest  # noqa: E402
-from decks import RUNTIME_ERROR  # noqa: E402
-from processes import HANG  # noqa: E402
+from support.decks import RUNTIME_ERROR  # noqa: E402
+from support.processes import HANG  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -48,7 +48,7 @@ def pytest_runtest_protocol(item):
     """
     alone = item.get_closest_marker("alone") is not None
     with contextlib.ExitStack() as room:
-        with _locked("processes.py", fcntl.LOCK_EX):
+        with _locked("support/processes.py", fcntl.LOCK_EX):
             room.enter_context(_locked("conftest.py", fcntl.LOCK_EX if alone else fcntl.LOCK_SH))
         return (yield)
 

@@ -8,7 +8,7 @@ import subprocess
 from typing import NamedTuple
 
 import f90nml
-from scenes import deck, read_table, several
+from support.scenes import deck, read_table, several
 
 LOADS = (
     "max_tension", "jump_in_load", "jump_out_load", "folds_load", "load_folds_load", "end_load",

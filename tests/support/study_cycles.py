@@ -8,11 +8,11 @@ import math
 import random
 from typing import NamedTuple
 
-from scenes import loading
 from support.comparison import deviations, missing
 from support.decks_in_units import PLAIN, REAL, report, said
 from support.experiment import cycle, reported
 from support.reference import Path
+from support.scenes import loading
 
 # A default deck is good to 1e-6; ten times that is wrong. Where a flat extremum is, is known worse.
 WRONG, WRONG_PLACE = 1e-5, 1e-3

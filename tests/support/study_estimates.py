@@ -5,11 +5,11 @@ import statistics
 from typing import NamedTuple
 
 import numpy as np
-from scenes import loading
 from support.comparison import deviations, missing
 from support.decks_in_units import report, said
 from support.experiment import cycle, reported, reported_of_path
 from support.reference import Path
+from support.scenes import loading
 
 ACCURACIES = (1e-3, 1e-4, 1e-6, 1e-8)
 DEPTH = -4.0

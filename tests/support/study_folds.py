@@ -8,11 +8,11 @@ import collections
 from typing import NamedTuple
 
 import numpy as np
-from scenes import loading
 from support.comparison import deviations, missing
 from support.decks_in_units import report, said
 from support.experiment import cycle, reported
 from support.reference import Path
+from support.scenes import loading
 
 DEPTH = -4.0
 # Default decks are good to 1e-6. Beside a fold the load goes with the root of the distance: this

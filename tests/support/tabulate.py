@@ -1,6 +1,6 @@
 """Writes references.csv: what the reference finds at many strengths, slow ones included.
 
-    .venv/bin/python tests/support/tabulate.py
+    PYTHONPATH=tests .venv/bin/python -m support.tabulate
 
 Each row is computed at two resolutions; `difference` is by how much they differ at most, relative.
 The numbers are the finer one's, in units of z0 and gamma R.
@@ -8,13 +8,10 @@ The numbers are the finer one's, in units of z0 and gamma R.
 
 import csv
 import pathlib
-import sys
 
 import numpy as np
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-from support.reference import CUSP, Path  # noqa: E402
-from support.series import FINE  # noqa: E402
+from support.reference import CUSP, Path
+from support.series import FINE
 
 FILE = pathlib.Path(__file__).resolve().parent / "references.csv"
 # The end of every path.

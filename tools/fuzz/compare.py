@@ -10,7 +10,7 @@ import f90nml
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests"))
 
-from test_deck_fuzz import differences  # noqa: E402
+from namelist.test_deck_fuzz import differences  # noqa: E402
 
 
 def main(folder):

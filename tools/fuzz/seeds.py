@@ -1,7 +1,8 @@
 """Writes what a campaign starts from: seeds.py SNAPIN FOLDER
 
-FOLDER/seeds/ gets every deck of inputs/ and every small deck text of tests/decks.py and of the tests of bad decks,
-FOLDER/words.dict the groups, keys and choices of `snapin --keys` and what is awkward in namelists.
+FOLDER/seeds/ gets every deck of inputs/ and every small deck text of tests/support/decks.py and of
+the tests of bad decks, FOLDER/words.dict the groups, keys and choices of `snapin --keys` and what
+is awkward in namelists.
 """
 
 import pathlib
@@ -12,9 +13,9 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 
-import decks  # noqa: E402
-import test_deck  # noqa: E402
-import test_deck_scene  # noqa: E402
+from namelist import test_deck  # noqa: E402
+from scene import test_deck_scene  # noqa: E402
+from support import decks  # noqa: E402
 
 LARGEST = 2000
 AWKWARD = ["NaN", "-Inf", "infinity", "1e999", "1d-308", "9.9e300", "2147483647", "-2147483648",

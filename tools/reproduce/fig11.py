@@ -17,9 +17,9 @@ spring's force, whose slope is its stiffness, meets the force of the wall. Where
 as a tangent (dots) the spring jumps, along the line to the next crossing (arrows). As the paper
 says, the ends of the jumps bracket their starts and the shaded gaps between the starts are never
 reached: it held for all of {count} stiffnesses from {softest:.0e} to {stiffest} of the largest
-slope, and `tests/test_spring.py` has other laws, closed forms among them. By the mean-value theorem
-the slope passes the stiffness between the ends of a jump; where it exceeds the stiffness on one
-interval only, that is beyond the other start.
+slope, and `tests/tools/test_spring.py` has other laws, closed forms among them. By the mean-value
+theorem the slope passes the stiffness between the ends of a jump; where it exceeds the stiffness on
+one interval only, that is beyond the other start.
 
 (b), (c) Separations of σ = 8.7 at the same h0 in loading and unloading, the undeformed bodies
 dotted. Converged (b), h0 = {h0:.0f} nm lies between the two jumps: in loading the bodies are apart,

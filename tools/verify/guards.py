@@ -19,9 +19,13 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MESON = ROOT / ".venv" / "bin" / "meson"
 
 
-NOT_PASSED = "test_iterations.py"
-EXTREMES = "test_extremes.py::test_"
-STARVED = "test_extremes.py::test_what_does_not_converge_says_so_and_invents_nothing"
+ANY_SIGMA = (
+    "experiment/test_hard_cases.py"
+    "::test_cycle_at_any_sigma_is_solved_and_agrees_with_the_path"
+)
+NOT_PASSED = "equilibrium/test_iterations.py"
+EXTREMES = "app/test_extremes.py::test_"
+STARVED = "app/test_extremes.py::test_what_does_not_converge_says_so_and_invents_nothing"
 
 
 class Guard(NamedTuple):
@@ -43,7 +47,7 @@ GUARDS = {
         "equilibrium/equilibrium.f90",
         "if (defined) defined = all(state%gap >= problem%law%smallest_gap)",
         "",
-        ("test_extremes.py::test_what_came_before_the_fall_is_kept",),
+        ("app/test_extremes.py::test_what_came_before_the_fall_is_kept",),
         traps=True,
     ),
     "defined": Guard(
@@ -59,21 +63,21 @@ GUARDS = {
         "equilibrium/equilibrium.f90",
         "limit = min(1.0_wp, minval(",
         "limit = max(1.0_wp, minval(",
-        ("test_hard_cases.py::test_cycle_at_any_sigma_is_solved_and_agrees_with_the_path",),
+        (ANY_SIGMA,),
     ),
     "largest_floor": Guard(
         "rounding excuses residuals only up to 1e-3",
         "equilibrium/equilibrium.f90",
         "residual_floor = min(residual_floor, largest_floor)",
         "",
-        ("test_extremes.py::test_no_residual_above_a_thousandth_is_put_down_to_rounding",),
+        ("app/test_extremes.py::test_no_residual_above_a_thousandth_is_put_down_to_rounding",),
     ),
     "lost_in_rounding": Guard(
         "adhesion beyond rounding is refused",
         "equilibrium/equilibrium.f90",
         "c > largest_floor",
         "c > huge(1.0_wp)",
-        ("test_extremes.py::test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding",),
+        (EXTREMES + "sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding",),
     ),
     "anderson_nan": Guard(
         "Anderson's convergence is a comparison that NaN fails",
@@ -89,7 +93,7 @@ GUARDS = {
         "path/hidden_folds.f90",
         "if (n < 4) return",
         "if (n > 0) return",
-        ("test_extremes.py::test_folds_however_close_are_found",),
+        ("app/test_extremes.py::test_folds_however_close_are_found",),
     ),
     "converged_column": Guard(
         "a row that is no equilibrium says so",
@@ -103,21 +107,21 @@ GUARDS = {
         "report/stability_records.f90",
         "if (record%converged) then",
         "if (.true.) then",
-        ("test_extremes.py::test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable",),
+        (EXTREMES + "a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable",),
     ),
     "known_stability": Guard(
         "an eigenvalue does not change what is known of stability",
         "report/stability_records.f90",
         "else if (record%stable == stable_unasked) then",
         "else if (.true.) then",
-        ("test_stability.py::test_the_group_leaves_the_path_as_it_is",),
+        ("equilibrium/test_stability.py::test_the_group_leaves_the_path_as_it_is",),
     ),
     "failed_case": Guard(
         "a case of a sweep that fails is counted",
         "app/sweeps.f90",
         "if (.not. case%converged) failed = failed + 1",
         "",
-        ("test_sweep_columns.py", "test_results.py"),
+        ("report/test_sweep_columns.py", "report/test_results.py"),
     ),
     "memory": Guard(
         "matrices larger than the memory are refused",
@@ -131,98 +135,98 @@ GUARDS = {
         "report/quality_warnings.f90",
         "call summary%warn('under-resolved: nodes are '",
         "if (.false.) call summary%warn('under-resolved: nodes are '",
-        ("test_cycle_grids.py",),
+        ("experiment/test_cycle_grids.py",),
     ),
     "folder_lock": Guard(
         "one run at a time in a folder",
         "system/folder_lock.f90",
         "if (self%held .or. sort_of(status) /= locked_elsewhere) return",
         "return",
-        ("test_resume.py::test_a_second_run_is_refused_and_touches_nothing",),
+        ("resume/test_resume.py::test_a_second_run_is_refused_and_touches_nothing",),
     ),
     "checksum": Guard(
         "a damaged record of the journal does not count",
         "resume/journal.f90",
         "if (checksum(words) /= head(2)) return",
         "",
-        ("test_resume.py::test_a_damaged_record_is_computed_again",),
+        ("resume/test_resume.py::test_a_damaged_record_is_computed_again",),
     ),
     "owner": Guard(
         "a journal of another deck or program is not gone on with",
         "resume/journal.f90",
         "if (other /= owner) then",
         "if (.false.) then",
-        ("test_resume.py::test_another_deck_is_refused_and_told_apart",),
+        ("resume/test_resume.py::test_another_deck_is_refused_and_told_apart",),
     ),
     "torn": Guard(
         "what was torn is cut off the journal",
         "resume/journal.f90",
         "status = c_truncate(self%descriptor, whole)",
         "status = 0",
-        ("test_resume.py::test_what_was_torn_is_cut_off",),
+        ("resume/test_resume.py::test_what_was_torn_is_cut_off",),
     ),
     "journal_flush": Guard(
         "a record of the journal that the system could not write stops the run",
         "resume/journal.f90",
         "call system_failure('cannot write ' // self%path, status, self%trouble)",
         "if (status < 0) return",
-        ("test_resume.py::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on",),
+        ("resume/test_resume.py::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on",),
     ),
     "table_flush": Guard(
         "a table that the system could not write is an error",
         "system/text_file.f90",
         "call system_failure('cannot write ' // self%path, status, error)",
         "",
-        ("test_results.py", "test_resume.py"),
+        ("report/test_results.py", "resume/test_resume.py"),
     ),
     "undo": Guard(
         "a renaming that fails is taken back",
         "system/publication.f90",
         "call undo(folder, new)",
         "continue",
-        ("test_faults.py",),
+        ("system/test_faults.py",),
     ),
     "intent_last": Guard(
         "a folder says that its files may not belong together until they are cleaned up",
         "system/publication.f90",
         "call folder%rename_file(intent_name // partial, intent_name, error)",
         "continue",
-        ("test_faults.py",),
+        ("system/test_faults.py",),
     ),
     "table_sync": Guard(
         "a table is on the disk before it gets its name",
         "system/text_file.f90",
         "synced = c_sync(self%descriptor)",
         "synced = 0",
-        ("test_faults.py",),
+        ("system/test_faults.py",),
     ),
     "regular": Guard(
         "what is no file is not opened as one",
         "system/posix.c",
         "else if (!S_ISREG(file.st_mode))",
         "else if (0)",
-        ("test_faults.py",),
+        ("system/test_faults.py",),
     ),
     "duplicate_key": Guard(
         "a key given twice is a mistake",
         "namelist/deck.f90",
         "what = 'given twice; the first is on line ' // trim(line)",
         "",
-        ("test_deck.py::test_bad_deck_is_refused_by_line_group_and_key",),
+        ("namelist/test_deck.py::test_bad_deck_is_refused_by_line_group_and_key",),
     ),
     "magnitudes": Guard(
         "units that would overflow are refused",
         "scene/magnitudes.f90",
         "if (.not. abs(decades) <= most_derived)",
         "if (.false.)",
-        ("test_extremes.py::test_units_that_would_overflow_together_are_refused",),
+        ("app/test_extremes.py::test_units_that_would_overflow_together_are_refused",),
     ),
     "order": Guard(
         "numbers beyond 1e50 are refused",
         "namelist/deck_number.f90",
         "largest_order = 50",
         "largest_order = 300",
-        ("test_deck.py", "test_extremes.py"),
+        ("namelist/test_deck.py", "app/test_extremes.py"),
     ),
 }
 

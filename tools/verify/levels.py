@@ -25,7 +25,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
-from scenes import Run, exponential, lennard_jones, loading, several  # noqa: E402
+from support.scenes import Run, exponential, lennard_jones, loading, several  # noqa: E402
 
 # Of loads and displacements, over the largest value of the column. EXACT is what is promised of
 # Newton's method and of a residual_tolerance of 1e-12. Anderson acceleration stops anywhere below

@@ -48,7 +48,7 @@ traps() {
   build_traps || return
   # shellcheck disable=SC2046 # a list of files is meant
   SNAPIN=$top/build-traps/snapin "$python" -m pytest -q --long \
-    $(grep -l 'snapin' tests/test_*.py | grep -v 'wrapper\|bench')
+    $(grep -l 'snapin' tests/*/test_*.py | grep -v 'wrapper')
 }
 
 # OpenBLAS reads a few lanes beyond its arguments with some of its kernels; those for Haswell do not.
@@ -104,8 +104,8 @@ levels() {
 extremes() {
   build_traps || return
   scratch=$(mktemp -d)
-  SNAPIN=$top/build-traps/snapin "$python" tests/extremes.py --first "${FIRST:-5000}" \
-    --count "${EXTREMES:-200}" --seconds 300 --out "$scratch"
+  SNAPIN=$top/build-traps/snapin PYTHONPATH=tests "$python" -m support.extremes \
+    --first "${FIRST:-5000}" --count "${EXTREMES:-200}" --seconds 300 --out "$scratch"
   status=$?
   [ $status != 0 ] || rm -rf "$scratch"
   [ $status = 0 ] || say "the decks are in $scratch"
@@ -114,7 +114,7 @@ extremes() {
 
 judge() { "$python" "$here/judge.py" --seed "${SEED:-1}"; }
 
-faults() { OMP_NUM_THREADS=1 "$python" tests/faults.py; }
+faults() { OMP_NUM_THREADS=1 PYTHONPATH=tests "$python" -m support.faults; }
 
 guards() { "$python" "$here/guards.py"; }
 

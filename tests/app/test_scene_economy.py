@@ -1,0 +1,185 @@
+"""Claims about cost, by the counters of &cost: what a scene leaves out costs nothing."""
+
+import pytest
+from support.scenes import exponential, lennard_jones, loading, runner
+
+COUNTERS = [
+    "states",
+    "iterations",
+    "kernel_entries",
+    "pressure_evaluations",
+    "operator_products",
+    "operator_columns",
+    "factorisations",
+    "rejected_steps",
+]
+PLAIN = {"loading": loading(8, -2, 0.25)}
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("economy"))
+
+
+def counts(result):
+    """The counters of a run."""
+    return {name: result.cost[name] for name in COUNTERS}
+
+
+# --- Bodies
+
+
+@pytest.mark.parametrize("numerics", [{}, {"grid": "uniform", "nodes": 300}], ids=["auto", "grid"])
+@pytest.mark.parametrize("law", ["lennard_jones", "exponential"])
+def test_rigid_bodies_need_no_kernel(run, law, numerics):
+    make = {
+        "lennard_jones": lambda **groups: lennard_jones(1.0, **groups),
+        "exponential": lambda **groups: exponential(1.0, **groups),
+    }[law]
+    scene = make(loading=loading(8, 1, 0.25), numerics=numerics)
+    result = run(scene.replace("stiffness = 1.0", "rigid = .true."))
+    assert result.cost["kernel_entries"] == 0
+    assert result.cost["operator_products"] == 0
+    assert result.cost["operator_columns"] == 0
+    assert result.cost["factorisations"] <= 5
+    assert result.cost["states"] == 29
+    assert abs(result.curve["displacement"]).max() == 0
+    for absent in ("sigma", "tabor", "big_lambda", "spacing_over_neck"):
+        assert absent not in result.summary
+
+
+# --- Laws
+
+
+def test_short_ranged_repulsion_multiplies_by_few_columns(run):
+    """Beyond the contact there is no pressure, and the operator is not applied to it."""
+    for numerics, most in (({}, 0.85), ({"grid": "uniform", "nodes": 300}, 0.75)):
+        cost = run(exponential(200, loading=loading(10, -20, 0.5), numerics=numerics)).cost
+        assert cost["operator_columns"] < most * cost["operator_products"] * cost["nodes"]
+    # Attraction reaches everywhere.
+    cost = run(lennard_jones(0.1, loading=loading(8, -2, 0.5), numerics=numerics)).cost
+    assert cost["operator_columns"] >= 0.95 * cost["operator_products"] * cost["nodes"]
+
+
+def test_a_law_without_attraction_meshes_the_contact_alone(run):
+    attraction = run(lennard_jones(1.0, **PLAIN)).cost
+    repulsion = run(lennard_jones(1.0, part="repulsive", **PLAIN)).cost
+    assert repulsion["nodes"] < attraction["nodes"]
+    assert repulsion["kernel_entries"] < attraction["kernel_entries"]
+
+
+# --- Groups
+
+
+def test_an_absent_group_leaves_no_file_and_no_column(run):
+    result = run(lennard_jones(1.0, **PLAIN))
+    assert result.files == ["curve.csv", "summary.nml"]
+    assert set(result.curve["branch"]) == {"loading"}
+    assert not any("eigenvalue" in name or "criterion" in name for name in result.curve.names)
+    assert not any(key.startswith(("unload", "folds", "load_folds")) for key in result.summary)
+    assert result.cost["states"] == len(result.curve) == 41
+    groups = ["summary", "cost", "bodies", "force", "loading", "numerics"]
+    assert list(result.groups) == groups
+
+
+def test_theories_cost_no_equilibrium(run):
+    plain, more = run(lennard_jones(1.0, **PLAIN)), run(lennard_jones(1.0, **PLAIN, classical={}))
+    assert more.files == sorted([*plain.files, "classical.csv"])
+    assert counts(more) == counts(plain)
+    plain_rows, rows = ((r.folder / "curve.csv").read_bytes() for r in (plain, more))
+    assert rows == plain_rows
+
+
+def test_profiles_on_the_steps_cost_their_error_estimate_alone(run):
+    plain = run(lennard_jones(1.0, **PLAIN))
+    more = run(lennard_jones(1.0, **PLAIN, profiles={"h0": [1.0, -2.0]}))
+    assert more.files == sorted([*plain.files, "profiles.csv"])
+    assert more.cost["states"] == plain.cost["states"]
+    assert more.cost["kernel_entries"] == plain.cost["kernel_entries"]
+    assert more.cost["operator_products"] <= plain.cost["operator_products"] + 2 * 12
+    # The same digits, too.
+    plain_rows, rows = ((r.folder / "curve.csv").read_bytes() for r in (plain, more))
+    assert rows == plain_rows
+
+
+def test_a_profile_off_the_steps_costs_one_state(run):
+    plain = run(lennard_jones(1.0, **PLAIN))
+    more = run(lennard_jones(1.0, **PLAIN, profiles={"h0": [1.1]}))
+    assert more.cost["states"] == plain.cost["states"] + 1
+    assert more.cost["operator_products"] <= plain.cost["operator_products"] + 20
+
+
+def test_unloading_does_not_change_the_loading(run):
+    plain = run(lennard_jones(1.0, **PLAIN))
+    more = run(lennard_jones(1.0, **PLAIN, unloading={"from_": [0.0, -2.0]}))
+    assert more.cost["states"] == plain.cost["states"] + 33 + 41
+    assert more.cost["kernel_entries"] == plain.cost["kernel_entries"]
+    loading_rows = more.curve.rows("loading")
+    assert list(loading_rows["load"]) == list(plain.curve["load"])
+
+
+def test_stability_adds_columns_and_factorisations_and_nothing_else(run):
+    plain = run(lennard_jones(1.0, **PLAIN))
+    more = run(lennard_jones(1.0, **PLAIN, stability={}))
+    assert more.curve.names[: len(plain.curve.names)] == plain.curve.names
+    added = more.curve.names[len(plain.curve.names) :]
+    assert added == ["smallest_eigenvalue", "criterion_28", "criterion_29"]
+    assert list(more.curve["load"]) == list(plain.curve["load"])
+    states = more.cost["states"]
+    extra = more.cost["factorisations"] - plain.cost["factorisations"]
+    assert states <= extra <= 3 * states
+    for name in ("states", "operator_products", "kernel_entries"):
+        assert more.cost[name] == plain.cost[name]
+
+
+def test_classical_theory_alone_solves_nothing(run):
+    result = run(lennard_jones(1.0, classical={"h0_start": 5.0, "h0_end": -5.0}))
+    assert result.files == ["classical.csv", "summary.nml"]
+    assert "nodes" not in result.cost
+    for name, value in counts(result).items():
+        assert value == 0, name
+
+
+def test_a_path_alone_has_no_cycle_and_a_cycle_alone_no_path(run):
+    path = run(lennard_jones(1.0, equilibrium_path={"h0_end": -2.0}))
+    assert set(path.curve["branch"]) == {"path"}
+    assert not any(key.startswith("unload") for key in path.summary)
+    cycle = run(lennard_jones(1.0, **PLAIN, unloading={}))
+    assert "path" not in set(cycle.curve["branch"])
+    assert "folds_h0" not in cycle.summary
+
+
+# --- The cost model
+
+
+@pytest.mark.parametrize("sigma", [0.1, 0.87, 8.7])
+def test_a_smooth_state_takes_few_products_and_rare_factorisations(run, sigma):
+    """Six products a state (median) and a factorisation every 20 states, the jumps aside."""
+    scene = lennard_jones(sigma, loading=loading(4, -20, 0.05), unloading={"h0_end": 4.0})
+    result = run(scene)
+    iterations = sorted(result.curve["iterations"])
+    assert iterations[len(iterations) // 2] <= 6
+    smooth = exponential(100, loading=loading(0, -20, 0.05))
+    result = run(smooth)
+    assert result.cost["factorisations"] <= len(result.curve) / 20
+    iterations = sorted(result.curve["iterations"])
+    assert iterations[len(iterations) // 2] <= 6
+
+
+@pytest.mark.parametrize("sigma", [0.87, 8.7])
+def test_cost_of_a_cycle_grows_with_its_states_only(run, sigma):
+    """Twice as many steps: the same kernel, and less than twice the products."""
+    costs = [
+        run(lennard_jones(sigma, loading=loading(13, -10, step), unloading={})).cost
+        for step in (0.2, 0.1)
+    ]
+    assert costs[0]["kernel_entries"] == costs[1]["kernel_entries"]
+    assert costs[1]["operator_products"] < 2 * costs[0]["operator_products"]
+
+
+def test_path_costs_the_same_few_products_a_state_at_any_adhesion(run):
+    for sigma in (0.1, 8.7, 1000.0):
+        cost = run(lennard_jones(sigma, equilibrium_path={"h0_end": -2.0})).cost
+        assert cost["operator_products"] < 15 * cost["states"]
+        assert cost["states"] < 250
+        assert cost["nodes"] < 1500

@@ -1,0 +1,235 @@
+"""Claims about &stability: eigenvalues are right, verified, and change nothing that is known.
+
+The dense eigenvalues come from NumPy, on a matrix of the kernel that shares no code with the
+program's; only the positions of the nodes and the gaps there are the program's.
+"""
+
+import numpy as np
+import pytest
+from support.half_space import independent_eigenvalues
+from support.scenes import exponential, lennard_jones, loading, runner
+
+import snapin as library
+
+EDGE = 3 ** (1 / 6)
+ORDER = 10
+FEW = {"accuracy": 1e-4, "panel_order": ORDER}
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("stability"))
+
+
+def depth(sigma):
+    """An h0 above which the bodies hardly deform, and one at which they are pressed together."""
+    return 2.6 * max(1.0, 3 * sigma) ** (2 / 3) + 2.4, -max(2.0, 0.6 * sigma ** (2 / 3))
+
+
+def path(sigma, **groups):
+    return lennard_jones(sigma, equilibrium_path={"h0_end": depth(sigma)[1]}, **groups)
+
+
+def cycle(sigma, steps, **groups):
+    high, low = depth(sigma)
+    return lennard_jones(
+        sigma, loading=loading(high, low, (high - low) / steps), unloading={}, **groups
+    )
+
+
+def panel_ends(r):
+    """The panels whose Gauss-Legendre nodes are r."""
+    x = (np.polynomial.legendre.leggauss(ORDER)[0] + 1) / 2
+    r = r.reshape(-1, ORDER)
+    length = (r[:, -1] - r[:, 0]) / (x[-1] - x[0])
+    start = r[:, 0] - length * x[0]
+    # The axis, what two panels agree on, and the end.
+    between = start[1:]
+    np.testing.assert_allclose(between, (start + length)[:-1], rtol=1e-13)
+    return np.concatenate([[0.0], between, [start[-1] + length[-1]]])
+
+
+def states_of(result):
+    """The rows of the curve that have a profile, with the profile's r and separation."""
+    curve, shapes = result.curve, result.table("profiles.csv")
+    begins = np.flatnonzero(shapes["r"] == 0)
+    pieces = list(zip(begins, [*begins[1:], len(shapes)]))
+    row, found = 0, []
+    for begin, end in pieces:
+        while not (
+            curve["h0"][row] == shapes["h0"][begin]
+            and curve["branch"][row] == shapes["branch"][begin]
+            and curve["h_centre"][row] == shapes["separation"][begin]
+        ):
+            row += 1
+        found.append((row, shapes["r"][begin:end], shapes["separation"][begin:end]))
+        row += 1
+    return found
+
+
+def agrees(result, sigma, least):
+    """Whether rows with profiles have the dense eigenvalue, and its sign in `stable`."""
+    curve, states = result.curve, states_of(result)
+    assert len(states) >= least
+    dense = independent_eigenvalues(
+        "lennard_jones", sigma, [(list(panel_ends(r[1:])), list(h[1:])) for _, r, h in states]
+    )[0]
+    rows = [row for row, _, _ in states]
+    eigenvalue = curve["smallest_eigenvalue"][rows]
+    # Positions are written to 1e-16, and NumPy's kernel has no more than these; the finest panels
+    # are about 1e-3/sigma wide.
+    np.testing.assert_allclose(eigenvalue, dense, rtol=0, atol=1e-13 * max(1.0, sigma))
+    np.testing.assert_array_equal(curve["stable"][rows], dense > 0)
+    assert not any("eigenvalue" in text for text in result.warnings)
+
+
+SIGMAS = [
+    pytest.param(sigma, marks=[pytest.mark.slow] if sigma > 100 else [])
+    for sigma in (1e-3, 0.1, 0.87, 8.7, 50.0, 1e3, 1e4)
+]
+
+
+# --- Eigenvalues
+
+
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_eigenvalues_along_the_path_are_the_dense_ones(run, sigma):
+    high, low = depth(sigma)
+    h0 = np.linspace(low + 0.01, 0.9 * high, 10)
+    agrees(run(path(sigma, stability={}, profiles={"h0": h0}, numerics=FEW)), sigma, 8)
+
+
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_eigenvalues_of_a_cycle_are_the_dense_ones(run, sigma):
+    result = run(cycle(sigma, 5, stability={}, numerics=FEW))
+    h0 = result.curve["h0"]
+    result = run(cycle(sigma, 5, stability={}, profiles={"h0": np.unique(h0)}, numerics=FEW))
+    assert (result.curve["stable"] == 1).all()
+    agrees(result, sigma, 10)
+
+
+@pytest.mark.parametrize("sigma", [0.01, 8.7])
+def test_eigenvalues_on_a_uniform_grid_are_the_dense_ones(run, sigma):
+    nodes, reach = 120, 12.0
+    h0 = [3.0, 1.0, -1.0]
+    result = run(
+        lennard_jones(
+            sigma,
+            loading=loading(3, -1, 2.0),
+            stability={},
+            profiles={"h0": h0},
+            numerics={"grid": "uniform", "nodes": nodes, "r_max": reach},
+        )
+    )
+    matrix = library.uniform_mesh(nodes, reach).matrix().nodes
+    states = states_of(result)
+    assert len(states) == 3
+    for row, r, gap in states:
+        assert len(r) == nodes
+        slope = 8 * (gap**-4 - 3 * gap**-10)
+        dense = np.linalg.eigvals(np.eye(nodes) - 2 * sigma * matrix * slope).real.min()
+        np.testing.assert_allclose(result.curve["smallest_eigenvalue"][row], dense, rtol=1e-9)
+
+
+@pytest.mark.parametrize("sigma", [50.0, pytest.param(1e3, marks=pytest.mark.slow)])
+def test_eigenvalues_change_little_from_state_to_state(run, sigma):
+    """Single rows once had 0.57 between -0.44 and -0.30, and whole contacts 0.99 for 1e-5."""
+    eigenvalue = run(path(sigma, stability={})).curve["smallest_eigenvalue"]
+    assert abs(np.diff(eigenvalue)).max() < 0.5
+    assert 0 < eigenvalue[-1] < 1.5 / sigma
+
+
+def test_bodies_that_only_repel_have_the_eigenvalue_one(run):
+    for text in (
+        exponential(1.0, loading=loading(10, -2, 4.0), stability={}),
+        lennard_jones(0.87, part="repulsive", loading=loading(4, -2, 2.0), stability={}),
+    ):
+        curve = run(text).curve
+        assert (curve["smallest_eigenvalue"] == 1).all()
+        assert (curve["stable"] == 1).all()
+        assert np.isnan(curve["criterion_28"]).all()
+
+
+def test_what_is_no_equilibrium_has_no_eigenvalue(run):
+    starved = {"max_iterations": 1, "grid": "uniform", "nodes": 100}
+    scene = lennard_jones(0.87, loading=loading(6, -2, 0.5), stability={}, numerics=starved)
+    curve = run(scene, status=1).curve
+    failed = curve["converged"] == 0
+    assert failed.any()
+    for name in ("smallest_eigenvalue", "criterion_28", "criterion_29"):
+        assert np.isnan(curve[name][failed]).all()
+
+
+# --- Stability
+
+
+@pytest.mark.parametrize("sigma", [0.01, 0.3, *SIGMAS[2:]])
+def test_the_group_leaves_the_path_as_it_is(run, sigma):
+    """A fold is neither stable nor, to rounding, unstable: what the path counts is kept."""
+    without, with_group = run(path(sigma)), run(path(sigma, stability={}))
+    for name in without.curve.names:
+        np.testing.assert_array_equal(with_group.curve[name], without.curve[name])
+    assert with_group.warnings == without.warnings
+
+
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_the_path_and_the_eigenvalues_agree_on_stability(run, sigma):
+    result = run(path(sigma, stability={}))
+    curve = result.curve
+    eigenvalue, stable = curve["smallest_eigenvalue"], curve["stable"] == 1
+    folds = np.atleast_1d(result.summary.get("folds_h0", []))
+    away = ~np.isin(curve["h0"], folds)
+    assert (~away).sum() == len(folds)
+    np.testing.assert_array_equal(eigenvalue[away] > 0, stable[away])
+    # The last fold is where the softest mode of the contact passes zero.
+    if len(folds):
+        last = np.flatnonzero(~away)[-1]
+        assert abs(eigenvalue[last]) < 1e-3 * abs(eigenvalue[[last - 2, last + 2]]).min()
+    assert not any("eigenvalue" in text for text in result.warnings)
+
+
+# --- Criteria
+
+
+@pytest.mark.parametrize("sigma", [0.1, 8.7])
+def test_criterion_28_is_that_of_the_surface_that_attracts(run, sigma):
+    h0 = [depth(sigma)[0] * 0.9, 1.0, -1.0]
+    result = run(path(sigma, stability={}, profiles={"h0": h0}))
+    shapes = result.table("profiles.csv")
+    for row, r, gap in states_of(result):
+        mine = np.isin(shapes["separation"], gap[1:]) & (shapes["h0"] == result.curve["h0"][row])
+        assert mine.sum() == len(r) - 1
+        outside = gap[1:] > EDGE
+        ratio = 3 * (1 - 3 * gap[1:] ** -6) / (gap[1:] * (1 - gap[1:] ** -6))
+        expected = (abs(2 * shapes["deformation"][mine]) * ratio)[outside].max()
+        assert result.curve["criterion_28"][row] == pytest.approx(expected, rel=1e-9)
+
+
+def test_criteria_in_contact_do_not_depend_on_the_mesh(run):
+    """Their pole, where the pressure passes zero, made 1e5 of what is 20, another on every mesh."""
+    scenes = [
+        lennard_jones(
+            8.7, loading=loading(12, -3, 3.0), unloading={}, stability={}, numerics=numerics
+        )
+        for numerics in ({}, {"accuracy": 1e-8}, {"grid": "panels", "nodes": 200})
+    ]
+    first, *others = (run(scene).curve for scene in scenes)
+    contact = first["contact_radius"] > 0
+    assert contact.sum() >= 5
+    # As the paper says, contacts with adhesion always violate (28) just outside the contact zone.
+    assert (first["criterion_28"][contact] > 1).all()
+    # On the axis of a contact (29) does not apply.
+    assert np.isnan(first["criterion_29"][contact]).all()
+    assert not np.isnan(first["criterion_29"][~contact]).any()
+    for other in others:
+        np.testing.assert_allclose(other["criterion_28"], first["criterion_28"], rtol=0.05)
+
+
+def test_before_contact_criterion_28_is_29_at_its_largest(run):
+    curve = run(path(0.87, stability={})).curve
+    far = curve["h_centre"] > 3
+    assert far.sum() >= 5
+    # It is at its largest on the axis, which is no node.
+    ratio = curve["criterion_28"][far] / -curve["criterion_29"][far]
+    np.testing.assert_allclose(ratio, 1, atol=0.01)
+    assert (ratio <= 1).all()

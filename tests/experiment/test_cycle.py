@@ -1,0 +1,315 @@
+"""Claims about the h0-stepped experiment: what the bodies do, and that it is computed truly."""
+
+import numpy as np
+import pytest
+from support.half_space import independent_states
+from support.half_space import lennard_jones as lennard_jones_law
+from support.scenes import JKR, deck, exponential, lennard_jones, loading, runner, several
+
+FIG1 = {"radius": 1.5e-2, "stiffness": 1e10}
+FIG1_LJ = {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9}
+FIG1_EXPONENTIAL = {"law": "exponential", "p0": 2.5e8, "decay_length": 0.2e-9}
+# sigma of the two rows of the reference table: attraction with a jump, and with much adhesion.
+WEAK, STRONG = 0.87, 8.7
+STRONG_PULL_OFF = 1.01124487  # In units of JKR's.
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("cycle"))
+
+
+def fig1(**numerics):
+    """The Lennard-Jones cycle of Fig. 1."""
+    return deck(
+        bodies=FIG1,
+        force=FIG1_LJ,
+        loading={"h0_start": 4e-9, "h0_end": -15e-9, "h0_step": 1e-10},
+        unloading={},
+        numerics={"accuracy": 1e-4, **numerics},
+    )
+
+
+# --- Figure 1
+
+
+def test_fig1_has_the_tension_and_the_jumps_of_the_converged_solution(run):
+    summary = run(fig1()).summary
+    assert summary["max_tension"] == pytest.approx(60.72e-6, rel=2e-3)
+    assert summary["jump_in_h0"] == pytest.approx(1.545e-9, abs=0.01e-9)
+    assert summary["jump_out_h0"] == pytest.approx(1.743e-9, abs=0.01e-9)
+    # The paper's -59 uN, between JKR and DMT.
+    assert summary["jkr_pull_off"] < summary["max_tension"] < summary["dmt_pull_off"]
+
+
+def test_fig1_exponential_converges_in_every_state_to_the_converged_load(run):
+    def scene(accuracy):
+        return deck(
+            bodies=FIG1,
+            force=FIG1_EXPONENTIAL,
+            loading={"h0_start": 2e-9, "h0_end": -15e-9, "h0_step": 1e-10},
+            numerics={"accuracy": accuracy},
+        )
+
+    plain, fine = run(scene(1e-6)).curve, run(scene(1e-10)).curve
+    assert len(plain) == 171
+    assert plain["residual"].max() <= 1e-8
+    assert fine["residual"].max() <= 1e-11
+    np.testing.assert_allclose(plain["load"], fine["load"], rtol=1e-5)
+    np.testing.assert_allclose(plain["h_centre"], fine["h_centre"], atol=1e-5 * 0.2e-9)
+    assert (np.diff(plain["load"]) > 0).all()
+    assert (np.diff(plain["h_centre"]) < 0).all()
+
+
+def test_fig1_exponential_is_that_of_an_independent_solution(run):
+    h0 = np.linspace(10, -75, 18)  # Every nm, in decay lengths.
+    big_lambda = 2.5e8 / 1e10 * np.sqrt(1.5e-2 / 0.2e-9)
+    centre, load = independent_states("exponential", big_lambda, h0, np.linspace(0, 13, 27), 3)
+    curve = run(exponential(big_lambda, loading=loading(10, -75, 5))).curve
+    np.testing.assert_allclose(curve["h0"], h0, atol=1e-12)
+    np.testing.assert_allclose(curve["load"], load, rtol=1e-6)
+    np.testing.assert_allclose(curve["h_centre"], centre, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("big_lambda", "displacement", "load"),
+    [
+        (0.01, 0.0481552209, 0.0607234529),
+        (1, 1.4455536, 2.1260862),
+        (1e4, 9.3371461, 22.0407985),
+    ],
+)
+def test_exponential_has_the_displacement_and_load_of_the_reference(
+    run, big_lambda, displacement, load
+):
+    scene = exponential(big_lambda, loading=loading(10, 0, 1), numerics={"accuracy": 1e-9})
+    curve = run(scene).curve
+    assert curve["h0"][-1] == 0
+    # One unit of the last digit given, or nine digits.
+    assert curve["displacement"][-1] == pytest.approx(displacement, rel=1e-9, abs=5e-8)
+    assert curve["load"][-1] == pytest.approx(load, rel=1e-9, abs=5e-8)
+
+
+@pytest.mark.parametrize(("sigma", "h0"), [(0.1, 0.0), (WEAK, 3.2)])
+def test_lennard_jones_is_that_of_an_independent_solution(run, sigma, h0):
+    ends = np.concatenate([np.linspace(0, 4, 11), np.geomspace(4, 100, 9)[1:]])
+    centre, load = independent_states("lennard_jones", sigma, np.linspace(8, h0, 17), ends)
+    curve = run(lennard_jones(sigma, loading=loading(8, h0, 0.2))).curve
+    assert curve["h0"][-1] == h0
+    assert curve["h_centre"][-1] == pytest.approx(centre[-1], rel=1e-6)
+    assert curve["load"][-1] == pytest.approx(load[-1], rel=2e-6)
+
+
+# --- Pull-off and penetration
+
+
+def penetration_scene(step=0.2, **numerics):
+    """Fig. 10(c) without the paper's grid: sigma 8.7, four turning points."""
+    return deck(
+        bodies=FIG1,
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
+        loading={"h0_start": 6.5e-9, "h0_end": -10e-9, "h0_step": step * 0.5e-9},
+        unloading={"from_": [1e-9, -2e-9, -4e-9, -10e-9], "h0_end": 6.5e-9},
+        numerics=numerics,
+    )
+
+
+def test_pull_off_does_not_depend_on_penetration(run):
+    summary = run(penetration_scene()).summary
+    pull_off = np.array(summary["unload_max_tension"])
+    assert len(pull_off) == 4
+    np.testing.assert_allclose(pull_off, pull_off.mean(), rtol=1e-6)
+    # The deck's sigma is 8.717, not 8.7: the pull-off varies by -1.4e-3 from 8.7 to 10.
+    assert pull_off[0] / summary["jkr_pull_off"] == pytest.approx(STRONG_PULL_OFF, rel=3e-5)
+    jump_out = np.array(summary["unload_jump_out_h0"])
+    np.testing.assert_allclose(jump_out, jump_out[0], rtol=1e-6)
+
+
+def test_pull_off_at_sigma_8_7_is_that_of_the_reference(run):
+    scene = lennard_jones(
+        STRONG, loading=loading(13, -8, 0.2), unloading={"from_": [2.0, -4.0, -8.0]}
+    )
+    pull_off = np.array(run(scene).summary["unload_max_tension"]) / (STRONG * JKR)
+    np.testing.assert_allclose(pull_off, STRONG_PULL_OFF, rtol=1e-6)
+
+
+def test_unloading_retraces_loading_where_there_is_no_jump(run):
+    scene = lennard_jones(0.2, loading=loading(6, -4, 0.25), unloading={})
+    curve = run(scene).curve
+    down, up = curve.rows("loading"), curve.rows("unloading_1")
+    np.testing.assert_allclose(up["h0"], down["h0"][::-1], atol=1e-12)
+    np.testing.assert_allclose(up["load"], down["load"][::-1], atol=1e-6 * abs(down["load"]).max())
+    np.testing.assert_allclose(up["h_centre"], down["h_centre"][::-1], atol=1e-6)
+
+
+def test_branches_differ_between_the_jumps_and_nowhere_else(run):
+    result = run(lennard_jones(WEAK, loading=loading(6, -2, 0.1), unloading={}))
+    down, up = result.curve.rows("loading"), result.curve.rows("unloading_1")
+    between = (result.summary["jump_in_h0"] < down["h0"]) & (
+        down["h0"] < result.summary["jump_out_h0"]
+    )
+    difference = abs(up["h_centre"][::-1] - down["h_centre"])
+    assert between.sum() == 4
+    assert (difference[between] > 0.5).all()
+    assert (difference[~between] < 1e-6).all()
+
+
+@pytest.mark.parametrize("sigma", [WEAK, STRONG])
+def test_jumps_and_pull_off_do_not_depend_on_the_step(run, sigma):
+    found = []
+    for step in (0.05, 0.3, 1.0, 2.7, 9.0):
+        summary = run(lennard_jones(sigma, loading=loading(14, -4, step), unloading={})).summary
+        found.append([summary[key] for key in ("jump_in_h0", "jump_out_h0", "max_tension")])
+    # Accuracy 1e-6 on displacement and load.
+    np.testing.assert_allclose(found, [found[0]] * len(found), rtol=1e-6)
+
+
+@pytest.mark.parametrize("step", [0.02, 0.13, 0.2, 0.5])
+def test_jump_is_found_on_a_fixed_grid_whatever_the_step(run, step):
+    scene = lennard_jones(
+        WEAK, loading=loading(8, 2, step), numerics={"grid": "uniform", "nodes": 300}
+    )
+    summary = run(scene).summary
+    # 3.0886872, as well as 300 nodes have it; the finite mesh moves it by some 1e-4.
+    assert summary["jump_in_h0"] == pytest.approx(3.0886872, abs=2e-3)
+    assert summary["jump_in_uncertainty"] <= 1e-3
+
+
+def test_turning_points_may_come_in_any_order(run):
+    turning = [0.0, -3.0, 1.0, -1.7]
+
+    def scene(order):
+        return lennard_jones(
+            STRONG, loading=loading(13, -3, 0.5), unloading={"from_": [turning[k] for k in order]}
+        )
+
+    one, other = run(scene([0, 1, 2, 3])), run(scene([2, 0, 3, 1]))
+    for place, k in enumerate([2, 0, 3, 1], start=1):
+        mine = other.curve.rows(f"unloading_{place}")
+        same = one.curve.rows(f"unloading_{k + 1}")
+        assert mine["h0"][0] == pytest.approx(turning[k])
+        np.testing.assert_allclose(mine["load"], same["load"], atol=1e-6 * STRONG)
+    assert several(other.summary["unload_from"]) == [turning[k] for k in [2, 0, 3, 1]]
+
+
+def test_a_turning_point_beside_a_rounded_step_is_a_turning_point(run):
+    turning = [0.0, -2.0, -1.99999991]
+    # 24 of these steps end 8e-8 above 0.
+    result = run(
+        lennard_jones(WEAK, loading=loading(8, -2, 0.33333333), unloading={"from_": turning})
+    )
+    for place, value in enumerate(turning, start=1):
+        assert result.curve.rows(f"unloading_{place}")["h0"][0] == value
+    np.testing.assert_allclose(
+        several(result.summary["unload_max_tension"]), 1.07953786 * JKR * WEAK, rtol=1e-6
+    )
+
+
+def test_start_in_contact_is_what_an_approach_arrives_at(run):
+    whole = run(lennard_jones(STRONG, loading=loading(13, -4, 0.5), unloading={})).curve
+    part = run(lennard_jones(STRONG, loading=loading(1, -4, 0.5), unloading={"h0_end": 13.0}))
+    mine, theirs = part.curve.rows("loading"), whole.rows("loading")
+    np.testing.assert_allclose(mine["load"], theirs["load"][-len(mine) :], rtol=1e-6)
+    assert "jump_in_h0" not in part.summary
+    assert part.summary["jump_out_h0"] == pytest.approx(11.9352327, rel=1e-6)
+
+
+def test_loading_in_the_attractive_range_alone_is_tension_without_a_jump(run):
+    result = run(lennard_jones(STRONG, loading=loading(9, 6.5, 0.25)))
+    curve = result.curve
+    assert (curve["load"] < 0).all()
+    assert (np.diff(curve["load"]) < 0).all()
+    assert (curve["contact_radius"] == 0).all()
+    assert "jump_in_h0" not in result.summary
+    assert result.summary["max_tension"] == -curve["load"][-1]
+    assert result.summary["max_tension_h0"] == 6.5
+
+
+def test_attraction_alone_ends_at_its_jump(run):
+    """A law without repulsion has no state after the jump, and the summary says so."""
+    result = run(lennard_jones(1.0, part="attractive", loading=loading(8, 0, 0.25)), status=1)
+    summary = result.summary
+    exact = run(lennard_jones(1.0, part="attractive", equilibrium_path={"h0_end": 0.0})).summary
+    assert summary["jump_in_h0"] == pytest.approx(exact["jump_in_h0"], rel=1e-6)
+    assert summary["max_tension"] == pytest.approx(-exact["jump_in_load"], rel=1e-6)
+    assert result.curve["residual"].max() <= 1e-8
+    assert any("no stable equilibrium" in warning for warning in result.warnings)
+
+
+# --- Profiles
+
+
+def integral(x, y):
+    """By the mean of the parabolas through each three neighbouring points (end pieces: one)."""
+    total = 0
+    for k in range(len(x) - 1):
+        pieces = []
+        for first in (k - 1, k):
+            if 0 <= first <= len(x) - 3:
+                near = slice(first, first + 3)
+                fit = np.polyint(np.polyfit(x[near] - x[k], y[near], 2))
+                pieces.append(np.polyval(fit, x[k + 1] - x[k]) - np.polyval(fit, 0))
+        total += np.mean(pieces)
+    return total
+
+
+PROFILES = [6.0, 4.3, 2.37, 0.0, -1.9]
+
+
+@pytest.fixture(scope="module")
+def profiled(run):
+    """A cycle with profiles on and off the steps."""
+    scene = lennard_jones(
+        WEAK, loading=loading(6, -2, 0.5), unloading={}, profiles={"h0": PROFILES}
+    )
+    return run(scene)
+
+
+def test_profiles_are_those_asked_for_on_every_branch_that_passes(profiled):
+    profiles = profiled.table("profiles.csv")
+    for branch in ("loading", "unloading_1"):
+        assert sorted(set(profiles.rows(branch)["h0"])) == sorted(PROFILES)
+        assert set(PROFILES) <= set(profiled.curve.rows(branch)["h0"])
+
+
+@pytest.mark.parametrize("branch", ["loading", "unloading_1"])
+def test_profiles_fit_together_and_to_the_curve(profiled, branch):
+    profiles, curve = profiled.table("profiles.csv").rows(branch), profiled.curve.rows(branch)
+    for h0 in PROFILES:
+        here = profiles["h0"] == h0
+        r, h, u, p = (profiles[k][here] for k in ("r", "separation", "deformation", "pressure"))
+        energy = profiles["energy"][here]
+        assert r[0] == 0
+        assert (np.diff(r) > 0).all()
+        np.testing.assert_allclose(h, h0 + r**2 / 2 - 2 * u, atol=1e-9 * r[-1] ** 2)
+        pressure, _, energy_density = lennard_jones_law(h)
+        np.testing.assert_allclose(p, WEAK * pressure, rtol=1e-10, atol=1e-12)
+        np.testing.assert_allclose(energy, WEAK * energy_density, rtol=1e-10, atol=1e-12)
+        row = curve["h0"] == h0
+        assert h[0] == pytest.approx(curve["h_centre"][row][0], rel=1e-12)
+        load = 2 * np.pi * (integral(r, p * r) + energy[-1])
+        assert load == pytest.approx(curve["load"][row][0], abs=1e-3 * WEAK)
+        assert -2 * u[0] == pytest.approx(curve["displacement"][row][0], abs=1e-12)
+
+
+# --- The same again
+
+
+def test_summary_runs_again_with_the_same_digits(run):
+    first = run(fig1())
+    again = run((first.folder / "summary.nml").read_text())
+    assert (again.folder / "curve.csv").read_bytes() == (first.folder / "curve.csv").read_bytes()
+    for group, values in first.groups.items():
+        for key, value in values.items():
+            if not key.endswith("_seconds"):
+                assert again.groups[group][key] == value, key
+
+
+def test_the_same_deck_gives_the_same_bytes(snapin, tmp_path):
+    scene = lennard_jones(STRONG, loading=loading(9, 0, 0.5), unloading={}, profiles={"h0": [1.0]})
+    written = []
+    for name in ("a", "b"):
+        run = runner(snapin, tmp_path)
+        folder = run(scene).folder
+        written.append([(folder / file).read_bytes() for file in ("curve.csv", "profiles.csv")])
+    assert written[0] == written[1]

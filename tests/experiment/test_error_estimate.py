@@ -1,0 +1,65 @@
+"""error_estimate is honest: between the true error and a hundred times it."""
+
+import f90nml
+import pytest
+from support.scenes import exponential, lennard_jones, read_table
+
+# Below this the reference is no better than the run.
+KNOWN = 3e-11
+
+
+def measured(snapin, folder, name, deck):
+    """What a deck reports, the end of its curve included, and its error estimate."""
+    (folder / f"{name}.nml").write_text(deck)
+    done = snapin(f"{name}.nml", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    summary = f90nml.read(folder / "results" / name / "summary.nml")["summary"]
+    found = {
+        key: summary[key]
+        for key in ("max_tension", "jump_in_h0", "jump_out_h0")
+        if key in summary
+    }
+    curve = read_table(folder / "results" / name / "curve.csv")
+    rows = [k for k, branch in enumerate(curve["branch"]) if branch.startswith(("loading", "path"))]
+    found["displacement at the end"] = curve["displacement"][rows[-1]]
+    found["load at the end"] = curve["load"][rows[-1]]
+    if curve["branch"][rows[0]] == "loading":
+        found["load at the start"] = curve["load"][rows[0]]
+    return found, summary["error_estimate"]
+
+
+def scene(kind, strength, accuracy):
+    """A path, a cycle or a repulsive loading at a strength (sigma or Lambda) and an accuracy."""
+    numerics = {"accuracy": accuracy}
+    if kind == "exponential":
+        loading = {"h0_start": 10.0, "h0_end": -75.0, "h0_step": 0.5}
+        return exponential(strength, loading=loading, numerics=numerics)
+    if kind == "path":
+        return lennard_jones(strength, equilibrium_path={"h0_end": -4.0}, numerics=numerics)
+    high = max(12.0, 13 * (strength / 8.7) ** (2 / 3))
+    loading = {"h0_start": high, "h0_end": -4.0, "h0_step": (high + 4) / 100}
+    return lennard_jones(strength, loading=loading, unloading={"h0_end": high}, numerics=numerics)
+
+
+@pytest.mark.parametrize(
+    "kind, strength",
+    [
+        ("path", 0.01),
+        ("path", 0.87),
+        ("path", 8.7),
+        ("path", 1000.0),
+        ("cycle", 0.1),
+        ("cycle", 0.87),
+        ("cycle", 8.7),
+        ("exponential", 1.0),
+        ("exponential", 216.0),
+    ],
+)
+def test_the_estimate_bounds_the_error_within_a_hundred(snapin, tmp_path, kind, strength):
+    reference, _ = measured(snapin, tmp_path, "reference", scene(kind, strength, 1e-10))
+    for accuracy in (1e-3, 1e-4, 1e-6, 1e-8):
+        found, estimate = measured(snapin, tmp_path, "run", scene(kind, strength, accuracy))
+        error = max(abs(found[key] / reference[key] - 1) for key in reference)
+        assert error <= accuracy
+        if error > KNOWN:
+            assert error <= estimate <= 100 * error, (accuracy, error, estimate)

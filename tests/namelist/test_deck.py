@@ -1,0 +1,213 @@
+"""The deck reader: what it accepts, and every mistake named by line, group and key.
+
+All through `snapin --check`, which prints "DECK: ok" or the mistakes and computes nothing.
+"""
+
+import pytest
+from support.decks import ACCEPTED, BODIES, FORCE, GOOD, LOADING, with_bodies, with_extra
+
+
+@pytest.mark.parametrize("text", ACCEPTED.values(), ids=ACCEPTED.keys())
+def test_good_deck_is_accepted(check, text):
+    status, out, err = check(text)
+    assert (status, out) == (0, "d.nml: ok\n")
+    # That a run will be long is no mistake.
+    assert all("may take" in line for line in err.splitlines())
+
+
+# --- Refused
+
+# name: (deck, line, group, key, phrase)
+REFUSED = {
+    # stray text and broken groups
+    "text before a group": ("radius = 1\n" + GOOD, 1, "", "", "text before the first group"),
+    "text between groups": (with_extra("\nhello\n"), 5, "", "", "text outside a group"),
+    "text after the slash": (BODIES.replace("/", "/ radius = 2"), 1, "", "", "outside a group"),
+    "an apostrophe outside": (with_extra("don't\n"), 4, "", "", "text outside a group"),
+    "slash in a bare value": (with_bodies("radius = 1/2, stiffness = 1 /"), 1, "", "", "outside"),
+    "slash alone": (with_extra("/\n"), 4, "", "", "without a group to close"),
+    "dollar group": ("$bodies radius = 1 $end\n", 1, "", "", "&name"),
+    "ampersand alone": ("& bodies radius = 1 /\n", 1, "", "", "must follow"),
+    "not closed at the end": (GOOD + "&unloading\n from = 1e-9\n", 4, "unloading", "", "no \"/\""),
+    "not closed before a group": (BODIES.replace(" /", "") + FORCE, 1, "bodies", "", "&force"),
+    "nothing but an ampersand": ("&", 1, "", "", "must follow"),
+    "unknown group": (with_extra("&unlading /\n"), 4, "", "", 'did you mean "&unloading"'),
+    "unknown group lists groups": (with_extra("&x y = 1 /\n"), 4, "", "", "&equilibrium_path"),
+    "second group": (with_extra("&bodies radius = 1 /\n"), 4, "", "", "the first is on line 1"),
+    # keys
+    "unknown key": (with_bodies("raduis = 1, stiffness = 1 /"), 1, "bodies", "raduis",
+                    'did you mean "radius"'),
+    "unknown key lists keys": (with_bodies("\n q = 1 /"), 2, "bodies", "q", "radius, stiffness"),
+    "key of a keyless group": (with_extra("&stability\n x = 1 /"), 5, "stability", "x",
+                               "no keys"),
+    "duplicate key": (with_bodies("radius = 1,\n stiffness = 1\n radius = 1 /"), 3, "bodies",
+                      "radius", "given twice; the first is on line 1"),
+    "subscript": (with_extra("&profiles h0(2) = 1 /"), 4, "profiles", "h0", "subscripts"),
+    "subscript with blanks": (with_extra("&profiles h0( 1, 2 ) = 1 /"), 4, "profiles", "h0",
+                              "subscripts"),
+    "component": (with_bodies("a%b = 1 /"), 1, "bodies", "a%b", "not the name of a key"),
+    "digit first": (with_bodies("1radius = 1 /"), 1, "bodies", "1radius", "not the name of a key"),
+    "value without a key": (with_bodies("1.5, stiffness = 1 /"), 1, "bodies", "", "without a key"),
+    "equals without a key": (with_bodies("= 1 /"), 1, "bodies", "", "without the name"),
+    "two equals": (with_bodies("radius == 1 /"), 1, "bodies", "radius", "without the name"),
+    "missing separator": (with_bodies("radius = 1stiffness = 2 /"), 1, "bodies", "radius",
+                          'no value between "=" and the next key "1stiffness"'),
+    "missing required key": (with_bodies("\n stiffness = 1 /"), 1, "bodies", "radius",
+                             "missing; give it a number > 0 m"),
+    "missing group": (FORCE + LOADING, 1, "bodies", "", "missing"),
+    # values
+    "empty value before a key": (with_bodies("radius =\n stiffness = 1 /"), 1, "bodies", "radius",
+                                 "no value"),
+    "empty value at the end": (with_bodies("stiffness = 1,\n radius = /"), 2, "bodies", "radius",
+                               "no value"),
+    "empty value before a comma": (with_bodies("radius = , stiffness = 1 /"), 1, "bodies",
+                                   "radius", "no value"),
+    "null in a list": (with_extra("&profiles h0 = 1e-9,,2e-9 /"), 4, "profiles", "h0",
+                       "no value before it"),
+    "comma first": (with_bodies(", radius = 1 /"), 1, "bodies", "", "no value before it"),
+    "null by repeat count": (with_extra("&profiles h0 = 3* /"), 4, "profiles", "h0",
+                             "not a number"),
+    "repeat count for a scalar": (with_bodies("radius = 2*1.0, stiffness = 1 /"), 1, "bodies",
+                                  "radius", "where one is expected"),
+    "too many repeats": (with_extra("&profiles h0 = 1001*1e-9 /"), 4, "profiles", "h0",
+                         "too many values"),
+    "huge repeat count": (with_extra("&profiles h0 = 999999999*1e-9 /"), 4, "profiles", "h0",
+                          "too many values"),
+    "a repeat count that overflows": (with_extra("&profiles h0 = 1e-9, 2147483647*1e-9 /"), 4,
+                                      "profiles", "h0", "too many values"),
+    "NaN": (with_bodies("radius = NaN, stiffness = 1 /"), 1, "bodies", "radius", "finite"),
+    "Inf": (with_bodies("radius = 1, stiffness = -Inf /"), 1, "bodies", "stiffness", "finite"),
+    "Infinity": (with_bodies("radius = +infinity /"), 1, "bodies", "radius", "finite"),
+    "NaN with a payload": (with_bodies("radius = nan(1) /"), 1, "bodies", "radius", "not a number"),
+    "overflow": (with_bodies("radius = 1e999 /"), 1, "bodies", "radius", "too large"),
+    "overflow just": (with_bodies("radius = 9.9e308 /"), 1, "bodies", "radius", "too large"),
+    "overflow by digits": (with_bodies("radius = 1" + "0" * 90 + "e250 /"), 1, "bodies", "radius",
+                           "too large"),
+    "an exponent that overflows with its digits": (
+        with_bodies("radius = 10e2147483647 /"), 1, "bodies", "radius", "too large"),
+    "a number that nothing has": (with_bodies("radius = 1e51 /"), 1, "bodies", "radius",
+                                  "too large; numbers have decimal orders from -50 to 50"),
+    "exponent beyond all": (with_bodies("radius = 1e99999999999 /"), 1, "bodies", "radius",
+                            "too large or too small"),
+    "underflow": (with_bodies("radius = 1e-999 /"), 1, "bodies", "radius", "too small"),
+    "two points": (with_bodies("radius = 1.0.0 /"), 1, "bodies", "radius", "1.0.0 is not a number"),
+    "decimal comma": (with_bodies("radius = 1,5 /"), 1, "bodies", "radius", "2 values"),
+    "a unit": (with_bodies("radius = 15mm /"), 1, "bodies", "radius", "15mm is not a number"),
+    "a unit after a blank": (with_bodies("radius = 15 mm /"), 1, "bodies", "radius", "2 values"),
+    "an expression": (with_bodies("radius = 3-1 /"), 1, "bodies", "radius", "not a number"),
+    "an exponent without a letter": (with_bodies("radius = 1.0-2 /"), 1, "bodies", "radius",
+                                     "not a number"),
+    "an exponent without digits": (with_bodies("radius = 1e /"), 1, "bodies", "radius",
+                                   "not a number"),
+    "an exponent alone": (with_bodies("radius = e5 /"), 1, "bodies", "radius", "not a number"),
+    "a point alone": (with_bodies("radius = . /"), 1, "bodies", "radius", "not a number"),
+    "a sign alone": (with_bodies("radius = - /"), 1, "bodies", "radius", "not a number"),
+    "hexadecimal": (with_bodies("radius = 0x10 /"), 1, "bodies", "radius", "not a number"),
+    "a complex number": (with_bodies("radius = (1,0) /"), 1, "bodies", "radius", "not a number"),
+    "a semicolon": (with_bodies("radius = 1; stiffness = 1 /"), 1, "bodies", "radius",
+                    "not a number"),
+    "a quoted number": (with_bodies("radius = '1' /"), 1, "bodies", "radius", "text in quotes"),
+    "a word for a number": (with_bodies("radius = big /"), 1, "bodies", "radius", "not a number"),
+    "a logical for a number": (with_bodies("radius = .true. /"), 1, "bodies", "radius",
+                               "not a number"),
+    "tomato": (with_bodies("radius = 1, rigid = tomato /"), 1, "bodies", "rigid",
+               "tomato is neither .true. nor .false."),
+    "a number for a logical": (with_bodies("radius = 1, rigid = 1 /"), 1, "bodies", "rigid",
+                               ".true. or .false."),
+    "too many values for a scalar": (with_bodies("radius = 1 2 3, stiffness = 1 /"), 1, "bodies",
+                                     "radius", "3 values where one is expected"),
+    "too many values for a list": (with_bodies("radius = 1, young = 1, 2, 3, poisson = 0 /"), 1,
+                                   "bodies", "young", "too many values"),
+    "a real for a whole number": (with_extra("&numerics nodes = 20.5 /"), 4, "numerics", "nodes",
+                                  "not a whole number"),
+    "a whole number too large": (with_extra("&numerics nodes = 99999999999 /"), 4, "numerics",
+                                 "nodes", "too large"),
+    "a whole number out of range": (with_extra("&numerics nodes = 1 /"), 4, "numerics", "nodes",
+                                    "from 2 to 20000"),
+    "a bare word": (GOOD.replace("'lennard_jones'", "lennard_jones"), 2, "force", "law",
+                    "not in quotes"),
+    "a bare title": ("&scene title = Fig 10 /\n" + GOOD, 1, "scene", "title", "2 values"),
+    "an unknown choice": (GOOD.replace("lennard_jones", "lenard_jones"), 2, "force", "law",
+                          'did you mean "lennard_jones"'),
+    "choices are listed": (GOOD.replace("lennard_jones", "x"), 2, "force", "law",
+                           "one of 'lennard_jones', 'exponential'"),
+    "an empty choice": (GOOD.replace("lennard_jones", ""), 2, "force", "law", "not known"),
+    "two choices in one": (GOOD.replace("lennard_jones", "lennard_jones exponential"), 2, "force",
+                           "law", "not known"),
+    "a title too long": ("&scene title = '" + "x" * 201 + "' /\n" + GOOD, 1, "scene", "title",
+                         "too long; allowed: text in quotes, at most 200 characters"),
+    "a string not closed": ("&scene title = 'Fig. 10 /\n" + GOOD, 1, "scene", "title",
+                            "no closing '"),
+    "a string not closed at the end": (GOOD + '&scene title = "x', 4, "scene", "title",
+                                       'no closing "'),
+    "text after a string": ("&scene title = 'it's' /\n" + GOOD, 1, "scene", "title",
+                            "right after a closing quote"),
+    "a quote in a word": (with_bodies("radius = 1'm' /"), 1, "bodies", "", "middle of a word"),
+    # bytes
+    "a NUL byte": (GOOD.encode() + b"\n\0\n", 5, "", "", "NUL"),
+    "utf-16": (GOOD.encode("utf-16"), 1, "", "", "NUL"),
+    "a minus from a word processor": (with_bodies("radius = \u22121 /"), 1, "bodies", "",
+                                      "not plain ASCII"),
+    "accents in a string": ("&scene title = 'M\u00fcller' /\n" + GOOD, 1, "scene", "title",
+                            "not plain ASCII"),
+    "a no-break space": (with_bodies("radius =\u00a01 /"), 1, "bodies", "", "not plain ASCII"),
+    "a control character": (with_bodies("radius = 1\x0b /"), 1, "bodies", "", "not plain ASCII"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED.values(), ids=REFUSED.keys())
+def test_bad_deck_is_refused_by_line_group_and_key(check, case):
+    text, line, group, key, phrase = case
+    status, out, err = check(text)
+    assert status == 2
+    assert out == ""
+    first = err.splitlines()[0]
+    place = f"d.nml:{line}: " + (f"&{group}: " if group else "") + (f'key "{key}": ' if key else "")
+    assert first.startswith(place), err
+    if not group:
+        assert not first[len(place):].startswith("&"), err
+    assert phrase in err, err
+
+
+@pytest.mark.parametrize("text", ["", "\n\n", "! only a comment\n"])
+def test_empty_deck_names_the_groups_it_needs(check, text):
+    status, _, err = check(text)
+    assert status == 2
+    assert "d.nml:1: &bodies: this group is missing" in err
+    assert "d.nml:1: &force: this group is missing" in err
+
+
+def test_caret_stands_below_the_wrong_value(check):
+    _, _, err = check(with_bodies("radius = 1,\n\tstiffness = -5 /"))
+    _, source, caret = err.splitlines()
+    assert source.index("-5") == caret.index("^")
+    assert "stiffness = -5" in source
+
+
+def test_caret_is_found_in_a_very_long_line(check):
+    values = ", ".join(["1e-9"] * 500 + ["wrong"] + ["1e-9"] * 400)
+    _, _, err = check(with_extra(f"&profiles h0 = {values} /"))
+    _, source, caret = err.splitlines()
+    assert len(source) < 120
+    assert source.index("wrong") == caret.index("^")
+
+
+def test_all_mistakes_are_reported_in_one_run(check):
+    _, _, err = check("&bodies radius = -1\n stifness = 1 /\n&force law = 'x' /\n&bogus /\n")
+    found = {line.split(": ")[0] for line in err.splitlines() if line.startswith("d.nml")}
+    assert found == {"d.nml:1", "d.nml:2", "d.nml:3", "d.nml:4"}
+
+
+def test_endless_mistakes_are_cut_short(check):
+    _, _, err = check(with_extra("&stability\n" + "x = 1\n" * 5000 + "/\n"))
+    assert len(err.splitlines()) < 100
+    assert "further mistakes are not shown" in err
+
+
+@pytest.mark.parametrize("key, length", [("x" * 100, 100), ("x" * 100000, 100000)])
+def test_an_endless_name_is_shortened(check, key, length):
+    status, _, err = check(with_bodies(f"{key} = 1 /"))
+    assert status == 2
+    assert len(key) == length
+    assert "no such key" in err
+    assert max(map(len, err.splitlines())) < 250

@@ -1,0 +1,165 @@
+"""Decks as files of any kind, and the table of keys that --keys prints."""
+
+import os
+import re
+import threading
+
+import pytest
+from support.decks import GOOD, RUNTIME_ERROR
+
+# --- Files
+
+
+def refused_file(snapin, path, phrase):
+    done = snapin("--check", path)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.startswith(f"{path}: ")
+    assert phrase in done.stderr
+    assert not RUNTIME_ERROR.search(done.stderr)
+
+
+def test_missing_file_is_refused(snapin, tmp_path):
+    refused_file(snapin, tmp_path / "none.nml", "no such file")
+
+
+def test_blanks_at_the_end_of_a_name_count(snapin, tmp_path):
+    (tmp_path / "d.nml").write_text(GOOD)
+    refused_file(snapin, f"{tmp_path}/d.nml ", "no such file")
+    (tmp_path / "d.nml  ").write_text(GOOD)
+    assert snapin("--check", tmp_path / "d.nml  ").returncode == 0
+
+
+def test_control_characters_of_a_name_stay_out_of_messages(snapin, tmp_path):
+    (tmp_path / "a\n\x1b[31mb\u00e9.nml").write_text("?")
+    done = snapin("--check", "a\n\x1b[31mb\u00e9.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("a??[31mb\u00e9.nml:1: ")
+
+
+def test_pipe_is_read(snapin, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    writer = threading.Thread(target=(tmp_path / "pipe").write_text, args=(GOOD,))
+    writer.start()
+    done = snapin("--check", "pipe", cwd=tmp_path)
+    writer.join()
+    assert (done.returncode, done.stdout) == (0, "pipe: ok\n")
+
+
+def test_what_stands_in_the_way_of_a_file_is_said(snapin, tmp_path):
+    (tmp_path / "d.nml").write_text(GOOD)
+    (tmp_path / "loop").symlink_to("loop")
+    refused_file(snapin, tmp_path / "d.nml" / "x", "Not a directory")
+    refused_file(snapin, tmp_path / "loop", "symbolic links")
+    refused_file(snapin, tmp_path / ("x" * 300), "too long")
+    refused_file(snapin, tmp_path / ("x/" * 3000), "too long")
+
+
+def test_folder_is_refused(snapin, tmp_path):
+    refused_file(snapin, tmp_path, "cannot")
+
+
+def test_unreadable_file_is_refused(snapin, tmp_path):
+    deck = tmp_path / "secret.nml"
+    deck.write_text(GOOD)
+    deck.chmod(0)
+    if os.access(deck, os.R_OK):
+        pytest.skip("this user may read everything")
+    refused_file(snapin, deck, "cannot be opened")
+
+
+def test_huge_file_is_refused(snapin, tmp_path):
+    deck = tmp_path / "huge.nml"
+    deck.write_text(GOOD + "! " + "x" * 2_000_000)
+    refused_file(snapin, deck, "larger than")
+
+
+def test_endless_device_is_refused(snapin):
+    if os.path.exists("/dev/zero"):
+        refused_file(snapin, "/dev/zero", "larger than")
+
+
+def test_binary_file_is_refused(snapin, snapin_path):
+    done = snapin("--check", snapin_path)
+    assert done.returncode == 2
+    assert not RUNTIME_ERROR.search(done.stderr)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["!\n" * 500_000, "&bodies " * 120_000, "'" * 1_000_000, "&scene title = '" + "''" * 500_000,
+     "&scene a=" + "1 " * 500_000, "&scene " + "a=1 " * 250_000 + "/", "&a/" * 300_000,
+     "&profiles h0 = " + "1 " * 500_000 + "/", "&scene x((((" + "(" * 900_000],
+    ids=["comments", "groups", "quotes", "string", "values", "keys", "unknown groups", "list",
+         "parentheses"],
+)
+def test_pathological_file_is_refused_at_once(snapin, tmp_path, text):
+    (tmp_path / "d.nml").write_text(text)
+    done = snapin("--check", "d.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert len(done.stderr) < 20_000
+
+
+# --- The table
+
+
+def printed_keys(snapin):
+    """{group: {key: description}} as --keys prints it, without groups that are skipped."""
+    table, keys = {}, None
+    for line in snapin("--keys").stdout.splitlines():
+        if match := re.match(r"&(\w+)(.*)", line):
+            keys = {}
+            if "skipped" not in match[2]:
+                table[match[1]] = keys
+        elif match := re.match(r"  (\w+) +(\S.*)", line):
+            keys[match[1]] = match[2]
+    return table
+
+
+SAMPLE = {
+    "a number": "0.005",
+    "a whole": "10",
+    "up to": "0.005",
+    ".true.": ".false.",
+    "text in": "'x'",
+}
+
+
+def sample_value(description):
+    """Some value that a key described so takes."""
+    if match := re.match(r"one of ('\w+')", description):
+        return match[1]
+    return next(value for start, value in SAMPLE.items() if description.startswith(start))
+
+
+def test_every_printed_key_is_accepted(snapin, check):
+    """Each key in a deck by itself: the other keys may then be missing, but it is known."""
+    table = printed_keys(snapin)
+    assert len(table) >= 12
+    for group, keys in table.items():
+        for key, description in keys.items():
+            _, _, err = check(f"&{group} {key} = {sample_value(description)} /")
+            assert "no such key" not in err
+            assert "unknown" not in err
+            assert "allowed" not in err, err
+
+
+def test_every_accepted_key_is_printed(snapin, check):
+    """The reader lists the keys of a group when it meets a wrong one: the same as --keys."""
+    table = printed_keys(snapin)
+    _, _, err = check("&no_such_group_at_all /")
+    groups = re.search(r"groups are (.*)", err)[1].split(", ")
+    assert groups == ["&" + group for group in table]
+    for group, keys in table.items():
+        _, _, err = check(f"&{group} no_such_key_at_all = 1 /")
+        known = re.search(r"keys of &\w+ are (.*)", err)
+        assert (known[1].split(", ") if known else []) == list(keys)
+
+
+def test_keys_name_unit_default_and_meaning(snapin):
+    table = printed_keys(snapin)
+    assert table["bodies"]["radius"] == "a number > 0 m; required"
+    assert table["numerics"]["accuracy"] == "a number from 1e-10 to 0.1; default 1e-6"
+    assert table["force"]["part"].endswith("default: full")
+    lines = snapin("--keys").stdout.splitlines()
+    assert all(len(line) > 30 for line in lines if line.startswith(" " * 20))

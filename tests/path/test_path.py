@@ -1,0 +1,314 @@
+"""Claims about the whole equilibrium path: its folds, its stable parts, its limits."""
+
+import numpy as np
+import pytest
+from support.scenes import JKR, exponential, lennard_jones, loading, runner, several
+
+# The reference table: an independent high-order solution. Loads in units of gamma R.
+TABLE = {
+    0.87: {
+        "pull-off": 1.07953786,
+        "pull-off h0": 2.2284576,
+        "in": (3.0886872, -1.5330549),
+        "out": (3.4834324, -2.9986585),
+    },
+    8.7: {
+        "pull-off": 1.01124487,
+        "pull-off h0": 6.2758749,
+        "in": (5.9728350, -0.4076839),
+        "out": (11.9352327, -2.6534864),
+    },
+}
+# The table is of two independent solutions that agree to within one unit of its last digit.
+EIGHT = {"rel": 1e-8}
+SEVEN = {"abs": 1.05e-7}
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("path"))
+
+
+def path(sigma, accuracy=None, part="full", **keys):
+    """A path down to h0 = -2."""
+    numerics = {"accuracy": accuracy} if accuracy else None
+    return lennard_jones(
+        sigma, part=part, equilibrium_path={"h0_end": -2.0, **keys}, numerics=numerics
+    )
+
+
+def of(sigma, value):
+    """A load in units of gamma R."""
+    return value / sigma
+
+
+# --- The table
+
+
+@pytest.mark.parametrize("sigma", TABLE)
+def test_path_has_the_folds_and_pull_off_of_the_reference_to_all_digits(run, sigma):
+    summary, table = run(path(sigma, 1e-10)).summary, TABLE[sigma]
+    assert summary["sigma"] == pytest.approx(sigma, rel=1e-14)
+    assert of(sigma, summary["max_tension"]) / JKR == pytest.approx(table["pull-off"], **EIGHT)
+    assert summary["max_tension_h0"] == pytest.approx(table["pull-off h0"], **SEVEN)
+    for way in ("in", "out"):
+        h0, load = table[way]
+        assert summary[f"jump_{way}_h0"] == pytest.approx(h0, **SEVEN)
+        assert of(sigma, summary[f"jump_{way}_load"]) == pytest.approx(load, **SEVEN)
+    assert f"jump_{way}_uncertainty" not in summary
+
+
+@pytest.mark.parametrize("sigma", TABLE)
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_path_is_as_accurate_as_asked_for(run, sigma, accuracy):
+    summary, table = run(path(sigma, accuracy)).summary, TABLE[sigma]
+    pairs = [(of(sigma, summary["max_tension"]) / JKR, table["pull-off"])]
+    for way in ("in", "out"):
+        pairs.append((summary[f"jump_{way}_h0"], table[way][0]))
+        pairs.append((of(sigma, summary[f"jump_{way}_load"]), table[way][1]))
+    for found, exact in pairs:
+        # And the last digit of the table.
+        assert found == pytest.approx(exact, rel=accuracy, abs=abs(exact) * accuracy + 1e-7)
+
+
+def test_large_sigma_has_two_more_folds_before_contact(run):
+    summary = run(path(8.7)).summary
+    np.testing.assert_allclose(
+        summary["folds_h0"], [5.972835, 6.2608, 6.2098, 11.9352327], atol=5e-5
+    )
+
+
+def test_h0_start_does_not_matter(run):
+    starts = [None, 6.3, 12.0, 40.0, 300.0]
+    found = [
+        run(path(8.7, **({} if start is None else {"h0_start": start}))).summary for start in starts
+    ]
+    for key in ("max_tension", "max_tension_h0", "folds_h0", "folds_load"):
+        values = [several(summary[key]) for summary in found]
+        np.testing.assert_allclose(values, [values[0]] * len(values), rtol=1e-6)
+
+
+def test_path_ends_at_h0_end_and_starts_at_h0_start(run):
+    curve = run(path(0.87, h0_start=20.0)).curve
+    assert curve["h0"][0] == 20
+    assert curve["h0"][-1] == -2
+    assert set(curve["branch"]) == {"path"}
+    assert curve["residual"].max() <= 1e-8
+
+
+# --- Stability
+
+
+@pytest.mark.parametrize("sigma", [0.3, 0.87, 8.7, 100.0])
+def test_the_first_and_last_fold_bound_exactly_the_unstable_stretch(run, sigma):
+    result = run(path(sigma))
+    curve, folds = result.curve, np.array(result.summary["folds_h0"])
+    at_fold = [int(np.argmin(abs(curve["h0"] - fold))) for fold in (folds[0], folds[-1])]
+    # The folds are on the curve, and neither side of them is taken for the other.
+    np.testing.assert_allclose(curve["h0"][at_fold], folds[[0, -1]], rtol=1e-12)
+    first, last = at_fold
+    assert (curve["stable"][:first] == 1).all()
+    assert (curve["stable"][first : last + 1] == 0).all()
+    assert (curve["stable"][last + 1 :] == 1).all()
+    # h0 falls before the first fold and after the last, and rises overall in between.
+    assert (np.diff(curve["h0"][: first + 1]) < 0).all()
+    assert (np.diff(curve["h0"][last:]) < 0).all()
+    # Along the whole path the gap on the axis only falls until contact.
+    before_contact = curve["h_centre"] > 1.3
+    assert (np.diff(curve["h_centre"][before_contact]) < 0).all()
+
+
+def test_between_the_secondary_folds_the_path_stays_unstable(run):
+    """There two modes are unstable: signs that merely alternate would call it stable."""
+    scene = path(8.7) + "&stability /\n"
+    result = run(scene)
+    curve, folds = result.curve, result.summary["folds_h0"]
+    assert several(result.summary["folds_stable"]) == [0, 0, 0, 1]
+    place = [int(np.argmin(abs(curve["h0"] - fold))) for fold in folds]
+    assert place == sorted(place)
+    between = slice(place[1] + 1, place[2])
+    assert len(curve["h0"][between]) >= 1
+    assert (curve["stable"][between] == 0).all()
+    assert (curve["smallest_eigenvalue"][between] < 0).all()
+
+
+@pytest.mark.parametrize("sigma", [0.1, 0.87, 8.7])
+def test_the_smallest_eigenvalue_agrees_with_the_column_stable(run, sigma):
+    curve = run(path(sigma) + "&stability /\n").curve
+    eigenvalue = curve["smallest_eigenvalue"]
+    # At a fold it vanishes.
+    away = abs(eigenvalue) > 1e-4
+    assert away.sum() > 30
+    np.testing.assert_array_equal((eigenvalue > 0)[away], (curve["stable"] == 1)[away])
+    folds = several(run(path(sigma)).summary.get("folds_h0", []))
+    for fold in folds[:1] + folds[-1:]:
+        assert abs(eigenvalue[np.argmin(abs(curve["h0"] - fold))]) < 1e-4
+
+
+# --- The cusp, and the limits of JKR and DMT
+
+
+@pytest.mark.parametrize(("sigma", "folds"), [(0.2, 0), (0.29, 0), (0.3, 2), (0.5, 2)])
+def test_the_path_folds_above_sigma_0_291(run, sigma, folds):
+    summary = run(path(sigma)).summary
+    assert len(several(summary.get("folds_h0", []))) == folds
+    assert ("jump_in_h0" in summary) == ("jump_out_h0" in summary) == (folds > 0)
+    if folds:
+        assert summary["jump_in_h0"] < summary["jump_out_h0"]
+
+
+def test_the_cusp_is_where_the_folds_meet(run):
+    """Near a cusp the distance of the folds goes as the power 3/2 of that from it."""
+    sigma = np.array([0.295, 0.3, 0.31])
+    apart = [run(path(s)).summary["folds_h0"] for s in sigma]
+    slope, value = np.polyfit(sigma, [(b - a) ** (2 / 3) for a, b in apart], 1)
+    assert -value / slope == pytest.approx(0.291, abs=1e-3)
+
+
+def test_pull_off_goes_from_dmt_to_jkr(run):
+    sigma = [1e-3, 1e-2, 0.1, 0.3, 1.0, 10.0, 100.0, 1000.0]
+    pull_off = [of(s, run(path(s)).summary["max_tension"]) / JKR for s in sigma]
+    assert (np.diff(pull_off) < 0).all()
+    # The departure from 4/3 is of the order of sigma.
+    assert pull_off[0] == pytest.approx(4 / 3, rel=2e-3)
+    assert 4 / 3 - pull_off[0] == pytest.approx(0.1 * (4 / 3 - pull_off[1]), rel=0.1)
+    assert pull_off[-1] == pytest.approx(1.000061, abs=1e-6)
+    assert all(1 < value < 4 / 3 for value in pull_off)
+
+
+def test_energy_lost_is_that_of_the_whole_cycle_or_is_not_given(run):
+    lost = run(path(0.87)).summary["energy_lost"]
+    # The jumps are at 3.0886872 and 3.4834324.
+    deeper = run(path(0.87, h0_end=3.0)).summary
+    assert deeper["energy_lost"] == pytest.approx(lost, rel=1e-5)
+    for end in (3.1, 3.3):
+        summary = run(path(0.87, h0_end=end)).summary
+        assert summary["jump_out_h0"] == pytest.approx(3.4834324, rel=1e-6)
+        assert "energy_lost" not in summary
+        assert "energy_lost_uncertainty" not in summary
+
+
+def test_summary_has_the_extrema_of_the_load(run):
+    summary = run(path(8.7)).summary
+    h0, load = several(summary["load_folds_h0"]), several(summary["load_folds_load"])
+    assert len(h0) == len(load) == 3
+    assert min(load) == -summary["max_tension"]
+    assert h0[int(np.argmin(load))] == summary["max_tension_h0"]
+
+
+# --- Beside the h0-stepped experiment
+
+
+@pytest.mark.parametrize("sigma", [0.1, 0.87, 8.7])
+def test_path_agrees_with_the_h0_stepped_states(run, sigma):
+    steps = run(lennard_jones(sigma, loading=loading(12, -2, 0.5), unloading={})).curve
+    asked = steps.rows("loading")["h0"]
+    scene = lennard_jones(
+        sigma,
+        equilibrium_path={"h0_start": 12.5, "h0_end": -2.5},
+        profiles={"h0": [float(h0) for h0 in asked]},
+    )
+    curve = run(scene).curve
+    for branch in ("loading", "unloading_1"):
+        rows = steps.rows(branch)
+        for h0, load, centre in zip(rows["h0"], rows["load"], rows["h_centre"]):
+            here = (abs(curve["h0"] - h0) < 1e-9) & (curve["stable"] == 1)
+            nearest = np.argmin(abs(curve["load"][here] - load))
+            assert curve["load"][here][nearest] == pytest.approx(load, rel=1e-6, abs=1e-6 * sigma)
+            assert curve["h_centre"][here][nearest] == pytest.approx(centre, abs=1e-6)
+
+
+def test_path_and_loading_in_one_scene_report_the_folds_of_the_path(run):
+    both = run(
+        lennard_jones(
+            0.87,
+            loading=loading(6, -2, 0.5),
+            unloading={},
+            equilibrium_path={},
+            numerics={"accuracy": 1e-10},
+        )
+    )
+    assert set(both.curve["branch"]) == {"path", "loading", "unloading_1"}
+    assert both.summary["jump_in_h0"] == pytest.approx(3.0886872, **SEVEN)
+    assert several(both.summary["unload_jump_out_h0"])[0] == pytest.approx(3.4834324, rel=1e-6)
+
+
+def test_profiles_of_a_path_are_given_on_every_stretch(run):
+    """Between the folds there are three equilibria at one h0."""
+    result = run(path(0.87) + "&profiles h0 = 3.3, 0.0 /\n")
+    profiles, curve = result.table("profiles.csv"), result.curve
+    assert (curve["h0"] == 3.3).sum() == 3
+    assert sorted(curve["stable"][curve["h0"] == 3.3]) == [0, 1, 1]
+    on_axis = profiles["r"] == 0
+    assert (on_axis & (profiles["h0"] == 3.3)).sum() == 3
+    assert (on_axis & (profiles["h0"] == 0.0)).sum() == 1
+
+
+# --- Other laws
+
+
+@pytest.mark.parametrize("sigma", [0.01, 1.0, 8.7, 1000.0])
+def test_attraction_alone_has_its_fold_and_ends(run, sigma):
+    result = run(path(sigma, part="attractive"))
+    summary, curve = result.summary, result.curve
+    assert curve["residual"].max() <= 1e-8
+    assert np.isfinite(curve["h0"]).all()
+    fold = int(np.argmin(abs(curve["h0"] - summary["jump_in_h0"])))
+    assert (curve["stable"][:fold] == 1).all()
+    assert (curve["stable"][fold:] == 0).all()
+    assert (np.diff(curve["h_centre"]) < 0).all()
+    assert len(curve) < 200
+    assert "jump_out_h0" not in summary
+
+
+@pytest.mark.parametrize("sigma", [8.7, 1000.0])
+def test_far_from_contact_repulsion_does_not_matter(run, sigma):
+    """The jump starts from gaps of several z0, where the ninth power is nothing."""
+    whole, attraction = (run(path(sigma, part=part)).summary for part in ("full", "attractive"))
+    # (z0/h)^6 at the jump.
+    assert attraction["jump_in_h0"] == pytest.approx(whole["jump_in_h0"], rel=1e-4)
+    assert attraction["jump_in_load"] == pytest.approx(whole["jump_in_load"], rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        lambda **groups: exponential(1, **groups),
+        lambda **groups: lennard_jones(1.0, part="repulsive", **groups),
+    ],
+    ids=["exponential", "repulsive"],
+)
+def test_path_of_a_law_without_attraction_is_the_h0_stepped_one(run, scene):
+    result = run(scene(equilibrium_path={"h0_start": 4.0, "h0_end": -2.0}, profiles={"h0": [1.0]}))
+    curve = result.curve
+    assert curve["h0"][0] == 4
+    assert curve["h0"][-1] == -2
+    assert (np.diff(curve["h0"]) < 0).all()
+    assert len(curve) >= 50
+    assert (curve["stable"] == 1).all()
+    stepped = run(scene(loading=loading(4, -2, 0.5))).curve
+    for h0, load in zip(stepped["h0"], stepped["load"]):
+        if h0 in (4, 1, -2):
+            mine = curve["load"][abs(curve["h0"] - h0) < 1e-9]
+            assert mine[0] == pytest.approx(load, rel=1e-6)
+    for key in ("max_tension", "jump_in_h0", "folds_h0", "spacing_over_neck", "resolved"):
+        assert key not in result.summary
+
+
+def test_a_path_that_starts_in_contact_begins_there_and_has_no_jump_in(run):
+    # The first state at h0 = 1 on the way inward is one in contact, behind both folds.
+    result = run(path(0.87, h0_start=1.0, h0_end=-2.0))
+    whole = run(path(0.87, h0_end=-2.0))
+    assert list(result.curve["h0"][[0, -1]]) == pytest.approx([1.0, -2.0], rel=1e-14)
+    assert (np.diff(result.curve["h0"]) < 0).all()
+    assert "jump_in_h0" not in result.summary
+    assert "energy_lost" not in result.summary
+    assert result.summary["end_load"] == pytest.approx(whole.summary["end_load"], rel=1e-6)
+
+
+def test_a_path_that_starts_between_far_and_the_jump_begins_at_its_start(run):
+    result = run(path(8.7, h0_start=7.0, h0_end=0.0))
+    whole = run(path(8.7, h0_end=0.0))
+    assert result.curve["h0"][0] == pytest.approx(7.0, rel=1e-14)
+    for key in ("jump_in_h0", "jump_out_h0", "max_tension", "energy_lost"):
+        assert result.summary[key] == pytest.approx(whole.summary[key], rel=1e-6)

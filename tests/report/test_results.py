@@ -1,0 +1,291 @@
+"""Claims about the files of results: names, columns, contents, and what a failure leaves."""
+
+import re
+import resource
+
+import f90nml
+import pytest
+from support.scenes import exponential, lennard_jones, loading, runner
+
+CURVE = [
+    ("branch", ""),
+    ("h0", "m"),
+    ("h_centre", "m"),
+    ("displacement", "m"),
+    ("load", "N"),
+    ("contact_radius", "m"),
+    ("stable", ""),
+    ("residual", ""),
+    ("iterations", ""),
+    ("converged", ""),
+]
+PROFILES = [
+    ("branch", ""),
+    ("h0", "m"),
+    ("r", "m"),
+    ("separation", "m"),
+    ("deformation", "m"),
+    ("pressure", "Pa"),
+    ("energy", "J/m^2"),
+]
+# Every key that users' scripts may depend on.
+SUMMARY = """title version sigma tabor surface_energy jkr_pull_off dmt_pull_off max_tension
+    max_tension_h0 jump_in_h0 jump_in_load jump_out_h0 jump_out_load unload_from unload_max_tension
+    unload_jump_out_h0 worst_residual spacing_over_neck resolved error_estimate""".split()
+COST = """wall_seconds kernel_seconds solve_seconds nodes states iterations kernel_entries
+    pressure_evaluations operator_products factorisations""".split()
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("results"))
+
+
+@pytest.fixture(scope="module")
+def full(run):
+    """A scene with every group that gives a file."""
+    scene = lennard_jones(
+        0.87,
+        scene={"title": "It's \"all\", 100 %"},
+        loading=loading(6, -2, 0.5),
+        unloading={"from_": [-2.0, 1.0]},
+        profiles={"h0": [2.0]},
+        classical={},
+        stability={},
+    )
+    return run(scene)
+
+
+# --- Tables
+
+
+def check_table(table, columns):
+    """Title, version and one '#' line a column with its unit, in order; then the header."""
+    assert table.names == [name for name, _ in columns]
+    title, version, *lines = table.comments
+    assert title == "# title: It's \"all\", 100 %"
+    assert re.fullmatch(r"# version: snapin \d+\.\d+\.\d+\S*", version)
+    assert len(lines) == len(columns)
+    for line, (name, unit) in zip(lines, columns):
+        assert line.startswith(f"# {name} [{unit}]"), line
+
+
+def test_curve_has_the_columns_of_the_contract(run):
+    scene = lennard_jones(
+        0.87, scene={"title": "It's \"all\", 100 %"}, loading=loading(6, 5, 0.5)
+    )
+    check_table(run(scene).curve, CURVE)
+
+
+def test_stability_adds_its_columns_at_the_end(full):
+    table = full.curve
+    assert table.names[: len(CURVE)] == [name for name, _ in CURVE]
+    assert len(table.comments) == 2 + len(table.names)
+
+
+def test_profiles_and_theories_have_the_columns_of_the_contract(full):
+    check_table(full.table("profiles.csv"), PROFILES)
+    classical = full.table("classical.csv")
+    assert classical.names[0] == "theory"
+    assert {"h0", "displacement", "load"} <= set(classical.names)
+    assert len(classical.comments) == 2 + len(classical.names)
+
+
+def test_profiles_of_unlike_bodies_have_the_deformation_of_each(run):
+    # Compliances (1 - nu^2)/E of 0.5 and 1.5: their mean is that of the unit problem.
+    scene = {"loading": loading(6, 0, 1.0), "profiles": {"h0": [1.0]}}
+    alike = run(lennard_jones(0.87, **scene)).table("profiles.csv")
+    unlike = run(
+        lennard_jones(0.87, **scene).replace(
+            "stiffness = 1.0", "young = 2.0, 0.5, poisson = 0.0, 0.5"
+        )
+    ).table("profiles.csv")
+    assert unlike.names == [*alike.names, "deformation_1", "deformation_2"]
+    assert unlike["deformation"] == pytest.approx(alike["deformation"], rel=1e-9)
+    assert unlike["deformation_1"] == pytest.approx(0.5 * unlike["deformation"], rel=1e-12)
+    assert unlike["deformation_2"] == pytest.approx(1.5 * unlike["deformation"], rel=1e-12)
+
+
+def test_branches_are_named_and_in_order(full):
+    branches = list(dict.fromkeys(full.curve["branch"]))
+    assert branches == ["loading", "unloading_1", "unloading_2"]
+
+
+def test_every_row_has_every_cell_to_all_digits(full):
+    lines = (full.folder / "curve.csv").read_text().splitlines()
+    rows = [line.split(",") for line in lines if not line.startswith("#")][1:]
+    for row in rows:
+        assert len(row) == len(full.curve.names)
+        for cell in row[1:6]:
+            assert re.fullmatch(r"-?\d\.\d{16}E[+-]\d{3}", cell), cell
+            # Seventeen digits are the number.
+            assert float(f"{float(cell):.16e}") == float(cell)
+
+
+def test_displacement_is_the_centre_gap_less_h0(full):
+    curve = full.curve
+    assert abs(curve["displacement"] - (curve["h_centre"] - curve["h0"])).max() < 1e-14
+
+
+def test_iterations_and_stable_are_what_they_are_called(full):
+    curve = full.curve
+    assert set(curve["stable"]) <= {-1, 0, 1}
+    assert (curve["iterations"] >= 1).all()
+    assert (curve["iterations"] == curve["iterations"].round()).all()
+    assert (curve["residual"] >= 0).all()
+
+
+# --- Summary
+
+
+def test_summary_has_every_key_of_the_contract(full):
+    assert [key for key in SUMMARY if key not in full.summary] == []
+    assert [key for key in COST if key not in full.cost] == []
+    assert full.summary["title"] == "It's \"all\", 100 %"
+    assert full.cost["states"] == len(full.curve)
+    assert full.cost["wall_seconds"] >= full.cost["kernel_seconds"] + full.cost["solve_seconds"]
+    # One value a turning point, NaN where there is none.
+    for key in ("unload_from", "unload_max_tension", "unload_jump_out_h0"):
+        assert len(full.summary[key]) == 2
+
+
+def test_f90nml_reads_the_summary_and_writes_it_back(full, tmp_path):
+    groups = full.groups
+    f90nml.write(groups, tmp_path / "again.nml")
+    again = f90nml.read(tmp_path / "again.nml")
+    assert list(again) == list(groups)
+    assert again["bodies"] == groups["bodies"]
+    assert list(groups)[:2] == ["summary", "cost"]
+
+
+def test_what_does_not_exist_is_absent(run):
+    repulsion = run(exponential(1, loading=loading(6, 4, 1))).summary
+    for key in ("sigma", "tabor", "surface_energy", "jkr_pull_off", "dmt_pull_off", "max_tension",
+                "max_tension_h0", "jump_in_h0", "jump_out_h0", "unload_from", "folds_h0",
+                "spacing_over_neck", "resolved", "warnings"):
+        assert key not in repulsion, key
+    assert repulsion["big_lambda"] == pytest.approx(1)
+    attraction = run(lennard_jones(0.1, loading=loading(6, -1, 0.5), unloading={})).summary
+    for key in ("big_lambda", "jump_in_h0", "jump_in_load", "jump_out_h0", "jump_out_load"):
+        assert key not in attraction, key
+    assert attraction["max_tension"] > 0
+
+
+def test_classical_pull_offs_are_those_of_the_textbook(full):
+    assert full.summary["sigma"] == pytest.approx(0.87, rel=1e-14)
+    assert full.summary["surface_energy"] == pytest.approx(0.87, rel=1e-14)
+    assert full.summary["jkr_pull_off"] == pytest.approx(1.5 * 3.141592653589793 * 0.87, rel=1e-14)
+    assert full.summary["dmt_pull_off"] == pytest.approx(2 * 3.141592653589793 * 0.87, rel=1e-14)
+    assert full.summary["tabor"] == pytest.approx((4 * 0.87**2) ** (1 / 3), rel=1e-14)
+
+
+def test_max_tension_is_at_least_that_of_the_curve(full):
+    tension = -full.curve["load"].min()
+    assert tension <= full.summary["max_tension"] <= 1.1 * tension
+
+
+# --- Files
+
+
+def test_results_have_no_other_names(full):
+    assert full.files == ["classical.csv", "curve.csv", "profiles.csv", "summary.nml"]
+
+
+def test_out_puts_the_folder_elsewhere(snapin, tmp_path):
+    (tmp_path / "deck.nml").write_text(exponential(1, loading=loading(6, 4, 1)))
+    done = snapin("--out", "there/below", "deck.nml", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "there/below/deck/summary.nml").is_file()
+    assert not (tmp_path / "results").exists()
+
+
+def test_files_of_an_earlier_run_do_not_stay_beside_those_of_another(snapin, tmp_path):
+    deck = tmp_path / "deck.nml"
+    deck.write_text(exponential(1, loading=loading(6, 4, 1), classical={}, profiles={"h0": [5.0]}))
+    assert snapin("deck.nml", cwd=tmp_path).returncode == 0
+    deck.write_text(exponential(1, loading=loading(6, 4, 1)))
+    assert snapin("deck.nml", cwd=tmp_path).returncode == 0
+    names = sorted(path.name for path in (tmp_path / "results/deck").iterdir())
+    assert names == ["curve.csv", "summary.nml"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "&bodies radius = 1 /", exponential(1), exponential(1, loading=loading(1, 2, 1))],
+    ids=["empty", "bodies alone", "nothing to do", "upward loading"],
+)
+def test_a_wrong_deck_leaves_nothing(snapin, tmp_path, text):
+    (tmp_path / "deck.nml").write_text(text)
+    done = snapin("deck.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("deck.nml:")
+    assert [path.name for path in tmp_path.iterdir()] == ["deck.nml"]
+
+
+def test_a_wrong_deck_among_good_ones_stops_all_before_anything_is_written(snapin, tmp_path):
+    (tmp_path / "good.nml").write_text(exponential(1, loading=loading(6, 4, 1)))
+    (tmp_path / "wrong.nml").write_text("&bodies radius = -1 /")
+    done = snapin("good.nml", "wrong.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert not (tmp_path / "results").exists()
+
+
+# --- Failures
+
+
+@pytest.fixture(scope="module")
+def failed(run):
+    """Mixing that is given far too few iterations."""
+    numerics = {"method": "mixing", "max_iterations": 3, "nodes": 200}
+    return run(lennard_jones(0.87, loading=loading(5, 1, 0.5), numerics=numerics), status=1)
+
+
+def test_what_does_not_converge_is_kept_marked_and_told(failed):
+    assert failed.files == ["curve.csv", "summary.nml"]
+    assert len(failed.curve) == 9
+    worst = failed.curve["residual"].max()
+    assert worst > 1e-8
+    assert failed.summary["worst_residual"] == pytest.approx(worst)
+    assert failed.summary["converged"] is False
+    assert any("did not converge" in warning for warning in failed.warnings)
+    assert "did not converge" in failed.stderr
+
+
+def test_an_unconverged_state_is_never_called_stable(failed):
+    bad = failed.curve["residual"] > 1e-8
+    assert bad.any()
+    assert (failed.curve["stable"][bad] != 1).all()
+
+
+def test_one_failure_does_not_stop_the_other_decks(snapin, tmp_path):
+    numerics = {"method": "mixing", "max_iterations": 3, "nodes": 200}
+    (tmp_path / "bad.nml").write_text(
+        lennard_jones(0.87, loading=loading(5, 3, 1), numerics=numerics)
+    )
+    (tmp_path / "good.nml").write_text(exponential(1, loading=loading(6, 4, 1)))
+    done = snapin("bad.nml", "good.nml", cwd=tmp_path)
+    assert done.returncode == 1
+    for name in ("bad", "good"):
+        assert (tmp_path / "results" / name / "summary.nml").is_file()
+    assert not list(tmp_path.rglob("*.partial"))
+
+
+@pytest.mark.parametrize("count", [8, 1000], ids=["lost in closing", "lost in writing"])
+def test_a_table_that_cannot_be_written_leaves_no_results(snapin, tmp_path, count):
+    """A deck of theories alone has no states for a journal, and a summary of 1500 bytes."""
+    classical = {"h0_start": 1.0, "h0_end": -1.0, "count": count}
+    (tmp_path / "d.nml").write_text(lennard_jones(1.0, classical=classical))
+
+    def limited():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2200, 2200))
+
+    done = snapin("d.nml", cwd=tmp_path, preexec_fn=limited)
+    assert done.returncode == 1
+    assert "classical.csv.partial: File too large" in done.stderr
+    assert not [p for p in (tmp_path / "results/d").iterdir() if not p.name.endswith(".partial")]
+
+
+def test_quiet_says_nothing_when_all_is_well(snapin, tmp_path):
+    (tmp_path / "deck.nml").write_text(exponential(1, loading=loading(6, 4, 1)))
+    done = snapin("--quiet", "deck.nml", cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

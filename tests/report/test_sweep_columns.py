@@ -1,0 +1,208 @@
+"""What a sweep leaves of each case: the scalars of its own summary, in columns that follow the deck."""
+
+import math
+
+import numpy as np
+import pytest
+from support.scenes import exponential, lennard_jones, loading, runner, several
+
+JUMPS = ["jump_criterion_29", "jump_equation_37", "fold_closed_form", "fold_attractive_only"]
+OF_APPROXIMATIONS = [f"{name}_{what}" for name in JUMPS for what in ("h0", "load")]
+OF_APPROXIMATIONS.insert(4, "jump_equation_37_gap")
+END = ["end_h0", "end_displacement", "end_load"]
+TURNING = [-2.0, 2.5]
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("sweep_columns"))
+
+
+def adhesive(sigma=0.87, **groups):
+    """A cycle with two turning points."""
+    return lennard_jones(
+        sigma,
+        loading=loading(7, -2, 0.5),
+        unloading={"from_": TURNING, "h0_end": 7.0},
+        **groups,
+    )
+
+
+def hamaker(sigma):
+    return 16 * math.pi * sigma
+
+
+SIGMAS = [0.02, 0.3, 0.87]
+
+
+@pytest.fixture(scope="module")
+def table(run):
+    """A sweep over sigma with everything that has columns of its own."""
+    values = [hamaker(sigma) for sigma in SIGMAS]
+    sweep = {"key": "force.hamaker", "values": values}
+    return run(adhesive(approximations={}, sweep=sweep)).table("sweep.csv")
+
+
+def test_every_number_of_a_row_is_that_of_the_same_deck_alone(run, table):
+    # A case differs from the deck alone in nothing but the threads.
+    for row, sigma in enumerate(SIGMAS):
+        summary = run(adhesive(sigma, approximations={})).summary
+        for name in table.names[1:]:
+            value = table[name][row]
+            key, _, turn = name.rpartition("_")
+            if key in ("unload_max_tension", "unload_jump_out_h0"):
+                expected = several(summary[key])[int(turn) - 1]
+            elif name in ("resolved", "converged"):
+                expected = 1.0 if summary[name] else 0.0
+            else:
+                expected = summary.get(name, math.nan)
+            if name in ("worst_residual", "error_estimate"):
+                assert value < 1e-5
+            else:
+                assert value == pytest.approx(expected, rel=1e-8, nan_ok=True), name
+
+
+def test_every_column_is_described_with_its_unit(table):
+    described = [line[2:].split(" [")[0] for line in table.comments[3:]]
+    assert described == table.names[1:]
+    units = {"h0": "m", "gap": "m", "displacement": "m", "load": "N"}
+    for line in table.comments[3:]:
+        name, unit = line[2:].split("]")[0].split(" [")
+        if name in OF_APPROXIMATIONS + END:
+            assert unit == units[name.rpartition("_")[2]], line
+
+
+def test_a_group_that_is_absent_costs_no_column(run, table):
+    sweep = {"key": "force.hamaker", "values": [hamaker(0.1), hamaker(0.2)]}
+    bare = run(lennard_jones(0.1, loading=loading(7, 3, 1), sweep=sweep)).table("sweep.csv")
+    extra = OF_APPROXIMATIONS + [
+        f"{name}_{k}" for k in (1, 2) for name in ("unload_max_tension", "unload_jump_out_h0")
+    ]
+    assert table.names == bare.names + extra
+    assert set(END) <= set(bare.names)
+
+
+def test_jumps_of_the_summary_are_rows_of_the_approximations(run):
+    result = run(adhesive(approximations={}))
+    rows, summary = result.table("approximations.csv"), result.summary
+    for name in JUMPS:
+        row = rows.rows(name)
+        assert len(row) == 1
+        assert summary[f"{name}_h0"] == row["h0"][0]
+        assert summary[f"{name}_load"] == row["load"][0]
+    row = rows.rows("jump_equation_37")
+    assert summary["jump_equation_37_gap"] == pytest.approx(row["h0"][0] + row["displacement"][0])
+
+
+def test_equation_37_is_the_papers_power_of_sigma(run, table):
+    """Its gap goes as sigma^(2/7), its h0 is 4/3 of the gap, its load 2 pi (4/3) gamma R/h^2."""
+    sigma, gap = np.array(SIGMAS), table["jump_equation_37_gap"]
+    np.testing.assert_allclose(gap / gap[0], (sigma / sigma[0]) ** (2 / 7), rtol=1e-12)
+    np.testing.assert_allclose(table["jump_equation_37_h0"], 4 / 3 * gap, rtol=1e-12)
+    np.testing.assert_allclose(
+        table["jump_equation_37_load"], -8 * math.pi / 3 * sigma / gap**2, rtol=1e-12
+    )
+
+
+def test_jumps_that_do_not_exist_are_absent_or_nan(run, table):
+    assert np.isnan(table["fold_closed_form_h0"][0]) and np.isnan(table["jump_in_h0"][0])
+    assert not np.isnan(table["fold_closed_form_h0"][-1])
+    repulsion = run(exponential(1, loading=loading(6, 4, 1), approximations={})).summary
+    without = run(adhesive()).summary
+    for summary in (repulsion, without):
+        assert [key for key in OF_APPROXIMATIONS if key in summary] == []
+
+
+def test_a_sweep_of_approximations_alone_has_their_jumps(run):
+    sweep = {"key": "force.hamaker", "values": [hamaker(sigma) for sigma in SIGMAS]}
+    groups = {"approximations": {"h0_start": 8.0, "h0_end": 0.0}, "sweep": sweep}
+    alone = run(lennard_jones(0.87, **groups)).table("sweep.csv")
+    cycle = run(adhesive(**groups)).table("sweep.csv")
+    for name in OF_APPROXIMATIONS:
+        np.testing.assert_array_equal(alone[name], cycle[name])
+    assert np.isnan(alone["end_load"]).all()
+
+
+def end_of(curve, branch):
+    rows = curve.rows(branch)
+    return [rows[name][-1] for name in ("h0", "displacement", "load")]
+
+
+@pytest.mark.parametrize(
+    "deck",
+    [
+        adhesive(),
+        adhesive(equilibrium_path={"h0_end": -3.0}),
+        adhesive(numerics={"grid": "uniform"}),
+        exponential(3, loading=loading(6, -1, 1)),
+    ],
+    ids=["cycle", "cycle and path", "uniform grid", "repulsion"],
+)
+def test_end_is_the_last_row_of_the_loading(run, deck):
+    result = run(deck)
+    assert [result.summary[key] for key in END] == end_of(result.curve, "loading")
+
+
+@pytest.mark.parametrize(
+    "deck",
+    [
+        lennard_jones(0.87, equilibrium_path={"h0_end": -3.0}),
+        exponential(3, equilibrium_path={"h0_end": -1.0}),
+    ],
+    ids=["adhesion", "repulsion"],
+)
+def test_without_loading_end_is_that_of_the_path(run, deck):
+    result = run(deck)
+    assert [result.summary[key] for key in END] == end_of(result.curve, "path")
+
+
+def test_a_path_into_collapse_has_no_end(run):
+    """Without repulsion the last states of the path are unstable: nobody can be there."""
+    scene = lennard_jones(1.0, part="attractive", equilibrium_path={"h0_end": 0.0})
+    assert [key for key in END if key in run(scene).summary] == []
+
+
+def test_loading_that_is_cut_short_ends_where_it_did(run):
+    scene = lennard_jones(1.0, part="attractive", loading=loading(8, 0, 0.5))
+    result = run(scene, status=1)
+    assert [result.summary[key] for key in END] == end_of(result.curve, "loading")
+    assert result.summary["end_h0"] > result.summary["jump_in_h0"]
+
+
+def test_a_sweep_at_fixed_h0_gives_load_against_the_swept_key(run):
+    """Pressed far beyond the range of the repulsion, Hertz's load at the displacement."""
+    sweep = {"key": "bodies.stiffness", "values": [1.0, 4.0, 16.0]}
+    rows = run(exponential(1e5, loading=loading(20, -5000, 5020), sweep=sweep)).table("sweep.csv")
+    assert (rows["end_h0"] == -5000).all()
+    hertz = 2 / 3 * rows["bodies.stiffness"] * rows["end_displacement"] ** 1.5
+    np.testing.assert_allclose(rows["end_load"], hertz, rtol=0.01)
+
+
+def test_a_case_that_fails_has_its_end_and_nan_for_what_it_did_not_reach(run):
+    """Without repulsion the larger sigma has no state at the turning point."""
+    sweep = {"key": "force.hamaker", "values": [hamaker(1e-3), hamaker(1.0)]}
+    scene = lennard_jones(
+        1.0,
+        part="attractive",
+        loading=loading(8, 2, 0.5),
+        unloading={"from_": [2.0]},
+        sweep=sweep,
+    )
+    rows = run(scene, status=1).table("sweep.csv")
+    assert list(rows["converged"]) == [1, 0]
+    assert rows["end_h0"][0] == 2 and rows["end_h0"][1] > rows["jump_in_h0"][1] > 2
+    assert rows["unload_max_tension_1"][0] > 0
+    assert np.isnan(rows["unload_max_tension_1"][1])
+    assert np.isnan(rows["unload_jump_out_h0_1"]).all()
+
+
+def test_a_sweep_of_a_list_gives_each_case_the_one_value(run):
+    # Where the deck has two turning points the case has one, and nothing stands for the other.
+    sweep = {"key": "unloading.from", "values": [2.5, -2.0]}
+    swept = run(adhesive(sweep=sweep)).table("sweep.csv")
+    single = run(adhesive()).summary
+    np.testing.assert_allclose(
+        swept["unload_max_tension_1"], several(single["unload_max_tension"])[::-1], rtol=1e-6
+    )
+    assert np.isnan(swept["unload_max_tension_2"]).all()
+    assert np.isnan(swept["unload_jump_out_h0_2"]).all()

@@ -1,0 +1,204 @@
+"""What a deck asks for: ranges, keys against each other, and the deck as the summary repeats it.
+
+As in test_deck.py, every mistake is named by line, group and key.
+"""
+
+import re
+
+import pytest
+from support.decks import BODIES, FORCE, GOOD, LOADING, with_bodies, with_extra
+
+# --- Refused
+
+# name: (deck, line, group, key, phrase)
+REFUSED = {
+    # ranges of single keys
+    "negative radius": (with_bodies("radius = -1, stiffness = 1 /"), 1, "bodies", "radius",
+                        "-1 is out of range; allowed: a number > 0 m"),
+    "zero stiffness": (with_bodies("radius = 1, stiffness = 0 /"), 1, "bodies", "stiffness",
+                       "> 0 Pa"),
+    "poisson too large": (with_bodies("radius = 1, young = 1, poisson = 0.51 /"), 1, "bodies",
+                          "poisson", "<= 0.5"),
+    "poisson at -1": (with_bodies("radius = 1, young = 1, poisson = -1 /"), 1, "bodies", "poisson",
+                      "> -1"),
+    "accuracy too small": (with_extra("&numerics accuracy = 1e-11 /"), 4, "numerics", "accuracy",
+                           "out of range"),
+    "mixing limit zero": (with_extra("&numerics mixing_limit = 0 /"), 4, "numerics",
+                          "mixing_limit", "> 0 and <= 1"),
+    "negative step": (GOOD.replace("0.05e-9", "-0.05e-9"), 3, "loading", "h0_step", "> 0 m"),
+    # keys against each other
+    "no stiffness": (with_bodies("radius = 1 /"), 1, "bodies", "stiffness", "give one of"),
+    "rigid false alone": (with_bodies("radius = 1, rigid = .false. /"), 1, "bodies", "stiffness",
+                          "give one of"),
+    "stiffness and young": (with_bodies("radius = 1, stiffness = 1,\n young = 1, poisson = 0 /"),
+                            2, "bodies", "young", "one way too many"),
+    "rigid and stiffness": (with_bodies("radius = 1, stiffness = 1,\n rigid = .true. /"), 2,
+                            "bodies", "rigid", "one way too many"),
+    "young alone": (with_bodies("radius = 1,\n young = 1 /"), 1, "bodies", "poisson",
+                    "go together"),
+    "poisson alone": (with_bodies("radius = 1, poisson = 0 /"), 1, "bodies", "young",
+                      "go together"),
+    "parameter missing": (GOOD.replace(", z0 = 0.5e-9", ""), 2, "force", "z0",
+                          "law 'lennard_jones' needs it"),
+    "parameter of another law": (GOOD.replace("z0 =", "\n p0 = 1, z0 ="), 3, "force", "p0",
+                                 "belongs to law 'exponential'"),
+    "part of another law": (
+        BODIES + "&force law = 'exponential', p0 = 1, decay_length = 1e-9,\n part = 'full' /\n"
+        + LOADING, 3, "force", "part", "belongs to law 'lennard_jones'"),
+    "loading upwards": (GOOD.replace("h0_end = -2e-9", "h0_end = 8e-9"), 3, "loading", "h0_end",
+                        "not below h0_start"),
+    "loading nowhere": (GOOD.replace("h0_end = -2e-9", "h0_end = 7e-9"), 3, "loading", "h0_end",
+                        "not below h0_start"),
+    "too many steps": (GOOD.replace("0.05e-9", "0.05e-18"), 3, "loading", "h0_step",
+                       "10 million"),
+    "too many steps by far": (GOOD.replace("0.05e-9", "1e-49").replace("7e-9", "1e49"),
+                                       3, "loading", "h0_step", "10 million"),
+    "unloading without loading": (BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n&unloading /",
+                                  4, "unloading", "", "needs &loading"),
+    "unloading from outside": (with_extra("&unloading\n from = 1e-9, -3e-9 /"), 5, "unloading",
+                               "from", "outside the range of &loading"),
+    "unloading downwards": (with_extra("&unloading from = 1e-9\n h0_end = 0.5e-9 /"), 5,
+                            "unloading", "h0_end", "not above the turning point"),
+    "too many unloading steps": (with_extra("&unloading h0_step = 1e-18 /"), 4, "unloading",
+                                 "h0_step", "10 million"),
+    "path without an end": (BODIES + FORCE + "&equilibrium_path /", 3, "equilibrium_path",
+                            "h0_end", "missing"),
+    "path upwards": (with_extra("&equilibrium_path h0_start = -3e-9 /"), 4, "equilibrium_path",
+                     "h0_start", "not above h0_end"),
+    "profiles of nothing": (BODIES + FORCE + "&classical h0_start = 1, h0_end = 0 /\n"
+                            "&profiles h0 = 0.5 /", 4, "profiles", "", "needs &loading"),
+    "profiles without h0": (with_extra("&profiles /"), 4, "profiles", "h0", "missing"),
+    "profile outside": (with_extra("&profiles h0 = 1e-9, 8e-9 /"), 4, "profiles", "h0",
+                        "outside the range"),
+    "classical without a range": (BODIES + FORCE + "&classical /", 3, "classical", "h0_start",
+                                  "&equilibrium_path to take the range from"),
+    "approximations without an end": (BODIES + FORCE + "&approximations h0_start = 1 /", 3,
+                                      "approximations", "h0_end", "take the range from"),
+    "classical upwards": (with_extra("&classical h0_end = 8e-9 /"), 4, "classical", "h0_end",
+                          "not below h0_start"),
+    "stability of nothing": (BODIES + FORCE + "&classical h0_start = 1, h0_end = 0 /\n"
+                             "&stability /", 4, "stability", "", "needs &loading"),
+    "nothing to compute": (BODIES + FORCE, 1, "", "", "nothing to compute"),
+    # sweeps
+    "sweep of an unknown key": (with_extra("&sweep key = 'force.hamacker', values = 1 /"), 4,
+                                "sweep", "key", 'did you mean "force.hamaker"'),
+    "sweep of a group": (with_extra("&sweep key = 'force', values = 1 /"), 4, "sweep", "key",
+                         "not a key that holds a number"),
+    "sweep of a word": (with_extra("&sweep key = 'force.law', values = 1 /"), 4, "sweep", "key",
+                        "not a key that holds a number"),
+    "sweep of itself": (with_extra("&sweep key = 'sweep.count', values = 1 /"), 4, "sweep",
+                        "key", "no &sweep"),
+    "sweep of an absent group": (with_extra("&sweep key = 'unloading.h0_end', values = 1 /"), 4,
+                                 "sweep", "key", "no &unloading"),
+    "sweep of the sweep": (with_extra("&sweep key = 'sweep.count', values = 3 /"), 4, "sweep",
+                           "key", "no &sweep"),
+    "sweep out of range": (with_extra("&sweep key = 'bodies.radius',\n values = 1, -1 /"), 5,
+                           "sweep", "values", "out of range"),
+    "sweep to a wrong deck": (with_extra("&sweep key = 'loading.h0_end',\n from = 0, to = 9e-9, "
+                                         "count = 3 /"), 5, "sweep", "from", "not below h0_start"),
+    "sweep of a missing parameter's rival": (
+        with_extra("&sweep key = 'force.p0', values = 1 /"), 4, "sweep", "values", "belongs to"),
+    "sweep by halves": (with_extra("&sweep key = 'bodies.radius', from = 1, to = 2 /"), 4, "sweep",
+                        "count", "missing"),
+    "sweep both ways": (with_extra("&sweep key = 'bodies.radius', values = 1, 2\n from = 1 /"), 5,
+                        "sweep", "from", "not together with values"),
+    "scale beside values": (with_extra("&sweep key = 'bodies.radius', values = 1 scale = 'log' /"),
+                            4, "sweep", "scale", "not together with values"),
+    "log sweep to zero": (with_extra("&sweep key = 'bodies.radius', from = 1, to = 0, count = 3,"
+                                     " scale = 'log' /"), 4, "sweep", "to", "> 0"),
+    "log sweep from zero": (with_extra("&sweep key = 'bodies.radius', from = 0, to = 1, count = 3,"
+                                       " scale = 'log' /"), 4, "sweep", "from", "> 0"),
+    "sweep of one value": (with_extra("&sweep key = 'bodies.radius' from = 1 to = 1 count = 3 /"),
+                           4, "sweep", "to", "the same as from"),
+    "fractional whole number": (with_extra("&sweep key = 'numerics.nodes', values = 100, 100.5 /"),
+                                4, "sweep", "values", "out of range"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED.values(), ids=REFUSED.keys())
+def test_bad_scene_is_refused_by_line_group_and_key(check, case):
+    text, line, group, key, phrase = case
+    status, out, err = check(text)
+    assert status == 2
+    assert out == ""
+    first = err.splitlines()[0]
+    place = f"d.nml:{line}: " + (f"&{group}: " if group else "") + (f'key "{key}": ' if key else "")
+    assert first.startswith(place), err
+    if not group:
+        assert not first[len(place):].startswith("&"), err
+    assert phrase in err, err
+
+
+# --- The deck as resolved
+
+CHEAP = """&scene title = 'it''s "so"' /
+&bodies radius = 0.1, young = 2*1.1e10 poisson = 0.3 /
+&force law = 'lennard_jones' hamaker = 1.2345678901234567e-19 z0 = 3d-10 /
+&loading h0_start = 7e-9 h0_end = 6.9e-9 h0_step = 0.1e-9 /
+&unloading /
+&approximations count = 3 /
+&classical h0_end = 6.95e-9 /
+&stability /
+&profiles h0 = 7e-9 /
+&numerics accuracy = 1e-2 /
+"""
+
+
+def resolved(snapin, folder, name, text):
+    """Runs a deck; the deck as its summary repeats it, text and {group: {key: text}}."""
+    (folder / name).write_text(text)
+    done = snapin("--quiet", name, cwd=folder)
+    assert done.returncode in (0, 1), done.stderr
+    summary = (folder / "results" / name.removesuffix(".nml") / "summary.nml").read_text()
+    lines = summary.splitlines()
+    start = next(i for i, line in enumerate(lines)
+                 if line.startswith("&") and line.split()[0] not in ("&summary", "&cost"))
+    values = {}
+    for line in lines[start:]:
+        if line.startswith("&"):
+            group = values.setdefault(line[1:], {})
+        elif match := re.match(r"  (\w+) = (.*)", line):
+            group[match[1]] = match[2]
+    return summary, "\n".join(lines[start:]), values
+
+
+def test_resolved_deck_holds_every_value_and_default(snapin, tmp_path):
+    _, _, values = resolved(snapin, tmp_path, "a.nml", CHEAP)
+    assert list(values) == ["scene", "bodies", "force", "loading", "unloading", "profiles",
+                            "approximations", "classical", "stability", "numerics"]
+    assert values["scene"]["title"] == "'it''s \"so\"'"
+    assert values["bodies"] == {
+        "radius": "1.0000000000000001E-001",
+        "young": "1.1000000000000000E+010, 1.1000000000000000E+010",
+        "poisson": "2.9999999999999999E-001",
+        "rigid": ".false.",
+    }
+    assert float(values["force"]["hamaker"]) == 1.2345678901234567e-19
+    assert values["force"]["part"] == "'full'"
+    assert float(values["unloading"]["from"]) == 6.9e-9
+    assert float(values["unloading"]["h0_end"]) == 7e-9
+    assert float(values["unloading"]["h0_step"]) == 0.1e-9
+    assert values["approximations"]["count"] == "3"
+    assert values["classical"]["count"] == "200"
+    assert float(values["classical"]["h0_start"]) == 7e-9
+    assert float(values["classical"]["h0_end"]) == 6.95e-9
+    assert values["stability"] == {}
+    assert float(values["numerics"]["accuracy"]) == 1e-2
+    assert values["numerics"]["method"] == "'auto'"
+    assert "nodes" not in values["numerics"]
+
+
+def test_summary_can_be_run_again(snapin, tmp_path):
+    summary, deck, _ = resolved(snapin, tmp_path, "a.nml", CHEAP)
+    _, again, _ = resolved(snapin, tmp_path, "b.nml", summary)
+    assert again == deck
+
+
+def test_resolved_deck_of_the_other_law_reads_back(snapin, tmp_path):
+    text = ("&bodies radius = 1e-2 rigid = T /\n&force law = 'exponential' p0 = 2.5e8 "
+            "decay_length = 2e-10 /\n&loading h0_start = 5e-9 h0_end = 4.9e-9 h0_step = 1e-10 /\n"
+            "&profiles h0 = " + " ".join(f"{4.9 + i/100:.2f}e-9" for i in range(11)) + " /\n")
+    _, deck, values = resolved(snapin, tmp_path, "a.nml", text)
+    assert "part" not in values["force"]
+    _, again, _ = resolved(snapin, tmp_path, "b.nml", deck)
+    assert again == deck

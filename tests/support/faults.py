@@ -1,0 +1,261 @@
+"""Runs whose system calls fail, that are killed at one, or that lose power.
+
+    faults.py [--every N]
+
+tries every call (or every N-th), prints a table of how many were tried and how runs ended, and
+ends with status 1 where what src/system/publication.f90 promises does not hold.
+
+A run is to replace the results of an older deck of the same name. Whatever happens: files with
+final names are the old set or the new one, or INCOMPLETE.txt is there and the run has said so; the
+same deck with --resume then leaves exactly what an undisturbed run does.
+"""
+
+import argparse
+import collections
+import errno
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from support import scenes
+
+HERE = pathlib.Path(__file__).resolve().parent
+INTENT = "INCOMPLETE.txt"
+KILL = 0
+
+RIGID = {"bodies": {"radius": 1.0, "rigid": True},
+         "force": {"law": "lennard_jones", "hamaker": 50.0, "z0": 1.0}}
+OLD = scenes.deck(**RIGID, loading=scenes.loading(6, 2, 1), profiles={"h0": [4.0]},
+                  approximations={"count": 3})
+NEW = scenes.deck(**RIGID, loading=scenes.loading(5, 1, 0.5), profiles={"h0": [2.0]},
+                  classical={"count": 3})
+ELASTIC = scenes.lennard_jones(0.2, loading=scenes.loading(4, 1, 1), classical={"count": 3})
+
+
+class Broken(AssertionError):
+    """A promise that did not hold."""
+
+
+def require(held, *what):
+    if not held:
+        raise Broken(" ".join(map(str, what)))
+
+
+def contents(folder):
+    """What results say: name -> bytes, the summary without times; without partial files."""
+    found = {}
+    for path in folder.iterdir() if folder.is_dir() else ():
+        if path.name.endswith(".partial"):
+            continue
+        lines = path.read_bytes().splitlines(keepends=True)
+        found[path.name] = b"".join(line for line in lines if b"_seconds" not in line)
+    return found
+
+
+class Stand:
+    """The old and the new results, and a folder where the new are to replace the old."""
+
+    def __init__(self, snapin, folder, old=OLD, new=NEW):
+        self.snapin, self.folder = snapin, pathlib.Path(folder)
+        self.library = self.folder / "faults.so"
+        subprocess.run([os.environ.get("CC", "cc"), "-O1", "-shared", "-fPIC", "-o", self.library,
+                        HERE / "faults.c", "-ldl"], check=True)
+        self.target = self.folder / "try/d"
+        self.sets = []
+        for name, text in (("old", old), ("new", new)):
+            (self.folder / "d.nml").write_text(text)
+            done = self.run(name)
+            require(done.returncode == 0, done.stderr)
+            self.sets.append(contents(self.folder / name / "d"))
+        self.old, self.new = self.sets
+        require(self.old != self.new, "two decks of the same results")
+
+    def run(self, out="try", *options, **fault):
+        """The program, with what goes wrong as keywords: call="rename", at=3, errno=5."""
+        env = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
+        if fault:
+            env["LD_PRELOAD"] = str(self.library)
+            env.update({f"FAULT_{key.upper()}": str(value) for key, value in fault.items()})
+        return subprocess.run([self.snapin, "--out", out, *options, "d.nml"], cwd=self.folder,
+                              env=env, capture_output=True, text=True, timeout=60, check=False)
+
+    def reset(self):
+        shutil.rmtree(self.target.parent, ignore_errors=True)
+        shutil.copytree(self.folder / "old/d", self.target)
+
+    def log(self):
+        """The calls on files of an undisturbed run, as lists of fields."""
+        self.reset()
+        path = self.folder / "calls.log"
+        path.unlink(missing_ok=True)
+        done = self.run(call="any", under="try/d", log=path)
+        require(done.returncode == 0, done.stderr)
+        return [line.split("\t") for line in path.read_text().splitlines()]
+
+    def number(self, call, **options):
+        """How many calls of a kind a run makes."""
+        self.reset()
+        path = self.folder / "count.log"
+        path.unlink(missing_ok=True)
+        self.run(call=call, at=0, under="try/d", log=path, **options)
+        return int(path.read_text().splitlines()[-1].split("\t")[1])
+
+    def state(self):
+        """What the folder holds: 'old', 'new' or 'told'."""
+        found = contents(self.target)
+        if INTENT in found:
+            return "told"
+        require(found in self.sets, "neither old nor new nor told:", sorted(found))
+        return "old" if found == self.old else "new"
+
+    def mend(self):
+        """The next run leaves what an undisturbed one does, and nothing else."""
+        done = self.run("try", "--resume")
+        require(done.returncode == 0, "no way on:", done.stderr)
+        require(contents(self.target) == self.new, "not the same after --resume")
+        left = sorted(path.name for path in self.target.iterdir())
+        require(left == sorted(self.new), "left behind:", left)
+
+    def attempt(self, call, at, code, lasts=False):
+        """A run with one fault; how it ended."""
+        self.reset()
+        fault = {"call": call, "at": at, "errno": code, "under": "try/d"}
+        done = self.run(**fault, **({"lasts": 1} if lasts else {}))
+        if code == KILL:
+            require(done.returncode in (0, -9), done.returncode, done.stderr)
+        else:
+            require(done.returncode in (0, 1), done.returncode, done.stderr)
+        state = self.state()
+        if done.returncode == 0:
+            require(state == "new", "status 0 and no new results")
+        if done.returncode == 1:
+            require(done.stderr.strip(), "no message")
+            # Where the system does not say what is in the folder, it is said once too often.
+            told = f"see {INTENT}" in done.stderr
+            require(told if state == "told" else not told or call == "fstat", state, done.stderr)
+        self.mend()
+        return {0: "ended well", 1: "status 1", -9: "killed"}[done.returncode] + ", " + state
+
+
+# --- Power failure
+
+
+class Inode:
+    """The content of a file: what was done to it, and how much of that is on the disk."""
+
+    def __init__(self, data=b""):
+        self.steps, self.synced = [("write", data)], 1
+
+    def after(self, count):
+        data = b""
+        for kind, value in self.steps[:count]:
+            data = data[:value] if kind == "truncate" else data + value
+        return data
+
+
+def power_failures(stand, every=1, seed=1):
+    """Lays out what a disk may hold when the power fails after each call of a run, and mends it.
+
+    What was not synchronised is on the disk or not: contents whole, in part or not at all; names in
+    any combination. Counts how many were whole or told.
+    """
+    calls = stand.log()[:-1]
+    rng = random.Random(seed)
+    found = collections.Counter()
+    for stop in range(0, len(calls) + 1, every):
+        for keep in ("nothing", "all names", "some"):
+            lay_out(stand, calls[:stop], keep, rng)
+            found[stand.state()] += 1
+            stand.mend()
+    return found
+
+
+def lay_out(stand, calls, keep, rng):
+    """The folder as a disk may hold it after `calls`."""
+    disk = {path.name: Inode(path.read_bytes()) for path in (stand.folder / "old/d").iterdir()}
+    now, waiting = dict(disk), []
+    for name, _, path, *rest in calls:
+        file = path.rsplit("/", 1)[-1]
+        if name == "create" and file not in now:
+            now[file] = Inode(b"")
+            waiting.append(("link", file, now[file]))
+        elif name == "write":
+            now[file].steps.append(("write", bytes.fromhex(rest[0])))
+        elif name == "truncate":
+            now[file].steps.append(("truncate", int(rest[0])))
+        elif name == "rename":
+            now[rest[0]] = now.pop(path)
+            waiting.append(("rename", path, rest[0]))
+        elif name == "unlink" and path in now:
+            del now[path]
+            waiting.append(("unlink", path, None))
+        elif name == "fsync" and path.endswith("/d"):
+            disk, waiting = dict(now), []
+        elif name == "fsync" and file in now:
+            now[file].synced = len(now[file].steps)
+    for kind, file, other in waiting:
+        if keep == "nothing" or (keep == "some" and rng.random() < 0.5):
+            continue
+        if kind == "link":
+            disk[file] = other
+        elif kind == "rename" and file in disk:
+            disk[other] = disk.pop(file)
+        elif kind == "unlink":
+            disk.pop(file, None)
+    shutil.rmtree(stand.target, ignore_errors=True)
+    stand.target.mkdir(parents=True)
+    for file, inode in disk.items():
+        count = inode.synced
+        if keep == "some":
+            count = rng.randint(count, len(inode.steps))
+        (stand.target / file).write_bytes(inode.after(count))
+
+
+# --- The campaign
+
+KINDS = ("open", "write", "fsync", "close", "rename", "unlink", "ftruncate", "fstat")
+ERRORS = {"killed": KILL, "EIO": errno.EIO, "ENOSPC": errno.ENOSPC, "EACCES": errno.EACCES}
+
+
+def campaign(stand, kinds=KINDS, errors=tuple(ERRORS), every=1, lasting=True):
+    """Yields (call, what happened, how many, how they ended, what was broken)."""
+    for call in kinds:
+        number = stand.number(call)
+        for name in errors:
+            for lasts in (False, True) if lasting and name != "killed" else (False,):
+                ends, broken = collections.Counter(), []
+                points = range(1, number + 1, every)
+                for at in points:
+                    try:
+                        ends[stand.attempt(call, at, ERRORS[name], lasts)] += 1
+                    except (Broken, subprocess.TimeoutExpired) as problem:
+                        broken.append(f"{call} {at} {name}: {problem}")
+                yield call, name + (" from then on" if lasts else ""), len(points), ends, broken
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--every", type=int, default=1)
+    parser.add_argument("--snapin", default=HERE.parents[1] / "build/snapin")
+    options = parser.parse_args()
+    bad = 0
+    with tempfile.TemporaryDirectory() as folder:
+        stand = Stand(options.snapin, folder)
+        for call, what, count, ends, broken in campaign(stand, every=options.every):
+            text = "; ".join(f"{number} {end}" for end, number in sorted(ends.items()))
+            print(f"| {call} | {what} | {count} | {text} | {len(broken)} |", flush=True)
+            for line in broken:
+                print("   ", line)
+            bad += len(broken)
+        ends = power_failures(stand, every=options.every)
+        text = "; ".join(f"{number} {end}" for end, number in sorted(ends.items()))
+        print(f"| power fails | | {sum(ends.values())} | {text} | 0 |")
+    sys.exit(bad > 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,179 @@
+"""An independent solution of the elastic problem in NumPy, which shares no code with the program.
+
+H = H0 + r^2/2 + 2 s Int P(H(t)) k(r, t) t dt on fixed Gauss-Legendre panels, by Newton's method and
+continuation in H0. In units of the law's length; s is sigma or Lambda.
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+from support.processes import HANG
+
+
+def agm_k(complement):
+    """Complete elliptic integral K from sqrt(1 - m), by the arithmetic-geometric mean."""
+    a, b = np.ones_like(complement), complement
+    for _ in range(40):
+        a, b = (a + b) / 2, np.sqrt(a * b)
+        if np.all(abs(a - b) <= 1e-15 * a):
+            break
+    return np.pi / (2 * a)
+
+
+def kernel(r, t, distance):
+    """k(r, t), with |r - t| given so that it need not be computed by cancellation."""
+    large = np.maximum(r, t)
+    complement = np.sqrt(distance / large * (1 + np.minimum(r, t) / large))
+    return 4 / (np.pi * large) * agm_k(complement)
+
+
+def lagrange(nodes, at):
+    """Values at `at` of the Lagrange polynomials of `nodes`, (at, nodes)."""
+    weights = 1 / np.prod(nodes[:, None] - nodes + np.eye(len(nodes)), axis=1)
+    apart = at[:, None] - nodes
+    hit = apart == 0
+    apart[hit] = 1
+    ratio = weights / apart
+    values = ratio / ratio.sum(1, keepdims=True)
+    rows = hit.any(1)
+    values[rows] = hit[rows]
+    return values
+
+
+class HalfSpace:
+    """Panels and the matrix of the kernel on them; row 0 is the axis."""
+
+    def __init__(self, ends, order=12):
+        x, w = np.polynomial.legendre.leggauss(order)
+        local, weight = (x + 1) / 2, w / 2
+        ends = np.asarray(ends, float)
+        length = np.diff(ends)
+        self.r = (ends[:-1, None] + length[:, None] * local).ravel()
+        self.weight = (length[:, None] * weight).ravel() * self.r
+        self.end = ends[-1]
+        targets = np.concatenate([[0.0], self.r])
+        self.matrix = np.empty((len(targets), len(self.r)))
+        s, v = np.polynomial.legendre.leggauss(40)
+        s, v = (s + 1) / 2, v / 2
+        for panel, (a, b) in enumerate(zip(ends[:-1], ends[1:])):
+            columns = slice(panel * order, (panel + 1) * order)
+            t = self.r[columns]
+            far = (targets < a - (b - a)) | (targets > b + (b - a))
+            r = targets[far, None]
+            self.matrix[far, columns] = kernel(r, t, abs(r - t)) * weight * (b - a) * t
+            for i in np.flatnonzero(~far):
+                # Graded as the sixth power towards the point nearest to the target.
+                near = min(max(targets[i], a), b)
+                row = np.zeros(order)
+                for side, reach in ((-1, near - a), (1, b - near)):
+                    if reach <= 0:
+                        continue
+                    offset = side * reach * s**6
+                    at = near + offset
+                    k = kernel(targets[i], at, abs((near - targets[i]) + offset))
+                    row += (k * 6 * s**5 * v * reach * at) @ lagrange(local, (at - a) / (b - a))
+                self.matrix[i, columns] = row
+
+    def solve(self, law, s, h0, largest=0.8):
+        """The gaps (axis first) at each of several H0; none falls by more than `largest` a step."""
+        r = np.concatenate([[0.0], self.r])
+        gap = h0[0] + r**2 / 2
+        found = []
+        for value in h0:
+            # As far as the last step went; in contact that is hardly at all.
+            gap = 2 * found[-1] - found[-2] if len(found) > 1 else gap
+            if found and gap.min() < 0.3:
+                gap = found[-1]
+            for _ in range(60):
+                pressure, slope, _ = law(gap[1:])
+                residual = gap - value - r**2 / 2 - 2 * s * self.matrix @ pressure
+                jacobian = np.eye(len(r))
+                jacobian[:, 1:] -= 2 * s * self.matrix * slope
+                step = np.linalg.solve(jacobian, -residual)
+                gap = gap + min(1, largest / max(1e-300, -step.min())) * step
+                if abs(step).max() < 1e-11 * max(1, abs(gap).max()):
+                    break
+            else:
+                raise ArithmeticError(f"no solution at {value}")
+            found.append(gap)
+        return found
+
+    def load(self, law, s, gap):
+        """The load; beyond the mesh the deformation is taken as constant."""
+        pressure, _, _ = law(gap[1:])
+        _, _, energy = law(np.array([gap[-1] + (self.end**2 - self.r[-1] ** 2) / 2]))
+        return 2 * np.pi * s * (self.weight @ pressure + energy[0])
+
+
+def exponential(gap):
+    """Pressure, slope and energy of the exponential law."""
+    p = np.exp(-gap)
+    return p, -p, p
+
+
+def lennard_jones(gap):
+    """Pressure, slope and energy of the Lennard-Jones law."""
+    return (
+        8 / 3 * (gap**-9 - gap**-3),
+        8 * (gap**-4 - 3 * gap**-10),
+        gap**-8 / 3 - 4 / 3 * gap**-2,
+    )
+
+
+def lowest_eigenvalues(law, s, states):
+    """The two lowest eigenvalues of I - 2 s W diag(P') for (ends of the panels, gaps) of each."""
+    found = []
+    for ends, gap in states:
+        half_space = HalfSpace(ends, len(gap) // (len(ends) - 1))
+        operator = np.eye(len(gap)) - 2 * s * half_space.matrix[1:] * law(np.array(gap))[1]
+        found.append(np.sort(np.linalg.eigvals(operator).real)[:2].tolist())
+    return found
+
+
+def independent_states(law, s, h0, ends, largest=0.8):
+    """Gaps on the axis and loads at each H0 on panels with the given ends."""
+    return carried_out({"law": law, "s": s, "h0": list(h0), "ends": list(ends), "largest": largest})
+
+
+def independent_eigenvalues(law, s, states):
+    """`lowest_eigenvalues`, (two, states)."""
+    return carried_out({"law": law, "s": s, "states": states})
+
+
+def carried_out(task):
+    """What `main` makes of a task.
+
+    In a process of its own with one thread: NumPy's threads stall each other on a busy machine.
+    """
+    environment = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")
+    done = subprocess.run(
+        [sys.executable, "-m", "support.half_space"],
+        cwd=pathlib.Path(__file__).parents[1],
+        input=json.dumps(task),
+        capture_output=True,
+        text=True,
+        check=True,
+        env=environment,
+        timeout=HANG,
+    )
+    return np.array(json.loads(done.stdout)).T
+
+
+def main():
+    """Carry out the task on standard input."""
+    task = json.load(sys.stdin)
+    law = {"exponential": exponential, "lennard_jones": lennard_jones}[task["law"]]
+    if "states" in task:
+        print(json.dumps(lowest_eigenvalues(law, task["s"], task["states"])))
+        return
+    half_space = HalfSpace(task["ends"])
+    gaps = half_space.solve(law, task["s"], task["h0"], task["largest"])
+    print(json.dumps([[gap[0], half_space.load(law, task["s"], gap)] for gap in gaps]))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,172 @@
+"""Scenes for tests: decks written from keywords, run by the program, and read back.
+
+Most scenes are posed in the law's own lengths: with R = z0 = E/(1-nu^2) = 1 the parameter sigma of
+the paper is gamma itself, h0 is in units of z0, and loads come out in units of sigma (gamma R).
+"""
+
+import math
+import os
+import pathlib
+import sys
+from typing import NamedTuple
+
+import f90nml
+from support.processes import HANG
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "pywrap" / "plots"))
+
+import read_results  # noqa: E402 (found through the line above)
+
+JKR = 1.5 * math.pi  # Pull-off of JKR theory in units of gamma R.
+
+# --- Decks
+
+
+def value_text(value):
+    """A value as Fortran's namelist input reads it, to all digits."""
+    if isinstance(value, bool):
+        return ".true." if value else ".false."
+    if isinstance(value, str):
+        return "'" + value.replace("'", "''") + "'"
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return repr(float(value))
+    return ", ".join(value_text(item.item() if hasattr(item, "item") else item) for item in value)
+
+
+def deck(**groups):
+    """A deck; a group is a dict of its keys ({}: without any), and None leaves it out.
+
+    `from` is a word of Python's: write from_.
+    """
+    text = ""
+    for name, keys in groups.items():
+        if keys is None:
+            continue
+        pairs = [f"{key.rstrip('_')} = {value_text(value)}" for key, value in keys.items()]
+        text += f"&{name} " + ", ".join(pairs) + " /\n"
+    return text
+
+
+def lennard_jones(sigma, *, part="full", **groups):
+    """A deck in units of z0 and of E/(1-nu^2); loads are then in units of sigma."""
+    return deck(
+        bodies={"radius": 1.0, "stiffness": 1.0},
+        force={"law": "lennard_jones", "hamaker": 16 * math.pi * sigma, "z0": 1.0, "part": part},
+        **groups,
+    )
+
+
+def exponential(big_lambda, **groups):
+    """A deck in units of the decay length; Lambda at h0 = 0 is p0."""
+    return deck(
+        bodies={"radius": 1.0, "stiffness": 1.0},
+        force={"law": "exponential", "p0": float(big_lambda), "decay_length": 1.0},
+        **groups,
+    )
+
+
+def loading(start, end, step):
+    """The keys of &loading."""
+    return {"h0_start": float(start), "h0_end": float(end), "h0_step": float(step)}
+
+
+# --- Results
+
+
+class Table(NamedTuple):
+    """A CSV file of results: its '#' lines, and its columns by name."""
+
+    comments: list
+    columns: dict
+
+    @property
+    def names(self):
+        return list(self.columns)
+
+    def __getitem__(self, name):
+        return self.columns[name]
+
+    def __len__(self):
+        return len(self.columns[self.names[0]])
+
+    def rows(self, branch):
+        """The columns of one branch (or theory) alone."""
+        mine = self.columns[self.names[0]] == branch
+        columns = {name: column[mine] for name, column in self.columns.items()}
+        return Table(self.comments, columns)
+
+
+def read_table(path):
+    """Read a CSV file of results as the plots do."""
+    columns = read_results.read_table(path.parent, path.name)
+    lines = path.read_text().splitlines()
+    comments = [line for line in lines if line.startswith("#")]
+    # All '#' lines come before the header, and no name is there twice.
+    assert lines[len(comments)].split(",") == list(columns), path
+    return Table(comments, columns)
+
+
+class Run(NamedTuple):
+    """What came of a deck."""
+
+    status: int
+    stderr: str
+    folder: object
+
+    @property
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir())
+
+    @property
+    def groups(self):
+        """The groups of summary.nml."""
+        return f90nml.read(self.folder / "summary.nml")
+
+    @property
+    def summary(self):
+        return self.groups["summary"]
+
+    @property
+    def cost(self):
+        return self.groups["cost"]
+
+    @property
+    def warnings(self):
+        found = self.summary.get("warnings", [])
+        return [found] if isinstance(found, str) else found
+
+    @property
+    def curve(self):
+        return read_table(self.folder / "curve.csv")
+
+    def table(self, name):
+        return read_table(self.folder / name)
+
+
+def several(value):
+    """Several values of a namelist, of which f90nml returns a single one bare."""
+    return list(value) if isinstance(value, list) else [value]
+
+
+def runner(snapin, folder):
+    """run(deck text, status=0, threads=1) -> Run; the same deck is not run twice.
+
+    One thread unless told: on a busy machine threads that wait for each other cost the most.
+    """
+    done = {}
+
+    def run(text, *, status=0, threads=1, timeout=HANG):
+        key = text, threads
+        if key not in done:
+            name = f"d{len(done)}"
+            (folder / f"{name}.nml").write_text(text)
+            environment = dict(os.environ)
+            environment["OMP_NUM_THREADS"] = environment["OPENBLAS_NUM_THREADS"] = str(threads)
+            result = snapin(f"{name}.nml", cwd=folder, timeout=timeout, env=environment)
+            done[key] = Run(result.returncode, result.stderr, folder / "results" / name)
+        assert done[key].status == status, done[key].stderr + text
+        return done[key]
+
+    return run

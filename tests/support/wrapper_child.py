@@ -1,0 +1,111 @@
+"""Goes through the cases of entries of wrapper_registry.py and tells what happened, a line of JSON
+each. A process of its own, since a case that goes wrong may end it.
+
+    python -m support.wrapper_child ENTRY ...
+"""
+
+import inspect
+import json
+import signal
+import sys
+import warnings
+
+import numpy as np
+import snapin
+from support.wrapper_registry import REGISTRY
+from support.wrapper_values import CASES, REFUSED
+
+# A case that takes longer hangs [s of the processor]: a busy machine does not count.
+PATIENCE = 300
+
+
+def flat(result):
+    """All numbers and texts of a result, in order."""
+    if isinstance(result, (tuple, list)):
+        return [part for item in result for part in flat(item)]
+    if hasattr(result, "__dataclass_fields__"):
+        return flat([getattr(result, name) for name in result.__dataclass_fields__])
+    return [result]
+
+
+def same(one, other):
+    """Whether two results agree to the bit."""
+    one, other = flat(one), flat(other)
+    return len(one) == len(other) and all(map(same_part, one, other))
+
+
+def same_part(one, other):
+    if isinstance(one, np.ndarray):
+        return (
+            one.dtype == other.dtype and one.shape == other.shape
+            and one.tobytes() == other.tobytes()
+        )
+    return one == other or (one != one and other != other)
+
+
+def bits(value):
+    """What must not change in an argument; other objects are taken as they are."""
+    plain = type(value) is np.ndarray and value.nbytes < 10**6
+    return value.tobytes() if plain else None
+
+
+def attempt(entry, name, value):
+    """The result, or the exception, of the entry's call with one argument exchanged."""
+    arguments = {**entry.good, name: value}
+    before = {key: bits(given) for key, given in arguments.items()}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.simplefilter("ignore", snapin.SnapinWarning)
+        try:
+            result = entry.call(**arguments)
+        except Exception as problem:
+            result = problem
+    if before != {key: bits(given) for key, given in arguments.items()}:
+        return RuntimeError("an argument was changed in place")
+    return result
+
+
+def may_be_left_out(entry, name):
+    """Whether None stands for an argument that is not given."""
+    parameter = inspect.signature(entry.call).parameters.get(name)
+    return parameter is not None and parameter.default is None
+
+
+def fault(entry, name, value, clean):
+    """What is wrong with how the entry's call takes this value; None if nothing is."""
+    result = attempt(entry, name, value)
+    if isinstance(result, Exception):
+        if not isinstance(result, (ValueError, TypeError, MemoryError, snapin.SnapinError)):
+            return f"raised {type(result).__name__}: {str(result)[:200]}"
+        # Where a value is right by itself another may be the one that does not fit.
+        alone = clean is REFUSED and entry.kinds[name] != "paired"
+        named = tuple(f"{one}: " for one in ([name] if alone else entry.good))
+        if not str(result).startswith(named):
+            return f"the message names no argument: {type(result).__name__}: {str(result)[:200]}"
+        if len(str(result)) > 400:
+            return "the message has more than 400 characters"
+        return None
+    if clean is REFUSED:
+        return f"was taken: {str(result)[:100]}"
+    expected = attempt(entry, name, clean)
+    if isinstance(expected, Exception) or not same(result, expected):
+        return f"differs from the clean value: {str(result)[:200]} / {str(expected)[:200]}"
+    return None
+
+
+def main(which):
+    entry = REGISTRY[which]
+    signal.signal(signal.SIGPROF, signal.SIG_DFL)
+    for name, kind in entry.kinds.items():
+        for label, value, clean in CASES[kind](entry.good[name]):
+            if label == "None" and may_be_left_out(entry, name):
+                continue
+            signal.setitimer(signal.ITIMER_PROF, PATIENCE)
+            print(json.dumps({"case": f"{which}, {name}: {label}"}), flush=True)
+            print(json.dumps({"fault": fault(entry, name, value, clean)}), flush=True)
+            signal.setitimer(signal.ITIMER_PROF, 0)
+
+
+if __name__ == "__main__":
+    for each in sys.argv[1:]:
+        main(each)

@@ -1,0 +1,188 @@
+"""Every public callable of the package `snapin`, with one good call of each and what its arguments
+are. tests/support/wrapper_values.py has the values, good and bad, for each kind of argument.
+
+A kind is a word: vector, paired (a vector as long as another), scalar, positive, count, name,
+flag, law, mesh.
+"""
+
+import dataclasses
+import math
+
+import numpy as np
+import snapin
+from snapin import numerics
+
+# Bodies in which lengths are the law's own.
+UNIT = {"radius": 1.0, "stiffness": 1.0}
+
+
+def law_of(sigma, part="full"):
+    """The Lennard-Jones law of a given sigma in bodies of UNIT."""
+    return snapin.lennard_jones(hamaker=16 * math.pi * sigma, z0=1.0, part=part)
+
+
+LAW = snapin.lennard_jones(hamaker=5.0, z0=1.0)
+MESH = snapin.panel_mesh([0.0, 1.0, 3.0], 4)
+
+VECTOR, PAIRED, SCALAR, POSITIVE = "vector", "paired", "scalar", "positive"
+COUNT, NAME, FLAG, LAWS, MESHES = "count", "name", "flag", "law", "mesh"
+
+
+@dataclasses.dataclass(frozen=True)
+class Entry:
+    """`call(**good)` is right; `kinds` has the kind of each argument, by its public name."""
+
+    call: object
+    good: dict
+    kinds: dict
+
+
+def entry(call, **arguments):
+    """An entry from name=(kind, good value)."""
+    return Entry(
+        call,
+        {name: value for name, (_, value) in arguments.items()},
+        {name: kind for name, (kind, _) in arguments.items()},
+    )
+
+
+RISING = np.array([0.5, 0.75, 1.25, 2.0])
+BODIES = {"radius": (POSITIVE, 1.0), "stiffness": (POSITIVE, 2.0)}
+ADHESION = {"surface_energy": (POSITIVE, 1.5)}
+SCENE = {**BODIES, "law": (LAWS, LAW), "rigid": (FLAG, False)}
+ONE_STATE = {
+    "law": (NAME, "lennard_jones"),
+    "mesh": (MESHES, MESH),
+    "h0": (SCALAR, 3.0),
+    "coupling": (SCALAR, 0.2),
+    "start": (PAIRED, np.linspace(3.0, 7.0, 8)),
+    "scale": (POSITIVE, 1.5),
+    "tolerance": (POSITIVE, 1e-8),
+}
+
+REGISTRY = {
+    "approximation_rows": entry(
+        snapin.approximation_rows,
+        h0_start=(SCALAR, 8.0),
+        h0_end=(SCALAR, 5.0),
+        **SCENE,
+        count=(COUNT, 5),
+    ),
+    "cohesive_zone": entry(
+        snapin.cohesive_zone, contact_radius=(VECTOR, RISING), **BODIES, **ADHESION,
+        z0=(POSITIVE, 0.5),
+    ),
+    "contact_curve": entry(
+        snapin.contact_curve, theory=(NAME, "maugis"), contact_radius=(VECTOR, RISING), **BODIES,
+        **ADHESION, strength=(POSITIVE, 0.8),
+    ),
+    "contact_radius": entry(
+        snapin.contact_radius, theory=(NAME, "maugis"), control=(NAME, "edge_ratio"),
+        values=(VECTOR, RISING + 1), **BODIES, **ADHESION, strength=(POSITIVE, 0.8),
+    ),
+    "contact_radius at load": entry(
+        snapin.contact_radius, theory=(NAME, "jkr"), control=(NAME, "load"),
+        values=(VECTOR, RISING), **BODIES, **ADHESION, strength=(SCALAR, 1.0),
+    ),
+    "equilibrium": entry(
+        snapin.equilibrium,
+        **ONE_STATE,
+        part=(NAME, "full"),
+        method=(NAME, "mixing"),
+        most_iterations=(COUNT, 60),
+        depth=(COUNT, 5),
+        patience=(COUNT, 8),
+        mixing_limit=(POSITIVE, 0.2),
+        displacement_tolerance=(SCALAR, 1e-9),
+    ),
+    "equilibrium by Anderson": entry(
+        snapin.equilibrium,
+        **ONE_STATE,
+        depth=(COUNT, 5),
+    ),
+    "equilibrium_path": entry(
+        snapin.equilibrium_path, h0_end=(SCALAR, 1.0), **SCENE, h0_start=(SCALAR, 20.0),
+        accuracy=(POSITIVE, 1e-2),
+    ),
+    "exponential": entry(snapin.exponential, p0=(POSITIVE, 2.0), decay_length=(POSITIVE, 0.5)),
+    "force_curve": entry(
+        snapin.force_curve,
+        h0=(VECTOR, np.array([4.0, 3.0, 2.5, 2.0])),
+        **SCENE,
+        method=(NAME, "anderson"),
+        grid=(NAME, "uniform"),
+        accuracy=(POSITIVE, 1e-2),
+        nodes=(COUNT, 60),
+        r_max=(POSITIVE, 12.0),
+    ),
+    "force_curve on locked panels": entry(
+        snapin.force_curve, h0=(VECTOR, np.array([4.0, 3.0, 2.5, 2.0])), **SCENE,
+        accuracy=(POSITIVE, 1e-2),
+    ),
+    "force_law": entry(
+        snapin.force_law, law=(NAME, "lennard_jones"), gap=(VECTOR, RISING), part=(NAME, "full"),
+        hamaker=(POSITIVE, 5.0), z0=(POSITIVE, 1.0),
+    ),
+    "force_law, exponential": entry(
+        snapin.force_law, law=(NAME, "exponential"), gap=(VECTOR, RISING), p0=(POSITIVE, 5.0),
+        decay_length=(POSITIVE, 0.5),
+    ),
+    "gauss_rule": entry(snapin.gauss_rule, points=(COUNT, 7)),
+    "jump_estimates": entry(snapin.jump_estimates, **SCENE),
+    "kernel": entry(snapin.kernel, total=(PAIRED, RISING + 1), distance=(PAIRED, RISING)),
+    "kernel_log_coefficient": entry(
+        snapin.kernel_log_coefficient, total=(PAIRED, RISING + 1), distance=(PAIRED, RISING)
+    ),
+    "law_numbers": entry(
+        snapin.law_numbers, law=(NAME, "lennard_jones"), part=(NAME, "full"),
+        hamaker=(POSITIVE, 5.0), z0=(POSITIVE, 1.0),
+    ),
+    "lennard_jones": entry(
+        snapin.lennard_jones, hamaker=(POSITIVE, 5.0), z0=(POSITIVE, 1.0), part=(NAME, "full")
+    ),
+    "load_at_displacement": entry(
+        snapin.load_at_displacement, theory=(NAME, "jkr"), displacement=(VECTOR, RISING), **BODIES,
+        **ADHESION,
+    ),
+    "panel_mesh": entry(
+        snapin.panel_mesh, ends=(VECTOR, RISING), order=(COUNT, 5), centre=(SCALAR, 1.0)
+    ),
+    "panel_weights": entry(
+        snapin.panel_weights,
+        node=(VECTOR, RISING / 2),
+        target=(VECTOR, RISING),
+        left=(SCALAR, 0.5),
+        right=(SCALAR, 1.5),
+        centre=(SCALAR, 1.0),
+    ),
+    "profile": entry(
+        snapin.profile, theory=(NAME, "jkr"), r=(VECTOR, RISING), contact_radius=(POSITIVE, 1.0),
+        **BODIES, **ADHESION,
+    ),
+    "pull_off": entry(
+        snapin.pull_off, theory=(NAME, "maugis"), **BODIES, **ADHESION, strength=(POSITIVE, 0.8),
+        control=(NAME, "load"),
+    ),
+    "slow_deformation": entry(
+        snapin.slow_deformation, gap=(VECTOR, RISING + 3), **SCENE, form=(NAME, "closed_form")
+    ),
+    "uniform_mesh": entry(snapin.uniform_mesh, nodes=(COUNT, 9), extent=(POSITIVE, 3.0)),
+    "Mesh": entry(
+        numerics.Mesh, kind=(NAME, "panels"), centre=(SCALAR, 1.0), ends=(VECTOR, RISING),
+        order=(COUNT, 5),
+    ),
+    "Mesh.matrix": entry(MESH.matrix),
+    "Mesh.interpolate": entry(
+        MESH.interpolate, values=(PAIRED, np.linspace(1.0, 2.0, 8)), at=(VECTOR, RISING)
+    ),
+}
+
+# Arguments that a good call leaves out, and arguments gathered by `**parameters`.
+LEFT_OUT = {
+    "equilibrium by Anderson": {
+        "part", "method", "most_iterations", "patience", "mixing_limit", "displacement_tolerance",
+    },
+    "force_curve on locked panels": {"method", "grid", "nodes", "r_max"},
+    "force_law, exponential": {"part"},
+}
+GATHERED = {"hamaker", "z0", "p0", "decay_length"}

@@ -1,0 +1,167 @@
+"""Claims about results when system calls fail, runs are killed, or the power does (faults.py)."""
+
+import errno
+import os
+import re
+import signal
+import subprocess
+import time
+
+import pytest
+from support import faults
+from support.scenes import lennard_jones, loading
+
+
+@pytest.fixture(scope="module")
+def stand(snapin_path, tmp_path_factory):
+    return faults.Stand(snapin_path, tmp_path_factory.mktemp("faults"))
+
+
+# --- A sample; `verify.sh faults` tries every call with every error
+
+
+@pytest.mark.parametrize("code", [faults.KILL, errno.EIO], ids=["killed", "EIO"])
+def test_a_rename_that_fails_leaves_one_set_of_results_or_says_so(stand, code):
+    for at in range(1, stand.number("rename") + 1):
+        end = stand.attempt("rename", at, code)
+        if code:
+            assert end == "status 1, old"
+
+
+@pytest.mark.parametrize("code", [faults.KILL, errno.ENOSPC], ids=["killed", "ENOSPC"])
+def test_no_failing_call_leaves_results_that_are_not_one_set(stand, code):
+    for at in range(1, stand.number("any") + 1, 7):
+        stand.attempt("any", at, code)
+
+
+def test_a_disk_that_fails_for_good_amid_the_renames_is_told_and_mended(stand):
+    number = stand.number("rename")
+    ends = [stand.attempt("rename", at, errno.EIO, lasts=True) for at in range(1, number + 1)]
+    # Nothing can be put back either.
+    assert ends.count("status 1, told") >= number - 2
+
+
+def test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so(stand):
+    ends = faults.power_failures(stand, every=5)
+    assert ends["old"] and ends["told"]
+
+
+@pytest.mark.long
+def test_every_call_may_fail(stand):
+    broken = [line for *_, bad in faults.campaign(stand) for line in bad]
+    assert not broken
+    ends = faults.power_failures(stand)
+    assert ends["old"] and ends["new"] and ends["told"]
+
+
+def test_every_file_is_on_the_disk_before_it_gets_its_name(stand):
+    synced, dirty_names, renamed = set(), set(), []
+    for name, _, path, *rest in stand.log()[:-1]:
+        file = path.rsplit("/", 1)[-1]
+        if name in ("write", "truncate"):
+            synced.discard(file)
+        elif name == "create":
+            dirty_names.add(file)
+        elif name == "fsync" and path.endswith("/d"):
+            dirty_names.clear()
+        elif name == "fsync":
+            synced.add(file)
+        elif name == "rename" and not rest[0].endswith(".old.partial"):
+            assert path in synced and path not in dirty_names
+            renamed.append(rest[0])
+    assert renamed[0] == faults.INTENT
+    assert sorted(renamed) == sorted([faults.INTENT, *stand.new])
+    assert renamed[-1] == "summary.nml"
+
+
+# --- What a reader is told
+
+
+def test_a_folder_of_two_sets_tells_how_to_mend_it_by_hand(stand):
+    stand.reset()
+    stand.run(call="rename", at=4, errno=faults.KILL, under="try/d")
+    text = (stand.target / faults.INTENT).read_text()
+    assert "may not belong together" in text
+    # What the file says, done by hand.
+    listed = [line for line in text.splitlines() if re.fullmatch(r"\w+\.(csv|nml)", line)]
+    for name in listed:
+        newer = stand.target / f"{name}.partial"
+        if newer.exists():
+            newer.rename(stand.target / name)
+    for path in stand.target.iterdir():
+        if path.name not in listed:
+            path.unlink()
+    assert stand.state() == "new"
+
+
+def test_a_run_without_resume_mends_what_was_interrupted_before_it_starts_over(stand):
+    stand.reset()
+    stand.run(call="rename", at=4, errno=faults.KILL, under="try/d")
+    done = stand.run("try")
+    assert done.returncode == 0
+    assert "put results in place" in done.stderr
+    assert stand.state() == "new"
+
+
+def test_a_file_of_intent_that_cannot_be_true_is_refused(stand):
+    stand.reset()
+    for text, words in [("", "lists no results"), ("x\nsweep.csv\n", "sweep.csv is missing")]:
+        (stand.target / faults.INTENT).write_text(text)
+        before = {path.name: path.read_bytes() for path in stand.target.iterdir()}
+        done = stand.run("try")
+        assert done.returncode == 1
+        assert words in done.stderr
+        assert {path.name: path.read_bytes() for path in stand.target.iterdir()} == before
+
+
+# --- What is no file
+
+
+def make_fifo(path, _):
+    os.mkfifo(path)
+
+
+def make_link(path, elsewhere):
+    elsewhere.write_text("precious")
+    path.symlink_to(elsewhere)
+
+
+def make_dangling_link(path, elsewhere):
+    elsewhere.unlink(missing_ok=True)
+    path.symlink_to(elsewhere)
+
+
+@pytest.mark.parametrize("make", [make_fifo, make_link, make_dangling_link])
+@pytest.mark.parametrize("name", ["journal", "curve.csv", "classical.csv", "summary.nml",
+                                  faults.INTENT])
+def test_what_is_no_file_is_refused_and_not_opened(stand, make, name):
+    for options in [(), ("--resume",)]:
+        stand.reset()
+        elsewhere = stand.folder / "elsewhere"
+        make(stand.target / f"{name}.partial", elsewhere)
+        done = stand.run("try", *options)
+        assert done.returncode == 1
+        words = "not a file but a link, a pipe or a device; move away"
+        assert f"{name}.partial: {words}" in done.stderr
+        assert stand.state() == "old"
+        if make is make_link:
+            assert elsewhere.read_text() == "precious"
+        elsewhere.unlink(missing_ok=True)
+        (stand.target / f"{name}.partial").unlink(missing_ok=True)
+        stand.mend()
+
+
+# --- The journal
+
+
+@pytest.mark.slow
+def test_the_journal_is_put_on_the_disk_every_few_seconds(snapin_path, stand, tmp_path):
+    (tmp_path / "d.nml").write_text(lennard_jones(0.2, loading=loading(4, 1, 1e-5)))
+    env = dict(os.environ, OMP_NUM_THREADS="1", LD_PRELOAD=str(stand.library), FAULT_CALL="fsync",
+               FAULT_UNDER="journal", FAULT_LOG=str(tmp_path / "log"))
+    with subprocess.Popen([snapin_path, "--quiet", "d.nml"], cwd=tmp_path, env=env) as process:
+        time.sleep(7)
+        process.send_signal(signal.SIGKILL)
+    calls = [line.split("\t")[0] for line in (tmp_path / "log").read_text().splitlines()]
+    assert 2 <= calls.count("fsync") <= 3
+    assert calls.count("write") > 100

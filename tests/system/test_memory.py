@@ -1,0 +1,94 @@
+"""Claims about memory: what a run needs is set by its mesh, not by how long it lasts."""
+
+import os
+import pathlib
+import random
+import re
+import resource
+import subprocess
+import time
+
+import pytest
+from support import scenes
+from support.processes import status_and_memory
+
+LAWS = {
+    "exponential": {"law": "exponential", "p0": 2.5e8, "decay_length": 0.2e-9},
+    "lennard_jones": {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9},
+}
+
+
+def peak_memory(snapin_path, folder, law, step):
+    """Peak of the resident memory [bytes] of a cycle in steps of `step` [m], and its states."""
+    folder.mkdir()
+    (folder / "cycle.nml").write_text(
+        scenes.deck(
+            bodies={"radius": 1.5e-2, "stiffness": 1e10},
+            force=LAWS[law],
+            loading={"h0_start": 2e-9, "h0_end": -4e-9, "h0_step": step},
+            unloading={},
+        )
+    )
+    status, used = status_and_memory(snapin_path, "--quiet", "cycle.nml", cwd=folder)
+    assert status == 0
+    with (folder / "results" / "cycle" / "curve.csv").open() as file:
+        return used, sum(1 for line in file)
+
+
+@pytest.mark.alone
+@pytest.mark.parametrize("law", LAWS)
+def test_memory_does_not_grow_with_the_number_of_states(law, snapin_path, tmp_path):
+    few, short = peak_memory(snapin_path, tmp_path / "few", law, 2e-10)
+    many, long = peak_memory(snapin_path, tmp_path / "many", law, 4e-12)
+    assert long > 40 * short
+    # A leak of one state's gaps and pressures, 4 kB, for each of the further 2900 states would be
+    # 12 MB; what the system rounds a process to is well below this.
+    assert many - few < 2e6
+
+
+# --- Where there is too little
+
+SMALL = scenes.lennard_jones(0.5, loading=scenes.loading(4, -1, 1))
+
+
+@pytest.mark.parametrize("threads", [1, 2, 8])
+def test_any_limit_of_address_space_ends_in_results_or_in_status_1(snapin_path, tmp_path, threads):
+    (tmp_path / "d.nml").write_text(SMALL)
+    env = dict(os.environ, OMP_NUM_THREADS=str(threads))
+    env.pop("OPENBLAS_NUM_THREADS", None)
+    statuses = []
+    for megabytes in (60, 80, 100, 150, 190, 210, 240, 300, 400, 700, 1500):
+        done = subprocess.run(
+            ["sh", "-c", f'ulimit -v {megabytes}000; exec "$0" d.nml', snapin_path],
+            cwd=tmp_path, env=env, capture_output=True, text=True, timeout=60, check=False)
+        assert done.returncode in (0, 1), (megabytes, done.stderr)
+        if done.returncode == 1:
+            assert "memory" in done.stderr, megabytes
+        statuses.append(done.returncode)
+    # Once it is enough, more is enough too.
+    assert statuses == sorted(statuses, reverse=True)
+    assert statuses[0] == 1
+    assert statuses[-1] == 0
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_memory_refused_at_any_moment_is_status_1_with_a_message(snapin_path, tmp_path, threads):
+    rng = random.Random(threads)
+    (tmp_path / "d.nml").write_text(scenes.lennard_jones(900.0, equilibrium_path={"h0_end": -4.0}))
+    env = dict(os.environ, OMP_NUM_THREADS=str(threads))
+    refused = 0
+    for _ in range(8):
+        with subprocess.Popen([snapin_path, "d.nml"], cwd=tmp_path, env=env, text=True,
+                              stderr=subprocess.PIPE) as process:
+            time.sleep(rng.uniform(0.03, 0.6))
+            status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+            size = re.search(r"VmSize:\s+(\d+) kB", status)
+            # No more than it has now.
+            limit = int(size[1]) * 1024 if size else resource.RLIM_INFINITY
+            resource.prlimit(process.pid, resource.RLIMIT_AS, (limit, limit))
+            _, errors = process.communicate(timeout=60)
+        assert process.returncode in (0, 1), errors
+        if process.returncode == 1:
+            refused += 1
+            assert "memory" in errors
+    assert refused > 0

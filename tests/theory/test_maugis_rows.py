@@ -1,0 +1,156 @@
+"""Maugis-Dugdale theory beside the curve: the rows of classical.csv and the keys of the summary."""
+
+import math
+
+import numpy as np
+import pytest
+import snapin
+from support.scenes import exponential, lennard_jones, loading, runner
+
+# In units of z0 and E/(1-nu^2), with R = 1: gamma is sigma, Maugis' K is 2/3.
+K = 2 / 3
+# Largest tension of the Lennard-Jones law in units of gamma/z0, at h = 3^(1/6).
+PEAK = 8 / 3 * (3**-0.5 - 3**-1.5)
+RANGE = {"h0_start": 8.0, "h0_end": -12.0, "count": 101}
+SIGMAS = [0.01, 0.2, 0.87, 8.7, 100.0]
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("maugis"))
+
+
+def unit_of(sigma):
+    """Maugis' unit of contact radius; its square is that of displacement."""
+    return (math.pi * sigma / K) ** (1 / 3)
+
+
+def range_of(sigma):
+    """A range of h0 that begins where no theory has a state."""
+    return {**RANGE, "h0_start": 8 + 3 * unit_of(sigma) ** 2}
+
+
+def classical(sigma, **keys):
+    """A deck with the classical theories and nothing else."""
+    return lennard_jones(sigma, classical={**range_of(sigma), **keys})
+
+
+def material(sigma):
+    return {"radius": 1.0, "stiffness": 1.0, "surface_energy": sigma, "strength": PEAK * sigma}
+
+
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_every_row_satisfies_maugis_two_equations(run, sigma):
+    """The gap at the outer edge c is gamma/strength, and displacement and load follow from a, c."""
+    rows = run(classical(sigma)).table("classical.csv").rows("maugis_dugdale")
+    assert len(rows) > 30
+    unit = unit_of(sigma)
+    lam = 2 * PEAK * sigma / (math.pi * sigma * K**2) ** (1 / 3)
+    a, delta, load = rows["contact_radius"] / unit, rows["displacement"], rows["load"]
+    # From the displacement follows the zone, and with it the rest.
+    t = (a**2 - delta / unit**2) * 3 / (4 * lam * a)
+    m, angle = np.sqrt(1 + t**2), np.arctan(t)
+    one = lam * a**2 / 2 * (t + (m**2 - 2) * angle) + 4 * lam**2 * a / 3 * (t * angle - m + 1)
+    np.testing.assert_allclose(one, 1, rtol=1e-6)
+    expected = a**3 - lam * a**2 * (t + m**2 * angle)
+    scale = np.abs(a**3) + 2
+    assert (abs(load / (math.pi * sigma) - expected) <= 1e-8 * scale).all()
+
+
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_rows_are_on_the_curve_that_the_contact_radius_parametrises(run, sigma):
+    rows = run(classical(sigma)).table("classical.csv").rows("maugis_dugdale")
+    load, displacement = snapin.contact_curve(
+        "maugis", rows["contact_radius"], **material(sigma)
+    )
+    np.testing.assert_array_equal(rows["displacement"], -rows["h0"])
+    size = rows["contact_radius"] ** 2
+    assert (abs(displacement - rows["displacement"]) <= 1e-13 * (size + 1)).all()
+    np.testing.assert_allclose(load, rows["load"], rtol=1e-12, atol=1e-12 * sigma)
+
+
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_rows_are_the_stable_states_and_reach_to_the_least_displacement(run, sigma):
+    """At each displacement the largest contact, which grows with it; and no state is left out."""
+    rows = run(classical(sigma)).table("classical.csv").rows("maugis_dugdale")
+    a = np.geomspace(1e-4, 30, 200001) * unit_of(sigma)
+    _, displacement = snapin.contact_curve("maugis", a, **material(sigma))
+    assert (np.diff(rows["contact_radius"]) > 0).all()
+    # h0 falls, so that the first row is the one nearest to the least displacement.
+    step = (range_of(sigma)["h0_start"] - RANGE["h0_end"]) / (RANGE["count"] - 1)
+    least = displacement.min()
+    assert least - 1e-6 <= rows["displacement"][0] < least + 1.001 * step
+    np.testing.assert_allclose(np.diff(rows["h0"]), -step, rtol=1e-9)
+    assert rows["h0"][-1] == pytest.approx(RANGE["h0_end"], rel=1e-14)
+    beyond = a > 1.0001 * rows["contact_radius"][0]
+    assert (displacement[beyond] > rows["displacement"][0]).all()
+
+
+def difference(run, sigma, theory):
+    """Largest difference of load and of contact radius from another theory, where both have rows."""
+    unit = unit_of(sigma)
+    deck = classical(sigma, h0_start=-0.1 * unit**2, h0_end=-10 * unit**2)
+    table = run(deck).table("classical.csv")
+    mine, other = table.rows("maugis_dugdale"), table.rows(theory)
+    np.testing.assert_array_equal(mine["h0"], other["h0"])
+    return max(
+        abs(mine["load"] - other["load"]).max() / (math.pi * sigma),
+        abs(mine["contact_radius"] - other["contact_radius"]).max() / unit,
+    )
+
+
+def test_large_lambda_gives_the_rows_of_jkr(run):
+    far, near = difference(run, 1e3, "jkr"), difference(run, 1e5, "jkr")
+    # The difference falls as lambda^-2, that is as sigma^(-4/3).
+    assert near < 1e-5 and near < far / 200
+
+
+def test_small_lambda_gives_the_rows_of_dmt(run):
+    far, near = difference(run, 1e-6, "dmt"), difference(run, 1e-12, "dmt")
+    assert near < 2e-3 and near < far / 20
+
+
+@pytest.mark.parametrize("sigma", SIGMAS)
+def test_summary_has_maugis_parameter_and_pull_off(run, sigma):
+    summary = run(classical(sigma)).summary
+    assert summary["maugis_lambda"] / summary["tabor"] == pytest.approx(1.157, abs=5e-4)
+    pull_off = snapin.pull_off("maugis", **material(sigma))
+    assert summary["maugis_pull_off"] == pytest.approx(-pull_off, rel=1e-12)
+    assert summary["jkr_pull_off"] < summary["maugis_pull_off"] < summary["dmt_pull_off"]
+
+
+def test_maugis_pull_off_is_nearer_the_exact_one_than_jkr_and_dmt(run):
+    scene = lennard_jones(0.87, equilibrium_path={"h0_end": -4.0}, classical={})
+    summary = run(scene).summary
+    error = {
+        theory: abs(summary[f"{theory}_pull_off"] - summary["max_tension"])
+        for theory in ("maugis", "jkr", "dmt")
+    }
+    assert error["maugis"] == min(error.values())
+
+
+@pytest.mark.parametrize(
+    "deck",
+    [
+        lennard_jones(0.87, part="attractive", classical=RANGE),
+        lennard_jones(0.87, part="repulsive", classical=RANGE),
+        exponential(1, classical=RANGE),
+    ],
+    ids=["attractive", "repulsive", "exponential"],
+)
+def test_a_law_without_a_largest_tension_has_no_maugis_rows(run, deck):
+    result = run(deck)
+    table = result.table("classical.csv")
+    assert "hertz" in table["theory"] and "maugis_dugdale" not in table["theory"]
+    assert [key for key in result.summary if key.startswith("maugis")] == []
+
+
+def test_sweep_has_maugis_columns_only_with_classical(run):
+    sweep = {"key": "force.hamaker", "values": [16 * math.pi * sigma for sigma in SIGMAS]}
+    rows = run(lennard_jones(1.0, classical=RANGE, sweep=sweep)).table("sweep.csv")
+    for row, sigma in enumerate(SIGMAS):
+        summary = run(classical(sigma)).summary
+        for key in ("maugis_lambda", "maugis_pull_off"):
+            assert rows[key][row] == pytest.approx(summary[key], rel=1e-12)
+    without = run(lennard_jones(1.0, loading=loading(8, 6, 1), sweep=sweep)).table("sweep.csv")
+    assert [name for name in without.names if name.startswith("maugis")] == []

@@ -1,0 +1,173 @@
+"""The plotting scripts: a picture from every kind of results, a clear message without them."""
+
+import re
+import runpy
+import struct
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from support.processes import HANG
+
+pytest.importorskip("matplotlib")
+
+SCRIPTS = ROOT / "pywrap" / "plots"
+BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
+FORCE = "&force law = 'lennard_jones', hamaker = 1.0e-20, z0 = 0.5e-9 /\n"
+CYCLE = """&loading h0_start = 4e-9, h0_end = -1e-9, h0_step = 0.25e-9 /
+&unloading from = 0e-9, -1e-9 /
+"""
+DECKS = {
+    "cycle": "&scene title = 'Cycle' /\n" + BODIES + FORCE + CYCLE
+    + "&profiles h0 = 2e-9, 0e-9 /\n&classical /\n",
+    "path": BODIES + FORCE + "&equilibrium_path h0_end = -1e-9 /\n&profiles h0 = 1.6e-9 /\n",
+    "repulsion": BODIES + "&force law = 'exponential', p0 = 1e7, decay_length = 1e-9 /\n"
+    "&loading h0_start = 4e-9, h0_end = 0e-9, h0_step = 1e-9 /\n&profiles h0 = 1e-9 /\n",
+    "rigid": "&bodies radius = 1e-2, rigid = .true. /\n" + FORCE
+    + "&loading h0_start = 4e-9, h0_end = 1e-9, h0_step = 1e-9 /\n&profiles h0 = 1e-9 /\n",
+    "sweep": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n"
+    "&sweep key = 'force.hamaker', values = 1e-21, 1e-20 /\n",
+    "theories": BODIES + FORCE + "&classical h0_start = 1e-9, h0_end = -1e-9 /\n",
+}
+
+
+@pytest.fixture(scope="module")
+def results(snapin, tmp_path_factory):
+    """A folder with the results of all decks."""
+    folder = tmp_path_factory.mktemp("plots")
+    for name, text in DECKS.items():
+        (folder / f"{name}.nml").write_text(text)
+    done = snapin("--quiet", "--out", folder, *(folder / f"{name}.nml" for name in DECKS))
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+@pytest.fixture
+def plot(tmp_path, monkeypatch, capsys):
+    """Runs a script in this process, which has Matplotlib: plot(name, argument, ...) ->
+    CompletedProcess with text output."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(SCRIPTS)
+
+    def run(name, *args):
+        monkeypatch.setattr(sys, "argv", [str(SCRIPTS / name), *map(str, args)])
+        status = 0
+        try:
+            runpy.run_path(str(SCRIPTS / name), run_name="__main__")
+        except SystemExit as ended:
+            status = ended.code or 0
+        told = capsys.readouterr()
+        if isinstance(status, str):
+            told, status = told._replace(err=f"{told.err}{status}\n"), 1
+        return subprocess.CompletedProcess([name], status, told.out, told.err)
+
+    return run
+
+
+@pytest.fixture
+def command(tmp_path):
+    """The same as a command of its own."""
+
+    def run(name, *args):
+        command = [sys.executable, str(SCRIPTS / name), *map(str, args)]
+        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=HANG,
+                              check=False)
+
+    return run
+
+
+def size_of(png):
+    """Return width and height in pixels of a PNG file."""
+    head = png.read_bytes()[:24]
+    assert head[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">2I", head[16:])
+
+
+@pytest.mark.parametrize("script", ["force_curve", "profiles"])
+def test_a_script_is_a_command(command, results, tmp_path, script):
+    done = command(f"{script}.py", results / "cycle", "-o", "here.png")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "here.png\n", "")
+    assert size_of(tmp_path / "here.png")[0] == 1350
+    done = command(f"{script}.py", results / "theories")
+    assert done.returncode == 1 and done.stderr.startswith(f"{script}.py: ")
+
+
+@pytest.mark.parametrize("script", ["force_curve", "profiles"])
+@pytest.mark.parametrize("deck", ["cycle", "path", "repulsion", "rigid"])
+def test_a_picture_appears_in_the_folder(plot, results, script, deck):
+    done = plot(f"{script}.py", results / deck)
+    picture = results / deck / f"{script}.png"
+    assert (done.returncode, done.stdout) == (0, f"{picture}\n"), done.stderr
+    assert done.stderr == ""
+    width, height = size_of(picture)
+    assert width == 1350 and 600 <= height <= 750
+    assert 2e4 < picture.stat().st_size < 3e5
+
+
+def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):
+    done = plot("profiles.py", results / "cycle", "-o", "here.png", "--dpi", 300, "--branch",
+                "unloading_2")
+    assert done.returncode == 0, done.stderr
+    assert size_of(tmp_path / "here.png")[0] == 2700
+
+
+@pytest.mark.parametrize(
+    ("args", "phrase"),
+    [
+        (("force_curve.py", "nowhere"), "no such folder"),
+        (("force_curve.py", "theories"), "no curve.csv in .*neither &loading nor"),
+        (("force_curve.py", "sweep"), "no curve.csv in .*&sweep"),
+        (("profiles.py", "theories"), "no profiles.csv in .*no &profiles group"),
+        (("profiles.py", "cycle", "--branch", "path"), "loading, unloading_1, unloading_2"),
+        (("force_curve.py", "cycle", "-o", "no/such/folder.png"), "no/such"),
+    ],
+)
+def test_what_is_missing_is_said_in_one_line(plot, results, args, phrase):
+    done = plot(args[0], results / args[1], *args[2:])
+    assert done.returncode == 1
+    assert re.fullmatch(rf"{args[0]}: .*{phrase}.*\n", done.stderr), done.stderr
+
+
+def test_a_curve_is_smoothed_through_its_points(monkeypatch):
+    monkeypatch.syspath_prepend(SCRIPTS)
+    from read_results import smooth
+
+    angle = np.linspace(0, np.pi, 9)
+    circle = np.column_stack([np.cos(angle), 2 * np.sin(angle)])
+    curve = smooth(circle)
+    assert len(curve) > 50
+    for point in circle:
+        assert abs(curve - point).max(axis=1).min() < 1e-15
+    assert abs(np.hypot(curve[:, 0], curve[:, 1] / 2) - 1).max() < 5e-3
+
+
+def test_a_corner_stays_a_corner(monkeypatch):
+    monkeypatch.syspath_prepend(SCRIPTS)
+    from read_results import smooth
+
+    zigzag = np.array([[0, 0], [1, 1], [2, 0], [3, 1.0]])
+    np.testing.assert_array_equal(smooth(zigzag), zigzag)
+
+
+@pytest.mark.parametrize(
+    ("largest", "factor", "unit"),
+    [(6e-5, 1e-6, "µN"), (8e-10, 1e-9, "nN"), (3e-10, 1e-12, "pN"), (0, 1, "N"), (2, 1, "N")],
+)
+def test_units_keep_numbers_short(monkeypatch, largest, factor, unit):
+    monkeypatch.syspath_prepend(SCRIPTS)
+    from read_results import scale
+
+    assert scale([-largest, np.nan], "N") == (factor, unit)
+
+
+def test_files_that_may_not_belong_together_are_not_drawn(plot, results):
+    note = results / "cycle/INCOMPLETE.txt"
+    note.write_text("")
+    try:
+        done = plot("force_curve.py", results / "cycle")
+    finally:
+        note.unlink()
+    assert done.returncode != 0
+    assert "may not belong together" in done.stderr

@@ -1,0 +1,140 @@
+"""The independent reference is worth its name: closed forms, two resolutions, known numbers.
+
+It is part of the tests, not of the program; studies and tests hold the program against it.
+"""
+
+import csv
+import math
+
+import numpy as np
+import pytest
+from support.abel import Mesh
+from support.reference import CUSP, Path, path
+from support.scenes import JKR
+from support.series import FINE, USUAL
+from support.tabulate import COLUMNS, DEPTH, FILE, numbers, strengths
+
+
+@pytest.mark.parametrize("centre, d, finer", [(0.0, 0.3, 2), (1.0, 0.05, 1), (1.0, 0.2, 2)])
+def test_two_abel_transforms_are_the_elastic_kernel(centre, d, finer):
+    """Under (1 + t^2)^(-3/2) the surface sinks by 2/sqrt(1 + r^2)."""
+    # As fast as that falls, a mesh that ends lacks about 1/end^2.
+    mesh = Mesh(centre, d, 1e6, FINE, finer)
+    p = (1 + mesh.x**2) ** -1.5
+    np.testing.assert_allclose(mesh.operator @ p, 2 / np.sqrt(1 + mesh.x**2), atol=1e-10)
+    assert mesh.axis @ p == pytest.approx(2, abs=1e-10)
+    assert mesh.area @ p == pytest.approx(1, abs=2e-6)
+    if centre:
+        assert mesh.edge @ p == pytest.approx(math.sqrt(2), abs=1e-10)
+
+
+def test_hertz_pressure_flattens_a_parabola():
+    """sqrt(1 - t^2) has a deformation of (pi/4)(2 - r^2) inside, wherever its edge is."""
+    mesh = Mesh(1.0, 1e-4, 50.0, FINE)
+    p = np.sqrt(np.maximum(1 - mesh.x**2, 0))
+    inside = mesh.x < 1
+    exact = (math.pi / 4) * (2 - mesh.x[inside] ** 2)
+    np.testing.assert_allclose((mesh.operator @ p)[inside], exact, atol=1e-5)
+
+
+# Solutions of others on other meshes: max tension/JKR, h0 there, and each jump's h0 and load.
+KNOWN = {
+    0.87: (1.07953786, 2.2284576, 3.0886872, -1.5330549, 3.4834324, -2.9986585),
+    8.7: (1.01124487, 6.2758749, 5.9728350, -0.4076839, 11.9352327, -2.6534864),
+}
+# By Tabor's parameter: tension/(pi R w), h0 there, loads/(pi R w) at the jumps, loss/(w R z0).
+KNOWN_BY_TABOR = {
+    0.01: (1.998969, 1.0019),
+    0.1: (1.968956, 1.0586),
+    0.5: (1.787483, 1.4470),
+    0.8: (1.706360, 1.7087, 2.37954, -0.85003, 2.40423, -1.08670, 0.0336),
+    1.0: (1.670665, 1.8734, 2.62922, -0.68109, 2.74343, -1.03243, 0.2507),
+    2.0: (1.583595, 2.6581, 3.55191, -0.36778, 4.38170, -0.90971, 2.8983),
+    5.0: (1.525718, 4.9594, 5.26358, -0.16712, 9.18977, -0.85177, 16.2459),
+}
+
+
+@pytest.mark.parametrize("sigma", sorted(KNOWN))
+def test_what_another_solution_found_is_found_to_its_last_digit(sigma):
+    # A unit of the last digit, the other solution's own uncertainty.
+    near = {"abs": 1e-7}
+    tension, h0, in_h0, in_load, out_h0, out_load = KNOWN[sigma]
+    found = path(sigma)
+    assert found.pull_off.load == pytest.approx(-tension * JKR, abs=1e-8 * JKR)
+    assert found.pull_off.h0 == pytest.approx(h0, **near)
+    assert found.jump_in.h0 == pytest.approx(in_h0, **near)
+    assert found.jump_in.load == pytest.approx(in_load, **near)
+    assert found.jump_out.h0 == pytest.approx(out_h0, **near)
+    assert found.jump_out.load == pytest.approx(out_load, **near)
+
+
+@pytest.mark.parametrize("tabor", sorted(KNOWN_BY_TABOR))
+def test_published_parameters_give_the_known_table(tabor):
+    known = KNOWN_BY_TABOR[tabor]
+    found = path(math.sqrt(tabor**3 / 4))
+    mine = [-found.pull_off.load / math.pi, found.pull_off.h0]
+    if found.folds:
+        mine += [found.jump_in.h0, found.jump_in.load / math.pi]
+        mine += [found.jump_out.h0, found.jump_out.load / math.pi, found.energy_lost]
+    assert len(mine) == len(known)
+    # A unit of the last digit: some are cut off, not rounded.
+    tolerances = (1e-6, 1e-4, 1e-5, 1e-5, 1e-5, 1e-5, 1e-4)
+    for one, other, tolerance in zip(mine, known, tolerances):
+        assert one == pytest.approx(other, abs=tolerance)
+
+
+@pytest.mark.parametrize("sigma", [1e-3, 0.05, 0.35, 2.0, 30.0])
+def test_two_resolutions_agree_to_nine_digits(sigma):
+    usual = np.array(numbers(Path(sigma, DEPTH, resolution=USUAL)))
+    fine = np.array(numbers(Path(sigma, DEPTH, resolution=FINE)))
+    np.testing.assert_allclose(usual, fine, rtol=1e-9)
+
+
+def test_the_cusp_is_where_it_is_known_to_be():
+    assert not path(CUSP - 1e-7).folds
+    assert len(path(CUSP + 1e-7).folds) == 2
+
+
+def test_energy_lost_is_the_work_of_the_loop():
+    """The area between two branches, by states on them, one by one."""
+    found = path(0.87)
+    low, high = found.jump_in.h0, found.jump_out.h0
+    # Both branches end in a square root: h0 = low + ... sin^2 takes it away.
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    angle = (nodes + 1) * math.pi / 4
+    h0 = low + (high - low) * np.sin(angle) ** 2
+    rate = (high - low) * np.sin(2 * angle) * math.pi / 4
+    pairs = [(found.on(found.far_branch, x), found.on(found.contact_branch, x)) for x in h0]
+    loads = np.array([one.load - other.load for one, other in pairs])
+    assert weights @ (rate * loads) == pytest.approx(found.energy_lost, rel=1e-8)
+
+
+def test_branches_between_the_jumps_are_unstable_however_many_folds():
+    found = path(1000.0)
+    assert len(found.folds) == 8
+    unstable = [branch.unstable for branch in found.branches]
+    assert unstable == [0, 1, 2, 3, 4, 3, 2, 1, 0]
+
+
+# --- The table
+
+
+def table():
+    with FILE.open() as file:
+        return {float(row["sigma"]): row for row in csv.DictReader(file)}
+
+
+def test_the_table_has_every_strength_and_says_how_good_it_is():
+    rows = table()
+    assert list(rows) == strengths()
+    for sigma, row in rows.items():
+        # So near the cusp the area is a difference of almost equal ones.
+        allowed = 1e-9 if abs(sigma / CUSP - 1) > 0.005 else 1e-8
+        assert float(row["difference"]) < allowed, sigma
+
+
+@pytest.mark.parametrize("sigma", [0.001, 0.33, 1.0, 100.0])
+def test_the_table_is_what_the_reference_computes(sigma):
+    row = table()[sigma]
+    stored = [float(row[name]) for name in COLUMNS]
+    np.testing.assert_allclose(numbers(path(sigma, DEPTH)), stored, rtol=1e-9)

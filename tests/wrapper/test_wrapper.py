@@ -1,0 +1,226 @@
+"""Claims about whole experiments run from Python: the program's numbers."""
+
+import math
+
+import numpy as np
+import pytest
+import snapin
+from support.extremes import tolerance_of
+from support.scenes import deck, exponential, lennard_jones, loading, runner, several
+from support.wrapper_registry import UNIT, law_of
+
+# Fig. 1 of the paper.
+BODIES = {"radius": 1.5e-2, "stiffness": 1e10}
+FORCE = {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9}
+LAW = snapin.lennard_jones(hamaker=1e-20, z0=0.5e-9)
+DOWN = np.linspace(4e-9, -2e-9, 61)
+
+# The program steps h0 by repeated multiplication, here by linspace: the last digit may differ, and
+# with it where below its tolerance of 1e-10 an iteration ends. Between kernels of the linear algebra,
+# which differ as little, loads of such states were 1.1e-12 apart.
+SAME = 1e-11
+
+COLUMNS = ("h0", "h_centre", "displacement", "load", "contact_radius")
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("wrapper"))
+
+
+def assert_same(result, table, columns=COLUMNS):
+    """Every column is that of the program's table."""
+    for name in columns:
+        mine, theirs = getattr(result, name), table[name]
+        np.testing.assert_allclose(
+            mine, theirs, rtol=SAME, atol=SAME * abs(theirs).max(), err_msg=name
+        )
+
+
+@pytest.fixture(scope="module")
+def there_and_back():
+    """Fig. 1 down to -2 nm and up again."""
+    return snapin.force_curve(np.r_[DOWN, DOWN[::-1]], **BODIES, law=LAW)
+
+
+# --- The program's numbers
+
+
+def test_three_lines_give_the_program_s_curve(run):
+    law = snapin.lennard_jones(hamaker=1e-20, z0=0.5e-9)
+    h0 = np.linspace(4e-9, -2e-9, 61)
+    curve = snapin.force_curve(h0, radius=1.5e-2, stiffness=1e10, law=law)
+
+    step = {"h0_start": 4e-9, "h0_end": -2e-9, "h0_step": 1e-10}
+    result = run(deck(bodies=BODIES, force=FORCE, loading=step))
+    assert len(result.curve) == h0.size
+    assert_same(curve, result.curve)
+    # How far below the tolerance an iteration ends is rounding's affair.
+    assert max(curve.residual.max(), result.summary["worst_residual"]) <= tolerance_of({})
+    (jump,) = curve.jumps
+    assert jump.h0 == pytest.approx(result.summary["jump_in_h0"], rel=SAME)
+    assert jump.load == pytest.approx(result.summary["jump_in_load"], rel=SAME)
+    assert curve.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
+    # At a smooth maximum the place is known to half the digits.
+    assert curve.max_tension_h0 == pytest.approx(result.summary["max_tension_h0"], rel=1e-6)
+    assert curve.error_estimate == pytest.approx(
+        result.summary["error_estimate"], rel=1e-3, abs=SAME
+    )
+    assert curve.converged
+
+
+def test_h0_that_turns_round_gives_the_program_s_cycle(run, there_and_back):
+    step = {"h0_start": 4e-9, "h0_end": -2e-9, "h0_step": 1e-10}
+    result = run(deck(bodies=BODIES, force=FORCE, loading=step, unloading={}))
+    assert len(result.curve) == there_and_back.h0.size
+    assert_same(there_and_back, result.curve)
+    summary = result.summary
+    jumps = [(summary[f"jump_{way}_h0"], summary[f"jump_{way}_load"]) for way in ("in", "out")]
+    np.testing.assert_allclose(there_and_back.jumps, jumps, rtol=SAME)
+    assert there_and_back.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
+
+
+def test_exponential_law_gives_the_program_s_curve(run):
+    result = run(exponential(3.0, loading=loading(6, -4, 0.5)))
+    law = snapin.exponential(p0=3.0, decay_length=1.0)
+    curve = snapin.force_curve(np.linspace(6, -4, 21), **UNIT, law=law)
+    assert_same(curve, result.curve)
+    assert curve.jumps == []
+    assert math.isnan(curve.max_tension)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"method": "newton"},
+        {"grid": "uniform", "nodes": 250, "r_max": 12.0},
+        {"method": "mixing", "grid": "panels"},
+        {"accuracy": 1e-9},
+    ],
+)
+def test_options_are_those_of_the_deck(run, options):
+    result = run(lennard_jones(0.2, loading=loading(6, 1, 0.5), numerics=options))
+    curve = snapin.force_curve(np.linspace(6, 1, 11), **UNIT, law=law_of(0.2), **options)
+    assert_same(curve, result.curve)
+    assert curve.error_estimate == pytest.approx(
+        result.summary["error_estimate"], rel=1e-3, abs=SAME
+    )
+
+
+def test_rigid_bodies_give_the_program_s_curve(run):
+    scene = deck(
+        bodies={"radius": 1.0, "rigid": True},
+        force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
+        loading=loading(6, 0.5, 0.25),
+    )
+    curve = snapin.force_curve(np.linspace(6, 0.5, 23), radius=1.0, rigid=True, law=law_of(1.0))
+    assert_same(curve, run(scene).curve)
+    assert curve.max_tension == pytest.approx(2 * math.pi, rel=1e-8)
+
+
+def test_path_is_that_of_the_program(run):
+    scene = deck(bodies=BODIES, force=FORCE, equilibrium_path={"h0_end": -2e-9})
+    result = run(scene)
+    path = snapin.equilibrium_path(h0_end=-2e-9, **BODIES, law=LAW)
+    assert_same(path, result.curve)
+    assert (path.stable == (result.curve["stable"] == 1)).all()
+    assert path.stable.dtype == bool
+    folds = np.transpose([several(result.summary[f"folds_{name}"]) for name in ("h0", "load")])
+    np.testing.assert_allclose(path.folds, folds, rtol=SAME)
+    assert path.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
+    assert path.error_estimate == pytest.approx(
+        result.summary["error_estimate"], rel=1e-3, abs=SAME
+    )
+    assert path.converged
+
+
+def test_path_begins_where_it_is_told_to():
+    path = snapin.equilibrium_path(-2.0, **UNIT, law=law_of(0.5), h0_start=40.0)
+    assert path.h0[0] == pytest.approx(40.0)
+    assert path.h0[-1] == pytest.approx(-2.0)
+
+
+def test_path_without_attraction_has_no_folds():
+    law = snapin.exponential(p0=1.0, decay_length=1.0)
+    path = snapin.equilibrium_path(-2.0, **UNIT, law=law)
+    assert path.folds == []
+    assert path.stable.all()
+    assert math.isnan(path.max_tension)
+
+
+# --- What Python adds
+
+
+def test_curve_has_the_jumps_of_the_path(there_and_back):
+    path = snapin.equilibrium_path(-2e-9, **BODIES, law=LAW)
+    np.testing.assert_allclose(there_and_back.jumps, path.folds, rtol=1e-6)
+    assert there_and_back.max_tension == pytest.approx(path.max_tension, rel=1e-6)
+
+
+def test_hysteresis_is_between_the_jumps_and_nowhere_else(there_and_back):
+    down, up = there_and_back.h_centre[:61], there_and_back.h_centre[:60:-1]
+    (jump_in, _), (jump_out, _) = there_and_back.jumps
+    between = (jump_in < DOWN) & (DOWN < jump_out)
+    assert between.any()
+    assert (abs(up - down)[between] > 0.2e-9).all()
+    assert (abs(up - down)[~between] < 1e-6 * 0.5e-9).all()
+
+
+def test_turning_value_may_be_repeated_or_not(there_and_back):
+    once = snapin.force_curve(np.r_[DOWN, DOWN[-2::-1]], **BODIES, law=LAW)
+    scale = abs(there_and_back.load).max()
+    np.testing.assert_allclose(
+        once.load, np.delete(there_and_back.load, 61), atol=1e-7 * scale, rtol=0
+    )
+    np.testing.assert_allclose(once.jumps, there_and_back.jumps, rtol=1e-6)
+
+
+def test_an_experiment_may_begin_with_the_retreat():
+    """The bodies have approached before; that jump is not part of the experiment."""
+    up = np.linspace(-2, 6, 33)
+    curve = snapin.force_curve(up, **UNIT, law=law_of(0.87))
+    (jump,) = curve.jumps
+    assert jump.h0 == pytest.approx(3.4834324, rel=1e-6)
+
+
+def test_every_jump_of_a_long_experiment_is_told_in_order():
+    down = np.linspace(6, -2, 33)
+    curve = snapin.force_curve(np.r_[down, down[::-1], down, down[::-1]], **UNIT, law=law_of(0.87))
+    h0 = [jump.h0 for jump in curve.jumps]
+    np.testing.assert_allclose(h0, [3.0886872, 3.4834324] * 2, rtol=1e-6)
+
+
+def test_the_second_of_two_calls_does_not_know_of_the_first(there_and_back):
+    snapin.force_curve([3.0, -1.0], **UNIT, law=law_of(3.0), method="newton")
+    again = snapin.force_curve(np.r_[DOWN, DOWN[::-1]], **BODIES, law=LAW)
+    np.testing.assert_array_equal(again.load, there_and_back.load)
+
+
+@pytest.mark.parametrize(
+    "of",
+    [
+        list,
+        tuple,
+        lambda h0: np.repeat(h0, 2)[::2],
+        lambda h0: np.array([h0, h0]).T[:, 0],
+        lambda h0: h0[::-1].copy()[::-1],
+        lambda h0: h0.astype(">f8"),
+    ],
+)
+def test_h0_may_be_any_sequence_of_numbers(of):
+    h0 = np.array([4.0, 3.5, 2.0, 1.0])
+    plain = snapin.force_curve(h0, **UNIT, law=law_of(0.1))
+    other = snapin.force_curve(of(h0), **UNIT, law=law_of(0.1))
+    np.testing.assert_array_equal(plain.load, other.load)
+
+
+def test_h0_of_whole_numbers_is_taken():
+    curve = snapin.force_curve([4, 3, 2], **UNIT, law=law_of(0.1))
+    assert curve.load.shape == (3,)
+
+
+def test_the_result_does_not_share_memory_with_the_argument():
+    h0 = np.array([4.0, 3.0])
+    curve = snapin.force_curve(h0, **UNIT, law=law_of(0.1))
+    h0[:] = 0
+    assert curve.h0.tolist() == [4.0, 3.0]
