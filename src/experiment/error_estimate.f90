@@ -1,7 +1,7 @@
 !> The error of what is reported: the state that it comes from is solved again on a finer mesh, to
 !> rounding, and compared. What is left out is the error of the finer mesh, smaller by a factor that
-!> the margin covers. What the iteration may have left, which differs from state to state by chance,
-!> is added: a residual as large as the tolerance acts like an h0 that is off by as much.
+!> the margin covers. What the iteration has left is added: a residual acts like an h0 that is off
+!> by as much.
 !>
 !> Here for states at a given h0, of which there is one; `path_errors` for those of a path with
 !> folds.
@@ -17,7 +17,7 @@ module error_estimate
   implicit none
   private
   public :: judge_at_h0, to_rounding, unknown_error, profile_error, nearly_solved, rounding, &
-    worst_residual
+    worst_residual, what_is_left
 
   !> Rounding of a whole calculation, below which no error is claimed.
   real(wp), parameter :: rounding = 1.0e-13_wp
@@ -45,12 +45,12 @@ contains
   end function unknown_error
 
   !> Errors of a reported state by its witness: on `fine`, of which `nodes` nodes are used, at the
-  !> same h0; tolerance is that of the iteration, and the difference counts `margin` times.
-  subroutine judge_at_h0(problem, mesh, fine, nodes, margin, tolerance, reported, cost)
+  !> same h0; the difference counts `margin` times.
+  subroutine judge_at_h0(problem, mesh, fine, nodes, margin, reported, cost)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: mesh, fine
     integer, intent(in) :: nodes
-    real(wp), intent(in) :: margin, tolerance
+    real(wp), intent(in) :: margin
     type(reported_t), intent(inout) :: reported
     type(cost_t), intent(inout) :: cost
     type(frozen_jacobian_t) :: frozen
@@ -76,12 +76,21 @@ contains
       shifted = state
       call solve_anderson(problem, fine, control, to_rounding(), frozen, shifted, converged, cost)
       if (.not. (converged .or. shifted%residual < nearly_solved)) return
-      left = worst_residual*max(tolerance, witness%state%residual)/shift
+      left = what_is_left(witness%state)/shift
       error%load = error%load + left*abs(shifted%load - state%load)
       error%displacement = error%displacement + &
         left*abs((shifted%axis_gap - shifted%h0) - (state%axis_gap - state%h0))
     end associate
   end subroutine judge_at_h0
+
+  !> What the residual of a state amounts to as a change of its h0, at most. The rounding of the
+  !> gaps far out, which are large, changes nothing else.
+  pure real(wp) function what_is_left(state)
+    type(state_t), intent(in) :: state
+
+    what_is_left = rounding + worst_residual* &
+      max(state%residual - 4*epsilon(1.0_wp)*maxval(state%gap), 0.0_wp)
+  end function what_is_left
 
   !> The largest difference of gaps, and of pressures over the largest of them, between a state and
   !> one on a finer mesh, on the axis and at its nodes.

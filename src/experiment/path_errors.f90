@@ -17,7 +17,7 @@ module path_errors
   use known_path, only: known_path_t, landing_t, landing_over
   use reported, only: reported_t, error_t, measure_t
   use error_estimate, only: to_rounding, unknown_error, profile_error, nearly_solved, rounding, &
-    worst_residual
+    worst_residual, what_is_left
   implicit none
   private
   public :: judge_on_path, finer_nodes
@@ -49,13 +49,12 @@ module path_errors
 
 contains
 
-  !> Errors of a reported state. Differences count `margin` times; tolerance is that of the
-  !> iteration at fixed h0. with_profile: of the profile too.
-  subroutine judge_on_path(problem, pair, fine, margin, tolerance, with_profile, known, &
+  !> Errors of a reported state. Differences count `margin` times. with_profile: of the profile too.
+  subroutine judge_on_path(problem, pair, fine, margin, with_profile, known, &
     reported, cost)
     type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair, fine
-    real(wp), intent(in) :: margin, tolerance
+    real(wp), intent(in) :: margin
     logical, intent(in) :: with_profile
     type(known_path_t), intent(inout) :: known
     type(reported_t), intent(inout) :: reported
@@ -86,7 +85,7 @@ contains
     else
       associate (witness => reported%witness)
         call judge(problem, pair, fine, witness%mesh, at_h0, witness%state, reported%h0, margin, &
-          max(tolerance, witness%state%residual), with_profile, on_fine, reported%error, cost)
+          what_is_left(witness%state), with_profile, on_fine, reported%error, cost)
       end associate
     end if
   end subroutine judge_on_path
@@ -144,14 +143,14 @@ contains
   end subroutine judge_landing
 
   !> Errors of a state that is defined by `kind`, at `h0` if that is it, and what it is on the finer
-  !> mesh.
-  subroutine judge(problem, pair, fine, mesh, kind, state, h0, margin, tolerance, with_profile, &
+  !> mesh. left: what the iteration has left, as a change of h0.
+  subroutine judge(problem, pair, fine, mesh, kind, state, h0, margin, left, with_profile, &
     on_fine, error, cost)
     type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair, fine
     integer, intent(in) :: mesh, kind
     type(state_t), intent(in) :: state
-    real(wp), intent(in) :: h0, margin, tolerance
+    real(wp), intent(in) :: h0, margin, left
     logical, intent(in) :: with_profile
     type(measure_t), intent(out) :: on_fine
     type(error_t), allocatable, intent(out) :: error
@@ -183,16 +182,16 @@ contains
       displacement=margin*abs(on_fine%displacement - own%displacement))
     ! What the iteration leaves moves a state at a given h0 as if that were off.
     moved = measure_at(near, distance_to(near, at_h0, &
-      on_fine%h0 + worst_residual*tolerance))
+      on_fine%h0 + left))
     if (kind == at_h0) then
       error%h0 = 0
       error%load = error%load + abs(moved%load - on_fine%load)
       error%displacement = error%displacement + abs(moved%displacement - on_fine%displacement)
     else
-      error%h0 = error%h0 + tolerance
+      error%h0 = error%h0 + left
     end if
     error%load = error%load + (rounding + worst_residual*tight)*abs(own%load)
-    error%displacement = error%displacement + tolerance + rounding*abs(own%displacement)
+    error%displacement = error%displacement + left + rounding*abs(own%displacement)
     if (.not. with_profile) return
     near%s = near%s + distance
     right = near%state

@@ -169,17 +169,17 @@ contains
     associate (fine => judge%fine, margin => judge%margin)
       select type (steps => judge%steps)
       class is (path_stepper_t)
-        call judge_on_path(steps%problem, steps%pair, fine, margin, steps%options%tolerance, &
+        call judge_on_path(steps%problem, steps%pair, fine, margin, &
           with_profile, steps%known, reported, steps%cost)
       class is (locked_stepper_t)
         associate (mesh => reported%witness%mesh)
           call judge_at_h0(steps%problem, steps%pair%grid(mesh), fine%grid(mesh), &
             finer_nodes(steps%pair, fine, mesh, reported%witness%state), margin, &
-            steps%options%tolerance, reported, steps%cost)
+            reported, steps%cost)
         end associate
       class is (fixed_stepper_t)
         call judge_at_h0(steps%problem, steps%mesh, fine%grid(1), fine%grid(1)%nodes, margin, &
-          steps%options%tolerance, reported, steps%cost)
+          reported, steps%cost)
       end select
     end associate
     if (allocated(reported%error) .and. .not. with_profile) reported%error%profile = 0
@@ -235,7 +235,7 @@ contains
       landed%point = fold
       landed%landing = .true.
       call judge_on_path(steps%problem, steps%pair, judge%fine, judge%margin, &
-        steps%options%tolerance, .false., steps%known, landed, steps%cost)
+        .false., steps%known, landed, steps%cost)
     end subroutine judge_jump
 
   end subroutine judge_energy
