@@ -14,6 +14,7 @@ module path_errors
   use continuation, only: path_control, coordinate_of
   use path_slopes, only: slopes_along_path
   use potential_energy, only: energy_of
+  use traced_path, only: path_point_t
   use known_path, only: known_path_t, landing_t, landing_over
   use reported, only: reported_t, error_t, measure_t
   use error_estimate, only: to_rounding, unknown_error, profile_error, nearly_solved, rounding, &
@@ -50,8 +51,7 @@ module path_errors
 contains
 
   !> Errors of a reported state. Differences count `margin` times. with_profile: of the profile too.
-  subroutine judge_on_path(problem, pair, fine, margin, with_profile, known, &
-    reported, cost)
+  subroutine judge_on_path(problem, pair, fine, margin, with_profile, known, reported, cost)
     type(problem_t), intent(in) :: problem
     type(mesh_pair_t), intent(in) :: pair, fine
     real(wp), intent(in) :: margin
@@ -75,9 +75,8 @@ contains
     else if (reported%point > 0 .and. with_profile) then
       ! The point's own errors leave the profile out.
       associate (point => known%path%point(reported%point))
-        call judge(problem, pair, fine, point%mesh, &
-          merge(extremum_of_h0, extremum_of_load, point%fold), point%state, point%state%h0, &
-          margin, tight, .true., on_fine, reported%error, cost)
+        call judge(problem, pair, fine, point%mesh, kind_of(point), point%state, &
+          point%state%h0, margin, tight, .true., on_fine, reported%error, cost)
       end associate
     else if (reported%point > 0) then
       call judge_point(problem, pair, fine, margin, known, reported%point, cost)
@@ -101,6 +100,13 @@ contains
       farther*load_reach(pair%grid(mesh), state)/state%scale)
   end function finer_nodes
 
+  !> What defines a point of the path that is reported.
+  pure integer function kind_of(point)
+    type(path_point_t), intent(in) :: point
+
+    kind_of = merge(extremum_of_h0, extremum_of_load, point%fold)
+  end function kind_of
+
   !> Errors of a fold or an extremum of the load, kept in the path.
   subroutine judge_point(problem, pair, fine, margin, known, i, cost)
     type(problem_t), intent(in) :: problem
@@ -113,9 +119,8 @@ contains
 
     associate (point => known%path%point(i))
       if (allocated(point%error)) return
-      call judge(problem, pair, fine, point%mesh, &
-        merge(extremum_of_h0, extremum_of_load, point%fold), point%state, point%state%h0, margin, &
-        tight, .false., on_fine, point%error, cost)
+      call judge(problem, pair, fine, point%mesh, kind_of(point), point%state, point%state%h0, &
+        margin, tight, .false., on_fine, point%error, cost)
       point%fine = on_fine
     end associate
   end subroutine judge_point

@@ -73,7 +73,7 @@ contains
 
     position%piece = 1
     call self%step_to(h0, position, event)
-    if (event%reason /= '' .and. event%jumped) event%reason = &
+    if (event%reason /= '' .and. self%known%fallen) event%reason = &
       'the bodies have fallen onto each other before the h0 where it is to start'
     ! What the approach passed before the experiment began is not part of it.
     event%jumped = .false.
