@@ -67,7 +67,10 @@ def test_any_limit_of_address_space_ends_in_results_or_in_status_1(snapin_path, 
         statuses.append(done.returncode)
     # Once it is enough, more is enough too.
     assert statuses == sorted(statuses, reverse=True)
-    assert statuses[0] == 1
+    # OpenBLAS's buffers alone are larger than the least; the reference LAPACK has none.
+    made_of = subprocess.run([snapin_path, "--version"], capture_output=True, text=True, check=True)
+    if "OpenBLAS" in made_of.stdout:
+        assert statuses[0] == 1
     assert statuses[-1] == 0
 
 
