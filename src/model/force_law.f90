@@ -24,6 +24,12 @@ module force_law
     real(wp) :: smallest_gap = -300
     !> Far away the pressure falls as gap^-tail_power; `huge` where it falls faster than any power.
     real(wp) :: tail_power = huge(1.0_wp)
+    !> Whether `length` is the z0 of a law of powers, in which the field gives sigma and Tabor's
+    !> parameter; else it is the range, surface energy over largest tension.
+    logical :: has_z0 = .false.
+    !> Period of gap in which the pressure oscillates, and the gap of a step of it and its width, for
+    !> meshes; 0: none.
+    real(wp) :: period = 0, step_at = 0, step_width = 0
     !> What the summary calls the coupling of law and bodies: sigma (40) if the law attracts, or
     !> this. Blank: nothing.
     character(len=12) :: coupling_name = ''
