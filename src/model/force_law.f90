@@ -38,9 +38,11 @@ module force_law
     character(len=24) :: group = '', strength_key = '', length_key = ''
 
     !> The scan of the law sets these (`law_scan`), or the law where it knows closed forms.
-    !> Surface energy in units of length*pressure_unit: the depth of the energy minimum; 0 for a
-    !> law that does not attract.
-    real(wp) :: adhesion = 0
+    !> Tension integrated from the gap at rest to the next zero of the pressure, in units of
+    !> length*pressure_unit: what contact has to overcome, the scale of everything at its edge; 0 for
+    !> a law that does not attract. And the work of adhesion, from rest to infinity: less where a
+    !> barrier lies outside, negative where contact is only metastable.
+    real(wp) :: adhesion = 0, work = 0
     !> Gap of maximum tension, which defines the contact edge; 0 where there is no such gap.
     real(wp) :: edge_gap = 0
     !> Gap of zero pressure; 0 where there is none.

@@ -100,6 +100,7 @@ contains
     law%pressure_unit = unit
     law%origin = origin
     law%adhesion = 0
+    law%work = 0
     law%edge_gap = 0
     law%rest_gap = 0
     law%range = 0
