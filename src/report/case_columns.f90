@@ -11,7 +11,7 @@ module case_columns
   private
   public :: columns_of, numbers_of
 
-  integer, parameter :: width = 128
+  integer, parameter :: width = 132
 
 contains
 
