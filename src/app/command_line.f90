@@ -46,7 +46,7 @@ contains
       i = i + 1
       argument = argument_at(i)
       if (only_decks .or. index(argument, '-') /= 1 .or. argument == '-') then
-        ! A structure constructor inside an array constructor would leak in gfortran.
+        ! Not by a structure constructor: compiler note 1.
         file = file_t(argument)
         options%decks = [options%decks, file]
         cycle

@@ -9,7 +9,7 @@ module result_listing
   private
   public :: write_result_listing
 
-  character(len=*), parameter :: theories = 'One row for each theory and h0 that it has a state at.'
+  character(len=*), parameter :: theories = 'One row for each theory and each h0 at which it has a state.'
 
 contains
 
@@ -40,7 +40,7 @@ contains
         call heading('with &sweep', 'One row for each value of the key: the value, then the ' // &
           'entries of &summary marked "in sweep.csv".')
       case ('summary.nml')
-        call heading('always', 'A namelist: &summary, &cost, and the deck with every default.')
+        call heading('', 'A namelist: &summary, &cost, and the deck with every default.')
         write (unit, '(/, a, /, 4x, a)', iostat=status) '&summary', 'What was found.'
         call list_rows(unit, in_summary)
         write (unit, '(/, a, /, 4x, a)', iostat=status) '&cost', 'What it took.'
@@ -53,7 +53,9 @@ contains
     subroutine heading(when, what)
       character(len=*), intent(in) :: when, what
 
-      write (unit, '(4a, /, 4x, a)', iostat=status) trim(result_files(i)), ' (', when, ')', what
+      write (unit, '(a)', advance='no', iostat=status) trim(result_files(i))
+      if (when /= '') write (unit, '(3a)', advance='no', iostat=status) ' (', when, ')'
+      write (unit, '(/, 4x, a)', iostat=status) what
     end subroutine heading
 
   end subroutine write_result_listing
