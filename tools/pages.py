@@ -22,6 +22,8 @@ PAGES = {
     "README.md": "./run inputs/first.nml, compared by hand; then tools/pages.py --mark README.md",
     "docs/accuracy.md": "./bench",
     "docs/asymptotics.md": "tools/asymptotics.py",
+    "docs/methods.md": "inputs/first.nml with &equilibrium_path, compared by hand; then "
+    "tools/pages.py --mark docs/methods.md",
     "docs/reproduction/report.md": "./reproduce --publish",
     "docs/testing.md": "tools/verify/verify.sh, its tables by hand; then tools/pages.py --mark "
     "docs/testing.md",

@@ -3,6 +3,7 @@
 import re
 import sys
 
+import f90nml
 import pytest
 from conftest import ROOT
 
@@ -79,6 +80,33 @@ def test_the_summary_in_the_readme_is_what_its_deck_gives(snapin, tmp_path):
             mantissa, _, exponent = value.partition("E")
             digits = len(mantissa.partition(".")[2])
             assert abs(float(found) - float(value)) <= 10.0 ** (int(exponent or 0) - digits), key
+
+
+def test_the_table_of_accuracy_is_what_its_deck_gives(snapin, tmp_path):
+    text = (ROOT / "docs/methods.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (1e-\d+) \| (\d+) \| (\S+) \| (\S+) \| (\S+) \|$", text, re.M)
+    assert len(rows) == 3
+    first = (ROOT / "inputs/first.nml").read_text(encoding="utf-8")
+    for accuracy, nodes, tension, jump, estimate in rows:
+        deck = tmp_path / f"{accuracy}.nml"
+        deck.write_text(first + f"&equilibrium_path /\n&numerics accuracy = {accuracy} /\n")
+        snapin("--quiet", "--out", tmp_path, deck)
+        groups = f90nml.read(tmp_path / accuracy / "summary.nml")
+        summary = groups["summary"]
+        assert groups["cost"]["nodes"] == int(nodes)
+        assert abs(summary["max_tension"] * 1e6 - float(tension)) <= 1e-8
+        assert abs(summary["jump_in_h0"] * 1e9 - float(jump)) <= 1e-8
+        assert float(estimate) / 2 < summary["error_estimate"] < 2 * float(estimate)
+
+
+def test_every_message_that_is_explained_is_one_of_the_program():
+    text = (ROOT / "docs/limits.md").read_text(encoding="utf-8").split("## Warnings")[1]
+    # Strings that go on in another line or around a number.
+    source = re.sub(r"' *// *(&\s*)?'", "", "\n".join(path.read_text() for path in SOURCES))
+    messages = [message for row in re.findall(r"^\| ([^|]*) \|", text, re.M)
+                for message in re.findall(r"`([^`]*)`", row)]
+    assert len(messages) > 15
+    assert [message for message in messages if message not in source] == []
 
 
 def test_the_tour_of_the_code_names_every_room_and_no_module_that_is_gone():
