@@ -64,7 +64,7 @@ module results
     'displacement [m] h_centre - h0', &
     'load [N] negative: tension', &
     'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
-    'stable [] 1, 0, or -1 where not asked for', &
+    'stable [] 1: stable; 0: unstable, or a fold; -1: not examined', &
     'residual [] largest error of the equations, in units of the length of the force law', &
     'iterations [] products with the elastic operator', &
     'converged [] 1; 0 where the residual is larger than asked for: the row is no equilibrium']
