@@ -30,6 +30,9 @@ module force_law
     !> Period of gap in which the pressure oscillates, and the gap of a step of it and its width, for
     !> meshes; 0: none.
     real(wp) :: period = 0, step_at = 0, step_width = 0
+    !> Whether the law is one of the paper's own, of which the summary says no more than its
+    !> parameters.
+    logical :: of_paper = .false.
     !> What the summary calls the coupling of law and bodies: sigma (40) if the law attracts, or
     !> this. Blank: nothing.
     character(len=12) :: coupling_name = ''

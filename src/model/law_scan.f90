@@ -22,6 +22,8 @@ module law_scan
   !> and the length, in lengths beyond the gap at rest, after which a tail no longer matters: where
   !> a repulsion of the ninth power is below that.
   real(wp), parameter :: ended = 1.0e-16_wp, longest = 59
+  !> Pressure over the largest tension below which there is no barrier and no outer well.
+  real(wp), parameter :: nothing = 1.0e-12_wp
 
 contains
 
@@ -73,7 +75,9 @@ contains
     gap = gaps_of(law)
     pressure = law%pressure(gap)
     i = next_zero(pressure, 1, falling=.true.)
-    if (i == 0) return
+    if (i == 0 .or. .not. law%edge_gap > 0) return
+    ! Less than this is rounding, or of no consequence.
+    where (abs(pressure) < nothing*abs(pressure_at(law, law%edge_gap))) pressure = 0
     do
       j = next_zero(pressure, i + 1, falling=.false.)
       if (j == 0) return
