@@ -84,6 +84,7 @@ contains
       i = next_zero(pressure, j + 1, falling=.true.)
       top = zero_between(law, gap(j), gap(j + 1), of_slope=.false.)
       peak = j + maxloc(pressure(j + 1:merge(i, size(gap), i > 0)), 1)
+      if (.not. pressure(peak) > 0) return
       if (.not. found%has_barrier .or. energy_at(law, top) > found%barrier_energy) then
         found%barrier_energy = energy_at(law, top)
         found%barrier_pressure = pressure(peak)
