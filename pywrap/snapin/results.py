@@ -21,7 +21,7 @@ class Result:
 
     Each table is an attribute, a structured array: `curve`, `profiles`, `approximations`,
     `classical`, `sweep`, whatever the deck asked for. `summary` and `cost` are dictionaries of the
-    groups of summary.nml; lists in them are arrays. `converged` says that every state was found.
+    groups of summary.nml; lists of numbers in them are arrays. `converged` says that every state was found.
     """
 
     def __init__(self, tables, summary, cost):
@@ -53,7 +53,7 @@ def read_results(folder):
         for path in sorted(pathlib.Path(folder).glob("*.csv"))
         if path.read_bytes()[:1] == b"#"
     }
-    return Result(tables, _with_arrays(groups["summary"]), _with_arrays(groups["cost"]))
+    return Result(tables, _with_lists(groups["summary"]), _with_lists(groups["cost"]))
 
 
 def _structured(columns):
@@ -65,12 +65,18 @@ def _structured(columns):
     return table
 
 
-def _with_arrays(group):
-    """Return a group as a dict whose lists of numbers are arrays; f90nml has one value bare."""
+def _with_lists(group):
+    """Return a group as a dict; f90nml has a list of one value bare."""
     return {
-        key: np.atleast_1d(value) if _snapin.flat_deck.is_list(key) else value
+        key: _as_list(value) if _snapin.flat_deck.is_list(key) else value
         for key, value in group.items()
     }
+
+
+def _as_list(value):
+    """Return one value or several as an array of numbers, or as a list of texts."""
+    values = value if isinstance(value, list) else [value]
+    return values if isinstance(values[0], str) else np.array(values)
 
 
 def read_table(folder, name):
