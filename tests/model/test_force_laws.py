@@ -29,7 +29,7 @@ KINKS = {"steric": [10e-9]}
 ENDING = {"depletion", "capillary", "dugdale"}
 PARTS = {"lennard_jones": ("full", "repulsive", "attractive")}
 ALL = [(law, part) for law in LAWS for part in PARTS.get(law, ("full",))]
-every_law = pytest.mark.parametrize(("law", "part"), ALL, ids="-".join)
+every_law = pytest.mark.parametrize(("law", "part"), ALL, ids=map("-".join, ALL))
 
 Z0, HAMAKER = 0.5e-9, 1e-19
 
