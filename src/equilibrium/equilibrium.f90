@@ -10,6 +10,7 @@ module equilibrium
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use linear_algebra, only: multiply
+  use root_finding, only: bracket_t
   implicit none
   private
   public :: control_t, state_t, cost_t, residual, largest_step, state_from, unknowns_of, &
@@ -197,8 +198,8 @@ contains
     real(wp), intent(in) :: level
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
-    real(wp) :: low, high, middle
-    integer :: j, step
+    type(bracket_t) :: bracket
+    integer :: j
 
     do j = size(state%gap) - 1, 1, -1
       if (state%gap(j) < level) exit
@@ -206,21 +207,14 @@ contains
     c = 0
     if (j == 0) then
       if (.not. state%axis_gap < level) return
-      low = 0
-      high = grid%x(1)
+      bracket = bracket_t(0.0_wp, grid%x(1))
     else
-      low = grid%x(j)
-      high = grid%x(j + 1)
+      bracket = bracket_t(grid%x(j), grid%x(j + 1))
     end if
-    do step = 1, 60
-      middle = 0.5_wp*(low + high)
-      if (grid%interpolate(state%gap, middle) < level) then
-        low = middle
-      else
-        high = middle
-      end if
+    do while (bracket%is_open())
+      call bracket%narrow(grid%interpolate(state%gap, bracket%middle()) < level)
     end do
-    c = state%scale*low
+    c = state%scale*bracket%low
   end function radius_of_gap
 
   !> The residual that rounding alone leaves: a few units in the last place of the gaps and of the

@@ -9,6 +9,7 @@ module hidden_folds
   use anderson, only: frozen_jacobian_t
   use edge_locked, only: mesh_pair_t
   use interpolation, only: polynomial_slope
+  use root_finding, only: false_position_t
   use path_extremum, only: extremum_t
   use path_slopes, only: slopes_along_path
   use continuation, only: state_at, path_control
@@ -126,39 +127,25 @@ contains
       fold%load_slope = load_slope
     end function derivative
 
-    !> The fold between a place where the derivative is positive and one where it is negative, by
-    !> false position in which an end that stays counts half.
+    !> The fold between a place where the derivative is positive and one where it is negative.
     subroutine locate(outside, inside, fold)
       real(wp), intent(in) :: outside, inside
       type(extremum_t), intent(out) :: fold
-      real(wp) :: a, b, at_a, at_b, s, value
-      integer :: step, side
+      type(false_position_t) :: search
+      real(wp) :: s, value
+      integer :: step
 
-      a = outside
-      b = inside
-      at_a = derivative(a)
-      at_b = derivative(b, fold)
+      search = false_position_t(outside, inside, derivative(outside))
+      search%at_negative = derivative(inside, fold)
       ! The fold may be just beyond a state; then h0 itself shows it.
-      lost = lost .or. .not. (at_a > 0 .and. at_b < 0)
-      side = 0
+      lost = lost .or. .not. (search%at_positive > 0 .and. search%at_negative < 0)
       do step = 1, halvings
-        if (lost .or. abs(b - a) < near_enough) return
-        s = (a*at_b - b*at_a)/(at_b - at_a)
+        if (lost .or. abs(search%negative - search%positive) < near_enough) return
+        s = search%next()
         value = derivative(s, fold)
         if (.not. abs(value) > 0) return
-        if (value > 0) then
-          if (abs(s - a) < near_enough) return
-          a = s
-          at_a = value
-          if (side == 1) at_b = 0.5_wp*at_b
-          side = 1
-        else
-          if (abs(s - b) < near_enough) return
-          b = s
-          at_b = value
-          if (side == -1) at_a = 0.5_wp*at_a
-          side = -1
-        end if
+        if (abs(s - merge(search%positive, search%negative, value > 0)) < near_enough) return
+        call search%take(s, value)
       end do
     end subroutine locate
 

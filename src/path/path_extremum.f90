@@ -8,6 +8,7 @@ module path_extremum
   use edge_locked, only: mesh_pair_t
   use path_slopes, only: slopes_along_path
   use interpolation, only: interpolated_maximum
+  use root_finding, only: bracket_t, secant_root
   use continuation, only: state_at, path_control
   implicit none
   private
@@ -47,16 +48,16 @@ contains
     type(cost_t), intent(inout) :: cost
     type(state_t) :: trial
     type(frozen_jacobian_t) :: frozen
-    real(wp) :: slopes(2), slope, slope_size, slope_before, s, s_before, s_next, low, high
+    type(bracket_t) :: bracket
+    real(wp) :: slopes(2), slope, slope_size, slope_before, s, s_before, s_next
     integer :: round, n
     logical :: converged
 
     n = size(states)
     associate (value => merge(states%h0, states%load, quantity == of_h0))
       found%sense = merge(1, -1, value(n - 1) > value(n))
-      low = minval(coordinate(n - 2:))
-      high = maxval(coordinate(n - 2:))
-      s = interpolated_maximum(coordinate, found%sense*value, low, high)
+      bracket = bracket_t(minval(coordinate(n - 2:)), maxval(coordinate(n - 2:)))
+      s = interpolated_maximum(coordinate, found%sense*value, bracket%low, bracket%high)
     end associate
     slope_size = huge(1.0_wp)
     do round = 1, most_rounds
@@ -80,19 +81,15 @@ contains
         exit
       end if
       ! A maximum has its rising side before it.
-      if ((slope > 0) .eqv. (found%sense > 0)) then
-        low = s
-      else
-        high = s
-      end if
+      call bracket%narrow((slope > 0) .eqv. (found%sense > 0), s)
       if (round == 1) then
-        s_next = s + sign(1.0e-4_wp*(high - low) + 1.0e-7_wp, found%sense*slope)
+        s_next = s + sign(1.0e-4_wp*(bracket%high - bracket%low) + 1.0e-7_wp, found%sense*slope)
       else if (abs(slope - slope_before) > tiny(slope)) then
-        s_next = s - slope*(s - s_before)/(slope - slope_before)
+        s_next = secant_root(s, slope, s_before, slope_before)
       else
         exit
       end if
-      if (s_next < low .or. s_next > high) s_next = 0.5_wp*(low + high)
+      s_next = bracket%within(s_next)
       if (abs(s_next - s) < root_tolerance) exit
       s_before = s
       slope_before = slope

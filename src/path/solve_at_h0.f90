@@ -4,6 +4,7 @@ module solve_at_h0
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use interpolation, only: polynomial_value
+  use root_finding, only: bracket_t
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, cost_t, residual_floor, at_h0_with_edge
   use solver_options, only: solver_options_t, tightened
@@ -21,7 +22,7 @@ module solve_at_h0
   !> How near to the wanted h0 a state has to be, relative or in the law's lengths: rounding leaves
   !> no more. What is that near to an end of the piece is the end.
   real(wp), parameter :: near_enough = 2.0e-13_wp
-  integer, parameter :: most_rounds = 30, bisections = 60
+  integer, parameter :: most_rounds = 30
   !> Change of the coordinate over which a state is the same one but for rounding.
   real(wp), parameter :: same_place = 1.0e-8_wp
 
@@ -60,22 +61,17 @@ contains
   pure real(wp) function coordinate_at_h0(near, h0) result(s)
     type(neighbours_t), intent(in) :: near
     real(wp), intent(in) :: h0
-    real(wp) :: a, b, above
-    integer :: step
+    type(bracket_t) :: bracket
 
     associate (n => near%held, k => near%lower)
-      a = near%coordinate(k)
-      b = near%coordinate(k + 1)
-      above = near%state(k)%h0 - h0
-      do step = 1, bisections
-        s = 0.5_wp*(a + b)
-        if ((polynomial_value(near%coordinate(:n), near%state(:n)%h0, s) - h0)*above > 0) then
-          a = s
-        else
-          b = s
-        end if
+      bracket = bracket_t(near%coordinate(k), near%coordinate(k + 1))
+      do while (bracket%is_open())
+        s = bracket%middle()
+        call bracket%narrow((polynomial_value(near%coordinate(:n), near%state(:n)%h0, s) - h0)* &
+          (near%state(k)%h0 - h0) > 0)
       end do
     end associate
+    s = bracket%middle()
   end function coordinate_at_h0
 
   !> The state that the neighbours let expect at the coordinate s, on `nodes` nodes of their mesh.
