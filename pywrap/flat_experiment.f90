@@ -100,8 +100,8 @@ contains
       call judge_locked(locked, high, low, outcome)
     else
       call prepare(fixed, problem, outcome%chosen, accuracy)
-      fixed%mesh = fixed_mesh(outcome%chosen, problem, low)
-      call use_threads_for(fixed%mesh%nodes)
+      fixed%pair%grid(1) = fixed_mesh(outcome%chosen, problem, low)
+      call use_threads_for(fixed%pair%grid(1)%nodes)
       call run_stretches(fixed, h0/problem%length, rows, stretch)
       outcome%unloading = stretch
       call judge_fixed(fixed, low, outcome)

@@ -113,11 +113,13 @@ contains
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
     steps%cost = outcome%cost
     began = seconds()
-    steps%mesh = fixed_mesh(outcome%chosen, problem, low)
+    steps%pair%grid(1) = fixed_mesh(outcome%chosen, problem, low)
     steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
-    steps%cost%kernel_entries = steps%cost%kernel_entries + steps%mesh%kernel_entries()
-    outcome%nodes = outcome%nodes + steps%mesh%nodes
-    call use_threads_for(steps%mesh%nodes)
+    associate (mesh => steps%pair%grid(1))
+      steps%cost%kernel_entries = steps%cost%kernel_entries + mesh%kernel_entries()
+      outcome%nodes = outcome%nodes + mesh%nodes
+      call use_threads_for(mesh%nodes)
+    end associate
     began = seconds()
     call run_kept_cycle(request, steps, observer, outcome, keeper)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began

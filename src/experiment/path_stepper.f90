@@ -9,7 +9,6 @@ module path_stepper
   use kinds, only: wp
   use listener, only: listener_t
   use equilibrium, only: state_t
-  use anderson, only: frozen_jacobian_t
   use edge_locked, only: contact
   use locked_meshes, only: nodes_to_use
   use locked_stepper, only: locked_stepper_t
@@ -56,8 +55,8 @@ contains
 
     call self%begin_afar(h0_high, position, event)
     if (event%reason == '') then
-      call trace(self%problem, self%pair, self%options, position%state, h0_low, into_contact, &
-        listener, self%known, self%cost)
+      call trace(self%equations_t, self%options, position%state, h0_low, into_contact, listener, &
+        self%known)
     else
       self%known%ends_because = event%reason
       allocate (self%known%piece(0))
@@ -172,7 +171,6 @@ contains
     type(step_result_t), intent(inout) :: event
     type(neighbours_t) :: near
     type(state_t) :: state
-    type(frozen_jacobian_t) :: frozen
     real(wp) :: s, ends(2)
     integer :: i, nodes, present
     logical :: jumped
@@ -199,8 +197,8 @@ contains
         event%converged = s >= minval(ends) - slack .and. s <= maxval(ends) + slack
       end if
     end if
-    if (.not. event%converged) call solve_between(self%problem, self%pair, near, h0, self%options, &
-      frozen, s, state, event%converged, self%cost)
+    if (.not. event%converged) call solve_between(self%equations_t, self%options, near, h0, s, &
+      state, event%converged)
     call remember(position, state, near%mesh, jumped)
   end subroutine solve_on_piece
 
@@ -242,13 +240,11 @@ contains
     type(state_t), intent(out) :: state
     logical, intent(out) :: converged
     type(neighbours_t) :: near
-    type(frozen_jacobian_t) :: frozen
     real(wp) :: s
 
     near = neighbours_of(self%known%path, i)
     mesh = near%mesh
-    call solve_between(self%problem, self%pair, near, h0, self%options, frozen, s, state, &
-      converged, self%cost)
+    call solve_between(self%equations_t, self%options, near, h0, s, state, converged)
   end subroutine state_at_h0
 
 end module path_stepper

@@ -2,7 +2,7 @@
 !> from step to step.
 module stepped_branch
   use kinds, only: wp
-  use equilibrium, only: state_t, residual_floor
+  use equilibrium, only: holds
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use tension_search, only: tension_search_t
   use reported, only: reported_t, reported_state, add_reported
@@ -83,9 +83,12 @@ contains
       call note(branch, steps, position, event, plan%h0(i))
       call search%note_jump(steps, event)
       if (event%reason /= '') exit
-      call observer%take(record_of(plan%name, steps%problem, steps%grid(position), position%state, &
-        merge(stable_yes, stable_unasked, plan%unique), holds(steps, position%state)), &
-        steps%problem, steps%grid(position), position%state, plan%profile(i))
+      associate (state => position%state)
+        call observer%take(record_of(plan%name, steps%problem, steps%grid(position), state, &
+          merge(stable_yes, stable_unasked, plan%unique), &
+          holds(steps%problem, steps%options%tolerance, state)), &
+          steps%problem, steps%grid(position), state, plan%profile(i))
+      end associate
       if (event%converged) then
         branch%finish = reported_state(steps%witness(position))
         branch%last_piece = position%piece
@@ -105,14 +108,6 @@ contains
     branch%lowest = search%lowest
     branch%lowest%searched = .true.
   end subroutine run_branch
-
-  !> Whether a state is an equilibrium, which the paper's stopping rule does not say.
-  pure logical function holds(steps, state)
-    class(stepper_t), intent(in) :: steps
-    type(state_t), intent(in) :: state
-
-    holds = state%residual <= max(steps%options%tolerance, residual_floor(steps%problem, state))
-  end function holds
 
   !> Keeps the first, the worst and the lowest of what happened.
   subroutine note(branch, steps, position, event, h0)
