@@ -15,7 +15,7 @@ module equilibrium
   implicit none
   private
   public :: control_t, state_t, cost_t, equations_t, residual, largest_step, state_from, &
-    unknowns_of, holds, residual_floor, load_reach, radius_of_gap, lost_in_rounding, beyond_rounding
+    unknowns_of, holds, residual_floor, load_reach, radius_of_gap, lost_in_rounding
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 prescribed at a fixed scale; no further unknown.
@@ -32,10 +32,6 @@ module equilibrium
 
   !> A residual that rounding excuses, in the law's lengths: beyond it the law is not resolved.
   real(wp), parameter :: largest_floor = 1.0e-3_wp
-
-  !> Why there is no state in contact where `lost_in_rounding`.
-  character(len=*), parameter :: beyond_rounding = &
-    'adhesion is so strong that rounding hides the force law once the bodies are in contact'
 
   type :: control_t
     integer :: kind = at_h0

@@ -6,8 +6,8 @@ module jacobian
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use edge_locked, only: contact
   use linear_algebra, only: factorisation_t, factorise
-  use equilibrium, only: control_t, state_t, cost_t, equations_t, at_h0, at_axis_gap, at_edge_radius, &
-    at_h0_with_edge
+  use equilibrium, only: control_t, state_t, cost_t, equations_t, at_h0, at_axis_gap, &
+    at_edge_radius, at_h0_with_edge
   implicit none
   private
   public :: factorise_jacobian, factorise_on, factorise_again, control_derivative

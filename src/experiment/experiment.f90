@@ -6,6 +6,7 @@ module experiment
   use experiment_request, only: request_t
   use numerics_choice, only: choice_t, choose, fixed_mesh
   use edge_locked, only: new_mesh_pair, beyond_contact
+  use ending, only: turn_not_reached
   use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
   use locked_stepper, only: locked_stepper_t, has_path
   use path_stepper, only: path_stepper_t
@@ -243,7 +244,7 @@ contains
       allocate (outcome%unloading(size(from)))
       do k = 1, size(from)
         if (.not. allocated(turning(k)%state%gap)) then
-          outcome%unloading(k)%reason = 'loading did not reach the turning point'
+          outcome%unloading(k)%ending%cause = turn_not_reached
           cycle
         end if
         position = turning(k)

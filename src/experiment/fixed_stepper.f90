@@ -4,13 +4,14 @@ module fixed_stepper
   use kinds, only: wp
   use dimensionless_problem, only: over_neck => spacing_over_neck
   use equilibrium, only: control_t, state_t, state_from, holds, radius_of_gap, &
-    lost_in_rounding, beyond_rounding
+    lost_in_rounding
   use solver_options, only: solver_options_t, newton_of
   use anderson, only: solve_anderson
   use relaxation, only: relax
   use fixed_branch, only: fixed_branch_t, change, jump
   use edge_locked, only: largest_radius
-  use stepper, only: branch_point_t, step_result_t, remember, touching
+  use ending, only: touching, beyond_rounding, no_equilibrium
+  use stepper, only: branch_point_t, step_result_t, remember
   implicit none
   private
   public :: fixed_stepper_t
@@ -57,7 +58,7 @@ contains
     integer :: i, steps, lost
 
     if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
-      event%reason = touching
+      event%ending%cause = touching
       return
     end if
     far = h0
@@ -74,7 +75,7 @@ contains
     lost = 0
     do i = 1, steps
       call self%step_to(merge(h0, far - (far - h0)*i/steps, lost > most_lost), position, event)
-      if (event%reason /= '' .or. lost > most_lost) exit
+      if (event%ending%early() .or. lost > most_lost) exit
       lost = merge(0, lost + 1, event%converged)
     end do
     event%jumped = .false.
@@ -91,7 +92,7 @@ contains
     integer :: rescues
 
     if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
-      event%reason = touching
+      event%ending%cause = touching
       return
     end if
     if (self%options%stop_on_change) then
@@ -106,7 +107,7 @@ contains
     ! No contact is larger than the mesh.
     if (self%problem%law%adhesion > 0 .and. lost_in_rounding(self%problem, &
       min(largest_radius(self%problem, h0, 0.0_wp), self%pair%grid(1)%end_of(self%pair%grid(1)%nodes)))) then
-      event%reason = beyond_rounding
+      event%ending%cause = beyond_rounding
       return
     end if
     has_landed = self%options%method /= 'mixing' .and. &
@@ -171,7 +172,7 @@ contains
       .not. self%problem%law%edge_gap > 0) then
       ! Nothing stops the fall of bodies that only attract.
       event%jumped = .true.
-      event%reason = 'no stable equilibrium exists beyond this h0'
+      event%ending%cause = no_equilibrium
     end if
     event%jump_h0 = 0.5_wp*(before%h0 + beyond)
     event%jump_load = before%load

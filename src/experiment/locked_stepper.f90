@@ -9,7 +9,8 @@ module locked_stepper
   use edge_locked, only: approach, contact
   use locked_meshes, only: h0_control, scale_at
   use continuation, only: node_count
-  use stepper, only: stepper_t, branch_point_t, step_result_t, remember, touching
+  use ending, only: ending_t, touching, nothing_afar
+  use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   implicit none
   private
   public :: locked_stepper_t, has_path
@@ -47,7 +48,7 @@ contains
     if (self%problem%rigid) then
       far = h0
       if (h0 < self%problem%law%smallest_gap) then
-        event%reason = touching
+        event%ending%cause = touching
         return
       end if
     end if
@@ -59,9 +60,8 @@ contains
       state%gap = far + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2
     end associate
     call self%attempt(far, state, mesh, event)
-    if (.not. event%converged) write (event%reason, '(a, i0, a, es7.1)') &
-      'no equilibrium was found far from contact: after ', state%iterations, &
-      ' iterations the residual was ', state%residual
+    if (.not. event%converged) &
+      event%ending = ending_t(nothing_afar, state%iterations, state%residual)
     call remember(position, state, mesh, .false.)
   end subroutine begin_afar
 

@@ -13,6 +13,7 @@ module path_stepper
   use locked_meshes, only: nodes_to_use
   use locked_stepper, only: locked_stepper_t
   use continuation, only: coordinate_of, between
+  use ending, only: fallen_before, beyond_path
   use traced_path, only: traced_path_t
   use solve_at_h0, only: neighbours_t, neighbours_of, coordinate_at_h0, guess_at_h0, solve_between
   use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
@@ -54,11 +55,11 @@ contains
     type(step_result_t) :: event
 
     call self%begin_afar(h0_high, position, event)
-    if (event%reason == '') then
+    if (.not. event%ending%early()) then
       call trace(self%equations_t, self%options, position%state, h0_low, into_contact, listener, &
         self%known)
     else
-      self%known%ends_because = event%reason
+      self%known%ending = event%ending
       allocate (self%known%piece(0))
     end if
     self%frozen%factors%valid = .false.
@@ -72,8 +73,7 @@ contains
 
     position%piece = 1
     call self%step_to(h0, position, event)
-    if (event%reason /= '' .and. self%known%fallen) event%reason = &
-      'the bodies have fallen onto each other before the h0 where it is to start'
+    if (event%ending%early() .and. self%known%fallen) event%ending%cause = fallen_before
     ! What the approach passed before the experiment began is not part of it.
     event%jumped = .false.
     event%fold = 0
@@ -91,14 +91,14 @@ contains
     real(wp) :: from
 
     lowest%load = huge(1.0_wp)
-    if (size(self%known%piece) == 0) event%reason = self%known%ends_because
-    if (event%reason /= '') return
+    if (size(self%known%piece) == 0) event%ending = self%known%ending
+    if (event%ending%early()) return
     from = h0
     if (position%held > 0) from = position%state%h0
     do while (h0 > self%known%piece(position%piece)%high .or. &
       h0 < self%known%piece(position%piece)%low)
       call self%step_over(h0 < self%known%piece(position%piece)%low, from, position, lowest, event)
-      if (event%reason == '') cycle
+      if (.not. event%ending%early()) cycle
       if (event%jumped) event%lowest = lowest
       return
     end do
@@ -140,8 +140,8 @@ contains
       end associate
     end if
     if (landing%piece == 0) then
-      event%reason = self%known%ends_because
-      if (event%reason == '') event%reason = 'this h0 is beyond the path that was traced'
+      event%ending = self%known%ending
+      if (.not. event%ending%early()) event%ending%cause = beyond_path
       return
     end if
     if (landing%state%load < lowest%load) &

@@ -225,7 +225,8 @@ contains
     if (whole) call energy_lost(steps%equations_t, steps%known, turned, 1, lowest, lost, whole)
     if (.not. whole) return
     outcome%energy_lost = lost%energy
-    outcome%energy_uncertainty = judge%fine%margin*abs(lost%energy - lost%fine_energy) + lost%rounding
+    outcome%energy_uncertainty = judge%fine%margin*abs(lost%energy - lost%fine_energy) + &
+      lost%rounding
 
   contains
 

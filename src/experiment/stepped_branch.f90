@@ -4,6 +4,7 @@ module stepped_branch
   use kinds, only: wp
   use equilibrium, only: holds
   use stepper, only: stepper_t, branch_point_t, step_result_t
+  use ending, only: ending_t
   use tension_search, only: tension_search_t
   use reported, only: reported_t, reported_state, add_reported
   use records, only: observer_t, record_of, stable_yes, stable_unasked
@@ -37,9 +38,9 @@ module stepped_branch
     integer :: first_piece = 0, last_piece = 0
     real(wp) :: worst_residual = 0, worst_spacing = 0
     integer :: states = 0, unconverged = 0
-    !> First h0 that did not converge, and why the branch ended early; empty if it did not.
+    !> First h0 that did not converge.
     real(wp) :: first_unconverged = 0
-    character(len=160) :: reason = ''
+    type(ending_t) :: ending
   end type branch_t
 
 contains
@@ -82,7 +83,7 @@ contains
       steps%cost%states = steps%cost%states + 1
       call note(branch, steps, position, event, plan%h0(i))
       call search%note_jump(steps, event)
-      if (event%reason /= '') exit
+      if (event%ending%early()) exit
       associate (state => position%state)
         call observer%take(record_of(plan%name, steps%problem, steps%grid(position), state, &
           merge(stable_yes, stable_unasked, plan%unique), &
@@ -122,8 +123,8 @@ contains
       branch%jump_uncertainty = event%jump_uncertainty
     end if
     if (allocated(event%lowest)) call lower(branch, steps, position, event)
-    branch%reason = event%reason
-    if (event%reason /= '') return
+    branch%ending = event%ending
+    if (event%ending%early()) return
     branch%states = branch%states + 1
     if (.not. event%converged) then
       if (branch%unconverged == 0) branch%first_unconverged = h0

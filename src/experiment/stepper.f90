@@ -6,16 +6,13 @@ module stepper
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t
   use solver, only: solver_t
+  use ending, only: ending_t
   use locked_meshes, only: h0_control
   use reported, only: error_probe_t
   implicit none
   private
   public :: stepper_t, keeping_stepper_t, branch_point_t, step_result_t, extreme_t, memory, &
-    remember, touching
-
-  !> Why rigid bodies have no state below the smallest gap of their law.
-  character(len=*), parameter :: touching = &
-    'rigid bodies would touch: so near (h0 <= 0, or far below it) this law has no pressure'
+    remember
 
   !> States kept for extrapolation in h0.
   integer, parameter :: memory = 4
@@ -50,8 +47,8 @@ module stepper
     integer :: fold = 0
     !> The largest tension on the way, where the path that the step follows is known.
     type(extreme_t), allocatable :: lowest
-    !> Why there is no state, for the user; empty otherwise.
-    character(len=160) :: reason = ''
+    !> Early where there is no state.
+    type(ending_t) :: ending
   end type step_result_t
 
   type, abstract, extends(solver_t) :: stepper_t

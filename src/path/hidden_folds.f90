@@ -24,8 +24,8 @@ module hidden_folds
   !> Change of the path's coordinate below which a fold is found.
   real(wp), parameter :: near_enough = 1.0e-10_wp
 
-  !> The last three states of an arc: the coordinates between which they lie, and the mean derivative
-  !> of h0 there, whose sign is that of its course. lost: a solve failed.
+  !> The last three states of an arc: the coordinates between which they lie, and the mean
+  !> derivative of h0 there, whose sign is that of its course. lost: a solve failed.
   type :: course_t
     real(wp) :: begin = 0, finish = 0, mean = 0
     logical :: lost = .false.

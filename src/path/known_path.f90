@@ -4,10 +4,11 @@
 module known_path
   use kinds, only: wp
   use listener, only: listener_t
-  use equilibrium, only: state_t, equations_t, lost_in_rounding, beyond_rounding
+  use equilibrium, only: state_t, equations_t, lost_in_rounding
   use solver_options, only: solver_options_t
   use edge_locked, only: approach, contact, largest_radius
   use continuation, only: continuation_t, new_continuation
+  use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
   use traced_path, only: traced_path_t, extend, collapsed
   use reported, only: error_t, measure_t
   use solve_at_h0, only: neighbours_t, neighbours_of, solve_between
@@ -41,9 +42,8 @@ module known_path
     !> From afar inward; and the landings from each over the fold at its inner and outer end.
     type(stable_piece_t), allocatable :: piece(:)
     type(landing_t), allocatable :: inward(:), outward(:)
-    !> Why the path ends before it should; empty where it does not. Whether it ends in the fall of
-    !> bodies that nothing keeps apart.
-    character(len=160) :: ends_because = ''
+    !> How the path ends; and whether in the fall of bodies that nothing keeps apart.
+    type(ending_t) :: ending
     logical :: fallen = .false.
   end type known_path_t
 
@@ -80,17 +80,17 @@ contains
     for_path%tolerance = min(options%tolerance, path_tolerance)
     walker = new_continuation(equations%problem, start, approach, path_step)
     finished = .false.
-    do while (known%ends_because == '' .and. .not. finished)
+    do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, equations, for_path, lost)
       write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
       call listener%hear(trim(so_far))
       known%fallen = collapsed(equations%problem, known%path)
       if (lost .or. known%path%held >= longest) then
-        known%ends_because = 'the equilibrium path was lost: no step, however small, converged'
+        known%ending%cause = path_lost
       else if (known%fallen) then
-        known%ends_because = 'no stable equilibrium exists beyond this h0'
+        known%ending%cause = no_equilibrium
       else if (blind .and. any(known%path%point(:known%path%held)%fold)) then
-        known%ends_because = beyond_rounding
+        known%ending%cause = beyond_rounding
       end if
       ! What lies before the last point but one is final.
       associate (n => known%path%held)

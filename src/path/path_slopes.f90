@@ -38,8 +38,8 @@ contains
     c_slope = merge(1.0_wp, 0.0_wp, control%kind == at_edge_radius)
     associate (grid => equations%pair%grid(equations%mesh_of(control)), &
       law => equations%problem%law)
-      ! The load is 2 pi (c^2 sum(w P) + E(gap at the end of the mesh)), whose last gap moves with the
-      ! last node's and with the end itself.
+      ! The load is 2 pi (c^2 sum(w P) + E(gap at the end of the mesh)), whose last gap moves with
+      ! the last node's and with the end itself.
       reach = load_reach(grid, state)
       gap = state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)
       load_slope = 2*pi*(2*state%scale*c_slope*dot_product(grid%weight(:n), state%pressure) + &

@@ -6,6 +6,7 @@ module resumable_stepper
   use discretisation, only: discretisation_t
   use equilibrium, only: cost_t
   use jacobian, only: factorise_again
+  use ending, only: ending_t, not_kept
   use stepper, only: keeping_stepper_t, branch_point_t, step_result_t
   use reported, only: error_probe_t
   use journal, only: journal_t
@@ -105,7 +106,7 @@ contains
     end if
     if (.not. allocated(self%journal%trouble)) return
     known = .true.
-    event = step_result_t(reason='what was found can no longer be kept')
+    event = step_result_t(ending=ending_t(not_kept))
   end function recall
 
   !> Gives the solver the factorisation that it had at the end of the last record.
