@@ -4,7 +4,7 @@
 !> for every h0.
 module locked_stepper
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: problem_t, calm_gap
   use equilibrium, only: state_t, state_from
   use edge_locked, only: approach, contact
   use locked_meshes, only: h0_control, scale_at
@@ -65,13 +65,11 @@ contains
     call remember(position, state, mesh, .false.)
   end subroutine begin_afar
 
-  !> An H0 at which the bodies hardly deform: twice the gap (37) of the jump into contact, in these
-  !> units, or where repulsion hardly acts.
+  !> An H0 at which the bodies hardly deform, or where repulsion hardly acts.
   pure real(wp) function far_away(self)
     class(locked_stepper_t), intent(in) :: self
 
-    far_away = max(5.0_wp, 2*(27*self%problem%coupling*self%problem%law%adhesion)**(2.0_wp/7), &
-      self%pair%level + 3)
+    far_away = max(calm_gap(self%problem), self%pair%level + 3)
   end function far_away
 
   !> Solves from the guess `state` at h0.

@@ -174,8 +174,10 @@ contains
   pure real(wp) function linear_range(problem, gap)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap
+    real(wp) :: range(1)
 
-    linear_range = problem%law%closure_fraction*gap + problem%law%closure_length
+    range = problem%law%closure([gap])
+    linear_range = range(1)
   end function linear_range
 
   !> The next gap of the search.
