@@ -93,63 +93,52 @@ contains
     real(wp), intent(in) :: z(:)
     real(wp), intent(out) :: g(:)
     type(state_t), intent(inout) :: state
-
-    associate (grid => equations%pair%grid(equations%mesh_of(control)))
-      call evaluate(equations%problem, grid, control, z, g, state, equations%cost)
-    end associate
-  end subroutine residual
-
-  subroutine evaluate(problem, grid, control, z, g, state, cost)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    type(control_t), intent(in) :: control
-    real(wp), intent(in) :: z(:)
-    real(wp), intent(out) :: g(:)
-    type(state_t), intent(inout) :: state
-    type(cost_t), intent(inout) :: cost
     real(wp) :: raised(first_node - 1 + node_count(control, size(z)))
     real(wp) :: axis_gap, edge_gap, reach
     integer :: n, columns
 
-    n = node_count(control, size(z))
-    call unpack(control, z, state%h0, state%scale)
-    state%gap = z(:n)
-    if (.not. defined(problem, z, state)) then
-      g = 0
-      state%pressure = 0*g(:n)
-      state%load = 0
-      state%axis_gap = state%h0
-      state%residual = huge(1.0_wp)
-      return
-    end if
-    state%pressure = problem%law%pressure(state%gap)
-    cost%pressure_evaluations = cost%pressure_evaluations + n
-    raised = 0
-    if (problem%coupling > 0) then
-      columns = acting_columns(state%pressure)
-      call multiply(grid%kernel, columns, state%pressure, raised)
-      raised = 2*problem%coupling*state%scale*raised
-      cost%operator_products = cost%operator_products + 1
-      cost%operator_columns = cost%operator_columns + columns
-    end if
-    g(:n) = state%gap - state%h0 - 0.5_wp*(state%scale*grid%x(:n))**2 - raised(first_node:)
-    axis_gap = state%h0 + raised(axis_row)
-    select case (control%kind)
-    case (at_axis_gap)
-      g(n + 1) = axis_gap - control%value
-    case (at_edge_radius, at_h0_with_edge)
-      edge_gap = state%h0 + 0.5_wp*state%scale**2 + raised(centre_row)
-      g(n + 1) = edge_gap - problem%law%edge_gap
-    end select
-    state%axis_gap = axis_gap
-    ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
-    reach = load_reach(grid, state)
-    state%load = 2*pi*(state%scale**2*dot_product(grid%weight(:n), state%pressure) + &
-      sum(problem%law%energy([state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)])))
-    state%residual = maxval(abs(g))
-    ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
-    if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
-  end subroutine evaluate
+    associate (problem => equations%problem, cost => equations%cost, &
+      grid => equations%pair%grid(equations%mesh_of(control)))
+      n = node_count(control, size(z))
+      call unpack(control, z, state%h0, state%scale)
+      state%gap = z(:n)
+      if (.not. defined(problem, z, state)) then
+        g = 0
+        state%pressure = 0*g(:n)
+        state%load = 0
+        state%axis_gap = state%h0
+        state%residual = huge(1.0_wp)
+        return
+      end if
+      state%pressure = problem%law%pressure(state%gap)
+      cost%pressure_evaluations = cost%pressure_evaluations + n
+      raised = 0
+      if (problem%coupling > 0) then
+        columns = acting_columns(state%pressure)
+        call multiply(grid%kernel, columns, state%pressure, raised)
+        raised = 2*problem%coupling*state%scale*raised
+        cost%operator_products = cost%operator_products + 1
+        cost%operator_columns = cost%operator_columns + columns
+      end if
+      g(:n) = state%gap - state%h0 - 0.5_wp*(state%scale*grid%x(:n))**2 - raised(first_node:)
+      axis_gap = state%h0 + raised(axis_row)
+      select case (control%kind)
+      case (at_axis_gap)
+        g(n + 1) = axis_gap - control%value
+      case (at_edge_radius, at_h0_with_edge)
+        edge_gap = state%h0 + 0.5_wp*state%scale**2 + raised(centre_row)
+        g(n + 1) = edge_gap - problem%law%edge_gap
+      end select
+      state%axis_gap = axis_gap
+      ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
+      reach = load_reach(grid, state)
+      state%load = 2*pi*(state%scale**2*dot_product(grid%weight(:n), state%pressure) + &
+        sum(problem%law%energy([state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)])))
+      state%residual = maxval(abs(g))
+      ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
+      if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
+    end associate
+  end subroutine residual
 
   !> Whether unknowns are such that pressures, and all that follows from them, are numbers.
   pure logical function defined(problem, z, state)
