@@ -27,6 +27,7 @@ module summary
     type(line_t), allocatable :: warnings(:)
   contains
     procedure :: warn
+    procedure :: fail_with
     generic :: set => set_number, set_numbers, set_count, set_counts, set_truth, set_text
     procedure :: drop
     procedure :: has
@@ -187,6 +188,15 @@ contains
     if (size(self%warnings) == most_warnings) &
       self%warnings(most_warnings)%text = 'further warnings are not shown'
   end subroutine warn
+
+  !> Not everything was found: adds the reason as a warning.
+  subroutine fail_with(self, text)
+    class(summary_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+
+    call self%set('converged', .false.)
+    call self%warn(text)
+  end subroutine fail_with
 
   !> What was spent, as rows of &cost.
   subroutine take_cost(self, cost)
