@@ -57,10 +57,10 @@ contains
     jumps = jumps_of(problem)
     allocate (rows(0))
     nearest = -huge(1.0_wp)
-    if (allocated(jumps%criterion)) nearest = jumps%criterion%gap/problem%length
+    if (allocated(jumps%criterion)) nearest = problem%law%gap_of(jumps%criterion%gap)
     call add_curve(by_quadrature)
     call add_curve(closed_form)
-    if (allocated(jumps%equation_37)) nearest = jumps%equation_37%gap/problem%length
+    if (allocated(jumps%equation_37)) nearest = problem%law%gap_of(jumps%equation_37%gap)
     call add_curve(attraction_only)
     call add_jump(jumps%criterion)
     call add_jump(jumps%equation_37)
@@ -77,8 +77,8 @@ contains
       integer :: i
 
       if (.not. has_form(problem, form)) return
-      gap = gaps_between(problem, form, start/problem%length, range%h0_end/problem%length, &
-        nearest, range%count)
+      gap = gaps_between(problem, form, problem%law%gap_of(start), &
+        problem%law%gap_of(range%h0_end), nearest, range%count)
       allocate (more(size(gap)))
       do i = 1, size(gap)
         more(i) = row_of(state_at(problem, form, gap(i), trim(names(form))))
@@ -91,7 +91,7 @@ contains
       type(theory_row_t) :: row
 
       if (.not. allocated(jump)) return
-      ! A function's result inside an array constructor would leak in gfortran.
+      ! Not the function's result inside the array constructor: compiler note 1.
       row = row_of(jump)
       rows = [rows, row]
     end subroutine add_jump
@@ -167,14 +167,13 @@ contains
 
     delta = slow_displacement(problem, form, gap)
     jump%theory = theory
-    jump%gap = gap*problem%length
-    jump%h0 = (gap - delta)*problem%length
+    jump%gap = problem%law%separation_of(gap)
+    jump%h0 = problem%law%separation_of(gap - delta)
     jump%displacement = delta*problem%length
     jump%load = slow_load(problem, form, gap)*problem%load
   end function state_at
 
-  !> The row of a state; component by component, since gfortran 12 loses the name in a structure
-  !> constructor.
+  !> The row of a state; component by component, see compiler note 3.
   pure function row_of(jump) result(row)
     type(jump_t), intent(in) :: jump
     type(theory_row_t) :: row

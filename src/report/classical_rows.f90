@@ -37,7 +37,7 @@ contains
     associate (r => problem%radius, y => problem%stiffness)
       do i = 1, range%count
         h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
-        delta = -h0
+        delta = problem%law%origin - h0
         call add('hertz', hertz_load_at_displacement(delta, r, y), &
           hertz_radius_at_displacement(delta, r))
         if (.not. gamma > 0) cycle
@@ -61,7 +61,7 @@ contains
 
       ! A theory without a state here says NaN.
       if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
-      ! A structure constructor inside an array constructor would leak in gfortran.
+      ! Not a structure constructor inside the array's: compiler note 1.
       row = theory_row_t(theory, h0, delta, load, contact_radius)
       rows = [rows, row]
     end subroutine add

@@ -4,8 +4,9 @@ module curve_rows
   use tables, only: cells
   implicit none
   private
-  public :: columns_of_curve, curve_row
+  public :: columns_of_curve, curve_row, curve_columns, stability_columns
 
+  !> Columns of curve.csv, each described as 'name [unit] meaning'.
   character(len=*), parameter :: curve_columns(*) = [character(len=96) :: &
     'branch [] loading, unloading_1, unloading_2, ..., or path', &
     'h0 [m] separation that undeformed bodies would have on the axis', &
@@ -13,7 +14,7 @@ module curve_rows
     'displacement [m] h_centre - h0', &
     'load [N] negative: tension', &
     'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
-    'stable [] 1, 0, or -1 where not asked for', &
+    'stable [] 1: stable; 0: unstable, or a fold; -1: not examined', &
     'residual [] largest error of the equations, in units of the length of the force law', &
     'iterations [] products with the elastic operator', &
     'converged [] 1; 0 where the residual is larger than asked for: the row is no equilibrium']

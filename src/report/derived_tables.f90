@@ -11,14 +11,15 @@ module derived_tables
   use approximation_tables, only: approximation_rows
   implicit none
   private
-  public :: write_derived_tables
+  public :: write_derived_tables, theory_columns
 
+  !> Columns of classical.csv and approximations.csv.
   character(len=*), parameter :: theory_columns(*) = [character(len=96) :: &
     'theory [] where the row comes from', &
     'h0 [m] separation that undeformed bodies would have on the axis', &
     'displacement [m] separation on the axis less h0', &
     'load [N] negative: tension', &
-    'contact_radius [m]']
+    'contact_radius [m] NaN where the theory does not give one']
 
 contains
 

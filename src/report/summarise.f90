@@ -7,6 +7,7 @@ module summarise
   use scene_groups, only: scene_t
   use experiment_result, only: experiment_result_t
   use reported, only: reported_t
+  use force_entries, only: take_forces
   use summary, only: summary_t
   use summary_entries, only: h0_of, load_of, load_error_of
   use branch_summary, only: summarise_branches
@@ -75,16 +76,19 @@ contains
     type(summary_t), intent(inout) :: summary
 
     if (problem%law%adhesion > 0) then
-      call summary%set('surface_energy', surface_energy(problem))
-      call summary%set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
-      call summary%set('dmt_pull_off', -dmt_pull_off(problem%radius, surface_energy(problem)))
+      if (problem%law%work > 0) then
+        call summary%set('surface_energy', surface_energy(problem))
+        call summary%set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
+        call summary%set('dmt_pull_off', -dmt_pull_off(problem%radius, surface_energy(problem)))
+      end if
       if (.not. problem%rigid) then
         call summary%set('sigma', problem%coupling*problem%law%adhesion)
         call summary%set('tabor', tabor_parameter(problem))
       end if
-    else if (scene%force%law == 'exponential' .and. .not. problem%rigid) then
-      call summary%set('big_lambda', problem%coupling)
+    else if (problem%law%coupling_name /= '' .and. .not. problem%rigid) then
+      call summary%set(trim(problem%law%coupling_name), problem%coupling)
     end if
+    if (.not. problem%law%of_paper) call take_forces(problem, summary)
   end subroutine describe_problem
 
   !> The energy lost in the cycle.

@@ -78,7 +78,7 @@ contains
     type(reported_t), intent(in), optional :: item
 
     h0_of = ieee_value(h0_of, ieee_quiet_nan)
-    if (present(item)) h0_of = item%h0*problem%length
+    if (present(item)) h0_of = problem%law%separation_of(item%h0)
   end function h0_of
 
   !> Its load [N].
