@@ -42,9 +42,9 @@ module simulation
 contains
 
   !> Computes a scene and writes its results into the folder `out_dir`. converged: false where a
-  !> calculation failed; what was computed is kept and the summary says what failed. error: there are
-  !> no results, or they could not be written. resume: what an interrupted run has left in the folder
-  !> is gone on with, and finished results are left as they are.
+  !> calculation failed; what was computed is kept and the summary says what failed. error: there
+  !> are no results, or they could not be written. resume: what an interrupted run has left in the
+  !> folder is gone on with, and finished results are left as they are.
   subroutine run_scene(scene, out_dir, quiet, resume, converged, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: out_dir
@@ -81,8 +81,8 @@ contains
     converged = summary%is_true('converged')
   end subroutine run_scene
 
-  !> Puts in place what an earlier run had completed; with `resume` a finished run is found, and then
-  !> there is nothing to do. converged: whether that one was.
+  !> Puts in place what an earlier run had completed; with `resume` a finished run is found, and
+  !> then there is nothing to do. converged: whether that one was.
   subroutine take_up_earlier(scene, destination, resume, finished, converged, error)
     type(scene_t), intent(in) :: scene
     type(destination_t), intent(in) :: destination
@@ -170,8 +170,8 @@ contains
     call results%progress%finish()
   end subroutine compute
 
-  !> Runs the experiments; each state goes into the results, with its eigenvalue where the scene asks
-  !> for that, and each step into the journal.
+  !> Runs the experiments; each state goes into the results, with its eigenvalue where the scene
+  !> asks for that, and each step into the journal.
   subroutine run_observed(scene, problem, results, summary, cost)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem

@@ -35,8 +35,8 @@ module deck_scan
     type(span_t), allocatable :: items(:)
   end type scan_t
 
-  !> Where in a group the scanner is: the group and where its name's `&` stands, the key whose values
-  !> are being read, and whether the last thing was a comma.
+  !> Where in a group the scanner is: the group and where its `&` stands, the key whose values are
+  !> being read, and whether the last thing was a comma.
   type :: place_t
     character(len=:), allocatable :: group, key
     integer :: group_at = 0

@@ -53,7 +53,8 @@ contains
     if (branch%unconverged > 0) &
       call summary%fail_with(name//': '//brief(real(branch%unconverged, wp))//' of '// &
         brief(real(branch%states, wp))//' states did not converge, the first at h0 = '// &
-        short_number(problem%law%separation_of(branch%first_unconverged))//' m; the largest residual is '// &
+        short_number(problem%law%separation_of(branch%first_unconverged))// &
+        ' m; the largest residual is '// &
         short_number(branch%worst_residual)//' lengths of the force law')
     if (branch%reason /= '') &
       call summary%fail_with(name//' ended early: '//trim(branch%reason))

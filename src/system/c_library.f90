@@ -6,14 +6,14 @@ module c_library
   use failure, only: failure_t, fail, file_trouble
   implicit none
   private
-  public :: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, c_make_folder, c_lock, c_kind, &
-    c_rename, c_remove, c_is_terminal, c_prepare, c_openblas_threads, c_openblas_config
+  public :: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, c_make_folder, c_lock, &
+    c_kind, c_rename, c_remove, c_is_terminal, c_prepare, c_openblas_threads, c_openblas_config
   public :: explain, system_failure, nul
   public :: as_input, as_output, as_kept_output, as_folder
   public :: too_large, disk_full, in_the_way, not_there, locked_elsewhere
 
-  !> What a path is opened as: a file of any kind, to be read; a regular file to be read and written,
-  !> made where there is none and empty; the same as it is; a folder.
+  !> What a path is opened as: a file of any kind, to be read; a regular file to be read and
+  !> written, made where there is none and emptied; the same as it is; a folder.
   integer(c_int), parameter :: as_input = 1, as_output = 2, as_kept_output = 3, as_folder = 4
 
   !> Sorts of failure that users are told apart.
