@@ -12,13 +12,14 @@ module result_rows
   character(len=*), parameter :: never = '', always = 'always', classical = 'classical', &
     approximations = 'approximations', turning = 'unloading'
 
-  !> Key, unit and meaning; what is an array has one value a turning point, fold or profile.
+  !> Key, unit and meaning; a list has one value a turning point, fold, profile or the like.
   type :: row_t
     character(len=28) :: key = ''
     character(len=5) :: unit = ''
     character(len=72) :: meaning = ''
     character(len=14) :: sweep = never
     integer :: group = in_summary
+    logical :: list = .false.
   end type row_t
 
   !> In the order in which they are written.
@@ -48,22 +49,22 @@ module result_rows
     row_t('jump_out_h0_error', 'm', 'estimated error'), &
     row_t('jump_out_load_error', 'N', 'estimated error'), &
     row_t('jump_out_uncertainty', 'm', 'how closely it was bracketed on a fixed grid'), &
-    row_t('unload_from', 'm', 'turning points'), &
-    row_t('unload_max_tension', 'N', 'largest tension of each unloading', turning), &
-    row_t('unload_max_tension_h0', 'm', 'where'), &
-    row_t('unload_jump_out_h0', 'm', 'where each unloading jumps apart', turning), &
-    row_t('unload_max_tension_error', 'N', 'estimated error'), &
-    row_t('unload_max_tension_h0_error', 'm', 'estimated error'), &
-    row_t('unload_jump_out_h0_error', 'm', 'estimated error'), &
-    row_t('folds_h0', 'm', 'all folds of the path, in order'), &
-    row_t('folds_load', 'N', 'the load there'), &
-    row_t('folds_stable', '', 'whether what follows is stable, 1 or 0'), &
-    row_t('folds_h0_error', 'm', 'estimated error'), &
-    row_t('folds_load_error', 'N', 'estimated error'), &
-    row_t('load_folds_h0', 'm', 'all extrema of the load along the path'), &
-    row_t('load_folds_load', 'N', 'the load there'), &
-    row_t('load_folds_h0_error', 'm', 'estimated error'), &
-    row_t('load_folds_load_error', 'N', 'estimated error'), &
+    row_t('unload_from', 'm', 'turning points', list=.true.), &
+    row_t('unload_max_tension', 'N', 'largest tension of each unloading', turning, list=.true.), &
+    row_t('unload_max_tension_h0', 'm', 'where', list=.true.), &
+    row_t('unload_jump_out_h0', 'm', 'where each unloading jumps apart', turning, list=.true.), &
+    row_t('unload_max_tension_error', 'N', 'estimated error', list=.true.), &
+    row_t('unload_max_tension_h0_error', 'm', 'estimated error', list=.true.), &
+    row_t('unload_jump_out_h0_error', 'm', 'estimated error', list=.true.), &
+    row_t('folds_h0', 'm', 'all folds of the path, in order', list=.true.), &
+    row_t('folds_load', 'N', 'the load there', list=.true.), &
+    row_t('folds_stable', '', 'whether what follows is stable, 1 or 0', list=.true.), &
+    row_t('folds_h0_error', 'm', 'estimated error', list=.true.), &
+    row_t('folds_load_error', 'N', 'estimated error', list=.true.), &
+    row_t('load_folds_h0', 'm', 'all extrema of the load along the path', list=.true.), &
+    row_t('load_folds_load', 'N', 'the load there', list=.true.), &
+    row_t('load_folds_h0_error', 'm', 'estimated error', list=.true.), &
+    row_t('load_folds_load_error', 'N', 'estimated error', list=.true.), &
     row_t('energy_lost', 'J', 'in the jumps of a cycle', always), &
     row_t('energy_lost_uncertainty', 'J', 'how well it is known'), &
     row_t('end_h0', 'm', 'of the last equilibrium of the loading, or else of the path', always), &
@@ -71,7 +72,8 @@ module result_rows
     row_t('end_load', 'N', 'there', always), &
     row_t('end_displacement_error', 'm', 'estimated error'), &
     row_t('end_load_error', 'N', 'estimated error'), &
-    row_t('profiles_error', '', 'of gaps (law''s lengths) or pressures (over the largest)'), &
+    row_t('profiles_error', '', 'of gaps (law''s lengths) or pressures (over the largest)', &
+          list=.true.), &
     row_t('jump_criterion_29_h0', 'm', 'where approaching bodies violate (29)', approximations), &
     row_t('jump_criterion_29_load', 'N', 'there', approximations), &
     row_t('jump_equation_37_h0', 'm', 'by (37), for the attraction alone', approximations), &
@@ -91,7 +93,7 @@ module result_rows
     row_t('compiler', '', 'that made the program'), &
     row_t('blas', '', 'its linear algebra'), &
     row_t('build_options', '', 'of the compiler'), &
-    row_t('warnings', '', 'all that is not as it should be'), &
+    row_t('warnings', '', 'all that is not as it should be', list=.true.), &
     row_t('wall_seconds', 's', 'from the beginning to the end', group=in_cost), &
     row_t('kernel_seconds', 's', 'for kernels', group=in_cost), &
     row_t('solve_seconds', 's', 'for equilibria', group=in_cost), &

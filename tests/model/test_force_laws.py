@@ -1,11 +1,11 @@
 """Claims about every force law: its functions fit together, in SI, at any gap."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 import snapin
-from snapin.numerics import LAWS
 
 # Parameters in SI for every law there is; a law without an entry fails the first test.
 PARAMETERS = {
@@ -13,7 +13,8 @@ PARAMETERS = {
     "exponential": {"p0": 2.5e8, "decay_length": 0.2e-9},
 }
 LENGTH = {"lennard_jones": 0.5e-9, "exponential": 0.2e-9}
-ALL = [(law, part) for law in PARAMETERS for part in LAWS[law][1]]
+PARTS = {"lennard_jones": ("full", "repulsive", "attractive"), "exponential": ("full",)}
+ALL = [(law, part) for law in PARAMETERS for part in PARTS[law]]
 every_law = pytest.mark.parametrize(("law", "part"), ALL, ids="-".join)
 
 Z0, HAMAKER = PARAMETERS["lennard_jones"]["z0"], PARAMETERS["lennard_jones"]["hamaker"]
@@ -24,13 +25,22 @@ def gaps(law):
     return LENGTH[law] * np.geomspace(0.5, 40, 60)
 
 
+def law_of(law, part="full"):
+    """Return the groups of a deck with this law."""
+    keys = {"law": law, **PARAMETERS[law], "part": None if part == "full" else part}
+    return {"force": keys}
+
+
 def functions(law, part):
     """Return the law as a function of gaps [m]."""
-    return lambda gap: snapin.force_law(law, gap, part=part, **PARAMETERS[law])
+    return lambda gap: snapin.force_law(law_of(law, part), gap)
 
 
 def test_every_law_is_tested():
-    assert set(PARAMETERS) == set(LENGTH) == set(LAWS)
+    with pytest.raises(snapin.DeckError) as told:
+        snapin.law_numbers({"force": {"law": "none"}})
+    known = re.findall("'([a-z_]+)'", str(told.value).split("one of ")[1].splitlines()[0])
+    assert set(PARAMETERS) == set(LENGTH) == set(PARTS) == set(known)
 
 
 @every_law
@@ -48,7 +58,7 @@ def test_slope_is_the_derivative_of_the_pressure(law, part):
     # Where slope or pressure pass through zero their parts still set the rounding.
     size = sum(
         abs(functions(law, part)(gap).slope)
-        for part in (LAWS[law][1][1:] if part == "full" and len(LAWS[law][1]) > 1 else (part,))
+        for part in (PARTS[law][1:] if part == "full" and len(PARTS[law]) > 1 else (part,))
     )
     assert (abs(of(gap).slope - derivative) <= 1e-8 * size).all()
 
@@ -78,7 +88,7 @@ def test_far_away_there_is_nothing(law, part):
 @every_law
 def test_numbers_say_where_the_pressure_vanishes_and_is_least(law, part):
     of = functions(law, part)
-    numbers = snapin.law_numbers(law, part=part, **PARAMETERS[law])
+    numbers = snapin.law_numbers(law_of(law, part))
     unit = numbers.pressure_unit
     if numbers.rest_gap > 0:
         assert abs(of([numbers.rest_gap]).pressure[0]) <= 1e-14 * unit
@@ -105,7 +115,7 @@ def test_lennard_jones_is_equation_33():
 
 
 def test_lennard_jones_has_no_pressure_at_z0_and_most_tension_at_a_sixth_root_of_3():
-    numbers = snapin.law_numbers("lennard_jones", **PARAMETERS["lennard_jones"])
+    numbers = snapin.law_numbers(law_of("lennard_jones"))
     assert numbers.rest_gap == Z0 == numbers.length
     assert numbers.edge_gap == pytest.approx(3 ** (1 / 6) * Z0, rel=1e-15)
     assert functions("lennard_jones", "full")([Z0]).pressure == 0
@@ -114,7 +124,7 @@ def test_lennard_jones_has_no_pressure_at_z0_and_most_tension_at_a_sixth_root_of
 
 
 def test_surface_energy_is_equation_34():
-    numbers = snapin.law_numbers("lennard_jones", **PARAMETERS["lennard_jones"])
+    numbers = snapin.law_numbers(law_of("lennard_jones"))
     gamma = HAMAKER / (16 * math.pi * Z0**2)
     assert numbers.surface_energy == pytest.approx(gamma, rel=1e-15)
     assert numbers.pressure_unit == pytest.approx(gamma / Z0, rel=1e-15)
@@ -142,6 +152,8 @@ def test_attraction_alone_is_van_der_waals():
 
 # --- Exponential
 
+UNIT = snapin.exponential(p0=1.0, decay_length=1.0)
+
 
 def test_exponential_is_equation_30():
     p0, length = PARAMETERS["exponential"].values()
@@ -155,13 +167,13 @@ def test_exponential_is_equation_30():
 
 
 def test_exponential_is_finite_and_positive_at_a_thousand_decay_lengths_of_overlap():
-    values = snapin.force_law("exponential", [-1e3, -1e300], p0=1.0, decay_length=1.0)
+    values = snapin.force_law(UNIT, [-1e3, -1e300])
     assert np.isfinite(values).all()
     assert values.pressure[0] > 1e300 and values.slope[0] < -1e300 and values.energy[0] > 1e300
 
 
 def test_exponential_vanishes_without_underflow():
-    values = snapin.force_law("exponential", [1e3, 1e300], p0=1.0, decay_length=1.0)
+    values = snapin.force_law(UNIT, [1e3, 1e300])
     assert not np.any(values)
 
 
@@ -169,26 +181,19 @@ def test_exponential_vanishes_without_underflow():
 
 
 @pytest.mark.parametrize(
-    ("call", "error", "name"),
+    ("law", "gap", "name"),
     [
-        (lambda: snapin.force_law("casimir", [1e-9]), ValueError, "law"),
-        (lambda: snapin.force_law("exponential", [1e-9], p0=1.0), TypeError, "decay_length"),
-        (
-            lambda: snapin.force_law("exponential", [1.0], p0=1.0, decay_length=1.0, z0=1.0),
-            TypeError,
-            "z0",
-        ),
-        (
-            lambda: snapin.force_law("exponential", [1.0], part="half", p0=1, decay_length=1),
-            ValueError,
-            "part",
-        ),
-        (lambda: snapin.force_law("lennard_jones", [1], hamaker=-1, z0=1), ValueError, "hamaker"),
-        (lambda: snapin.force_law("lennard_jones", [0.0], hamaker=1, z0=1), ValueError, "gap"),
-        (lambda: snapin.force_law("lennard_jones", [[1.0]], hamaker=1, z0=1), ValueError, "gap"),
-        (lambda: snapin.law_numbers("lennard_jones", hamaker=1, z0=math.nan), ValueError, "z0"),
+        ({"force": {"law": "casimir"}}, [1e-9], "law"),
+        (snapin.exponential(p0=1.0), [1e-9], "decay_length"),
+        (snapin.exponential(p0=1.0, decay_length=1.0, z0=1.0), [1.0], "z0"),
+        (snapin.lennard_jones(hamaker=1, z0=1, part="half"), [1.0], "part"),
+        (snapin.lennard_jones(hamaker=-1, z0=1), [1.0], "hamaker"),
+        (snapin.lennard_jones(hamaker=1, z0=1), [0.0], "gap"),
+        (snapin.lennard_jones(hamaker=1, z0=1), [[1.0]], "gap"),
+        (snapin.lennard_jones(hamaker=1, z0=math.nan), [1.0], "z0"),
+        ({}, [1.0], "force"),
     ],
 )
-def test_a_bad_argument_is_named(call, error, name):
-    with pytest.raises(error, match=rf"\b{name}\b"):
-        call()
+def test_a_bad_argument_is_named(law, gap, name):
+    with pytest.raises(ValueError, match=rf"\b{name}\b"):
+        snapin.force_law(law, gap)
