@@ -56,17 +56,18 @@ contains
     if (row > 0) list = merge(1_c_int, 0_c_int, rows(row)%list)
   end subroutine is_list
 
-  !> The force law of a deck: pressure [Pa], its derivative by the gap [Pa/m] and its integral from
-  !> the gap to infinity [J/m^2], at gaps [m]. numbers: units of gap [m] and pressure [Pa], surface
-  !> energy [J/m^2], gaps of maximum tension, of zero pressure and of vanishing repulsion [m]; 0
-  !> where there is none.
+  !> The force law of a deck: pressure [Pa], its derivative by the separation [Pa/m] and its integral
+  !> from there to infinity [J/m^2], at separations `gap` [m]. numbers: units of gap [m] and pressure
+  !> [Pa], separation that is gap 0 [m], surface energy [J/m^2], separations of maximum tension, of
+  !> zero pressure and of vanishing repulsion [m]; NaN where there is none.
   subroutine law_values(deck, gap, pressure, slope, energy, numbers, stat, message, n)
+    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
     use deck_problem, only: pose
     use dimensionless_problem, only: problem_t, surface_energy
     character(len=*), intent(in) :: deck
     integer(c_int), intent(in) :: n
     real(c_double), intent(in) :: gap(n)
-    real(c_double), intent(out) :: pressure(n), slope(n), energy(n), numbers(6)
+    real(c_double), intent(out) :: pressure(n), slope(n), energy(n), numbers(7)
     integer(c_int), intent(out) :: stat
     character(len=16000), intent(out) :: message
     type(problem_t) :: problem
@@ -78,11 +79,13 @@ contains
     call pose(deck, problem, stat, message)
     if (stat /= 0) return
     associate (law => problem%law)
-      pressure = law%pressure_unit*law%pressure(gap/law%length)
-      slope = law%pressure_unit/law%length*law%slope(gap/law%length)
-      energy = law%pressure_unit*law%length*law%energy(gap/law%length)
-      numbers = [law%length, law%pressure_unit, surface_energy(problem), &
-        law%edge_gap*law%length, law%rest_gap*law%length, law%range*law%length]
+      pressure = law%pressure_unit*law%pressure(law%gap_of(gap))
+      slope = law%pressure_unit/law%length*law%slope(law%gap_of(gap))
+      energy = law%pressure_unit*law%length*law%energy(law%gap_of(gap))
+      numbers = [law%length, law%pressure_unit, law%origin, surface_energy(problem), &
+        law%separation_of([law%edge_gap, law%rest_gap, law%range])]
+      if (.not. law%edge_gap > 0) numbers(5) = ieee_value(numbers(5), ieee_quiet_nan)
+      if (.not. law%rest_gap > 0) numbers(6) = ieee_value(numbers(6), ieee_quiet_nan)
     end associate
   end subroutine law_values
 

@@ -111,9 +111,11 @@ contains
       message = 'form: this law has none "'//trim(form)//'"'
       return
     end if
-    displacement = slow_displacement(problem, which, gap/problem%length)*problem%length
-    slope = slow_slope(problem, which, gap/problem%length)
-    load = slow_load(problem, which, gap/problem%length)*problem%load
+    associate (at => problem%law%gap_of(gap))
+      displacement = slow_displacement(problem, which, at)*problem%length
+      slope = slow_slope(problem, which, at)
+      load = slow_load(problem, which, at)*problem%load
+    end associate
   end subroutine slow_states
 
 end module flat_theory

@@ -66,9 +66,10 @@ def slow_deformation(gap, *, radius, stiffness=None, law, rigid=False, form="qua
 def jump_estimates(*, radius, stiffness=None, law, rigid=False):
     """Return the `JumpEstimates` for approaching bodies."""
     # Estimates do not depend on the range of the curves.
-    length = law_numbers(law).length
+    numbers = law_numbers(law)
+    far, near = (numbers.origin + n * numbers.length for n in (2, 1))
     rows = approximation_rows(
-        2 * length, length, radius=radius, stiffness=stiffness, law=law, rigid=rigid, count=2
+        far, near, radius=radius, stiffness=stiffness, law=law, rigid=rigid, count=2
     )
     found = {row["theory"]: row for row in rows}
     return JumpEstimates(*(_jump(found[name]) if name in found else None for name in _JUMPS))

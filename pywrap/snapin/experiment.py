@@ -12,7 +12,7 @@ from typing import NamedTuple
 import _snapin
 import numpy as np
 
-from .arguments import SnapinWarning, vector
+from .arguments import DeckError, SnapinWarning, vector
 from .deck import accept_deck, deck_of, scene
 from .results import Result, read_results
 
@@ -39,6 +39,9 @@ def run(deck, out=None, *, resume=False, quiet=True):
 def _run(deck, out=None, resume=False, quiet=True):
     """Run a deck for a function that users call."""
     name, text = deck_of(deck)
+    # f2py ends a text there.
+    if b"\0" in text:
+        raise DeckError(f"{name}: a NUL byte: a deck is plain text")
     if out is not None:
         return _run_into(pathlib.Path(out), name, text, resume, quiet)
     if resume:
@@ -48,8 +51,11 @@ def _run(deck, out=None, resume=False, quiet=True):
 
 
 def _run_into(folder, name, text, resume, quiet):
+    place = os.fsencode(folder)
+    if b"\0" in place:
+        raise ValueError("out: the name of a folder has no NUL")
     stat, message = _snapin.flat_deck.run_deck(
-        text, os.fsencode(name), os.fsencode(folder), bool(quiet), bool(resume)
+        text, os.fsencode(name), place, bool(quiet), bool(resume)
     )
     if stat != _NO_CONVERGENCE or message.strip():
         accept_deck(stat, message)

@@ -109,10 +109,13 @@ class LawValues(NamedTuple):
 
 
 class LawNumbers(NamedTuple):
-    """SI: units of gap and pressure, surface energy, and gaps; 0 where a law has no such gap."""
+    """SI: the law's own units and the separation that is gap 0 in them; surface energy;
+    separations of most tension and of zero pressure, NaN where there is none, and that beyond which
+    nothing is left of the repulsion."""
 
     length: float
     pressure_unit: float
+    origin: float
     surface_energy: float
     edge_gap: float
     rest_gap: float
@@ -275,8 +278,8 @@ def equilibrium(
     h0, scale = scalar("h0", h0), positive("scale", scale)
     if start is None:
         numbers = law_numbers(law)
-        rest = numbers.rest_gap / numbers.length or -np.inf
-        start = np.maximum(h0 + (scale * mesh.x) ** 2 / 2, rest)
+        rest = (numbers.rest_gap - numbers.origin) / numbers.length
+        start = np.fmax(h0 + (scale * mesh.x) ** 2 / 2, rest)
     start = as_long_as("start", start, mesh.x.size)
     on_change = displacement_tolerance is not None
     if on_change and method != "mixing":

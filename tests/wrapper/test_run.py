@@ -140,7 +140,7 @@ def test_a_mistake_in_a_file_is_told_with_its_name(tmp_path):
         ([CYCLE], TypeError),
         ("&bodies \ud800 /", ValueError),
         ("&bodies radius = 1\0 /", snapin.DeckError),
-        (snapin.deck_text(CYCLE) + "\0", snapin.DeckError),
+        (CURVE + "\0", snapin.DeckError),
         ("&" + " " * 2**21, snapin.DeckError),
         ({"bodies": None}, snapin.DeckError),
         ({"bodies": 3}, TypeError),
@@ -150,6 +150,7 @@ def test_a_mistake_in_a_file_is_told_with_its_name(tmp_path):
         ({"scene": {"title": "two\nlines"}}, ValueError),
         ({"scene": {"title": "\0"}}, ValueError),
     ],
+    ids=lambda value: repr(value)[:30],
 )
 def test_what_is_no_deck_is_refused(given, error):
     with pytest.raises(error):
@@ -196,6 +197,14 @@ def test_results_that_cannot_be_written_are_an_error(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(snapin.SnapinError, match="cannot make the folder"):
         snapin.run(CURVE, out=tmp_path / "file" / "folder")
+
+
+@pytest.mark.parametrize(("out", "error"), [("a\0", ValueError), (3, TypeError), (b"a", TypeError)])
+def test_what_is_no_folder_is_refused(out, error, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(error):
+        snapin.run(CURVE, out=out)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_program_says_nothing_unless_it_is_asked_to(capfd):
