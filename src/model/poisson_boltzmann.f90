@@ -28,8 +28,9 @@ module poisson_boltzmann
     real(wp) :: t(2) = 0, pressure = 0
   end type gap_state_t
 
-  !> Order of the quadrature on a piece of the gap, and the longest piece. The integrand is analytic
-  !> to a distance of about pi/2 from the real line, so that the error is far below rounding.
+  !> Order of the quadrature on a piece of the gap, and the longest piece where y' or y is small. The
+  !> integrand is analytic to a distance of about pi/2 from the real line there, and of 3/b where b,
+  !> below, is large; with pieces of 2/(1 + b/2) the error is below rounding.
   integer, parameter :: order = 16
   real(wp), parameter :: longest_piece = 2
 
@@ -65,7 +66,9 @@ contains
     logical, intent(out) :: solved
     !> Increment of the differences relative to the unknowns, and the last step: with differences of
     !> that quality one more has the accuracy of rounding.
-    real(wp), parameter :: increment = 1.0e-7_wp, last_step = 1.0e-8_wp
+    real(wp), parameter :: increment = 1.0e-7_wp, last_step = 1.0e-9_wp
+    !> A t that is less than so much of the other counts as that much.
+    real(wp), parameter :: negligible = 1.0e-3_wp
     integer, parameter :: most_steps = 60, most_halvings = 20
     real(wp) :: x(order), w(order), r(2), trial(2), jacobian(2, 2), step(2), t(2), scale, unit
     integer :: i, k
@@ -79,13 +82,13 @@ contains
       scale = maxval(abs(t))
       do k = 1, 2
         trial = t
-        trial(k) = t(k) + increment*merge(t(k), scale, abs(t(k)) > 1.0e-8_wp*scale)
+        trial(k) = t(k) + increment*max(abs(t(k)), negligible*scale)
         jacobian(:, k) = (residual(trial) - r)/(trial(k) - t(k))
       end do
       step = [r(1)*jacobian(2, 2) - r(2)*jacobian(1, 2), r(2)*jacobian(1, 1) - r(1)*jacobian(2, 1)]/ &
         (jacobian(1, 2)*jacobian(2, 1) - jacobian(1, 1)*jacobian(2, 2))
       if (.not. all(abs(step) < huge(step))) return
-      solved = all(abs(step) <= last_step*max(abs(t), 1.0e-3_wp*scale))
+      solved = all(abs(step) <= last_step*max(abs(t), negligible*scale))
       do k = 1, most_halvings
         trial = residual(t + step)
         if (solved .or. norm2(trial) < norm2(r)) exit
@@ -148,7 +151,7 @@ contains
       v = asinh(y/b)
       v = [v(2), v(1)]*sign(1.0_wp, s(1))
     end if
-    pieces = max(1, min(200, ceiling(abs(v(2) - v(1))/longest_piece)))
+    pieces = max(1, min(200, ceiling(abs(v(2) - v(1))*(1 + b/2)/longest_piece)))
     piece = (v(2) - v(1))/pieces
     gap = 0
     do i = 1, pieces
