@@ -17,7 +17,7 @@ module layer_table
   real(wp), parameter :: nearest_gap = 1.0e-6_wp
   !> Gap beyond which q is its limit to rounding: u ln u is 1e-16 there.
   real(wp), parameter :: farthest_gap = 40
-  !> Degree of a series, and the most that its last two coefficients may be of the largest; so much
+  !> Degree of a series, and the most that its last two coefficients may be of the pressure; so much
   !> is left to the rounding of the quadratures.
   integer, parameter :: degree = 18
   real(wp), parameter :: resolved = 1.0e-13_wp, tolerated = 1.0e-11_wp
@@ -34,9 +34,11 @@ module layer_table
     procedure :: values
   end type layer_table_t
 
-  !> The last two gaps that were solved, from which the next is extrapolated.
+  !> The last two gaps that were solved, from which the next is extrapolated; their number, and the
+  !> largest pressure met, without its sign.
   type :: trail_t
     integer :: length = 0
+    real(wp) :: largest = 0
     real(wp) :: u(2) = 0
     type(gap_state_t) :: state(2)
   end type trail_t
@@ -61,7 +63,9 @@ contains
       trial = trail
       call solve_panel(surface, first, last, trial, series, solved)
       rest = huge(rest)
-      if (solved) rest = maxval(abs(series(degree - 1:)))/maxval(abs(series))
+      ! Where the pressure vanishes, so much of the largest counts.
+      if (solved) rest = maxval(abs(series(degree - 1:)))/ &
+        max(maxval(abs(series)), trial%largest*sinh(u_at(last)))
       if (.not. rest <= resolved .and. span > shortest) then
         span = span/2
         cycle
@@ -94,7 +98,8 @@ contains
         state = next_state(surface, u(i), trail)
         call solve_gap(surface, u_at(u(i)), state, solved)
         if (.not. solved) return
-        trail = trail_t(min(trail%length + 1, 2), [u(i), trail%u(1)], [state, trail%state(1)])
+        trail = trail_t(min(trail%length + 1, 2), max(trail%largest, abs(state%pressure)), &
+          [u(i), trail%u(1)], [state, trail%state(1)])
       end if
       q(i) = trail%state(1)%pressure*sinh(u_at(u(i)))
     end do
