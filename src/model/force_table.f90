@@ -94,7 +94,7 @@ contains
     t = v - self%u(i)
     associate (c => self%cubic(:, i))
       integral = (self%u(i + 1) - u)* &
-        sum(self%w*(c(0) + t*(c(1) + t*(c(2) + t*c(3))))*exp(-self%energy_rate*v))
+        sum(self%w*(c(1) + t*(c(2) + t*(c(3) + t*c(4))))*exp(-self%energy_rate*v))
     end associate
     if (self%decay_length > 0) integral = integral*self%decay_length
   end function integral
@@ -110,21 +110,24 @@ contains
     if (gap < 1) then
       value(1) = self%pressure*gap**(-self%power)
       value(2) = -self%power*value(1)/gap
-      ! (g^(1 - n) - 1)/(n - 1), whose limit at n = 1 is -ln g.
+      ! The integral (g^(1 - n) - 1)/(n - 1), whose limit at n = 1 is -ln g.
       z = (1 - self%power)*log(gap)/2
-      if (abs(z) > epsilon(z)) z = sinh(z)*exp(z)/z
-      if (.not. abs(z) > epsilon(z)) z = 1
-      value(3) = self%energy - self%pressure*log(gap)*z
+      z = sign(max(abs(z), epsilon(z)), z)
+      value(3) = self%energy - self%pressure*log(gap)*exp(z)*sinh(z)/z
       return
     end if
     n = size(self%u)
     u = self%u_of(gap)
-    du = merge(1/self%decay_length, 1/gap, self%decay_length > 0)
-    ddu = merge(0.0_wp, -1/gap**2, self%decay_length > 0)
+    du = 1/gap
+    ddu = -1/gap**2
+    if (self%decay_length > 0) then
+      du = 1/self%decay_length
+      ddu = 0
+    end if
     i = piece_of(self%u, u)
     t = min(u, self%u(n)) - self%u(i)
     associate (c => self%cubic(:, i))
-      q = [c(0) + t*(c(1) + t*(c(2) + t*c(3))), c(1) + t*(2*c(2) + 3*t*c(3)), 2*c(2) + 6*t*c(3)]
+      q = [c(1) + t*(c(2) + t*(c(3) + t*c(4))), c(2) + t*(2*c(3) + 3*t*c(4)), 2*c(3) + 6*t*c(4)]
     end associate
     if (u >= self%u(n)) q(1:) = 0
     fall = exp(-self%rate*u)

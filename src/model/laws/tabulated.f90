@@ -146,8 +146,9 @@ contains
     end do
     this%fine = new_force_table(g, value, quantity == 'energy', exponent, decay_length, &
       interpolation == 'spline')
-    i = mod(n + 1, 2) + 1
-    this%coarse = new_force_table([1.0_wp, g(i + 2:n:2)], [value(1), value(i + 2:n:2)], &
+    ! The first and the last point stay.
+    i = 2 + mod(n, 2)
+    this%coarse = new_force_table([g(1), g(i:n:2)], [value(1), value(i:n:2)], &
       quantity == 'energy', exponent, decay_length, interpolation == 'spline')
     this%share = merge(share_of_spline, share_of_monotone, interpolation == 'spline')
     call take_scales(deck, this, error)
@@ -173,15 +174,13 @@ contains
     type(deck_t), intent(in) :: deck
     type(tabulated_t), intent(inout) :: this
     type(failure_t), allocatable, intent(inout) :: error
-    !> Below 1 the energy of contact would be finite; the numbers below are those of the Lennard-Jones
-    !> law for the ninth power.
-    real(wp), parameter :: lowest = 0
 
-    if (.not. this%fine%power > lowest) then
+    if (.not. this%fine%power > 0) then
       call deck%mistake('tabulated', 'file', 'the force does not grow towards the first gap, so ' // &
         'that it cannot be continued to smaller ones', error)
       return
     end if
+    ! For the ninth power these are the numbers of the Lennard-Jones law.
     this%smallest_gap = 10.0_wp**(-min(12.0_wp, 110/(this%fine%power + 1)))
     this%repulsion_length = 0.9_wp/max(this%fine%power, 1.0_wp)
     this%closure_fraction = 2.7_wp/max(this%fine%power, 9.0_wp)
