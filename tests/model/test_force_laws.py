@@ -12,7 +12,21 @@ LAWS = {
     "lennard_jones": snapin.lennard_jones(hamaker=1e-19, z0=0.5e-9),
     "exponential": snapin.exponential(p0=2.5e8, decay_length=0.2e-9),
     "morse": {"morse": {"surface_energy": 0.05, "z0": 3e-9, "decay_length": 0.2e-9}},
+    "van_der_waals": {"van_der_waals": {"hamaker": 1e-19, "retardation_length": 5e-9}},
+    "born": {"born": {"hamaker": 1e-19, "z0": 0.3e-9, "exponent": 12.0}},
+    "hydration": {"hydration": {"energy": 5e-3, "decay_length": 0.5e-9}},
+    "hydrophobic": {"hydrophobic": {"energy": 5e-2, "decay_length": 1e-9}},
+    "steric": {"steric": {"brush_thickness": 5e-9, "grafting_density": 1e16}},
+    "structural": {"structural": {"amplitude": 1e6, "period": 2e-9, "decay_length": 1e-9}},
+    "depletion": {"depletion": {"osmotic_pressure": 1e5, "diameter": 5e-9, "smoothing": 2e-9}},
+    "capillary": {"capillary": {"humidity": 0.5, "smoothing": 0.5e-9}},
+    "dugdale": {"dugdale": {"stress": 1e7, "range": 1e-9, "smoothing": 0.4e-9}},
 }
+# Separations at which a law is not smooth.
+KINKS = {"steric": [10e-9]}
+# Laws that end like an error function, faster than differences and quadrature can follow to the
+# last digit: what is left of them there is judged by their largest value.
+ENDING = {"depletion", "capillary", "dugdale"}
 PARTS = {"lennard_jones": ("full", "repulsive", "attractive")}
 ALL = [(law, part) for law in LAWS for part in PARTS.get(law, ("full",))]
 every_law = pytest.mark.parametrize(("law", "part"), ALL, ids="-".join)
@@ -63,12 +77,14 @@ def test_slope_is_the_derivative_of_the_pressure(law, part):
         abs(functions(law, part)(gap).slope)
         for part in (PARTS[law][1:] if part == "full" and law in PARTS else (part,))
     )
+    if law in ENDING:
+        size = abs(of(gap).slope).max()
     assert (abs(of(gap).slope - derivative) <= 1e-8 * size).all()
 
 
 @every_law
 def test_energy_is_the_integral_of_the_pressure(law, part):
-    of, gap = functions(law, part), gaps(law)
+    of, gap = functions(law, part), np.union1d(gaps(law), KINKS.get(law, []))
     x, w = np.polynomial.legendre.leggauss(30)
     low, high = gap[:-1], gap[1:]
     at = low[:, None] + (high - low)[:, None] * (x + 1) / 2
@@ -76,6 +92,8 @@ def test_energy_is_the_integral_of_the_pressure(law, part):
     integral = pressure @ (w / 2) * (high - low)
     energy = of(gap).energy
     size = abs(pressure) @ (w / 2) * (high - low) + np.abs(energy[:-1])
+    if law in ENDING:
+        size = abs(energy).max()
     assert (abs(energy[:-1] - energy[1:] - integral) <= 1e-13 * size).all()
     far = of([scales(law).origin + 1e8 * scales(law).length]).energy
     assert abs(far[0]) <= 1e-15 * abs(energy).max()
