@@ -37,6 +37,9 @@ module result_rows
     row_t('work_of_adhesion', 'J/m^2', &
       'energy needed to separate unit area from contact; negative: contact is metastable', &
       forces), &
+    row_t('table_error', '', &
+      'estimated error of work_of_adhesion, and so of the pull-off, from the points of a table, ' // &
+      'relative'), &
     row_t('rest_gap', 'm', 'innermost separation of no force', forces), &
     row_t('edge_gap', 'm', 'separation of largest tension', forces), &
     row_t('cohesive_stress', 'Pa', 'largest tension', forces), &
