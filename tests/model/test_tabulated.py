@@ -57,7 +57,8 @@ def test_slope_is_the_derivative_and_energy_the_integral(tmp_path, keys):
     around = [snapin.force_law(groups, middle + k * step).pressure for k in (-2, -1, 1, 2)]
     differences = (around[0] - 8 * around[1] + 8 * around[2] - around[3]) / (12 * step)
     size = np.max(np.abs(around), axis=0) / (high - low)
-    assert (abs(snapin.force_law(groups, middle).slope - differences) <= 1e-9 * size).all()
+    # The fourth power of the step, before the first point of a step of 2 % of the repulsion's length.
+    assert (abs(snapin.force_law(groups, middle).slope - differences) <= 2e-8 * size).all()
 
 
 @pytest.mark.parametrize("quantity", ["pressure", "energy"])
@@ -70,12 +71,11 @@ def test_points_are_met_and_nothing_jumps(tmp_path, interpolation, quantity):
     before, after = (snapin.force_law(groups, gap * (1 + e)) for e in (-1e-12, 1e-12))
     size = snapin.force_law(snapin.lennard_jones(hamaker=HAMAKER, z0=Z0, part="repulsive"), gap)
     for one, two, scale in zip(before, after, size, strict=True):
-        # Of the energy's monotone interpolant the slope of the pressure does jump.
+        # The curvature of a monotone interpolant jumps, which is in the slope where that of the
+        # energy is interpolated.
         if scale is size.slope and (interpolation, quantity) == ("monotone", "energy"):
             continue
-        if scale is size.slope and interpolation == "monotone":
-            continue
-        assert (abs(one - two) <= 1e-9 * (scale + abs(one))).all()
+        assert (abs(one - two) <= 1e-9 * (abs(scale) + abs(one))).all()
 
 
 @pytest.mark.parametrize(
@@ -139,17 +139,18 @@ def test_the_file_is_in_the_folder_of_the_deck(tmp_path, monkeypatch):
         snapin.law_numbers(groups)
 
 
+@pytest.mark.filterwarnings("ignore::snapin.SnapinWarning")
 def test_summary_tells_what_the_points_leave_open(tmp_path):
     bodies = {"radius": 1e-2, "stiffness": 1e10}
     path = {"bodies": bodies, "equilibrium_path": {"h0_end": 0.0}}
     exact = snapin.run({**path, **LAW}).summary
-    for a_decade in (10, 20):
-        with pytest.warns(snapin.SnapinWarning):
-            found = snapin.run({**path, **lennard_jones(tmp_path, a_decade)}).summary
+    # Of too few points the estimate is that of the worse table.
+    for a_decade, most in ((10, 10), (40, 2)):
+        found = snapin.run({**path, **lennard_jones(tmp_path, a_decade)}).summary
         error = abs(found["max_tension"] / exact["max_tension"] - 1)
-        assert error / 3 <= found["table_error"] <= 3 * error
-        warned = any("points of the table" in line for line in found["warnings"])
-        assert warned == (found["table_error"] > 1e-3)
+        assert error / 2 <= found["table_error"] <= most * error
+        warned = any("points of the table" in line for line in found.get("warnings", []))
+        assert warned == (found["table_error"] > 1e-3) == (a_decade == 10)
     assert "table_error" not in exact
 
 
@@ -162,7 +163,7 @@ def test_example_is_the_first_scene():
 
 # --- Mistakes
 
-GOOD = [f"{gap:.6e} {gap**-9 * 1e80 - gap**-3 * 1e20:.6e}" for gap in points(8)]
+GOOD = [f"{gap:.6e} {(Z0 / gap) ** 9 - (Z0 / gap) ** 3:.6e}" for gap in points(8)]
 
 
 @pytest.mark.parametrize(
@@ -208,6 +209,6 @@ def test_a_mistake_in_the_deck_is_named(tmp_path, keys, named):
 
 
 def test_a_force_that_ends_before_its_first_gap_cannot_be_continued(tmp_path):
-    gap = np.linspace(1e-9, 5e-9, 12)
+    gap = np.linspace(0.5e-9, 5e-9, 12)
     with pytest.raises(snapin.DeckError, match="does not grow towards the first gap"):
         snapin.law_numbers(table(tmp_path, gap, 1e6 * (gap / 1e-9) * np.exp(-gap / 1e-9)))
