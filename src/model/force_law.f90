@@ -24,8 +24,8 @@ module force_law
     real(wp) :: smallest_gap = -300
     !> Far away the pressure falls as gap^-tail_power; `huge` where it falls faster than any power.
     real(wp) :: tail_power = huge(1.0_wp)
-    !> Whether `length` and `pressure_unit` are scales of the force; else those of its well become the
-    !> units (`force_sum`).
+    !> Whether `length` and `pressure_unit` are scales of the force; else those of its well become
+    !> the units (`force_sum`).
     logical :: has_units = .true.
     !> Whether `length` is the z0 of a law of powers, in which the field gives sigma and Tabor's
     !> parameter; else it is the range, surface energy over largest tension.

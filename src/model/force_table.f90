@@ -1,8 +1,8 @@
 !> A force that is known at points only. Interpolated is the pressure, or the energy, over its tail:
-!> q = p g^m as a function of u = ln g where the pressure ends as a power, q = p exp(u) of u = g/l where
-!> it ends as an exponential, the gap g being in units of the first. The energy is the integral of that
-!> interpolant, or the pressure its derivative. Beyond the last point q is constant; before the first
-!> the pressure is the power of the gap that goes on with value and slope there.
+!> q = p g^m as a function of u = ln g where the pressure ends as a power, q = p exp(u) of u = g/l
+!> where it ends as an exponential, the gap g being in units of the first. The energy is that of the
+!> interpolant, or the pressure its derivative. Beyond the last point q is constant; before
+!> the first the pressure is the power of the gap that goes on with value and slope there.
 module force_table
   use kinds, only: wp
   use cubic, only: spline, monotone
@@ -127,7 +127,8 @@ contains
     i = piece_of(self%u, u)
     t = min(u, self%u(n)) - self%u(i)
     associate (c => self%cubic(:, i))
-      q = [c(1) + t*(c(2) + t*(c(3) + t*c(4))), c(2) + t*(2*c(3) + 3*t*c(4)), 2*c(3) + 6*t*c(4)]
+      q = [c(1) + t*(c(2) + t*(c(3) + t*c(4))), c(2) + t*(2*c(3) + 3*t*c(4)), &
+        2*c(3) + 6*t*c(4)]
     end associate
     if (u >= self%u(n)) q(1:) = 0
     fall = exp(-self%rate*u)
@@ -144,7 +145,7 @@ contains
     end if
   end function values
 
-  !> The piece between neighbours of the ascending x in which `at` lies, the last for what is beyond.
+  !> The piece between neighbours of the ascending x that holds `at`; the last for what is beyond.
   pure integer function piece_of(x, at) result(low)
     real(wp), intent(in) :: x(:), at
     integer :: high, middle

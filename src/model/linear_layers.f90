@@ -20,8 +20,8 @@ contains
     real(wp) :: value(3)
     real(wp) :: y(2), p(2), sense, x, d, ab, g, mixed, top, top_slope, bottom
 
-    ! Changing the sign of one potential and p into 1 - p only changes that of the pressure. The form
-    ! below loses no digits at small gaps where both p are small; here one is, or both.
+    ! Changing the sign of one potential, and p into 1 - p, only changes the sign of the pressure.
+    ! The form below loses no digits at small gaps where both p are small; they sum to 1 at most.
     y = surface%potential
     p = surface%regulation
     sense = 1

@@ -2,8 +2,8 @@
 !> y'' = sinh y. Potentials y are in kT/(z e), gaps in Debye lengths, pressures in 2 n kT, the
 !> osmotic pressure of the bulk.
 !>
-!> Its first integral, y'^2 = 2 (cosh y - 1 - P), holds the pressure P, so that the gap is an integral
-!> over y of 1/y'. It is attractive, P < 0, where the electric field vanishes nowhere.
+!> Its first integral, y'^2 = 2 (cosh y - 1 - P), holds the pressure P, and the gap is an integral
+!> of 1/y' over y. The force is attractive, P < 0, where the electric field vanishes nowhere.
 !>
 !> A surface that regulates its charge, p = 1 constant charge, p = 0 constant potential, keeps
 !> p (s - s0) + (1 - p) cosh(y0/2) (y - y0) = 0, s being the slope of y towards the surface, y0 and
@@ -28,9 +28,9 @@ module poisson_boltzmann
     real(wp) :: t(2) = 0, pressure = 0
   end type gap_state_t
 
-  !> Order of the quadrature on a piece of the gap, and the longest piece where y' or y is small. The
-  !> integrand is analytic to a distance of about pi/2 from the real line there, and of 3/b where b,
-  !> below, is large; with pieces of 2/(1 + b/2) the error is below rounding.
+  !> Order of the quadrature on a piece of the gap, and the longest piece where y and y' are small.
+  !> The integrand is analytic to a distance of about pi/2 from the real line there, and of 3/b where
+  !> b, below, is large; with pieces of 2/(1 + b/2) the error is below rounding.
   integer, parameter :: order = 16
   real(wp), parameter :: longest_piece = 2
 
@@ -85,8 +85,9 @@ contains
         trial(k) = t(k) + increment*max(abs(t(k)), negligible*scale)
         jacobian(:, k) = (residual(trial) - r)/(trial(k) - t(k))
       end do
-      step = [r(1)*jacobian(2, 2) - r(2)*jacobian(1, 2), r(2)*jacobian(1, 1) - r(1)*jacobian(2, 1)]/ &
-        (jacobian(1, 2)*jacobian(2, 1) - jacobian(1, 1)*jacobian(2, 2))
+      step = [r(2)*jacobian(1, 2) - r(1)*jacobian(2, 2), &
+        r(1)*jacobian(2, 1) - r(2)*jacobian(1, 1)]/ &
+        (jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))
       if (.not. all(abs(step) < huge(step))) return
       solved = all(abs(step) <= last_step*max(abs(t), negligible*scale))
       do k = 1, most_halvings

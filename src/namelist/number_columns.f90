@@ -1,5 +1,5 @@
-!> A text file of two columns of numbers. Blanks, tabs, commas or semicolons stand between them; what
-!> follows a # is a comment.
+!> A text file of two columns of numbers. Blanks, tabs, commas or semicolons stand between them;
+!> what follows a # is a comment.
 module number_columns
   use kinds, only: wp
   use failure, only: failure_t

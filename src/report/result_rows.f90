@@ -38,8 +38,7 @@ module result_rows
       'energy needed to separate unit area from contact; negative: contact is metastable', &
       forces), &
     row_t('table_error', '', &
-      'estimated error of work_of_adhesion, and so of the pull-off, from the points of a table, ' // &
-      'relative'), &
+      'estimated relative error of work_of_adhesion and pull-off from the points of a table'), &
     row_t('rest_gap', 'm', 'innermost separation of no force', forces), &
     row_t('edge_gap', 'm', 'separation of largest tension', forces), &
     row_t('cohesive_stress', 'Pa', 'largest tension', forces), &

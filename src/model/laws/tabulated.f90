@@ -1,4 +1,4 @@
-!> A force law from a file: gaps and pressures, or energies per area, measured or computed elsewhere.
+!> A force law from a file: gaps and pressures or energies per area, measured or computed elsewhere.
 module tabulated
   use kinds, only: wp
   use failure, only: failure_t
@@ -140,8 +140,8 @@ contains
     decay_length = decay_length/this%length
     do i = 1, n - 1
       if (.not. fall(g(i), g(i + 1)) > largest_step) cycle
-      call deck%mistake('tabulated', 'file', 'from one point of the table to the next the tail ' // &
-        'falls by more than exp(-10)', error)
+      call deck%mistake('tabulated', 'file', 'from one point of the table to the next the ' // &
+        'tail falls by more than exp(-10)', error)
       return
     end do
     this%fine = new_force_table(g, value, quantity == 'energy', exponent, decay_length, &
@@ -176,8 +176,8 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
 
     if (.not. this%fine%power > 0) then
-      call deck%mistake('tabulated', 'file', 'the force does not grow towards the first gap, so ' // &
-        'that it cannot be continued to smaller ones', error)
+      call deck%mistake('tabulated', 'file', 'the force does not grow towards the first gap, ' // &
+        'so that it cannot be continued to smaller ones', error)
       return
     end if
     ! For the ninth power these are the numbers of the Lennard-Jones law.
