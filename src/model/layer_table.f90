@@ -1,8 +1,8 @@
 !> The pressure of the nonlinear double layer as a table, made once. With u = -ln tanh(h/2), which
 !> is -ln(h/2) at small gaps h and 2 exp(-h) at large ones, q = p sinh h varies slowly over the
-!> decades of u and is constant far away, but for terms like u ln u. On panels of u it is a Chebyshev
-!> series. Since du = -dh/sinh h, the energy is the integral of q over u: that of the series, exactly,
-!> as the slope is its derivative.
+!> decades of u and is constant far away, but for terms like u ln u. On panels of u it is a
+!> Chebyshev series. Since du = -dh/sinh h, the energy is the integral of q over u: that of the
+!> series, exactly, as the slope is its derivative.
 module layer_table
   use kinds, only: wp
   use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &

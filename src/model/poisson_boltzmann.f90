@@ -29,8 +29,8 @@ module poisson_boltzmann
   end type gap_state_t
 
   !> Order of the quadrature on a piece of the gap, and the longest piece where y and y' are small.
-  !> The integrand is analytic to a distance of about pi/2 from the real line there, and of 3/b where
-  !> b, below, is large; with pieces of 2/(1 + b/2) the error is below rounding.
+  !> The integrand is analytic to a distance of about pi/2 from the real line there, and of 3/b
+  !> where b, below, is large; with pieces of 2/(1 + b/2) the error is below rounding.
   integer, parameter :: order = 16
   real(wp), parameter :: longest_piece = 2
 

@@ -57,7 +57,7 @@ def test_slope_is_the_derivative_and_energy_the_integral(tmp_path, keys):
     around = [snapin.force_law(groups, middle + k * step).pressure for k in (-2, -1, 1, 2)]
     differences = (around[0] - 8 * around[1] + 8 * around[2] - around[3]) / (12 * step)
     size = np.max(np.abs(around), axis=0) / (high - low)
-    # The fourth power of the step, before the first point of a step of 2 % of the repulsion's length.
+    # The fourth power of the step: 2 % of the repulsion's length before the first point.
     assert (abs(snapin.force_law(groups, middle).slope - differences) <= 2e-8 * size).all()
 
 
@@ -131,7 +131,8 @@ def test_order_commas_and_comments_are_as_one_likes(tmp_path):
 def test_the_file_is_in_the_folder_of_the_deck(tmp_path, monkeypatch):
     groups = lennard_jones(tmp_path)
     groups["tabulated"]["file"] = "law.txt"
-    deck = {"bodies": {"radius": 1e-2, "rigid": True}, **groups, "classical": {"h0_start": 1e-9, "h0_end": 0.0}}
+    bodies = {"radius": 1e-2, "rigid": True}
+    deck = {"bodies": bodies, **groups, "classical": {"h0_start": 1e-9, "h0_end": 0.0}}
     (tmp_path / "deck.nml").write_text(snapin.deck_text(deck))
     monkeypatch.chdir(tmp_path.parent)
     assert snapin.run(tmp_path / "deck.nml").summary["surface_energy"] > 0
@@ -155,7 +156,8 @@ def test_summary_tells_what_the_points_leave_open(tmp_path):
 
 
 def test_example_is_the_first_scene():
-    first, found = (snapin.run(ROOT / "inputs" / name).summary for name in ("first.nml", "tabulated.nml"))
+    names = "first.nml", "tabulated.nml"
+    first, found = (snapin.run(ROOT / "inputs" / name).summary for name in names)
     for key in ("max_tension", "jump_in_h0", "jump_out_h0"):
         assert found[key] == pytest.approx(first[key], rel=3e-5)
     assert 1e-6 < found["table_error"] < 1e-5
