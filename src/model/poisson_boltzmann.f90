@@ -8,9 +8,9 @@
 !> A surface that regulates its charge, p = 1 constant charge, p = 0 constant potential, keeps
 !> p (s - s0) + (1 - p) cosh(y0/2) (y - y0) = 0, s being the slope of y towards the surface, y0 and
 !> s0 = 2 sinh(y0/2) those of the surface alone: the charge of the inner layer is linear in the
-!> potential, and p = C_D/(C_D + C_I) the share of the diffuse layer's capacity cosh(y0/2) (constant
-!> regulation; Trefalt, Szilagyi and Borkovec 2016). Along that line y = y0 + p t and
-!> s = s0 - (1 - p) cosh(y0/2) t. Unknown are the two t.
+!> potential, and p = C_D/(C_D + C_I) the share of the diffuse layer's capacity cosh(y0/2) (the
+!> constant regulation approximation, J. Phys. Chem. B 108, 19467, 2004). Along that line
+!> y = y0 + p t and s = s0 - (1 - p) cosh(y0/2) t. Unknown are the two t.
 module poisson_boltzmann
   use kinds, only: wp
   use quadrature, only: gauss_legendre
