@@ -3,9 +3,8 @@
 !> For all flat modules: scalars, arrays of explicit shape with their sizes last, and for every
 !> procedure that may refuse its arguments `stat` (0, or the kind of `failure`) and `message`. No
 !> derived types, no optional arguments, no decisions: those live in the library, and the checks of
-!> shape and value in the Python package above. Kinds are those of C, which f2py knows; the length of
-!> `message` must be a literal for the same reason. A deck is its text, since gfortran passes over
-!> blanks at the end of a file's name.
+!> shape and value in the Python package above. Kinds are those of C, which f2py knows; the length
+!> of `message` must be a literal for the same reason. A deck is its text.
 !>
 !> Nothing is kept from call to call. f2py holds Python's global lock, so that calls do not overlap;
 !> they must not (no `threadsafe`), since gfortran keeps lengths of intermediate strings in static
@@ -56,10 +55,10 @@ contains
     if (row > 0) list = merge(1_c_int, 0_c_int, rows(row)%list)
   end subroutine is_list
 
-  !> The force law of a deck: pressure [Pa], its derivative by the separation [Pa/m] and its integral
-  !> from there to infinity [J/m^2], at separations `gap` [m]. numbers: units of gap [m] and pressure
-  !> [Pa], separation that is gap 0 [m], surface energy [J/m^2], separations of maximum tension, of
-  !> zero pressure and of vanishing repulsion [m]; NaN where there is none.
+  !> The force law of a deck: pressure [Pa], its derivative by the separation [Pa/m] and its
+  !> integral from there to infinity [J/m^2], at separations `gap` [m]. numbers: units of gap [m]
+  !> and pressure [Pa], separation that is gap 0 [m], surface energy [J/m^2], separations of maximum
+  !> tension, of zero pressure and of vanishing repulsion [m]; NaN where there is none.
   subroutine law_values(deck, gap, pressure, slope, energy, numbers, stat, message, n)
     use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
     use deck_problem, only: pose

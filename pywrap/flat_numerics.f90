@@ -105,12 +105,9 @@ contains
   subroutine equilibrium_state(deck, coupling, kind, centre, panel_end, order, scale, h0, start, &
     method, tolerance, most_iterations, depth, patience, mixing_limit, stop_on_change, &
     displacement_tolerance, gap, pressure, numbers, counts, stat, message, m)
-    use anderson, only: frozen_jacobian_t
     use deck_problem, only: pose
-    use discretisation, only: discretisation_t
-    use equilibrium, only: control_t, cost_t, state_t, at_h0, state_from
-    use dimensionless_problem, only: problem_t
-    use solver, only: solve_state
+    use equilibrium, only: control_t, state_t, at_h0, state_from
+    use solver, only: solver_t
     use solver_options, only: solver_options_t
     character(len=*), intent(in) :: deck, kind, method
     integer(c_int), intent(in) :: order, most_iterations, depth, patience, stop_on_change, m
@@ -120,35 +117,30 @@ contains
     real(c_double), intent(out) :: gap(order*(m - 1)), pressure(order*(m - 1)), numbers(3)
     integer(c_int), intent(out) :: counts(4), stat
     character(len=16000), intent(out) :: message
-    type(problem_t) :: problem
-    type(discretisation_t) :: mesh
-    type(solver_options_t) :: options
-    type(frozen_jacobian_t) :: frozen
+    type(solver_t) :: this
     type(state_t) :: state
-    type(cost_t) :: cost
     logical :: met
 
     gap = 0
     pressure = 0
     numbers = 0
     counts = 0
-    call pose(deck, problem, stat, message)
+    call pose(deck, this%problem, stat, message)
     if (stat /= 0) return
-    problem%coupling = coupling
-    problem%rigid = .not. coupling > 0
-    call make_mesh(kind, centre, panel_end, order, .not. problem%rigid, mesh)
-    options = solver_options_t(method=method, tolerance=tolerance, depth=depth, &
+    this%problem%coupling = coupling
+    this%problem%rigid = .not. coupling > 0
+    call make_mesh(kind, centre, panel_end, order, coupling > 0, this%pair%grid(1))
+    this%options = solver_options_t(method=method, tolerance=tolerance, depth=depth, &
       patience=patience, most_iterations=most_iterations, mixing_limit=mixing_limit, &
       stop_on_change=stop_on_change /= 0, displacement_tolerance=displacement_tolerance)
-    state = state_from(mesh%nodes)
+    state = state_from(this%pair%grid(1)%nodes)
     state%gap = start
-    call solve_state(problem, mesh, control_t(kind=at_h0, value=h0, scale=scale), options, frozen, &
-      state, met, cost)
+    call this%solve(control_t(kind=at_h0, value=h0, scale=scale), state, met)
     gap = state%gap
     pressure = state%pressure
     numbers = [state%axis_gap, state%load, state%residual]
-    counts = int([merge(1, 0, met), int(cost%operator_products), int(cost%factorisations), &
-      int(cost%rejected_steps)], c_int)
+    counts = int([merge(1, 0, met), int(this%cost%operator_products), &
+      int(this%cost%factorisations), int(this%cost%rejected_steps)], c_int)
   end subroutine equilibrium_state
 
   !> The mesh of this description.

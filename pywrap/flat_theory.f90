@@ -12,8 +12,8 @@ contains
   !> 'radius at load', 'radius at displacement' or 'radius at edge_ratio', x being these; 'load' and
   !> 'displacement' at contact radii x; 'pressure' and 'gap' at distances x from the axis for the
   !> contact radius `a`; 'load at displacement' on the branch that is stable at fixed displacement;
-  !> 'pull_off at load' and 'pull_off at displacement', whatever x. What a theory does not use has no
-  !> meaning.
+  !> 'pull_off at load' and 'pull_off at displacement', whatever x. What a theory does not use has
+  !> no meaning.
   subroutine classical_values(theory, quantity, x, a, radius, stiffness, surface_energy, strength, &
     y, stat, n)
     use classical, only: dmt_load, dmt_load_at_displacement, dmt_pull_off, dmt_radius_at_load, &
@@ -80,8 +80,9 @@ contains
     edge_ratio = maugis_edge_ratio(a, radius, stiffness, surface_energy, strength)
   end subroutine maugis_numbers
 
-  !> Displacement [m], its derivative by the gap, and load [N] of a deck's bodies at gaps on the axis
-  !> [m], for slowly varying deformation. form: 'quadrature', 'closed_form' or 'attraction_only'.
+  !> Displacement [m], its derivative by the gap, and load [N] of a deck's bodies at gaps on the
+  !> axis [m], for slowly varying deformation. form: 'quadrature', 'closed_form' or
+  !> 'attraction_only'.
   subroutine slow_states(deck, form, gap, displacement, slope, load, stat, message, n)
     use deck_problem, only: pose
     use dimensionless_problem, only: problem_t

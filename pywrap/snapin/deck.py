@@ -35,8 +35,8 @@ def deck_of(deck):
 def deck_text(groups):
     """Return the text of a deck, one key a line.
 
-    `groups` maps names of groups to dictionaries of their keys. True is a group without any; None is
-    left out, as a group and as the value of a key.
+    `groups` maps names of groups to dictionaries of their keys. True is a group without any; None
+    is left out, as a group and as the value of a key.
     """
     if not isinstance(groups, Mapping):
         raise TypeError(f"deck: a dictionary of groups is needed, not {shown(groups)}")
@@ -85,7 +85,7 @@ def _quoted(name, text):
 
 
 def accept_deck(stat, message):
-    """Raise what the library reported of a deck; `stat` is 0, or the kind in src/base/failure.f90."""
+    """Raise what the library reported of a deck; `stat` is 0 or a kind of src/base/failure.f90."""
     if stat:
         text = message.decode(errors="replace").rstrip()
         raise DeckError(text) if stat == _BAD_INPUT else SnapinError(text)

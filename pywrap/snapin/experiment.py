@@ -17,7 +17,7 @@ from .deck import accept_deck, deck_of, scene
 from .results import Result, read_results
 
 _NO_CONVERGENCE = 2
-# By how much of a step the steps of h0 may differ: a hundred times what linspace leaves.
+# By how much of a step the steps of h0 may differ: what the program takes for a whole step.
 _EQUAL = 1e-6
 
 
@@ -127,7 +127,7 @@ def force_curve(h0, *, radius, stiffness=None, law, rigid=False, **numerics):
     """Return the `ForceCurve` through the separations `h0` [m], in the order of the experiment.
 
     They fall in equal steps, as a &loading does; then they may rise in equal steps, as an
-    &unloading does, from the last of them or from one step above. Any other experiment is for `run`.
+    &unloading does, from the last of them or from one step above. Other experiments are for `run`.
 
     `radius`, `stiffness` and `rigid` are keys of &bodies, `law` the groups of a force law such as
     `lennard_jones` returns, and `numerics` keys of &numerics: accuracy, method, grid and so on.
@@ -162,7 +162,7 @@ def equilibrium_path(
 
 
 def _schedule(h0):
-    """Return the groups &loading and &unloading for these h0, and whether the least is twice there."""
+    """Return the groups &loading and &unloading for these h0, and whether the least is repeated."""
     if h0.size < 2:
         raise ValueError(f"h0: at least 2 values are needed, not {h0.size}")
     least = int(np.argmin(h0))

@@ -1,8 +1,8 @@
 """Kernel, quadrature, force laws, meshes, and one state of equilibrium.
 
 Kernel, quadrature and meshes have no units. Force laws are in SI. A state of equilibrium is in the
-units of src/model/dimensionless_problem.f90: gaps in the law's length, lateral positions in sqrt(R length), pressures
-in the law's unit, loads in that unit times R length.
+units of src/model/dimensionless_problem.f90: gaps in the law's length, lateral positions in
+sqrt(R length), pressures in the law's unit, loads in that unit times R length.
 """
 
 from dataclasses import dataclass, field

@@ -69,15 +69,15 @@ module result_rows
     row_t('jump_out_uncertainty', 'm', &
       'on a fixed grid: h0 of the jump is known to within plus or minus this'), &
     row_t('unload_from', 'm', 'turning point of each unloading', list=.true.), &
-    row_t('unload_max_tension', 'N', &
-      'largest tension of each unloading, positive', turning, list=.true.), &
-    row_t('unload_max_tension_h0', 'm', &
-      'h0 at the largest tension of each unloading', list=.true.), &
+    row_t('unload_max_tension', 'N', 'largest tension of each unloading, positive', turning, &
+      list=.true.), &
+    row_t('unload_max_tension_h0', 'm', 'h0 at the largest tension of each unloading', &
+      list=.true.), &
     row_t('unload_jump_out_h0', 'm', &
       'h0 at which the bodies jump apart in each unloading', turning, list=.true.), &
     row_t('unload_max_tension_error', 'N', 'estimated error of unload_max_tension', list=.true.), &
-    row_t('unload_max_tension_h0_error', 'm', &
-      'estimated error of unload_max_tension_h0', list=.true.), &
+    row_t('unload_max_tension_h0_error', 'm', 'estimated error of unload_max_tension_h0', &
+      list=.true.), &
     row_t('unload_jump_out_h0_error', 'm', 'estimated error of unload_jump_out_h0', list=.true.), &
     row_t('folds_h0', 'm', 'h0 of every fold of the path, in order', list=.true.), &
     row_t('folds_load', 'N', 'load at every fold of the path', list=.true.), &

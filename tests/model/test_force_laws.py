@@ -38,11 +38,10 @@ KINKS = {"steric": [10e-9]}
 ENDING = {"depletion", "capillary", "dugdale"}
 PARTS = {"lennard_jones": ("full", "repulsive", "attractive")}
 ALL = [(law, part) for law in LAWS for part in PARTS.get(law, ("full",))]
-every_law = pytest.mark.parametrize(("law", "part"), ALL, ids="-".join)
+every_law = pytest.mark.parametrize(("law", "part"), ALL, ids=map("-".join, ALL))
 # A table is smooth between its points only (test_tabulated.py).
-every_formula = pytest.mark.parametrize(
-    ("law", "part"), [pair for pair in ALL if pair[0] != "tabulated"], ids="-".join
-)
+FORMULAS = [pair for pair in ALL if pair[0] != "tabulated"]
+every_formula = pytest.mark.parametrize(("law", "part"), FORMULAS, ids=map("-".join, FORMULAS))
 
 Z0, HAMAKER = 0.5e-9, 1e-19
 
