@@ -6,6 +6,7 @@ module branch_summary
   use text, only: brief
   use experiment_result, only: experiment_result_t
   use stepped_branch, only: branch_t
+  use ending_text, only: text_of
   use summary, only: summary_t
   use summary_entries, only: take_jump, take_profiles, raise_tension, widen_spacing, &
     h0_of, load_of, h0_error_of, load_error_of
@@ -56,8 +57,8 @@ contains
         short_number(problem%law%separation_of(branch%first_unconverged))// &
         ' m; the largest residual is '// &
         short_number(branch%worst_residual)//' lengths of the force law')
-    if (branch%reason /= '') &
-      call summary%fail_with(name//' ended early: '//trim(branch%reason))
+    if (branch%ending%early()) &
+      call summary%fail_with(name//' ended early: '//trim(text_of(branch%ending)))
   end subroutine take_branch
 
   !> One value an unloading: its largest tension, and where it jumps apart.

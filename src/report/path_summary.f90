@@ -4,6 +4,7 @@ module path_summary
   use dimensionless_problem, only: problem_t
   use reported, only: reported_t
   use path, only: path_t
+  use ending_text, only: text_of
   use summary, only: summary_t
   use summary_entries, only: take_jump, take_profiles, raise_tension, widen_spacing, h0_of, &
     load_of, h0_error_of, load_error_of
@@ -22,7 +23,7 @@ contains
 
     call summary%set('worst_residual', max(summary%number('worst_residual'), path%worst_residual))
     call widen_spacing(summary, path%worst_spacing)
-    if (path%reason /= '') call summary%fail_with('path: '//trim(path%reason))
+    if (path%ending%early()) call summary%fail_with('path: '//trim(text_of(path%ending)))
     if (path%fallen) call summary%warn('path: nothing keeps the bodies apart under this law: '// &
       'the path ends in their fall onto each other, and there is no state in contact')
     if (allocated(path%lowest)) then

@@ -61,12 +61,14 @@ contains
   !> Whether every branch came to its end.
   pure logical function ended_as_planned(outcome) result(ended)
     type(experiment_result_t), intent(in) :: outcome
+    logical :: early
 
-    ended = .true.
-    if (allocated(outcome%path)) ended = outcome%path%reason == ''
-    if (allocated(outcome%stepped_path)) ended = ended .and. outcome%stepped_path%reason == ''
-    if (allocated(outcome%loading)) ended = ended .and. outcome%loading%reason == ''
-    if (allocated(outcome%unloading)) ended = ended .and. all(outcome%unloading%reason == '')
+    early = .false.
+    if (allocated(outcome%path)) early = outcome%path%ending%early()
+    if (allocated(outcome%stepped_path)) early = early .or. outcome%stepped_path%ending%early()
+    if (allocated(outcome%loading)) early = early .or. outcome%loading%ending%early()
+    if (allocated(outcome%unloading)) early = early .or. any(outcome%unloading%ending%early())
+    ended = .not. early
   end function ended_as_planned
 
   !> What follows from the deck alone.
