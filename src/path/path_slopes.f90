@@ -2,9 +2,9 @@
 module path_slopes
   use kinds, only: wp, pi
   use equilibrium, only: control_t, state_t, equations_t, at_edge_radius, load_reach
-  use jacobian, only: factorise_jacobian, control_derivative
+  use jacobian, only: control_derivative
   use linear_algebra, only: solve
-  use anderson, only: frozen_jacobian_t
+  use frozen_jacobian, only: frozen_jacobian_t, freeze
   implicit none
   private
   public :: slopes_along_path
@@ -26,8 +26,7 @@ contains
     integer :: n
 
     n = size(state%gap)
-    call factorise_jacobian(equations, control, state, frozen%factors)
-    frozen%control_kind = control%kind
+    call freeze(equations, control, state, frozen)
     h0_slope = 0
     load_slope = 0
     found = frozen%factors%valid
