@@ -14,6 +14,7 @@ module flat_numerics
   public :: kernel_values, gauss_rule, panel_integrals
   public :: law_values, law_numbers
   public :: mesh_nodes, mesh_matrix, mesh_interpolation
+  public :: mapped_nodes, mapped_matrix, mapped_interpolation
   public :: equilibrium_state
 
 contains
@@ -167,6 +168,58 @@ contains
       found(i) = mesh%interpolate(values, at(i))
     end do
   end subroutine mesh_interpolation
+
+  !> Nodes of a mesh mapped by sinh (`mapped_mesh`), and the weights of integral f x dx.
+  subroutine mapped_nodes(centre, d, inner, order, z_length, tail_order, decay, digits, x, weight, &
+    panels, nodes)
+    use discretisation, only: discretisation_t
+    use mapped_mesh, only: rule_table_t, new_mapped_mesh
+    integer(c_int), intent(in) :: panels, nodes, inner, order(panels), tail_order
+    real(c_double), intent(in) :: centre, d, z_length(panels), decay, digits
+    real(c_double), intent(out) :: x(nodes), weight(nodes)
+    type(discretisation_t) :: mesh
+    type(rule_table_t) :: rules
+
+    call new_mapped_mesh(centre, d, inner, order, z_length, tail_order, decay, digits, .false., &
+      rules, mesh)
+    x = mesh%x
+    weight = mesh%weight
+  end subroutine mapped_nodes
+
+  !> The kernel's matrix: rows for the axis, for the mesh's centre, and for the nodes.
+  subroutine mapped_matrix(centre, d, inner, order, z_length, tail_order, decay, digits, matrix, &
+    panels, nodes)
+    use discretisation, only: discretisation_t
+    use mapped_mesh, only: rule_table_t, new_mapped_mesh
+    integer(c_int), intent(in) :: panels, nodes, inner, order(panels), tail_order
+    real(c_double), intent(in) :: centre, d, z_length(panels), decay, digits
+    real(c_double), intent(out) :: matrix(nodes + 2, nodes)
+    type(discretisation_t) :: mesh
+    type(rule_table_t) :: rules
+
+    call new_mapped_mesh(centre, d, inner, order, z_length, tail_order, decay, digits, .true., &
+      rules, mesh)
+    matrix = mesh%kernel
+  end subroutine mapped_matrix
+
+  !> Values at positions `at` of the function with the given values at the nodes, bounded far away.
+  subroutine mapped_interpolation(centre, d, inner, order, z_length, tail_order, values, at, found, &
+    panels, nodes, n)
+    use discretisation, only: discretisation_t
+    use mapped_mesh, only: rule_table_t, new_mapped_mesh
+    integer(c_int), intent(in) :: panels, nodes, n, inner, order(panels), tail_order
+    real(c_double), intent(in) :: centre, d, z_length(panels), values(nodes), at(n)
+    real(c_double), intent(out) :: found(n)
+    type(discretisation_t) :: mesh
+    type(rule_table_t) :: rules
+    integer :: i
+
+    call new_mapped_mesh(centre, d, inner, order, z_length, tail_order, 1.0_c_double, 1.0_c_double, &
+      .false., rules, mesh)
+    do i = 1, n
+      found(i) = mesh%interpolate(values, at(i))
+    end do
+  end subroutine mapped_interpolation
 
   !> One state at a prescribed H0, in the units of `dimensionless_problem`, on a mesh enlarged
   !> `scale` times, from the gaps `start`. converged, stop_on_change: 0 or 1. A state that did not
