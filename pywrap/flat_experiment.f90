@@ -251,20 +251,18 @@ contains
   !> defaults of a deck.
   subroutine make_scene(law, part, hamaker, z0, p0, decay_length, radius, stiffness, rigid, &
     method, grid, accuracy, nodes, r_max, scene)
+    use law_by_name, only: make_law
     use scene_groups, only: bodies_t, scene_t
     character(len=*), intent(in) :: law, part, method, grid
     integer(c_int), intent(in) :: rigid, nodes
     real(c_double), intent(in) :: hamaker, z0, p0, decay_length, radius, stiffness, accuracy, r_max
     type(scene_t), intent(out) :: scene
+    integer(c_int) :: stat
+    character(len=200) :: message
 
     scene%title = ''
     scene%bodies = bodies_t(radius=radius, stiffness=stiffness, rigid=rigid /= 0)
-    scene%force%law = trim(law)
-    scene%force%part = trim(part)
-    scene%force%hamaker = hamaker
-    scene%force%z0 = z0
-    scene%force%p0 = p0
-    scene%force%decay_length = decay_length
+    call make_law(law, part, hamaker, z0, p0, decay_length, scene%law, stat, message)
     associate (numerics => scene%numerics)
       numerics%method = trim(method)
       numerics%grid = trim(grid)

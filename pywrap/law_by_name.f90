@@ -4,7 +4,8 @@ module law_by_name
   use failure, only: bad_input
   use force_law, only: force_law_t
   use kinds, only: wp
-  use laws, only: law_parameters_t, new_law
+  use exponential, only: new_exponential
+  use lennard_jones, only: new_lennard_jones
   implicit none
   private
   public :: make_law
@@ -21,11 +22,15 @@ contains
 
     stat = 0
     message = ''
-    call new_law(law_parameters_t(law=trim(name), part=trim(part), hamaker=hamaker, z0=z0, p0=p0, &
-      decay_length=decay_length), law)
-    if (allocated(law)) return
-    stat = bad_input
-    message = 'law: there is no "'//trim(name)//'"'
+    select case (name)
+    case ('lennard_jones')
+      allocate (law, source=new_lennard_jones(hamaker, z0, trim(part)))
+    case ('exponential')
+      allocate (law, source=new_exponential(p0, decay_length))
+    case default
+      stat = bad_input
+      message = 'law: there is no "'//trim(name)//'"'
+    end select
   end subroutine make_law
 
 end module law_by_name

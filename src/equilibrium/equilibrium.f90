@@ -153,7 +153,7 @@ contains
     pure real(wp) function limit(gap, step)
       real(wp), intent(in) :: gap(:), step(:)
 
-      limit = min(1.0_wp, minval((problem%law%closure_fraction*gap + problem%law%closure_length)/ &
+      limit = min(1.0_wp, minval(problem%law%closure(gap)/ &
         max(-step, tiny(1.0_wp)*max(1.0_wp, abs(gap)))))
     end function limit
 

@@ -148,15 +148,15 @@ contains
     type(experiment_result_t), intent(inout) :: outcome
     real(wp), allocatable :: profiles(:)
 
-    associate (length => steps%problem%length)
+    associate (law => steps%problem%law)
       allocate (profiles(0))
-      if (allocated(request%profiles)) profiles = request%profiles%h0/length
+      if (allocated(request%profiles)) profiles = law%gap_of(request%profiles%h0)
       allocate (outcome%path)
       if (allocated(request%path%h0_start)) then
-        call follow_path(steps, request%path%h0_end/length, profiles, observer, outcome%path, &
-          request%path%h0_start/length)
+        call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, &
+          outcome%path, law%gap_of(request%path%h0_start))
       else
-        call follow_path(steps, request%path%h0_end/length, profiles, observer, outcome%path)
+        call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, outcome%path)
       end if
     end associate
   end subroutine run_path
@@ -167,7 +167,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp) :: start
 
-    start = beyond_contact(problem)*problem%length
+    start = problem%law%separation_of(beyond_contact(problem))
     if (.not. allocated(request%path)) return
     if (allocated(request%path%h0_start)) start = request%path%h0_start
   end function path_start
@@ -185,15 +185,15 @@ contains
     real(wp), allocatable :: nowhere(:)
 
     allocate (nowhere(0))
-    associate (length => steps%problem%length)
+    associate (law => steps%problem%law)
       if (allocated(request%path%h0_start)) then
         start = request%path%h0_start
       else
-        start = max(steps%far_away()*length, request%path%h0_end + length)
+        start = max(law%separation_of(steps%far_away()), request%path%h0_end + law%length)
       end if
       allocate (outcome%stepped_path)
       plan = schedule_of('path', start, request%path%h0_end, &
-        abs(start - request%path%h0_end)/path_states, request, length, nowhere)
+        abs(start - request%path%h0_end)/path_states, request, law, nowhere)
       plan%unique = .true.
       call run_branch(steps, plan, .true., position, observer, nowhere, none, outcome%stepped_path)
     end associate
@@ -231,11 +231,11 @@ contains
     integer :: k
 
     allocate (from(0), nowhere(0), none(0))
-    if (allocated(request%unloading)) from = request%unloading%from/steps%problem%length
+    if (allocated(request%unloading)) from = steps%problem%law%gap_of(request%unloading%from)
     allocate (turning(size(from)))
     allocate (outcome%loading)
     plan = schedule_of('loading', request%loading%h0_start, request%loading%h0_end, &
-      request%loading%h0_step, request, steps%problem%length, from)
+      request%loading%h0_step, request, steps%problem%law, from)
     call run_branch(steps, plan, .true., position, observer, from, turning, outcome%loading)
     if (allocated(request%unloading)) then
       allocate (outcome%unloading(size(from)))
@@ -249,7 +249,7 @@ contains
         ! storage, and the cases of a sweep share it.
         write (name, '(a, i0)') 'unloading_', k
         plan = schedule_of(trim(name), request%unloading%from(k), request%unloading%h0_end, &
-          request%unloading%h0_step, request, steps%problem%length, nowhere)
+          request%unloading%h0_step, request, steps%problem%law, nowhere)
         call run_branch(steps, plan, .false., position, observer, nowhere, none, &
           outcome%unloading(k))
       end do
@@ -273,10 +273,11 @@ contains
       low = min(low, request%path%h0_end)
       high = max(high, request%path%h0_end)
       ! Where the last jump apart leads belongs to the path too.
-      high = max(high, path_start(request, problem), beyond_contact(problem)*problem%length)
+      high = max(high, path_start(request, problem), &
+        problem%law%separation_of(beyond_contact(problem)))
     end if
-    low = low/problem%length
-    high = high/problem%length
+    low = problem%law%gap_of(low)
+    high = problem%law%gap_of(high)
   end subroutine range_of
 
 end module experiment

@@ -2,7 +2,7 @@
 !> across the nodes, and where they are not close against the neck it is pinned between them.
 module fixed_stepper
   use kinds, only: wp
-  use dimensionless_problem, only: over_neck => spacing_over_neck
+  use dimensionless_problem, only: calm_gap, over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, state_from, residual_floor, radius_of_gap, &
     lost_in_rounding, beyond_rounding
@@ -66,9 +66,7 @@ contains
       return
     end if
     far = h0
-    ! Twice the gap (37) of the jump into contact, in these units: there the bodies hardly deform.
-    if (.not. self%problem%rigid) far = max(h0, 5.0_wp, &
-      2*(27*self%problem%coupling*self%problem%law%adhesion)**(2.0_wp/7))
+    if (.not. self%problem%rigid) far = max(h0, calm_gap(self%problem))
     state = state_from(self%mesh%nodes)
     state%h0 = far
     state%axis_gap = far

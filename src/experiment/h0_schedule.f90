@@ -2,6 +2,7 @@
 module h0_schedule
   use kinds, only: wp
   use experiment_request, only: request_t
+  use force_law, only: force_law_t
   use stepped_branch, only: h0_schedule_t
   implicit none
   private
@@ -29,10 +30,11 @@ contains
 
   !> Values of h0 [m] from start to finish by step, whichever way that is, both ends included, with
   !> the profiles asked for and the values `also` (law's lengths) in their places.
-  function schedule_of(name, start, finish, step, request, length, also) result(plan)
+  function schedule_of(name, start, finish, step, request, law, also) result(plan)
     character(len=*), intent(in) :: name
-    real(wp), intent(in) :: start, finish, step, length, also(:)
+    real(wp), intent(in) :: start, finish, step, also(:)
     class(request_t), intent(in) :: request
+    class(force_law_t), intent(in) :: law
     type(h0_schedule_t) :: plan
     real(wp), allocatable :: h0(:), profiles(:)
     real(wp) :: sense, same
@@ -51,13 +53,13 @@ contains
     allocate (profiles(0))
     if (allocated(request%profiles)) profiles = request%profiles%h0
     do i = 1, size(also)
-      call include(h0, also(i)*length)
+      call include(h0, law%separation_of(also(i)))
     end do
     do i = 1, size(profiles)
       if ((profiles(i) - start)*(profiles(i) - finish) <= 0) call include(h0, profiles(i))
     end do
     plan%name = name
-    plan%h0 = h0/length
+    plan%h0 = law%gap_of(h0)
     plan%profile = [(any(abs(profiles - h0(i)) <= same), i=1, size(h0))]
 
   contains

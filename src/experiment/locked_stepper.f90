@@ -4,7 +4,7 @@
 !> for every h0.
 module locked_stepper
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t, over_neck => spacing_over_neck
+  use dimensionless_problem, only: problem_t, calm_gap, over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t, state_from, at_edge_radius, at_h0_with_edge
   use solver, only: solve_state
@@ -73,13 +73,11 @@ contains
     call remember(position, state, mesh, .false.)
   end subroutine begin_afar
 
-  !> An H0 at which the bodies hardly deform: twice the gap (37) of the jump into contact, in these
-  !> units, or where repulsion hardly acts.
+  !> An H0 at which the bodies hardly deform, or where repulsion hardly acts.
   pure real(wp) function far_away(self)
     class(locked_stepper_t), intent(in) :: self
 
-    far_away = max(5.0_wp, 2*(27*self%problem%coupling*self%problem%law%adhesion)**(2.0_wp/7), &
-      self%pair%level + 3)
+    far_away = max(calm_gap(self%problem), self%pair%level + 3)
   end function far_away
 
   !> Solves from the guess `state` at h0.

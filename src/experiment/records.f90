@@ -82,8 +82,8 @@ contains
     type(record_t) :: record
 
     record%branch = branch
-    record%h0 = state%h0*problem%length
-    record%h_centre = state%axis_gap*problem%length
+    record%h0 = problem%law%separation_of(state%h0)
+    record%h_centre = problem%law%separation_of(state%axis_gap)
     record%displacement = (state%axis_gap - state%h0)*problem%length
     record%load = state%load*problem%load
     if (problem%law%rest_gap > 0) record%contact_radius = problem%lateral* &

@@ -63,9 +63,13 @@ contains
     widest = largest_radius(problem, h0_low, pair%level)
     feature = smallest_feature(problem, 1.0_wp)
     pair%passage = min(0.6_wp*neck_width(problem), 0.4_wp)
-    ! The neglected pressure of order rho^-6 lowers the gap by about 17 coupling/reach^5.
+    ! Until then the axis of rigid bodies has come half the way from most tension to rest.
+    if (problem%law%edge_gap > 0) &
+      pair%passage = min(pair%passage, sqrt(problem%law%edge_gap - problem%law%rest_gap))
+    ! The neglected pressure of order rho^-6 lowers the gap by about 17 coupling/reach^5, and so for
+    ! other powers.
     pair%reach = max(sqrt(2*max(problem%law%range - min(h0_low, 0.0_wp), 1.0_wp)), &
-      (17*problem%law%adhesion*problem%coupling**(1.0_wp/3)/resolution%accuracy)**0.2_wp, &
+      (17*problem%law%adhesion*problem%coupling**(1.0_wp/3)/resolution%accuracy)**(1/(2*problem%law%tail_power - 1)), &
       4*problem%law%adhesion*widest, sqrt(100*problem%law%adhesion*max(h0_high, 1.0_wp)))
     pair%reach = resolution%farther*pair%reach
     associate (fineness => resolution%fineness, order => resolution%order)

@@ -1,8 +1,9 @@
 !> What every surface-force law offers. A law is a type that extends this one, in a file of its own
-!> under laws/, with only its parameters and formulas; `laws` makes one from its name.
+!> under laws/, with its keys, the reading of its group, its parameters and formulas.
 !>
-!> Formulas are in the law's own units: gaps in `length`, pressures in `pressure_unit`, energies per
-!> area in their product. Pressures are inward positive: repulsion is positive, (16) of the paper.
+!> Formulas are in the law's own units: gaps from `origin` in units of `length`, pressures in
+!> `pressure_unit`, energies per area in their product. Pressures are inward positive: repulsion is
+!> positive, (16) of the paper.
 module force_law
   use kinds, only: wp
   implicit none
@@ -10,17 +11,9 @@ module force_law
   public :: force_law_t
 
   type, abstract :: force_law_t
-    !> Unit of gap [m] and of pressure [Pa].
-    real(wp) :: length = 1, pressure_unit = 1
-    !> Surface energy in units of length*pressure_unit: the depth of the energy minimum; 0 for a
-    !> law that does not attract.
-    real(wp) :: adhesion = 0
-    !> Gap of maximum tension, which defines the contact edge; 0 where there is no such gap.
-    real(wp) :: edge_gap = 0
-    !> Gap of zero pressure; 0 where there is none.
-    real(wp) :: rest_gap = 0
-    !> Gap beyond which the repulsion is below rounding.
-    real(wp) :: range = 0
+    !> The law sets these. Unit of gap [m] and of pressure [Pa], and the separation [m] that is gap
+    !> 0: that of the bodies, unless the law has its well anywhere; then one length before the well.
+    real(wp) :: length = 1, pressure_unit = 1, origin = 0
     !> Change of gap over which a strong repulsion changes by a factor of e.
     real(wp) :: repulsion_length = 1
     !> A gap may close in one iteration by at most closure_fraction*gap + closure_length: beyond it
@@ -29,11 +22,33 @@ module force_law
     !> Smallest gap at which the formulas are asked for. No equilibrium has a smaller one; below it
     !> pressures, and their products with the coupling, would leave the range of numbers.
     real(wp) :: smallest_gap = -300
+    !> Far away the pressure falls as gap^-tail_power; `huge` where it falls faster than any power.
+    real(wp) :: tail_power = huge(1.0_wp)
+    !> What the summary calls the coupling of law and bodies: sigma (40) if the law attracts, or
+    !> this. Blank: nothing.
+    character(len=12) :: coupling_name = ''
+    !> The group of the deck that the law is read from, and the keys in it that set the sizes of
+    !> pressure and gap, for messages.
+    character(len=24) :: group = '', strength_key = '', length_key = ''
+
+    !> The scan of the law sets these (`law_scan`), or the law where it knows closed forms.
+    !> Surface energy in units of length*pressure_unit: the depth of the energy minimum; 0 for a
+    !> law that does not attract.
+    real(wp) :: adhesion = 0
+    !> Gap of maximum tension, which defines the contact edge; 0 where there is no such gap.
+    real(wp) :: edge_gap = 0
+    !> Gap of zero pressure; 0 where there is none.
+    real(wp) :: rest_gap = 0
+    !> Gap beyond which the repulsion is below rounding; 0 before it is known.
+    real(wp) :: range = 0
   contains
     !> Pressure, its derivative by the gap, and its integral from the gap to infinity.
     procedure(gap_function), deferred :: pressure
     procedure(gap_function), deferred :: slope
     procedure(gap_function), deferred :: energy
+    procedure :: closure
+    procedure :: gap_of
+    procedure :: separation_of
   end type force_law_t
 
   abstract interface
@@ -44,5 +59,32 @@ module force_law
       real(wp) :: value(size(gap))
     end function gap_function
   end interface
+
+contains
+
+  !> By how much gaps may close in one iteration.
+  pure function closure(self, gap) result(most)
+    class(force_law_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: most(size(gap))
+
+    most = self%closure_fraction*gap + self%closure_length
+  end function closure
+
+  !> A separation or an h0 [m] in the law's units.
+  elemental real(wp) function gap_of(self, separation) result(gap)
+    class(force_law_t), intent(in) :: self
+    real(wp), intent(in) :: separation
+
+    gap = (separation - self%origin)/self%length
+  end function gap_of
+
+  !> A gap or an H0 in the law's units as a separation [m].
+  elemental real(wp) function separation_of(self, gap) result(separation)
+    class(force_law_t), intent(in) :: self
+    real(wp), intent(in) :: gap
+
+    separation = self%origin + gap*self%length
+  end function separation_of
 
 end module force_law

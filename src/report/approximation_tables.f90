@@ -56,10 +56,10 @@ contains
     jumps = jumps_of(problem)
     allocate (rows(0))
     nearest = -huge(1.0_wp)
-    if (allocated(jumps%criterion)) nearest = jumps%criterion%gap/problem%length
+    if (allocated(jumps%criterion)) nearest = problem%law%gap_of(jumps%criterion%gap)
     call add_curve(by_quadrature)
     call add_curve(closed_form)
-    if (allocated(jumps%equation_37)) nearest = jumps%equation_37%gap/problem%length
+    if (allocated(jumps%equation_37)) nearest = problem%law%gap_of(jumps%equation_37%gap)
     call add_curve(attraction_only)
     call add_jump(jumps%criterion)
     call add_jump(jumps%equation_37)
@@ -76,8 +76,8 @@ contains
       integer :: i
 
       if (.not. has_form(problem, form)) return
-      gap = gaps_between(problem, form, start/problem%length, range%h0_end/problem%length, &
-        nearest, range%count)
+      gap = gaps_between(problem, form, problem%law%gap_of(start), &
+        problem%law%gap_of(range%h0_end), nearest, range%count)
       allocate (more(size(gap)))
       do i = 1, size(gap)
         more(i) = row_of(state_at(problem, form, gap(i), trim(names(form))))
@@ -135,8 +135,8 @@ contains
 
     delta = slow_displacement(problem, form, gap)
     jump%theory = theory
-    jump%gap = gap*problem%length
-    jump%h0 = (gap - delta)*problem%length
+    jump%gap = problem%law%separation_of(gap)
+    jump%h0 = problem%law%separation_of(gap - delta)
     jump%displacement = delta*problem%length
     jump%load = slow_load(problem, form, gap)*problem%load
   end function state_at

@@ -36,7 +36,7 @@ contains
     associate (r => problem%radius, y => problem%stiffness)
       do i = 1, range%count
         h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
-        delta = -h0
+        delta = problem%law%origin - h0
         call add('hertz', hertz_load_at_displacement(delta, r, y), &
           hertz_radius_at_displacement(delta, r))
         if (.not. gamma > 0) cycle

@@ -71,7 +71,7 @@ contains
     do j = 1, size(r)
       ! A mesh may have a node on the axis.
       if (j == 2 .and. .not. r(j) > 0) cycle
-      row = branch // ',' // cells([h0, r(j)*problem%lateral, gap(j)*problem%length, &
+      row = branch // ',' // cells([h0, r(j)*problem%lateral, problem%law%separation_of(gap(j)), &
         deformation(j)*problem%length, pressure(j)*problem%pressure, &
         energy(j)*problem%pressure*problem%length])
       if (.not. alike(problem)) &

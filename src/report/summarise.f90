@@ -96,8 +96,8 @@ contains
         call summary%set('sigma', problem%coupling*problem%law%adhesion)
         call summary%set('tabor', tabor_parameter(problem))
       end if
-    else if (scene%force%law == 'exponential' .and. .not. problem%rigid) then
-      call summary%set('big_lambda', problem%coupling)
+    else if (problem%law%coupling_name /= '' .and. .not. problem%rigid) then
+      call summary%set(trim(problem%law%coupling_name), problem%coupling)
     end if
     if (allocated(scene%classical)) call take_maugis(problem, summary)
     if (allocated(scene%approximations)) call estimate_jumps(problem, summary)
@@ -165,7 +165,7 @@ contains
       call summary%set('converged', .false.)
       call summary%warn(name//': '//brief(real(branch%unconverged, wp))//' of '// &
         brief(real(branch%states, wp))//' states did not converge, the first at h0 = '// &
-        short_number(branch%first_unconverged*problem%length)//' m; the largest residual is '// &
+        short_number(problem%law%separation_of(branch%first_unconverged))//' m; the largest residual is '// &
         short_number(branch%worst_residual)//' lengths of the force law')
     end if
     if (branch%reason /= '') then
@@ -193,7 +193,7 @@ contains
       if (allocated(branches(k)%lowest)) then
         associate (lowest => branches(k)%lowest)
           tension(k) = -lowest%load*problem%load
-          tension_h0(k) = lowest%h0*problem%length
+          tension_h0(k) = problem%law%separation_of(lowest%h0)
           if (allocated(lowest%error)) then
             tension_error(k) = lowest%error%load*problem%load
             if (.not. lowest%searched) tension_h0_error(k) = lowest%error%h0*problem%length
@@ -202,7 +202,7 @@ contains
       end if
       if (.not. allocated(branches(k)%jump)) cycle
       associate (jump => branches(k)%jump)
-        jump_h0(k) = jump%h0*problem%length
+        jump_h0(k) = problem%law%separation_of(jump%h0)
         if (allocated(jump%error)) jump_h0_error(k) = jump%error%h0*problem%length
       end associate
       if (.not. summary%has('jump_out_h0')) &
@@ -257,7 +257,7 @@ contains
       real(wp) :: h0_error(size(list)), load_error(size(list))
       integer :: k
 
-      call summary%set(name//'_h0', list%h0*problem%length)
+      call summary%set(name//'_h0', problem%law%separation_of(list%h0))
       call summary%set(name//'_load', list%load*problem%load)
       h0_error = ieee_value(1.0_wp, ieee_quiet_nan)
       load_error = h0_error
@@ -299,7 +299,7 @@ contains
       if (allocated(outcome%path%finish)) at = outcome%path%finish
     end if
     if (.not. allocated(at)) return
-    call summary%set('end_h0', at%h0*problem%length)
+    call summary%set('end_h0', problem%law%separation_of(at%h0))
     call summary%set('end_displacement', at%displacement*problem%length)
     call summary%set('end_load', at%load*problem%load)
     if (.not. allocated(at%error)) return

@@ -19,7 +19,7 @@ contains
     real(wp), intent(in) :: uncertainty
     type(summary_t), intent(inout) :: summary
 
-    call summary%set(name//'_h0', jump%h0*problem%length)
+    call summary%set(name//'_h0', problem%law%separation_of(jump%h0))
     call summary%set(name//'_load', jump%load*problem%load)
     call summary%drop(name//'_uncertainty')
     if (uncertainty > 0) call summary%set(name//'_uncertainty', uncertainty*problem%length)
@@ -54,7 +54,7 @@ contains
       call summary%drop('max_tension_h0_error')
     end if
     call summary%set('max_tension', -lowest%load*problem%load)
-    call summary%set('max_tension_h0', lowest%h0*problem%length)
+    call summary%set('max_tension_h0', problem%law%separation_of(lowest%h0))
     if (.not. allocated(lowest%error)) return
     call summary%set('max_tension_error', lowest%error%load*problem%load)
     if (.not. lowest%searched) &

@@ -3,10 +3,11 @@ module scene
   use kinds, only: wp
   use failure, only: failure_t
   use bodies, only: composite_stiffness, compliance_shares
-  use text, only: brief, quoted
+  use text, only: brief
   use deck, only: deck_t, read_deck
+  use laws, only: read_laws
   use scene_keys, only: keys_of_scene
-  use scene_groups, only: scene_t, bodies_t, force_t, range_t, stability_t, sweep_t
+  use scene_groups, only: scene_t, bodies_t, range_t, stability_t, sweep_t
   use experiment_request, only: loading_t, unloading_t, path_range_t, profiles_t, numerics_t
   use scene_ranges, only: take_loading, take_unloading, take_path, take_profiles, take_range, &
                           take_stability
@@ -46,7 +47,7 @@ contains
     call deck%get('scene', 'title', scene%title)
     if (allocated(error)) return
     call take_bodies(scene, error)
-    call take_force(scene, error)
+    call read_laws(scene%deck, scene%law, error)
     call take_loading(scene, error)
     ! The groups below take their defaults from &loading and are checked against it.
     if (allocated(error)) return
@@ -133,45 +134,6 @@ contains
     end function spread_out
 
   end subroutine take_bodies
-
-  !> &force: the parameters of its law, all of them and no others.
-  subroutine take_force(scene, error)
-    type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
-
-    associate (deck => scene%deck, force => scene%force)
-      call deck%get('force', 'law', force%law)
-      call parameter('lennard_jones', 'hamaker', .true.)
-      call parameter('lennard_jones', 'z0', .true.)
-      call parameter('lennard_jones', 'part', .false.)
-      call parameter('exponential', 'p0', .true.)
-      call parameter('exponential', 'decay_length', .true.)
-      if (force%law == 'lennard_jones') call deck%assume('force', 'part', 'full')
-      call deck%get('force', 'hamaker', force%hamaker)
-      call deck%get('force', 'z0', force%z0)
-      call deck%get('force', 'part', force%part)
-      call deck%get('force', 'p0', force%p0)
-      call deck%get('force', 'decay_length', force%decay_length)
-    end associate
-
-  contains
-
-    !> A law's parameter is needed with this law and refused with another.
-    subroutine parameter(law, key, needed)
-      character(len=*), intent(in) :: law, key
-      logical, intent(in) :: needed
-
-      associate (deck => scene%deck, force => scene%force)
-        if (force%law == law .and. needed .and. .not. deck%is_set('force', key)) then
-          call deck%mistake('force', key, 'missing; law ' // quoted(law) // ' needs it', error)
-        else if (force%law /= law .and. deck%is_set('force', key)) then
-          call deck%mistake('force', key, 'belongs to law ' // quoted(law) // ', not to ' // &
-                            quoted(force%law), error)
-        end if
-      end associate
-    end subroutine parameter
-
-  end subroutine take_force
 
   !> &numerics.
   subroutine take_numerics(scene)

@@ -4,9 +4,10 @@ module scene_groups
   use kinds, only: wp
   use deck, only: deck_t
   use experiment_request, only: request_t
+  use force_law, only: force_law_t
   implicit none
   private
-  public :: scene_t, bodies_t, force_t, range_t, stability_t, sweep_t
+  public :: scene_t, bodies_t, range_t, stability_t, sweep_t
 
   !> &bodies
   type :: bodies_t
@@ -18,13 +19,6 @@ module scene_groups
     real(wp) :: share(2) = 1
     logical :: rigid = .false.
   end type bodies_t
-
-  !> &force; only the parameters of its law are set.
-  type :: force_t
-    character(len=:), allocatable :: law
-    character(len=:), allocatable :: part
-    real(wp) :: hamaker = 0, z0 = 0, p0 = 0, decay_length = 0
-  end type force_t
 
   !> &approximations and &classical: `count` points over a range of h0 [m]; h0_start unallocated:
   !> from where the equilibrium path starts.
@@ -50,7 +44,8 @@ module scene_groups
     type(deck_t) :: deck
     character(len=:), allocatable :: title
     type(bodies_t) :: bodies
-    type(force_t) :: force
+    !> The sum of the deck's forces.
+    class(force_law_t), allocatable :: law
     type(range_t), allocatable :: approximations, classical
     type(stability_t), allocatable :: stability
     type(sweep_t), allocatable :: sweep

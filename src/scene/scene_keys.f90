@@ -4,6 +4,7 @@ module scene_keys
   use kinds, only: wp
   use deck_keys, only: key_spec, group, real_key, list_key, integer_key, logical_key, word_key, &
                        text_key
+  use laws, only: keys_of_laws
   implicit none
   private
   public :: keys_of_scene, most_steps
@@ -35,21 +36,7 @@ contains
                'same.', most=2, above=-1.0_wp, high=0.5_wp), &
       logical_key('bodies', 'rigid', 'Whether the bodies do not deform at all.', &
                   default='.false.'), &
-      !
-      group('force', 'Force per area between the surfaces, against their separation.', &
-            required=.true.), &
-      word_key('force', 'law', 'lennard_jones exponential', 'Name of the force law.', &
-               required=.true.), &
-      real_key('force', 'hamaker', 'J', 'lennard_jones: Hamaker constant.', above=zero, &
-               otherwise='none; lennard_jones needs it'), &
-      real_key('force', 'z0', 'm', 'lennard_jones: separation of zero force.', above=zero, &
-               otherwise='none; lennard_jones needs it'), &
-      word_key('force', 'part', 'full repulsive attractive', 'lennard_jones: the part of the ' // &
-               'law that acts.', otherwise='full'), &
-      real_key('force', 'p0', 'Pa', 'exponential: pressure at zero separation.', above=zero, &
-               otherwise='none; exponential needs it'), &
-      real_key('force', 'decay_length', 'm', 'exponential: decay length.', above=zero, &
-               otherwise='none; exponential needs it'), &
+      keys_of_laws(), &
       !
       group('loading', 'Approach in steps of h0, the separation that undeformed bodies would ' // &
             'have at the centre.'), &

@@ -153,7 +153,10 @@ contains
     pure real(wp) function linear_range(gap)
       real(wp), intent(in) :: gap
 
-      linear_range = problem%law%closure_fraction*gap + problem%law%closure_length
+      real(wp) :: most(1)
+
+      most = problem%law%closure([gap])
+      linear_range = most(1)
     end function linear_range
 
     !> The next gap of the search.

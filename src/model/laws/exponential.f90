@@ -1,10 +1,14 @@
 !> Exponential repulsion, (30) of the paper: p = p0 exp(-h/decay_length).
 module exponential
   use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, real_key
   use force_law, only: force_law_t
+  use law_reading, only: is_law, check_parameter, check_decades
   implicit none
   private
-  public :: exponential_t, new_exponential
+  public :: exponential_t, new_exponential, keys, read_law
 
   type, extends(force_law_t) :: exponential_t
   contains
@@ -18,6 +22,34 @@ module exponential
 
 contains
 
+  !> The keys that the law has in &force.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      real_key('force', 'p0', 'Pa', 'exponential: pressure at zero separation.', above=zero, &
+               otherwise='none; exponential needs it'), &
+      real_key('force', 'decay_length', 'm', 'exponential: decay length.', above=zero, &
+               otherwise='none; exponential needs it')]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: p0, decay_length
+
+    call check_parameter(deck, 'exponential', 'p0', .true., error)
+    call check_parameter(deck, 'exponential', 'decay_length', .true., error)
+    if (allocated(error) .or. .not. is_law(deck, 'exponential')) return
+    call deck%get('force', 'p0', p0)
+    call deck%get('force', 'decay_length', decay_length)
+    call check_decades(deck, 'force', 'p0', log10(p0), 'a pressure', ' Pa', error)
+    if (.not. allocated(error)) allocate (law, source=new_exponential(p0, decay_length))
+  end subroutine read_law
+
   !> p0 [Pa], decay_length [m], both positive.
   pure function new_exponential(p0, decay_length) result(law)
     real(wp), intent(in) :: p0, decay_length
@@ -26,6 +58,10 @@ contains
     law%length = decay_length
     law%pressure_unit = p0
     law%range = 45
+    law%coupling_name = 'big_lambda'
+    law%group = 'force'
+    law%strength_key = 'p0'
+    law%length_key = 'decay_length'
     ! The pressure may grow sevenfold in an iteration.
     law%closure_length = 2
   end function new_exponential

@@ -3,10 +3,14 @@
 !> In units of z0 and gamma/z0, with gamma = A/(16 pi z0^2) (34), it is (8/3) (H^-9 - H^-3).
 module lennard_jones
   use kinds, only: wp, pi
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, real_key, word_key
   use force_law, only: force_law_t
+  use law_reading, only: is_law, check_parameter, check_decades
   implicit none
   private
-  public :: lennard_jones_t, new_lennard_jones
+  public :: lennard_jones_t, new_lennard_jones, keys, read_law
 
   type, extends(force_law_t) :: lennard_jones_t
     !> Weights of the repulsive and of the attractive part: 0 or 1.
@@ -19,6 +23,41 @@ module lennard_jones
 
 contains
 
+  !> The keys that the law has in &force.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      real_key('force', 'hamaker', 'J', 'lennard_jones: Hamaker constant.', above=zero, &
+               otherwise='none; lennard_jones needs it'), &
+      real_key('force', 'z0', 'm', 'lennard_jones: separation of zero force.', above=zero, &
+               otherwise='none; lennard_jones needs it'), &
+      word_key('force', 'part', 'full repulsive attractive', 'lennard_jones: the part of the ' // &
+               'law that acts.', otherwise='full')]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: part
+    real(wp) :: hamaker, z0
+
+    call check_parameter(deck, 'lennard_jones', 'hamaker', .true., error)
+    call check_parameter(deck, 'lennard_jones', 'z0', .true., error)
+    call check_parameter(deck, 'lennard_jones', 'part', .false., error)
+    if (allocated(error) .or. .not. is_law(deck, 'lennard_jones')) return
+    call deck%assume('force', 'part', 'full')
+    call deck%get('force', 'hamaker', hamaker)
+    call deck%get('force', 'z0', z0)
+    call deck%get('force', 'part', part)
+    call check_decades(deck, 'force', 'hamaker', log10(hamaker) - log10(16*pi) - 3*log10(z0), &
+      'a pressure', ' Pa', error)
+    if (.not. allocated(error)) allocate (law, source=new_lennard_jones(hamaker, z0, part))
+  end subroutine read_law
+
   !> hamaker [J] and z0 [m] positive; part is 'full', 'repulsive' or 'attractive'.
   pure function new_lennard_jones(hamaker, z0, part) result(law)
     real(wp), intent(in) :: hamaker, z0
@@ -28,6 +67,10 @@ contains
     law%length = z0
     law%pressure_unit = hamaker/(16*pi*z0**2)/z0
     law%range = 60
+    law%tail_power = 3
+    law%group = 'force'
+    law%strength_key = 'hamaker'
+    law%length_key = 'z0'
     ! The slope is 1e121 there: even its square is a number.
     law%smallest_gap = 1.0e-12_wp
     ! A ninth of the gap, which in contact is below 1.

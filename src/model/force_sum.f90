@@ -1,0 +1,195 @@
+!> Several forces at once: the law whose pressure is the sum of theirs. A single law stays as it is,
+!> so that what is absent costs nothing.
+module force_sum
+  use kinds, only: wp
+  use force_law, only: force_law_t
+  use law_scan, only: find_scales
+  implicit none
+  private
+  public :: add_term, settle
+
+  !> One of the forces, and the units of the sum in its own: its gap is stretch*gap + shift.
+  type :: term_t
+    class(force_law_t), allocatable :: law
+    real(wp) :: stretch = 1, shift = 0
+  end type term_t
+
+  type, extends(force_law_t) :: force_sum_t
+    type(term_t), allocatable :: term(:)
+  contains
+    procedure :: pressure
+    procedure :: slope
+    procedure :: energy
+    procedure :: closure
+  end type force_sum_t
+
+contains
+
+  !> Adds a term, if there is one, to a law, if there is one; takes the term away.
+  subroutine add_term(law, term)
+    class(force_law_t), allocatable, intent(inout) :: law, term
+    type(force_sum_t) :: sum_of
+    type(term_t), allocatable :: terms(:)
+    integer :: n, i
+
+    if (.not. allocated(term)) return
+    if (.not. allocated(law)) then
+      call move_alloc(term, law)
+      return
+    end if
+    n = 1
+    select type (law)
+    type is (force_sum_t)
+      n = size(law%term)
+    end select
+    allocate (terms(n + 1))
+    select type (law)
+    type is (force_sum_t)
+      do i = 1, n
+        call move_alloc(law%term(i)%law, terms(i)%law)
+      end do
+    class default
+      allocate (terms(1)%law, source=law)
+    end select
+    call move_alloc(term, terms(n + 1)%law)
+    call move_alloc(terms, sum_of%term)
+    deallocate (law)
+    allocate (law, source=sum_of)
+  end subroutine add_term
+
+  !> Units and scales of a law whose terms are complete. A sum is looked at in units of its shortest
+  !> term first. If it has a well its units are then those of the well: the range, which is the
+  !> depth over the largest tension, and the largest tension, with the contact at gap 1.
+  subroutine settle(law)
+    class(force_law_t), intent(inout) :: law
+    real(wp) :: most(1), length, unit, origin
+
+    select type (law)
+    type is (force_sum_t)
+      call take_units(law, minval(lengths(law)), maxval(units(law)), 0.0_wp)
+      call find_scales(law)
+      if (law%edge_gap > 0 .and. law%adhesion > 0) then
+        most = -law%pressure([law%edge_gap])
+        length = law%length*law%adhesion/most(1)
+        unit = law%pressure_unit*most(1)
+        origin = law%separation_of(law%rest_gap) - length
+        call take_units(law, length, unit, origin)
+        call find_scales(law)
+      end if
+    class default
+      call find_scales(law)
+    end select
+  end subroutine settle
+
+  !> The units of a sum; its scales are to be found again.
+  subroutine take_units(law, length, unit, origin)
+    type(force_sum_t), intent(inout) :: law
+    real(wp), intent(in) :: length, unit, origin
+    integer :: i
+
+    law%length = length
+    law%pressure_unit = unit
+    law%origin = origin
+    law%adhesion = 0
+    law%edge_gap = 0
+    law%rest_gap = 0
+    law%range = 0
+    law%smallest_gap = -huge(1.0_wp)
+    law%repulsion_length = huge(1.0_wp)
+    law%tail_power = huge(1.0_wp)
+    do i = 1, size(law%term)
+      associate (term => law%term(i), part => law%term(i)%law)
+        term%stretch = length/part%length
+        term%shift = (origin - part%origin)/part%length
+        law%smallest_gap = max(law%smallest_gap, (part%smallest_gap - term%shift)/term%stretch)
+        law%repulsion_length = min(law%repulsion_length, part%repulsion_length/term%stretch)
+        law%tail_power = min(law%tail_power, part%tail_power)
+      end associate
+    end do
+    ! Messages point at the first.
+    law%group = law%term(1)%law%group
+    law%strength_key = law%term(1)%law%strength_key
+    law%length_key = law%term(1)%law%length_key
+  end subroutine take_units
+
+  pure function lengths(law)
+    type(force_sum_t), intent(in) :: law
+    real(wp) :: lengths(size(law%term))
+    integer :: i
+
+    do i = 1, size(law%term)
+      lengths(i) = law%term(i)%law%length
+    end do
+  end function lengths
+
+  pure function units(law)
+    type(force_sum_t), intent(in) :: law
+    real(wp) :: units(size(law%term))
+    integer :: i
+
+    do i = 1, size(law%term)
+      units(i) = law%term(i)%law%pressure_unit
+    end do
+  end function units
+
+  pure function pressure(self, gap) result(value)
+    class(force_sum_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+    integer :: i
+
+    value = 0
+    do i = 1, size(self%term)
+      associate (term => self%term(i), part => self%term(i)%law)
+        value = value + part%pressure_unit/self%pressure_unit* &
+          part%pressure(term%stretch*gap + term%shift)
+      end associate
+    end do
+  end function pressure
+
+  pure function slope(self, gap) result(value)
+    class(force_sum_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+    integer :: i
+
+    value = 0
+    do i = 1, size(self%term)
+      associate (term => self%term(i), part => self%term(i)%law)
+        value = value + part%pressure_unit/self%pressure_unit*term%stretch* &
+          part%slope(term%stretch*gap + term%shift)
+      end associate
+    end do
+  end function slope
+
+  pure function energy(self, gap) result(value)
+    class(force_sum_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+    integer :: i
+
+    value = 0
+    do i = 1, size(self%term)
+      associate (term => self%term(i), part => self%term(i)%law)
+        value = value + part%pressure_unit/self%pressure_unit/term%stretch* &
+          part%energy(term%stretch*gap + term%shift)
+      end associate
+    end do
+  end function energy
+
+  !> The least that any of the forces allows.
+  pure function closure(self, gap) result(most)
+    class(force_sum_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: most(size(gap))
+    integer :: i
+
+    most = huge(1.0_wp)
+    do i = 1, size(self%term)
+      associate (term => self%term(i), part => self%term(i)%law)
+        most = min(most, part%closure(term%stretch*gap + term%shift)/term%stretch)
+      end associate
+    end do
+  end function closure
+
+end module force_sum

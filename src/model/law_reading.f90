@@ -1,0 +1,71 @@
+!> What laws have in common when they read their group of a deck.
+module law_reading
+  use kinds, only: wp
+  use failure, only: failure_t
+  use text, only: brief, quoted
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, word_key
+  implicit none
+  private
+  public :: keys_of_force, is_law, check_parameter, check_decades
+
+  !> Decades, either way, that units and what is made of them may have.
+  integer, parameter :: most_decades = 100
+
+contains
+
+  !> The row of &force, the group of the paper's two laws, and that of the law's name; the laws' own
+  !> rows come after them.
+  pure function keys_of_force() result(rows)
+    type(key_spec), allocatable :: rows(:)
+
+    rows = [ &
+      group('force', 'Force per area between the surfaces, against their separation.'), &
+      word_key('force', 'law', 'lennard_jones exponential', 'Name of the force law.', &
+               required=.true.)]
+  end function keys_of_force
+
+  !> Whether the deck has &force with this law.
+  pure logical function is_law(deck, law)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: law
+    character(len=:), allocatable :: name
+
+    is_law = .false.
+    if (.not. deck%has_group('force')) return
+    call deck%get('force', 'law', name)
+    is_law = name == law
+  end function is_law
+
+  !> A parameter in &force is needed with its law and refused with another.
+  pure subroutine check_parameter(deck, law, key, needed, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: law, key
+    logical, intent(in) :: needed
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: name
+
+    if (.not. deck%has_group('force')) return
+    call deck%get('force', 'law', name)
+    if (name == law .and. needed .and. .not. deck%is_set('force', key)) then
+      call deck%mistake('force', key, 'missing; law '//quoted(law)//' needs it', error)
+    else if (name /= law .and. deck%is_set('force', key)) then
+      call deck%mistake('force', key, 'belongs to law '//quoted(law)//', not to '//quoted(name), &
+        error)
+    end if
+  end subroutine check_parameter
+
+  !> Refuses `what`, a quantity of 10^decades `unit` that follows from values of &bodies and of the
+  !> group. Decades are sums of logarithms, which cannot overflow as the quantity itself may.
+  pure subroutine check_decades(deck, group, key, decades, what, unit, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: group, key, what, unit
+    real(wp), intent(in) :: decades
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (.not. abs(decades) <= most_decades) call deck%mistake(group, key, &
+      'these values of &bodies and &'//group//' make '//what//' of 1e'// &
+      brief(real(nint(decades), wp))//unit//'; allowed: from 1e-100 to 1e100', error)
+  end subroutine check_decades
+
+end module law_reading

@@ -1,0 +1,100 @@
+!> Morse law between surfaces: the energy per area is
+!> w [exp(-2 (h - z0)/l) - 2 exp(-(h - z0)/l)], w the surface energy, l the decay length.
+!> Most tension, w/(2 l), is met at z0 + l ln 2. In units of 2 l, the range w over most tension, and
+!> w/(2 l) the pressure is 4 (q^2 - q), q = exp(-2 (H - 1)).
+module morse
+  use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, real_key
+  use force_law, only: force_law_t
+  use law_reading, only: check_decades
+  implicit none
+  private
+  public :: keys, read_law
+
+  type, extends(force_law_t) :: morse_t
+  contains
+    procedure :: pressure
+    procedure :: slope
+    procedure :: energy
+  end type morse_t
+
+  !> Exponent beyond which exponentials would underflow or overflow.
+  real(wp), parameter :: largest_exponent = 340
+
+contains
+
+  !> &morse.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      group('morse', 'Morse law: an exponential repulsion within an exponential attraction of ' // &
+            'twice its range.'), &
+      real_key('morse', 'surface_energy', 'J/m^2', 'Energy needed to separate unit area.', &
+               above=zero, required=.true.), &
+      real_key('morse', 'z0', 'm', 'Separation of zero force.', required=.true.), &
+      real_key('morse', 'decay_length', 'm', 'Length over which the attraction falls by a ' // &
+               'factor of e.', above=zero, required=.true.)]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    type(morse_t) :: this
+    real(wp) :: surface_energy, z0, decay_length
+
+    if (.not. deck%has_group('morse')) return
+    call deck%get('morse', 'surface_energy', surface_energy)
+    call deck%get('morse', 'z0', z0)
+    call deck%get('morse', 'decay_length', decay_length)
+    call check_decades(deck, 'morse', 'surface_energy', &
+      log10(surface_energy) - log10(decay_length), 'a pressure', ' Pa', error)
+    if (allocated(error)) return
+    this%length = 2*decay_length
+    this%pressure_unit = surface_energy/this%length
+    this%origin = z0 - this%length
+    this%repulsion_length = 0.25_wp
+    this%closure_length = 0.5_wp
+    this%group = 'morse'
+    this%strength_key = 'surface_energy'
+    this%length_key = 'decay_length'
+    allocate (law, source=this)
+  end subroutine read_law
+
+  !> exp(-2 (gap - 1)), finite at any gap.
+  elemental real(wp) function decay(gap)
+    real(wp), intent(in) :: gap
+
+    decay = exp(max(min(-2*(gap - 1), largest_exponent), -largest_exponent))
+  end function decay
+
+  pure function pressure(self, gap) result(value)
+    class(morse_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = 4*decay(gap)*(decay(gap) - 1)
+  end function pressure
+
+  pure function slope(self, gap) result(value)
+    class(morse_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = 8*decay(gap)*(1 - 2*decay(gap))
+  end function slope
+
+  pure function energy(self, gap) result(value)
+    class(morse_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = decay(gap)*(decay(gap) - 2)
+  end function energy
+
+end module morse
