@@ -173,15 +173,14 @@ contains
   subroutine mapped_nodes(centre, d, inner, order, z_length, tail_order, decay, digits, x, weight, &
     panels, nodes)
     use discretisation, only: discretisation_t
-    use mapped_mesh, only: rule_table_t, new_mapped_mesh
+    use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
     integer(c_int), intent(in) :: panels, nodes, inner, order(panels), tail_order
     real(c_double), intent(in) :: centre, d, z_length(panels), decay, digits
     real(c_double), intent(out) :: x(nodes), weight(nodes)
     type(discretisation_t) :: mesh
-    type(rule_table_t) :: rules
 
-    call new_mapped_mesh(centre, d, inner, order, z_length, tail_order, decay, digits, .false., &
-      rules, mesh)
+    mesh = new_mapped_mesh(mapped_shape_t(centre, d, inner, order, z_length, tail_order, decay, &
+      digits), .false.)
     x = mesh%x
     weight = mesh%weight
   end subroutine mapped_nodes
@@ -190,15 +189,14 @@ contains
   subroutine mapped_matrix(centre, d, inner, order, z_length, tail_order, decay, digits, matrix, &
     panels, nodes)
     use discretisation, only: discretisation_t
-    use mapped_mesh, only: rule_table_t, new_mapped_mesh
+    use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
     integer(c_int), intent(in) :: panels, nodes, inner, order(panels), tail_order
     real(c_double), intent(in) :: centre, d, z_length(panels), decay, digits
     real(c_double), intent(out) :: matrix(nodes + 2, nodes)
     type(discretisation_t) :: mesh
-    type(rule_table_t) :: rules
 
-    call new_mapped_mesh(centre, d, inner, order, z_length, tail_order, decay, digits, .true., &
-      rules, mesh)
+    mesh = new_mapped_mesh(mapped_shape_t(centre, d, inner, order, z_length, tail_order, decay, &
+      digits), .true.)
     matrix = mesh%kernel
   end subroutine mapped_matrix
 
@@ -206,16 +204,14 @@ contains
   subroutine mapped_interpolation(centre, d, inner, order, z_length, tail_order, values, at, found, &
     panels, nodes, n)
     use discretisation, only: discretisation_t
-    use mapped_mesh, only: rule_table_t, new_mapped_mesh
+    use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
     integer(c_int), intent(in) :: panels, nodes, n, inner, order(panels), tail_order
     real(c_double), intent(in) :: centre, d, z_length(panels), values(nodes), at(n)
     real(c_double), intent(out) :: found(n)
     type(discretisation_t) :: mesh
-    type(rule_table_t) :: rules
     integer :: i
 
-    call new_mapped_mesh(centre, d, inner, order, z_length, tail_order, 1.0_c_double, 1.0_c_double, &
-      .false., rules, mesh)
+    mesh = new_mapped_mesh(mapped_shape_t(centre, d, inner, order, z_length, tail_order), .false.)
     do i = 1, n
       found(i) = mesh%interpolate(values, at(i))
     end do

@@ -7,17 +7,17 @@
 module discretisation
   use kinds, only: wp, long
   use panel_map, only: panel_map_t
-  use quadrature, only: lagrange_basis
+  use quadrature, only: gauss_legendre, barycentric_weights, lagrange_basis
   implicit none
   private
-  public :: discretisation_t, local_nodes_t, axis_row, centre_row, first_node
+  public :: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, first_node
 
   !> Rows of the kernel matrix.
   integer, parameter :: axis_row = 1, centre_row = 2, first_node = 3
 
-  !> Nodes on [0, 1] that panels of one order share, and their barycentric weights.
+  !> Nodes of panels on [0, 1], weights of the integral, and barycentric weights.
   type :: local_nodes_t
-    real(wp), allocatable :: node(:), barycentric(:)
+    real(wp), allocatable :: node(:), weight(:), barycentric(:)
   end type local_nodes_t
 
   type :: discretisation_t
@@ -50,6 +50,16 @@ module discretisation
   end type discretisation_t
 
 contains
+
+  !> The Gauss-Legendre nodes of a panel.
+  pure function gauss_nodes(order) result(local)
+    integer, intent(in) :: order
+    type(local_nodes_t) :: local
+
+    allocate (local%node(order), local%weight(order))
+    call gauss_legendre(local%node, local%weight)
+    local%barycentric = barycentric_weights(local%node)
+  end function gauss_nodes
 
   !> Value at position x of the function with the given nodal values, by the panel's polynomial: of
   !> the inverse position where the mesh goes on to infinity, so that the function has to be bounded

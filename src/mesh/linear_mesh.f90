@@ -37,6 +37,7 @@ contains
     grid%first = [(1 + (panel - 1)*stride, panel=1, panels)]
     allocate (grid%which(panels), source=1)
     grid%local(1)%node = local_node
+    grid%local(1)%weight = rule%weight
     grid%local(1)%barycentric = rule%barycentric
 
     allocate (target(first_node - 1 + grid%nodes), x(grid%nodes), grid%weight(grid%nodes))
