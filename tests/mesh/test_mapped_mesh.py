@@ -102,8 +102,8 @@ def test_without_a_tail_the_mesh_ends():
 @pytest.mark.parametrize("neck", [1e-1, 1e-3, 1e-5])
 def test_a_sharp_edge_has_the_deformation_that_graded_panels_find(neck):
     def pressure(x):
-        """A Lorentzian neck of this width beside the edge, on a smooth ground, with its tail."""
-        return (1 / (1 + ((x - 1) / neck) ** 2) + 0.1) / (1 + x**2) ** 2
+        """A Lorentzian neck of this width at the edge, on a smooth ground, with a tail x^-4."""
+        return (1 / (1 + ((x**2 - 1) / neck) ** 2) + 0.1) / (1 + x**2) ** 2
 
     # Nodes in proportion to the length in z.
     order = 30 + int(7 * np.arcsinh(4 / neck))
