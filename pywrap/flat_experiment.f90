@@ -7,8 +7,7 @@
 !> did not.
 !>
 !> Nothing is kept from call to call. f2py holds Python's global lock, so that calls do not overlap;
-!> they must not (no `threadsafe`), since gfortran keeps lengths of intermediate strings in static
-!> variables where text is put together.
+!> they must not (no `threadsafe`): compiler note 5.
 module flat_experiment
   use iso_c_binding, only: c_double, c_int
   implicit none
@@ -82,7 +81,7 @@ contains
         call rows%give(states, reached)
         return
       end if
-      ! Not allocatable: gfortran 12 frees what a polymorphic one of these types never had.
+      ! Not allocatable: compiler note 4.
       if (has_path(problem)) then
         locked => along_path
       else

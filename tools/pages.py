@@ -22,6 +22,8 @@ PAGES = {
     "README.md": "./run inputs/first.nml, compared by hand; then tools/pages.py --mark README.md",
     "docs/accuracy.md": "./bench",
     "docs/asymptotics.md": "tools/asymptotics.py",
+    "docs/methods.md": "inputs/first.nml with &equilibrium_path, compared by hand; then "
+    "tools/pages.py --mark docs/methods.md",
     "docs/reproduction/report.md": "./reproduce --publish",
     "docs/testing.md": "tools/verify/verify.sh, its tables by hand; then tools/pages.py --mark "
     "docs/testing.md",
@@ -31,6 +33,7 @@ _NO_NUMBERS = (
     "namelist_writer", "clock", "command_line", "c_library", "deck", "deck_keys", "deck_number",
     "deck_scan", "deck_source", "deck_store", "text", "deck_token", "deck_values", "failure",
     "files", "finished_run", "folder_lock", "forecast", "journal", "memory", "preflight",
+    "result_listing", "result_rows",
     "state_records", "byte_record", "progress", "publication", "run_identity", "snapin", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")

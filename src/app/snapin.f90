@@ -8,6 +8,7 @@ program snapin
   use scene, only: scene_t, read_scene
   use scene_keys, only: keys_of_scene
   use c_library, only: c_prepare
+  use result_listing, only: write_result_listing
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
   use simulation, only: run_scene
   use preflight, only: preflight_t, preflight_of
@@ -43,6 +44,8 @@ program snapin
     call print_line(output_unit, 'options: ' // options_of_build)
   else if (options%keys) then
     call write_keys(keys_of_scene(), output_unit)
+  else if (options%results) then
+    call write_result_listing(output_unit)
   else
     call leave(run_decks())
   end if

@@ -121,8 +121,7 @@ contains
     type(silent_observer_t) :: observer
     type(failure_t), allocatable :: error
 
-    ! gfortran keeps the lengths of strings that functions return in static storage, which threads
-    ! share: what makes strings is done by one at a time.
+    ! What makes strings is done by one thread at a time: compiler note 5.
     !$omp critical (one_at_a_time)
     call swept_scene(scene, value, variant, error)
     !$omp end critical (one_at_a_time)

@@ -66,7 +66,7 @@ contains
     class(locked_stepper_t), pointer :: steps
     real(wp) :: began
 
-    ! Not allocatable: gfortran 12 frees what a polymorphic one of these types never had.
+    ! Not allocatable: compiler note 4.
     if (has_path(problem)) then
       steps => along_path
     else
@@ -245,8 +245,7 @@ contains
           cycle
         end if
         position = turning(k)
-        ! Not by a function with a result of deferred length: gfortran keeps that length in static
-        ! storage, and the cases of a sweep share it.
+        ! Not by a function of deferred length, which cases of a sweep would share: compiler note 5.
         write (name, '(a, i0)') 'unloading_', k
         plan = schedule_of(trim(name), request%unloading%from(k), request%unloading%h0_end, &
           request%unloading%h0_step, request, steps%problem%law, nowhere)

@@ -64,7 +64,7 @@ contains
     end do
     rule%weight = matmul(inner_basis, rule%inner_weight)
 
-    ! One by one: gfortran leaks derived-type results inside an array constructor.
+    ! One by one: compiler note 1.
     allocate (rule%distant(size(points)))
     do k = 1, size(points)
       rule%distant(k) = new_distant_rule(node, rule%barycentric, points(k))

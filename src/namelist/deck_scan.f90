@@ -1,7 +1,6 @@
 !> Namelist grammar: finds the groups and assignments of a deck and where each of them stands.
 !>
-!> The compiler's own namelist reader is not used: it passes over duplicate keys, empty values, NaN,
-!> truncated strings and text after `/` in silence, and reports the rest without a line.
+!> The compiler's own namelist reader is not used: compiler note 10.
 module deck_scan
   use failure, only: failure_t
   use text, only: lower

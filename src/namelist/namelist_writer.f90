@@ -88,8 +88,8 @@ contains
     text = written(key, items)
   end function of_lines
 
-  !> `text` as a string that all readers take. gfortran looks for the beginning of a group even
-  !> inside the strings of other groups, so that none may look like one.
+  !> `text` as a string that all readers take: nothing in it looks like the beginning of a group
+  !> (compiler note 9).
   pure function literal(text)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: literal

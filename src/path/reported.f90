@@ -56,7 +56,7 @@ contains
     reported%witness = witness
   end function reported_state
 
-  !> Adds to a list. (An array constructor around a function's result would leak in gfortran.)
+  !> Adds to a list. An argument may be a function's result: compiler note 1.
   subroutine add_reported(list, reported)
     type(reported_t), allocatable, intent(inout) :: list(:)
     type(reported_t), intent(in) :: reported

@@ -90,7 +90,7 @@ contains
       type(theory_row_t) :: row
 
       if (.not. allocated(jump)) return
-      ! A function's result inside an array constructor would leak in gfortran.
+      ! Not the function's result inside the array constructor: compiler note 1.
       row = row_of(jump)
       rows = [rows, row]
     end subroutine add_jump
@@ -141,8 +141,7 @@ contains
     jump%load = slow_load(problem, form, gap)*problem%load
   end function state_at
 
-  !> The row of a state; component by component, since gfortran 12 loses the name in a structure
-  !> constructor.
+  !> The row of a state; component by component, see compiler note 3.
   pure function row_of(jump) result(row)
     type(jump_t), intent(in) :: jump
     type(theory_row_t) :: row

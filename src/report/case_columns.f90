@@ -11,7 +11,7 @@ module case_columns
   private
   public :: columns_of, numbers_of
 
-  integer, parameter :: width = 128
+  integer, parameter :: width = 132
 
 contains
 
@@ -24,7 +24,7 @@ contains
     integer :: i, k, n
 
     single = single_columns(scene)
-    ! Filled item by item: gfortran 12 overruns constructors of strings made on the way.
+    ! Filled item by item: compiler note 2.
     allocate (columns(size(single) + turning_points(scene)*count(each_turn(rows))))
     do n = 1, size(single)
       columns(n) = described(rows(single(n)), '')

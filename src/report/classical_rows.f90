@@ -60,7 +60,7 @@ contains
 
       ! A theory without a state here says NaN.
       if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
-      ! A structure constructor inside an array constructor would leak in gfortran.
+      ! Not a structure constructor inside the array's: compiler note 1.
       row = theory_row_t(theory, h0, delta, load, contact_radius)
       rows = [rows, row]
     end subroutine add

@@ -8,14 +8,14 @@ module profiles
   use tables, only: table_t, cells
   implicit none
   private
-  public :: columns_of_profiles, write_profile
+  public :: columns_of_profiles, write_profile, profile_columns, unlike_columns
 
   !> Columns of the table of profiles.
   character(len=*), parameter :: profile_columns(*) = [character(len=96) :: &
     'branch [] as in curve.csv', &
     'h0 [m] separation that undeformed bodies would have on the axis', &
     'r [m] distance from the axis', &
-    'separation [m]', &
+    'separation [m] between the surfaces at r', &
     'deformation [m] of each surface, outward positive; of unlike bodies the mean', &
     'pressure [Pa] negative: attraction', &
     'energy [J/m^2] of the surface force']
@@ -23,7 +23,7 @@ module profiles
   !> Of bodies that are not alike.
   character(len=*), parameter :: unlike_columns(*) = [character(len=96) :: &
     'deformation_1 [m] of the first body''s surface, outward positive', &
-    'deformation_2 [m] of the second body''s']
+    'deformation_2 [m] of the second body''s surface, outward positive']
 
 contains
 

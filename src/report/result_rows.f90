@@ -16,7 +16,7 @@ module result_rows
   type :: row_t
     character(len=28) :: key = ''
     character(len=5) :: unit = ''
-    character(len=72) :: meaning = ''
+    character(len=88) :: meaning = ''
     character(len=14) :: sweep = never
     integer :: group = in_summary
   end type row_t
@@ -24,88 +24,104 @@ module result_rows
   !> In the order in which they are written.
   type(row_t), parameter :: rows(*) = [ &
     row_t('title', '', 'title of the scene'), &
-    row_t('version', '', 'of the program'), &
-    row_t('converged', '', 'whether every equilibrium was found, 1 or 0', always), &
-    row_t('sigma', '', 'parameter (40) of the paper', always), &
-    row_t('tabor', '', 'Tabor parameter', always), &
-    row_t('big_lambda', '', 'parameter (39) of the paper', always), &
-    row_t('surface_energy', 'J/m^2', 'depth of the energy minimum', always), &
+    row_t('version', '', 'version of the program'), &
+    row_t('converged', '', &
+      'whether every equilibrium was solved to the tolerance (sweep.csv: 1 or 0)', always), &
+    row_t('sigma', '', 'strength of adhesion, (40) of the paper', always), &
+    row_t('tabor', '', 'Tabor''s parameter, (4 sigma^2)^(1/3)', always), &
+    row_t('big_lambda', '', &
+      'strength of exponential repulsion, (39) of the paper at h0 = 0', always), &
+    row_t('surface_energy', 'J/m^2', &
+      'surface energy of the force law, the depth of its minimum', always), &
     row_t('jkr_pull_off', 'N', 'pull-off of JKR theory, positive', always), &
     row_t('dmt_pull_off', 'N', 'pull-off of DMT theory, positive', always), &
-    row_t('maugis_lambda', '', 'parameter of Maugis-Dugdale theory', classical), &
-    row_t('maugis_pull_off', 'N', 'pull-off of Maugis-Dugdale theory', classical), &
-    row_t('max_tension', 'N', 'largest tension, positive', always), &
-    row_t('max_tension_h0', 'm', 'where', always), &
-    row_t('max_tension_error', 'N', 'estimated error'), &
-    row_t('max_tension_h0_error', 'm', 'estimated error'), &
-    row_t('jump_in_h0', 'm', 'where the bodies jump into contact', always), &
-    row_t('jump_in_load', 'N', 'just before', always), &
-    row_t('jump_in_h0_error', 'm', 'estimated error'), &
-    row_t('jump_in_load_error', 'N', 'estimated error'), &
-    row_t('jump_in_uncertainty', 'm', 'how closely it was bracketed on a fixed grid'), &
-    row_t('jump_out_h0', 'm', 'where they jump apart', always), &
-    row_t('jump_out_load', 'N', 'just before', always), &
-    row_t('jump_out_h0_error', 'm', 'estimated error'), &
-    row_t('jump_out_load_error', 'N', 'estimated error'), &
-    row_t('jump_out_uncertainty', 'm', 'how closely it was bracketed on a fixed grid'), &
-    row_t('unload_from', 'm', 'turning points'), &
-    row_t('unload_max_tension', 'N', 'largest tension of each unloading', turning), &
-    row_t('unload_max_tension_h0', 'm', 'where'), &
-    row_t('unload_jump_out_h0', 'm', 'where each unloading jumps apart', turning), &
-    row_t('unload_max_tension_error', 'N', 'estimated error'), &
-    row_t('unload_max_tension_h0_error', 'm', 'estimated error'), &
-    row_t('unload_jump_out_h0_error', 'm', 'estimated error'), &
-    row_t('folds_h0', 'm', 'all folds of the path, in order'), &
-    row_t('folds_load', 'N', 'the load there'), &
-    row_t('folds_stable', '', 'whether what follows is stable, 1 or 0'), &
-    row_t('folds_h0_error', 'm', 'estimated error'), &
-    row_t('folds_load_error', 'N', 'estimated error'), &
-    row_t('load_folds_h0', 'm', 'all extrema of the load along the path'), &
-    row_t('load_folds_load', 'N', 'the load there'), &
-    row_t('load_folds_h0_error', 'm', 'estimated error'), &
-    row_t('load_folds_load_error', 'N', 'estimated error'), &
-    row_t('energy_lost', 'J', 'in the jumps of a cycle', always), &
-    row_t('energy_lost_uncertainty', 'J', 'how well it is known'), &
-    row_t('end_h0', 'm', 'of the last equilibrium of the loading, or else of the path', always), &
-    row_t('end_displacement', 'm', 'there', always), &
-    row_t('end_load', 'N', 'there', always), &
-    row_t('end_displacement_error', 'm', 'estimated error'), &
-    row_t('end_load_error', 'N', 'estimated error'), &
-    row_t('profiles_error', '', 'of gaps (law''s lengths) or pressures (over the largest)'), &
-    row_t('jump_criterion_29_h0', 'm', 'where approaching bodies violate (29)', approximations), &
-    row_t('jump_criterion_29_load', 'N', 'there', approximations), &
-    row_t('jump_equation_37_h0', 'm', 'by (37), for the attraction alone', approximations), &
-    row_t('jump_equation_37_load', 'N', 'there', approximations), &
-    row_t('jump_equation_37_gap', 'm', 'separation (37) on the axis', approximations), &
-    row_t('fold_closed_form_h0', 'm', 'least h0 of (35a)', approximations), &
-    row_t('fold_closed_form_load', 'N', 'there', approximations), &
-    row_t('fold_attractive_only_h0', 'm', 'least h0 of (35b)', approximations), &
-    row_t('fold_attractive_only_load', 'N', 'there', approximations), &
-    row_t('worst_residual', '', 'in units of the length of the force law', always), &
-    row_t('spacing_over_neck', '', 'distance of nodes at the contact edge over the neck', always), &
-    row_t('resolved', '', 'whether the mesh is fine enough, 1 or 0', always), &
-    row_t('error_estimate', '', 'largest estimated error of a number, relative', always), &
-    row_t('grid', '', 'the grid in use'), &
-    row_t('method', '', 'the iteration in use'), &
-    row_t('chosen_because', '', 'why'), &
-    row_t('compiler', '', 'that made the program'), &
-    row_t('blas', '', 'its linear algebra'), &
-    row_t('build_options', '', 'of the compiler'), &
-    row_t('warnings', '', 'all that is not as it should be'), &
-    row_t('wall_seconds', 's', 'from the beginning to the end', group=in_cost), &
-    row_t('kernel_seconds', 's', 'for kernels', group=in_cost), &
-    row_t('solve_seconds', 's', 'for equilibria', group=in_cost), &
-    row_t('estimate_seconds', 's', 'for the error estimate', group=in_cost), &
-    row_t('threads', '', 'in use', group=in_cost), &
-    row_t('nodes', '', 'of all meshes', group=in_cost), &
-    row_t('states', '', 'equilibria', group=in_cost), &
-    row_t('iterations', '', 'of all of them', group=in_cost), &
-    row_t('kernel_entries', '', 'computed', group=in_cost), &
-    row_t('pressure_evaluations', '', 'of the force law, or of its slope', group=in_cost), &
-    row_t('operator_products', '', 'with the matrix of the kernel', group=in_cost), &
-    row_t('operator_columns', '', 'that these took part in', group=in_cost), &
-    row_t('factorisations', '', 'of Jacobians', group=in_cost), &
-    row_t('rejected_steps', '', 'of iterations and of the path', group=in_cost)]
+    row_t('maugis_lambda', '', 'Maugis'' parameter, 1.157 times Tabor''s', classical), &
+    row_t('maugis_pull_off', 'N', 'pull-off of Maugis-Dugdale theory, positive', classical), &
+    row_t('max_tension', 'N', 'largest tension of all branches, positive', always), &
+    row_t('max_tension_h0', 'm', 'h0 at the largest tension', always), &
+    row_t('max_tension_error', 'N', 'estimated error of max_tension'), &
+    row_t('max_tension_h0_error', 'm', 'estimated error of max_tension_h0'), &
+    row_t('jump_in_h0', 'm', 'h0 at which the approaching bodies jump into contact', always), &
+    row_t('jump_in_load', 'N', 'load just before the jump into contact', always), &
+    row_t('jump_in_h0_error', 'm', 'estimated error of jump_in_h0'), &
+    row_t('jump_in_load_error', 'N', 'estimated error of jump_in_load'), &
+    row_t('jump_in_uncertainty', 'm', &
+      'on a fixed grid: h0 of the jump is known to within plus or minus this'), &
+    row_t('jump_out_h0', 'm', &
+      'h0 at which the retreating bodies jump apart, in the first unloading that does', always), &
+    row_t('jump_out_load', 'N', 'load just before the bodies jump apart', always), &
+    row_t('jump_out_h0_error', 'm', 'estimated error of jump_out_h0'), &
+    row_t('jump_out_load_error', 'N', 'estimated error of jump_out_load'), &
+    row_t('jump_out_uncertainty', 'm', &
+      'on a fixed grid: h0 of the jump is known to within plus or minus this'), &
+    row_t('unload_from', 'm', 'turning point of each unloading'), &
+    row_t('unload_max_tension', 'N', 'largest tension of each unloading, positive', turning), &
+    row_t('unload_max_tension_h0', 'm', 'h0 at the largest tension of each unloading'), &
+    row_t('unload_jump_out_h0', 'm', &
+      'h0 at which the bodies jump apart in each unloading', turning), &
+    row_t('unload_max_tension_error', 'N', 'estimated error of unload_max_tension'), &
+    row_t('unload_max_tension_h0_error', 'm', 'estimated error of unload_max_tension_h0'), &
+    row_t('unload_jump_out_h0_error', 'm', 'estimated error of unload_jump_out_h0'), &
+    row_t('folds_h0', 'm', 'h0 of every fold of the path, in order'), &
+    row_t('folds_load', 'N', 'load at every fold of the path'), &
+    row_t('folds_stable', '', 'whether the path is stable after each fold, 1 or 0'), &
+    row_t('folds_h0_error', 'm', 'estimated error of folds_h0'), &
+    row_t('folds_load_error', 'N', 'estimated error of folds_load'), &
+    row_t('load_folds_h0', 'm', 'h0 of every extremum of the load along the path'), &
+    row_t('load_folds_load', 'N', 'load at every extremum'), &
+    row_t('load_folds_h0_error', 'm', 'estimated error of load_folds_h0'), &
+    row_t('load_folds_load_error', 'N', 'estimated error of load_folds_load'), &
+    row_t('energy_lost', 'J', 'energy lost in the jumps of a cycle', always), &
+    row_t('energy_lost_uncertainty', 'J', 'estimated error of energy_lost'), &
+    row_t('end_h0', 'm', &
+      'h0 of the last equilibrium of the loading; without a loading, of the path', always), &
+    row_t('end_displacement', 'm', 'displacement of the last equilibrium', always), &
+    row_t('end_load', 'N', 'load of the last equilibrium', always), &
+    row_t('end_displacement_error', 'm', 'estimated error of end_displacement'), &
+    row_t('end_load_error', 'N', 'estimated error of end_load'), &
+    row_t('profiles_error', '', &
+      'error of each profile: of gaps over the law''s length or of pressures over the largest'), &
+    row_t('jump_criterion_29_h0', 'm', &
+      'h0 at which approaching bodies first violate (29)', approximations), &
+    row_t('jump_criterion_29_load', 'N', 'load there', approximations), &
+    row_t('jump_equation_37_h0', 'm', &
+      'h0 of the jump by (37), for the attraction alone', approximations), &
+    row_t('jump_equation_37_load', 'N', 'load there', approximations), &
+    row_t('jump_equation_37_gap', 'm', 'separation on the axis by (37)', approximations), &
+    row_t('fold_closed_form_h0', 'm', 'h0 at which (35a) turns round', approximations), &
+    row_t('fold_closed_form_load', 'N', 'load there', approximations), &
+    row_t('fold_attractive_only_h0', 'm', 'h0 at which (35b) turns round', approximations), &
+    row_t('fold_attractive_only_load', 'N', 'load there', approximations), &
+    row_t('worst_residual', '', &
+      'largest residual of all equilibria, over the law''s length', always), &
+    row_t('spacing_over_neck', '', &
+      'largest distance of nodes at the contact edge over the width of the neck', always), &
+    row_t('resolved', '', 'whether spacing_over_neck is at most 0.2 (sweep.csv: 1 or 0)', always), &
+    row_t('error_estimate', '', 'largest estimated error of all numbers, relative', always), &
+    row_t('grid', '', 'grid in use'), &
+    row_t('method', '', 'iteration in use'), &
+    row_t('chosen_because', '', 'why this grid and this iteration'), &
+    row_t('compiler', '', 'compiler that made the program'), &
+    row_t('blas', '', 'library of linear algebra'), &
+    row_t('build_options', '', 'options of the compiler'), &
+    row_t('warnings', '', 'every warning of the run'), &
+    row_t('wall_seconds', 's', 'from beginning to end, interrupted runs included', group=in_cost), &
+    row_t('kernel_seconds', 's', 'spent on matrices of the elastic kernel', group=in_cost), &
+    row_t('solve_seconds', 's', 'spent on equilibria', group=in_cost), &
+    row_t('estimate_seconds', 's', 'spent on the error estimate', group=in_cost), &
+    row_t('threads', '', 'number of threads in use', group=in_cost), &
+    row_t('nodes', '', 'number of nodes of all meshes', group=in_cost), &
+    row_t('states', '', 'number of equilibria', group=in_cost), &
+    row_t('iterations', '', 'number of iterations over all equilibria', group=in_cost), &
+    row_t('kernel_entries', '', 'number of entries of kernel matrices computed', group=in_cost), &
+    row_t('pressure_evaluations', '', &
+      'number of evaluations of the force law or of its slope', group=in_cost), &
+    row_t('operator_products', '', 'number of products with a kernel matrix', group=in_cost), &
+    row_t('operator_columns', '', &
+      'number of columns that took part in these products', group=in_cost), &
+    row_t('factorisations', '', 'number of Jacobians factorised', group=in_cost), &
+    row_t('rejected_steps', '', &
+      'number of steps rejected by iterations and by the path', group=in_cost)]
 
 contains
 

@@ -24,7 +24,7 @@ module results
   use progress, only: progress_t
   implicit none
   private
-  public :: results_t, journal_of
+  public :: results_t, journal_of, curve_columns, stability_columns, theory_columns
 
   !> Takes what a run has to show, between `open` and `finish`. The first thing that goes wrong is
   !> kept in `trouble`; after it nothing more is written. Not to be copied while files are open.
@@ -56,6 +56,7 @@ module results
     procedure, private :: mark
   end type results_t
 
+  !> Columns of curve.csv, each described as 'name [unit] meaning'.
   character(len=*), parameter :: curve_columns(*) = [character(len=96) :: &
     'branch [] loading, unloading_1, unloading_2, ..., or path', &
     'h0 [m] separation that undeformed bodies would have on the axis', &
@@ -63,7 +64,7 @@ module results
     'displacement [m] h_centre - h0', &
     'load [N] negative: tension', &
     'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
-    'stable [] 1, 0, or -1 where not asked for', &
+    'stable [] 1: stable; 0: unstable, or a fold; -1: not examined', &
     'residual [] largest error of the equations, in units of the length of the force law', &
     'iterations [] products with the elastic operator', &
     'converged [] 1; 0 where the residual is larger than asked for: the row is no equilibrium']
@@ -72,12 +73,13 @@ module results
     'smallest_eigenvalue [] of the operator at fixed h0; negative: unstable', &
     'criterion_28 [] largest |2 u p''/p| where surfaces attract; above 1: unstable by (28)', &
     'criterion_29 [] 2 p'' u/p on an axis that attracts; below -1: unstable by (29)']
+  !> Columns of classical.csv and approximations.csv.
   character(len=*), parameter :: theory_columns(*) = [character(len=96) :: &
     'theory [] where the row comes from', &
     'h0 [m] separation that undeformed bodies would have on the axis', &
     'displacement [m] separation on the axis less h0', &
     'load [N] negative: tension', &
-    'contact_radius [m]']
+    'contact_radius [m] NaN where the theory does not give one']
 
 contains
 

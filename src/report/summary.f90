@@ -181,7 +181,7 @@ contains
     do i = 1, size(self%warnings)
       if (self%warnings(i)%text == text) return
     end do
-    ! A structure constructor inside an array constructor would leak in gfortran.
+    ! Not by a structure constructor: compiler note 1.
     line%text = text
     self%warnings = [self%warnings, line]
     if (size(self%warnings) == most_warnings) &
@@ -228,6 +228,7 @@ contains
     text = ''
     do i = 1, size(rows)
       if (rows(i)%group /= group) cycle
+      ! A variable, not a name of the associate construct: compiler note 6.
       key = trim(rows(i)%key)
       associate (value => self%value(i))
         text = text // assignment_of(key, value%number) // assignment_of(key, value%count) // &

@@ -1,6 +1,6 @@
-/* Little memory. None is an end with status 1 and a reason. Code that gfortran makes does not
-   always look at what malloc returns and would go on to a segmentation fault; the linker leads its
-   calls here (--wrap, see meson.build). States that were complete are in the journal by then. */
+/* No memory is an end with status 1 and a reason. Compiled Fortran would go on to a segmentation
+   fault (compiler note 8); the linker leads its calls here (--wrap, see meson.build). States that
+   were complete are in the journal by then. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 !> Text files that lose nothing in silence.
 !>
-!> They are written by system calls because gfortran's units do: on a full disk `flush` and `close`
-!> return iostat = 0 (seen with gfortran 12).
+!> They are written by system calls because Fortran's units do not tell of a full disk:
+!> compiler note 7.
 module text_file
   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
   use failure, only: failure_t

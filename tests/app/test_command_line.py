@@ -30,7 +30,7 @@ def files_in(folder):
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
 
 
-@pytest.mark.parametrize("option", ["--help", "--keys", "--version"])
+@pytest.mark.parametrize("option", ["--help", "--keys", "--results", "--version"])
 def test_information_goes_to_stdout_with_status_0(snapin, decks, option):
     before = files_in(decks)
     done = snapin(option, cwd=decks)
@@ -42,7 +42,8 @@ def test_information_goes_to_stdout_with_status_0(snapin, decks, option):
 
 def test_help_names_every_option(snapin):
     text = snapin("--help").stdout
-    for option in ["--out", "--check", "--resume", "--quiet", "--keys", "--version", "--help"]:
+    for option in ["--out", "--check", "--resume", "--quiet", "--keys", "--results", "--version",
+                   "--help"]:
         assert f"\n  {option} " in text
 
 

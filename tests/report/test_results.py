@@ -2,10 +2,16 @@
 
 import re
 import resource
+import sys
 
 import f90nml
 import pytest
+from conftest import ROOT
 from support.scenes import exponential, lennard_jones, loading, runner
+
+sys.path.append(str(ROOT / "tools"))
+
+from reference_tables import sections_of  # noqa: E402 (found through the line above)
 
 CURVE = [
     ("branch", ""),
@@ -147,6 +153,17 @@ def test_summary_has_every_key_of_the_contract(full):
     # One value a turning point, NaN where there is none.
     for key in ("unload_from", "unload_max_tension", "unload_jump_out_h0"):
         assert len(full.summary[key]) == 2
+
+
+def test_the_listing_names_every_column_and_entry_of_a_run(full, snapin):
+    sections = sections_of(snapin("--results").stdout)
+    listed = {s.name: [line.split(";")[0].split(" ")[0] for line, _ in s.items] for s in sections}
+    assert listed["curve.csv"] == full.curve.names
+    assert listed["profiles.csv"][: len(PROFILES)] == full.table("profiles.csv").names
+    assert listed["classical.csv"] == full.table("classical.csv").names
+    for group in ("summary", "cost"):
+        keys = list(full.groups[group])
+        assert [key for key in listed[f"&{group}"] if key in keys] == keys
 
 
 def test_f90nml_reads_the_summary_and_writes_it_back(full, tmp_path):

@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""Bring the tables of docs/decks.md and docs/results.md up to date.
+
+The program prints them: `snapin --keys` every group and key of a deck, `snapin --results` every
+file, column and entry of results. A page holds what is made of them between two marks,
+`<!-- --keys -->` and `<!-- /--keys -->`.
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+from typing import NamedTuple
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAM = pathlib.Path(os.environ.get("SNAPIN", ROOT / "build" / "snapin"))
+
+# Page, and the option that prints its tables.
+PAGES = {"docs/decks.md": "--keys", "docs/results.md": "--results"}
+
+
+class Section(NamedTuple):
+    """A group of a deck, a file of results or a group of the summary."""
+
+    name: str
+    note: str
+    meaning: str
+    # Per item: the line that begins with its name, and its meaning.
+    items: list
+
+
+def sections_of(output):
+    """Return the sections of what the program has printed."""
+    sections = []
+    for block in output.strip("\n").split("\n\n"):
+        title, meaning, *lines = block.split("\n")
+        name, _, note = title.partition(" ")
+        items = []
+        for line in lines:
+            if line.startswith(" " * 26):
+                items[-1][1] = line.strip()
+            else:
+                items.append([line.strip(), ""])
+        sections.append(Section(name, note.strip("()"), meaning.strip(), items))
+    return sections
+
+
+def keys_as_markdown(sections):
+    """Return every group and key of a deck; what the program writes itself is left out."""
+    text = ""
+    for group in sections:
+        if group.note == "skipped":
+            continue
+        required = "Required. " if group.note == "required" else ""
+        text += f"### `{group.name}`\n\n{required}{_cell(group.meaning)}\n\n"
+        rows = [(f"`{key}`", value.strip(), meaning)
+                for (key, _, value), meaning in ((line.partition(" "), m) for line, m in group.items)]
+        text += _table(["key", "value", "meaning"], rows)
+    return text
+
+
+def results_as_markdown(sections):
+    """Return every file, column and entry of results."""
+    text = ""
+    for section in sections:
+        of_summary = section.name.startswith("&")
+        level = "####" if of_summary else "###"
+        when = f" Written {_cell(section.note)}." if section.note else ""
+        text += f"{level} `{section.name}`\n\n{_cell(section.meaning)}{when}\n\n"
+        rows = []
+        for line, meaning in section.items:
+            name, unit, note = re.fullmatch(r"(\w+)(?: \[(.*?)\])?(?:; (.*))?", line).groups("")
+            rows.append((f"`{name}`", unit, note, meaning))
+        text += _table(["entry" if of_summary else "column", "unit", "note", "meaning"], rows)
+    return text
+
+
+def page_with(page, block):
+    """Return the text of a page with its tables replaced by `block`."""
+    option = PAGES[page]
+    old = (ROOT / page).read_text(encoding="utf-8")
+    between = re.compile(f"(?<=<!-- {option} -->\n).*?(?=<!-- /{option} -->)", re.S)
+    new, count = between.subn(lambda _: block, old)
+    if count != 1:
+        raise ValueError(f"{page} has no marks for {option}")
+    return new
+
+
+def block_of(page, output):
+    """Return what stands between the marks of a page."""
+    option = PAGES[page]
+    make = {"--keys": keys_as_markdown, "--results": results_as_markdown}[option]
+    return make(sections_of(output))
+
+
+def _table(head, rows):
+    """Return a Markdown table without the columns that are empty; nothing without rows."""
+    kept = [i for i in range(len(head)) if any(row[i] for row in rows)]
+    if not kept:
+        return ""
+    lines = [head, ["---"] * len(head), *rows]
+    return "".join(
+        "| " + " | ".join(_cell(line[i]) for i in kept) + " |\n" for line in lines
+    ) + "\n"
+
+
+def _cell(text):
+    """Return text that Markdown leaves as it is; names of groups are code."""
+    if text.startswith("`"):
+        return text
+    return re.sub(r"(?<!\w)&[a-z_]+", r"`\g<0>`", re.sub(r"([|*])", r"\\\1", text))
+
+
+def main():
+    for page, option in PAGES.items():
+        output = subprocess.run([PROGRAM, option], check=True, capture_output=True, text=True).stdout
+        (ROOT / page).write_text(page_with(page, block_of(page, output)), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
