@@ -24,6 +24,7 @@ contains
     reached, reason, warnings, stat, message, n)
     use numerics_choice, only: choose, fixed_mesh
     use column_recorder, only: column_recorder_t
+    use ending_text, only: text_of
     use stepped_branch, only: branch_t
     use edge_locked, only: new_mesh_pair
     use experiment, only: prepare
@@ -99,8 +100,8 @@ contains
       call judge_locked(locked, high, low, outcome)
     else
       call prepare(fixed, problem, outcome%chosen, accuracy)
-      fixed%mesh = fixed_mesh(outcome%chosen, problem, low)
-      call use_threads_for(fixed%mesh%nodes)
+      fixed%pair%grid(1) = fixed_mesh(outcome%chosen, problem, low)
+      call use_threads_for(fixed%pair%grid(1)%nodes)
       call run_stretches(fixed, h0/problem%length, rows, stretch)
       outcome%unloading = stretch
       call judge_fixed(fixed, low, outcome)
@@ -112,7 +113,7 @@ contains
       jump_count = jump_count + 1_c_int
       jumps(jump_count, :) = [stretch(k)%jump%h0*problem%length, stretch(k)%jump%load*problem%load]
     end do
-    reason = stretch(size(stretch))%reason
+    reason = text_of(stretch(size(stretch))%ending)
     call rows%give(states, reached)
     outcome%loading = as_one(stretch)
     call tell(summary_of(scene, problem, outcome), highest, error_estimate, warnings)
@@ -125,6 +126,7 @@ contains
     accuracy, h0_start, given, h0_end, states, folds, fold_count, highest, error_estimate, &
     reached, reason, warnings, stat, message, n)
     use column_recorder, only: column_recorder_t
+    use ending_text, only: text_of
     use experiment, only: run_experiment
     use scene_problem, only: problem_of
     use failure, only: no_convergence
@@ -165,8 +167,8 @@ contains
       message = 'the path has more states than there is room for'
     end if
     call rows%give(states, reached)
-    if (allocated(outcome%path)) reason = outcome%path%reason
-    if (allocated(outcome%stepped_path)) reason = outcome%stepped_path%reason
+    if (allocated(outcome%path)) reason = text_of(outcome%path%ending)
+    if (allocated(outcome%stepped_path)) reason = text_of(outcome%stepped_path%ending)
     summary = summary_of(scene, problem, outcome)
     call tell(summary, highest, error_estimate, warnings)
     fold_count = int(min(int(n), size(summary%numbers('folds_h0'))), c_int)
@@ -203,7 +205,7 @@ contains
       plan%profile = spread(.false., 1, last - first + 1)
       call run_branch(steps, plan, first == 1, position, observer, nowhere, none, this)
       stretch = [stretch, this]
-      if (this%reason /= '') exit
+      if (this%ending%early()) exit
       first = last + 1
     end do
   end subroutine run_stretches

@@ -224,11 +224,8 @@ contains
     start, method, tolerance, most_iterations, depth, patience, mixing_limit, stop_on_change, &
     displacement_tolerance, gap, pressure, axis_gap, load, residual, converged, operator_products, &
     factorisations, rejected_steps, stat, message, m)
-    use anderson, only: frozen_jacobian_t
-    use discretisation, only: discretisation_t
-    use equilibrium, only: control_t, cost_t, state_t, at_h0, state_from
-    use dimensionless_problem, only: problem_t
-    use solver, only: solve_state
+    use equilibrium, only: control_t, state_t, at_h0, state_from
+    use solver, only: solver_t
     use solver_options, only: solver_options_t
     character(len=*), intent(in) :: name, part, kind, method
     integer(c_int), intent(in) :: order, most_iterations, depth, patience, stop_on_change, m
@@ -240,12 +237,8 @@ contains
     integer(c_int), intent(out) :: converged, operator_products, factorisations, rejected_steps
     integer(c_int), intent(out) :: stat
     character(len=200), intent(out) :: message
-    type(problem_t) :: this
-    type(discretisation_t) :: mesh
-    type(solver_options_t) :: options
-    type(frozen_jacobian_t) :: frozen
+    type(solver_t) :: this
     type(state_t) :: state
-    type(cost_t) :: cost
     logical :: met
 
     gap = 0
@@ -257,29 +250,28 @@ contains
     operator_products = 0
     factorisations = 0
     rejected_steps = 0
-    call make_unit_law(name, part, this%law, stat, message)
+    call make_unit_law(name, part, this%problem%law, stat, message)
     if (stat /= 0) return
-    this%coupling = coupling
-    this%rigid = .not. coupling > 0
-    call make_mesh(kind, centre, panel_end, order, .not. this%rigid, mesh, stat, message)
+    this%problem%coupling = coupling
+    this%problem%rigid = .not. coupling > 0
+    call make_mesh(kind, centre, panel_end, order, coupling > 0, this%pair%grid(1), stat, message)
     if (stat /= 0) return
 
-    options = solver_options_t(method=method, tolerance=tolerance, depth=depth, &
+    this%options = solver_options_t(method=method, tolerance=tolerance, depth=depth, &
       patience=patience, most_iterations=most_iterations, mixing_limit=mixing_limit, &
       stop_on_change=stop_on_change /= 0, displacement_tolerance=displacement_tolerance)
-    state = state_from(mesh%nodes)
+    state = state_from(this%pair%grid(1)%nodes)
     state%gap = start
-    call solve_state(this, mesh, control_t(kind=at_h0, value=h0, scale=scale), options, frozen, &
-      state, met, cost)
+    call this%solve(control_t(kind=at_h0, value=h0, scale=scale), state, met)
     gap = state%gap
     pressure = state%pressure
     axis_gap = state%axis_gap
     load = state%load
     residual = state%residual
     if (met) converged = 1
-    operator_products = int(cost%operator_products, c_int)
-    factorisations = int(cost%factorisations, c_int)
-    rejected_steps = int(cost%rejected_steps, c_int)
+    operator_products = int(this%cost%operator_products, c_int)
+    factorisations = int(this%cost%factorisations, c_int)
+    rejected_steps = int(this%cost%rejected_steps, c_int)
   end subroutine equilibrium_state
 
   !> The law of this name in its own units.

@@ -1,6 +1,7 @@
 !> The polynomial through a few scattered values: weights, value, slope, maximum.
 module interpolation
   use kinds, only: wp
+  use root_finding, only: bracket_t
   implicit none
   private
   public :: polynomial_weights, polynomial_value, polynomial_slope, interpolated_maximum
@@ -50,22 +51,17 @@ contains
   !> Where in [low, high] the polynomial through (at, value) is largest, by golden section.
   pure real(wp) function interpolated_maximum(at, value, low, high) result(x)
     real(wp), intent(in) :: at(:), value(:), low, high
-    real(wp), parameter :: golden = 0.618033988749894848_wp
-    real(wp) :: a, b, c, d
+    type(bracket_t) :: bracket
     integer :: step
 
-    a = low
-    b = high
+    bracket = bracket_t(low, high)
     do step = 1, 60
-      c = b - golden*(b - a)
-      d = a + golden*(b - a)
-      if (polynomial_value(at, value, c) > polynomial_value(at, value, d)) then
-        b = d
-      else
-        a = c
-      end if
+      associate (points => bracket%golden_points())
+        call bracket%keep_larger([polynomial_value(at, value, points(1)), &
+          polynomial_value(at, value, points(2))])
+      end associate
     end do
-    x = 0.5_wp*(a + b)
+    x = bracket%middle()
   end function interpolated_maximum
 
 end module interpolation

@@ -7,10 +7,8 @@
 !> every step and no history.
 module anderson
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
-  use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, cost_t, residual, largest_step, state_from, &
-    unknowns_of, residual_floor, at_h0, at_h0_with_edge
+  use equilibrium, only: control_t, state_t, equations_t, residual, largest_step, state_from, &
+    unknowns_of, holds, at_h0, at_h0_with_edge
   use jacobian, only: factorise_jacobian
   use linear_algebra, only: factorisation_t, solve
   use solver_options, only: solver_options_t
@@ -33,6 +31,15 @@ module anderson
     real(wp), allocatable :: z_before(:), f_before(:)
   end type history_t
 
+  !> Where an iteration is: the unknowns, their residual and minus the plain step from them; the
+  !> unknowns with the shortest one so far; the lengths of the last one and of the shortest.
+  type :: iterate_t
+    real(wp), allocatable :: z(:), g(:), f(:), z_best(:)
+    real(wp) :: length = huge(1.0_wp), shortest = huge(1.0_wp)
+    integer :: since_renewal = 0, rejections = 0
+    type(history_t) :: history
+  end type iterate_t
+
   !> A factorisation that has served this many states and now takes this many iterations is
   !> renewed: it costs about as much as the iterations that it saves the next states.
   integer, parameter :: long_service = 15, many_iterations = 5
@@ -44,77 +51,41 @@ contains
   !> From `state` (gaps, and H0 or c where the control leaves it open) to the equilibrium at
   !> `control`. On return state%residual says how well the equations hold; converged is
   !> state%residual <= tolerance (or the floor that rounding sets).
-  subroutine solve_anderson(problem, grid, control, options, frozen, state, converged, cost)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    type(control_t), intent(in) :: control
+  subroutine solve_anderson(equations, options, frozen, control, state, converged)
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     type(frozen_jacobian_t), intent(inout) :: frozen
+    type(control_t), intent(in) :: control
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
-    type(cost_t), intent(inout) :: cost
-    real(wp), allocatable :: z(:), g(:), f(:), step(:), z_best(:)
+    type(iterate_t) :: now
     type(state_t) :: best
-    type(history_t) :: history
-    real(wp) :: length, before, shortest
-    integer :: iteration, since_renewal, rejections
+    integer :: iteration
 
-    z = unknowns_of(control, state)
-    allocate (g(size(z)))
-    if (.not. problem%coupling > 0 .and. control%kind == at_h0) then
-      call solve_rigid()
+    if (.not. equations%problem%coupling > 0 .and. control%kind == at_h0) then
+      call solve_rigid(equations, control, state)
+      converged = holds(equations%problem, options%tolerance, state)
       return
     end if
+    now%z = unknowns_of(control, state)
+    now%z_best = now%z
+    allocate (now%g(size(now%z)))
     if (frozen%control_kind /= control%kind) frozen%factors%valid = .false.
-    if (frozen%factors%valid) frozen%factors%valid = size(frozen%factors%lu, 1) == size(z)
+    if (frozen%factors%valid) frozen%factors%valid = size(frozen%factors%lu, 1) == size(now%z)
     best = state_from(size(state%gap))
-    z_best = z
     converged = .false.
-    before = huge(1.0_wp)
-    shortest = huge(1.0_wp)
-    since_renewal = 0
-    rejections = 0
     do iteration = 1, options%most_iterations
-      call residual(problem, grid, control, z, g, state, cost)
-      cost%iterations = cost%iterations + 1
+      call residual(equations, control, now%z, now%g, state)
+      equations%cost%iterations = equations%cost%iterations + 1
       state%iterations = iteration
       if (state%residual < best%residual) best = state
-      converged = state%residual <= max(options%tolerance, residual_floor(problem, state))
+      converged = holds(equations%problem, options%tolerance, state)
       if (converged .or. .not. state%residual < huge(1.0_wp)) exit
-
-      if (.not. frozen%factors%valid .or. since_renewal >= options%patience) call renew()
-      if (.not. frozen%factors%valid) exit
-      f = g
-      call solve(frozen%factors, f)
-      ! The length of the plain step measures the distance from equilibrium; the residual does not,
-      ! for in a stiff contact an error in the gap that no longer matters still moves the pressure
-      ! much.
-      length = step_length(z, f)
-      if (0.1_wp*length > before .and. since_renewal > 0) then
-        cost%rejected_steps = cost%rejected_steps + 1
-        rejections = rejections + 1
-        if (rejections > most_rejections) exit
-        z = z_best
-        call residual(problem, grid, control, z, g, state, cost)
-        call renew()
-        if (.not. frozen%factors%valid) exit
-        f = g
-        call solve(frozen%factors, f)
-        length = step_length(z, f)
-      end if
-      if (length < shortest) then
-        shortest = length
-        z_best = z
-      end if
-      before = length
-      step = accelerated_step(history, options%depth, z, f)
-      step = largest_step(problem, control, z, step)*step
-      z = z + step
-      ! The parabola between the bodies is quadratic in the scale: its second-order part is known,
-      ! and far out it is large.
-      if (control%kind == at_h0_with_edge) &
-        z(:size(z) - 1) = z(:size(z) - 1) + 0.5_wp*(step(size(z))*grid%x(:size(z) - 1))**2
-      since_renewal = since_renewal + 1
+      if (.not. frozen%factors%valid .or. now%since_renewal >= options%patience) &
+        call renew(equations, control, state, frozen, now)
+      call take_plain_step(equations, control, state, frozen, now)
+      if (.not. frozen%factors%valid .or. now%rejections > most_rejections) exit
+      call advance(equations, options%depth, control, now)
     end do
     if (.not. converged .and. best%residual < state%residual) then
       best%iterations = state%iterations
@@ -124,28 +95,93 @@ contains
     frozen%served = frozen%served + 1
     if (frozen%served >= long_service .and. state%iterations > many_iterations) &
       frozen%factors%valid = .false.
-
-  contains
-
-    !> Rigid bodies: their gap is known.
-    subroutine solve_rigid()
-      z = control%value + 0.5_wp*(control%scale*grid%x(:size(z)))**2
-      call residual(problem, grid, control, z, g, state, cost)
-      state%iterations = 0
-      converged = state%residual <= max(options%tolerance, residual_floor(problem, state))
-    end subroutine solve_rigid
-
-    !> A factorisation at the present state; what was learnt with the old one is forgotten.
-    subroutine renew()
-      call factorise_jacobian(problem, grid, control, state, frozen%factors, cost)
-      frozen%control_kind = control%kind
-      history%held = 0
-      if (allocated(history%f_before)) deallocate (history%f_before)
-      since_renewal = 0
-      frozen%served = 0
-    end subroutine renew
-
   end subroutine solve_anderson
+
+  !> Rigid bodies: their gap is known.
+  subroutine solve_rigid(equations, control, state)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    type(state_t), intent(inout) :: state
+    real(wp), dimension(size(state%gap)) :: z, g
+
+    associate (grid => equations%pair%grid(equations%mesh_of(control)))
+      z = control%value + 0.5_wp*(control%scale*grid%x(:size(z)))**2
+    end associate
+    call residual(equations, control, z, g, state)
+    state%iterations = 0
+  end subroutine solve_rigid
+
+  !> A factorisation at the present state; what was learnt with the old one is forgotten.
+  subroutine renew(equations, control, state, frozen, now)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(iterate_t), intent(inout) :: now
+
+    call factorise_jacobian(equations, control, state, frozen%factors)
+    frozen%control_kind = control%kind
+    frozen%served = 0
+    now%history%held = 0
+    if (allocated(now%history%f_before)) deallocate (now%history%f_before)
+    now%since_renewal = 0
+  end subroutine renew
+
+  !> now%f: minus the plain step. Where it has become much longer than the one before, the iteration
+  !> goes back to the best unknowns and renews the factorisation, unless it has done so too often.
+  !>
+  !> The length of the plain step measures the distance from equilibrium; the residual does not, for
+  !> in a stiff contact an error in the gap that no longer matters still moves the pressure much.
+  subroutine take_plain_step(equations, control, state, frozen, now)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    type(state_t), intent(inout) :: state
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(iterate_t), intent(inout) :: now
+    real(wp) :: length
+
+    if (.not. frozen%factors%valid) return
+    now%f = now%g
+    call solve(frozen%factors, now%f)
+    length = step_length(now%z, now%f)
+    if (0.1_wp*length > now%length .and. now%since_renewal > 0) then
+      equations%cost%rejected_steps = equations%cost%rejected_steps + 1
+      now%rejections = now%rejections + 1
+      if (now%rejections > most_rejections) return
+      now%z = now%z_best
+      call residual(equations, control, now%z, now%g, state)
+      call renew(equations, control, state, frozen, now)
+      if (.not. frozen%factors%valid) return
+      now%f = now%g
+      call solve(frozen%factors, now%f)
+      length = step_length(now%z, now%f)
+    end if
+    if (length < now%shortest) then
+      now%shortest = length
+      now%z_best = now%z
+    end if
+    now%length = length
+  end subroutine take_plain_step
+
+  !> Moves the unknowns by the accelerated step.
+  subroutine advance(equations, depth, control, now)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: depth
+    type(control_t), intent(in) :: control
+    type(iterate_t), intent(inout) :: now
+    real(wp) :: step(size(now%z))
+
+    step = accelerated_step(now%history, depth, now%z, now%f)
+    step = largest_step(equations%problem, control, now%z, step)*step
+    now%z = now%z + step
+    now%since_renewal = now%since_renewal + 1
+    if (control%kind /= at_h0_with_edge) return
+    ! The parabola between the bodies is quadratic in the scale: its second-order part is known, and
+    ! far out it is large.
+    associate (n => size(step) - 1, grid => equations%pair%grid(equations%mesh_of(control)))
+      now%z(:n) = now%z(:n) + 0.5_wp*(step(n + 1)*grid%x(:n))**2
+    end associate
+  end subroutine advance
 
   !> The largest relative change that the step -f makes.
   pure real(wp) function step_length(z, f)

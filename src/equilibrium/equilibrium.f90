@@ -9,11 +9,13 @@ module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
+  use edge_locked, only: mesh_pair_t, approach, contact
   use linear_algebra, only: multiply
+  use root_finding, only: bracket_t
   implicit none
   private
-  public :: control_t, state_t, cost_t, residual, largest_step, state_from, unknowns_of, &
-    residual_floor, load_reach, radius_of_gap, lost_in_rounding, beyond_rounding
+  public :: control_t, state_t, cost_t, equations_t, residual, largest_step, state_from, &
+    unknowns_of, holds, residual_floor, load_reach, radius_of_gap, lost_in_rounding
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 prescribed at a fixed scale; no further unknown.
@@ -30,10 +32,6 @@ module equilibrium
 
   !> A residual that rounding excuses, in the law's lengths: beyond it the law is not resolved.
   real(wp), parameter :: largest_floor = 1.0e-3_wp
-
-  !> Why there is no state in contact where `lost_in_rounding`.
-  character(len=*), parameter :: beyond_rounding = &
-    'adhesion is so strong that rounding hides the force law once the bodies are in contact'
 
   type :: control_t
     integer :: kind = at_h0
@@ -62,13 +60,46 @@ module equilibrium
     real(wp) :: kernel_seconds = 0, solve_seconds = 0, estimate_seconds = 0
   end type cost_t
 
+  !> The equations of a problem on its meshes, and what solving them has cost. A mesh fixed in space
+  !> is the first of the pair, alone.
+  type :: equations_t
+    type(problem_t) :: problem
+    type(mesh_pair_t) :: pair
+    type(cost_t) :: cost
+  contains
+    procedure :: mesh_of
+  end type equations_t
+
 contains
+
+  !> The mesh that a control belongs to: a scale that is prescribed or unknown is that of the
+  !> contact, and so is everything where there is no other mesh.
+  pure integer function mesh_of(self, control)
+    class(equations_t), intent(in) :: self
+    type(control_t), intent(in) :: control
+
+    mesh_of = approach
+    if (any(control%kind == [at_h0_with_edge, at_edge_radius]) .or. .not. self%pair%traceable) &
+      mesh_of = contact
+  end function mesh_of
 
   !> g(:nodes) = G and, where the control has one, g(nodes + 1) = its own equation, for the unknowns
   !> z = (gaps [, H0 or c]). On return `state` is what z stands for, with its load and residual.
   !> Where z is outside the law's domain there are neither pressures nor a load, and the residual is
   !> huge.
-  subroutine residual(problem, grid, control, z, g, state, cost)
+  subroutine residual(equations, control, z, g, state)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    real(wp), intent(in) :: z(:)
+    real(wp), intent(out) :: g(:)
+    type(state_t), intent(inout) :: state
+
+    associate (grid => equations%pair%grid(equations%mesh_of(control)))
+      call evaluate(equations%problem, grid, control, z, g, state, equations%cost)
+    end associate
+  end subroutine residual
+
+  subroutine evaluate(problem, grid, control, z, g, state, cost)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(control_t), intent(in) :: control
@@ -118,7 +149,7 @@ contains
     state%residual = maxval(abs(g))
     ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
     if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
-  end subroutine residual
+  end subroutine evaluate
 
   !> Whether unknowns are such that pressures, and all that follows from them, are numbers.
   pure logical function defined(problem, z, state)
@@ -197,8 +228,8 @@ contains
     real(wp), intent(in) :: level
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
-    real(wp) :: low, high, middle
-    integer :: j, step
+    type(bracket_t) :: bracket
+    integer :: j
 
     do j = size(state%gap) - 1, 1, -1
       if (state%gap(j) < level) exit
@@ -206,22 +237,24 @@ contains
     c = 0
     if (j == 0) then
       if (.not. state%axis_gap < level) return
-      low = 0
-      high = grid%x(1)
+      bracket = bracket_t(0.0_wp, grid%x(1))
     else
-      low = grid%x(j)
-      high = grid%x(j + 1)
+      bracket = bracket_t(grid%x(j), grid%x(j + 1))
     end if
-    do step = 1, 60
-      middle = 0.5_wp*(low + high)
-      if (grid%interpolate(state%gap, middle) < level) then
-        low = middle
-      else
-        high = middle
-      end if
+    do while (bracket%is_open())
+      call bracket%narrow(grid%interpolate(state%gap, bracket%middle()) < level)
     end do
-    c = state%scale*low
+    c = state%scale*bracket%low
   end function radius_of_gap
+
+  !> Whether a state is an equilibrium: to the tolerance, or as well as rounding allows.
+  pure logical function holds(problem, tolerance, state)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: tolerance
+    type(state_t), intent(in) :: state
+
+    holds = state%residual <= max(tolerance, residual_floor(problem, state))
+  end function holds
 
   !> The residual that rounding alone leaves: a few units in the last place of the gaps and of the
   !> deformation's parts, which are of opposite signs in an adhesive contact (the operator on a

@@ -4,19 +4,33 @@ module jacobian
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
+  use edge_locked, only: contact
   use linear_algebra, only: factorisation_t, factorise
-  use equilibrium, only: control_t, state_t, cost_t, at_h0, at_axis_gap, at_edge_radius, &
-    at_h0_with_edge
+  use equilibrium, only: control_t, state_t, cost_t, equations_t, at_h0, at_axis_gap, &
+    at_edge_radius, at_h0_with_edge
   implicit none
   private
-  public :: factorise_jacobian, factorise_again, control_derivative
+  public :: factorise_jacobian, factorise_on, factorise_again, control_derivative
 
 contains
 
   !> Factors of the Jacobian of `residual` at a state, bordered where the control has an unknown of
   !> its own: I - 2 coupling c W diag(P'), and the derivatives by H0 or c. `shift` is added to the
   !> diagonal of the nodes' block.
-  subroutine factorise_jacobian(problem, grid, control, state, factors, cost, shift)
+  subroutine factorise_jacobian(equations, control, state, factors, shift)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    type(factorisation_t), intent(inout) :: factors
+    real(wp), intent(in), optional :: shift
+
+    associate (grid => equations%pair%grid(equations%mesh_of(control)))
+      call factorise_on(equations%problem, grid, control, state, factors, equations%cost, shift)
+    end associate
+  end subroutine factorise_jacobian
+
+  !> The same for a state on a mesh that is given.
+  subroutine factorise_on(problem, grid, control, state, factors, cost, shift)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(control_t), intent(in) :: control
@@ -53,13 +67,12 @@ contains
     cost%factorisations = cost%factorisations + 1
     factors%origin = [real(control%kind, wp), control%value, control%scale, diagonal - 1, &
       state%h0, state%scale, state%gap]
-  end subroutine factorise_jacobian
+  end subroutine factorise_on
 
   !> Factors of the Jacobian that factors%origin tells of, bit by bit what `factorise_jacobian` made
   !> on the same mesh.
-  subroutine factorise_again(problem, grid, factors)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
+  subroutine factorise_again(equations, factors)
+    type(equations_t), intent(in) :: equations
     type(factorisation_t), intent(inout) :: factors
     type(control_t) :: control
     type(state_t) :: state
@@ -73,7 +86,9 @@ contains
       state%scale = origin(6)
       state%gap = origin(7:)
     end associate
-    call factorise_jacobian(problem, grid, control, state, factors, not_counted, shift)
+    associate (grid => equations%pair%grid(equations%mesh_of(control)))
+      call factorise_on(equations%problem, grid, control, state, factors, not_counted, shift)
+    end associate
   end subroutine factorise_again
 
   !> The column of derivatives of `residual` by the control's unknown.
@@ -109,9 +124,8 @@ contains
 
   !> Derivative of `residual` by the control's value, at a state: with the factors of the same
   !> control the tangent of the path is minus their solution for it.
-  pure function control_derivative(problem, grid, control, state) result(derivative)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
+  pure function control_derivative(equations, control, state) result(derivative)
+    type(equations_t), intent(in) :: equations
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     real(wp), allocatable :: derivative(:)
@@ -128,7 +142,7 @@ contains
       allocate (derivative(n + 1), source=0.0_wp)
       derivative(n + 1) = -1
     case (at_edge_radius)
-      derivative = scale_derivative(problem, grid, state)
+      derivative = scale_derivative(equations%problem, equations%pair%grid(contact), state)
     end select
   end function control_derivative
 

@@ -7,9 +7,7 @@
 !> there, as an option, to reproduce the paper.
 module mixing
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
-  use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, cost_t, residual, largest_step, residual_floor, at_h0
+  use equilibrium, only: control_t, state_t, equations_t, residual, largest_step, holds, at_h0
   use solver_options, only: solver_options_t
   implicit none
   private
@@ -28,14 +26,12 @@ contains
 
   !> From `state` to the equilibrium at a prescribed H0 (control kind at_h0). On return
   !> state%residual says how well the equations hold; converged says that the chosen rule was met.
-  subroutine solve_mixing(problem, grid, control, options, state, converged, cost)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    type(control_t), intent(in) :: control
+  subroutine solve_mixing(equations, options, control, state, converged)
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
+    type(control_t), intent(in) :: control
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
-    type(cost_t), intent(inout) :: cost
     real(wp), allocatable :: z(:), g(:)
     real(wp) :: ratio, change, change_before, fraction
     integer :: iteration
@@ -47,14 +43,14 @@ contains
     ratio = options%mixing_limit
     change = 0
     do iteration = 1, options%most_iterations
-      call residual(problem, grid, control, z, g, state, cost)
-      cost%iterations = cost%iterations + 1
+      call residual(equations, control, z, g, state)
+      equations%cost%iterations = equations%cost%iterations + 1
       state%iterations = iteration
       if (options%stop_on_change) then
         converged = iteration > 1 .and. abs(change) <= options%displacement_tolerance .and. &
           state%residual < huge(1.0_wp)
       else
-        converged = state%residual <= max(options%tolerance, residual_floor(problem, state))
+        converged = holds(equations%problem, options%tolerance, state)
       end if
       if (converged .or. .not. state%residual < huge(1.0_wp)) exit
 
@@ -64,13 +60,13 @@ contains
       if (iteration > 1) then
         if (change*change_before < 0 .or. abs(change) > growth*abs(change_before)) then
           ratio = max(fall*ratio, smallest_ratio)
-          cost%rejected_steps = cost%rejected_steps + 1
+          equations%cost%rejected_steps = equations%cost%rejected_steps + 1
         else
           ratio = min(rise*ratio, options%mixing_limit)
         end if
       end if
       change = -ratio*g(1)
-      fraction = largest_step(problem, control, z, -ratio*g)
+      fraction = largest_step(equations%problem, control, z, -ratio*g)
       z = z - fraction*ratio*g
     end do
   end subroutine solve_mixing

@@ -3,10 +3,7 @@
 !> quasi-static experiment would land, and leaves unstable equilibria.
 module relaxation
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
-  use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, cost_t, residual, largest_step, residual_floor, &
-    at_h0
+  use equilibrium, only: control_t, state_t, equations_t, residual, largest_step, holds, at_h0
   use jacobian, only: factorise_jacobian
   use linear_algebra, only: factorisation_t, solve, determinant_sign
   use solver_options, only: solver_options_t
@@ -35,14 +32,12 @@ module relaxation
 contains
 
   !> From `state` to a stable equilibrium at the prescribed H0 (control kind at_h0), in place.
-  subroutine relax(problem, grid, control, options, state, converged, cost)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    type(control_t), intent(in) :: control
+  subroutine relax(equations, options, control, state, converged)
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
+    type(control_t), intent(in) :: control
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
-    type(cost_t), intent(inout) :: cost
     type(factorisation_t) :: factors
     real(wp), allocatable :: z(:), g(:), dz(:)
     real(wp) :: dtau, before, moved, apart
@@ -56,18 +51,19 @@ contains
     dtau = first_step
     before = unknown
     moved = unknown
-    began = int(cost%factorisations)
+    began = int(equations%cost%factorisations)
     allowed = max(few_factorisations, int(min(most_cubes/real(size(z), wp)**3, 1.0e6_wp)))
     do step = 1, most_steps
-      if (cost%factorisations - began >= allowed) return
-      call residual(problem, grid, control, z, g, state, cost)
-      cost%iterations = cost%iterations + 1
+      if (equations%cost%factorisations - began >= allowed) return
+      call residual(equations, control, z, g, state)
+      equations%cost%iterations = equations%cost%iterations + 1
       state%iterations = step
       if (.not. state%residual < huge(1.0_wp)) return
-      if (problem%law%adhesion > 0 .and. .not. problem%law%edge_gap > 0 .and. &
-        minval(z) < fallen*apart) return
-      if (state%residual <= max(options%tolerance, residual_floor(problem, state))) then
-        call factorise_jacobian(problem, grid, control, state, factors, cost)
+      associate (law => equations%problem%law)
+        if (law%adhesion > 0 .and. .not. law%edge_gap > 0 .and. minval(z) < fallen*apart) return
+      end associate
+      if (holds(equations%problem, options%tolerance, state)) then
+        call factorise_jacobian(equations, control, state, factors)
         if (.not. factors%valid) return
         converged = determinant_sign(factors) > 0
         if (converged) return
@@ -82,7 +78,7 @@ contains
       dtau = min(max(dtau, usual_step), longest_step)
       before = state%residual
       do
-        call factorise_jacobian(problem, grid, control, state, factors, cost, 1/dtau)
+        call factorise_jacobian(equations, control, state, factors, 1/dtau)
         if (.not. factors%valid) return
         ! A step so long that an unstable mode would be climbed instead of left is too long.
         if (determinant_sign(factors) > 0 .or. dtau <= shortest_step) exit
@@ -90,7 +86,7 @@ contains
       end do
       dz = -g
       call solve(factors, dz)
-      dz = largest_step(problem, control, z, dz)*dz
+      dz = largest_step(equations%problem, control, z, dz)*dz
       z = z + dz
       moved = max(maxval(abs(dz)), tiny(1.0_wp)/epsilon(1.0_wp))
     end do

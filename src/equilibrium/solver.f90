@@ -1,43 +1,41 @@
-!> One calling form for the three iterations.
+!> A problem on its meshes with an iteration that solves it: from state to state.
 module solver
-  use dimensionless_problem, only: problem_t
-  use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, cost_t
-  use solver_options, only: solver_options_t
+  use equilibrium, only: control_t, state_t, equations_t
+  use solver_options, only: solver_options_t, newton_of
   use mixing, only: solve_mixing
   use anderson, only: frozen_jacobian_t, solve_anderson
   implicit none
   private
-  public :: solve_state
+  public :: solver_t
+
+  type, extends(equations_t) :: solver_t
+    type(solver_options_t) :: options
+    !> What one state leaves for the next.
+    type(frozen_jacobian_t) :: frozen
+  contains
+    procedure :: solve
+  end type solver_t
 
 contains
 
   !> From `state` to the equilibrium at `control` by options%method. converged: the residual is
   !> within options%tolerance, or for mixing the chosen stopping rule is met.
-  subroutine solve_state(problem, grid, control, options, frozen, state, converged, cost)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
+  subroutine solve(self, control, state, converged)
+    class(solver_t), intent(inout) :: self
     type(control_t), intent(in) :: control
-    type(solver_options_t), intent(in) :: options
-    type(frozen_jacobian_t), intent(inout) :: frozen
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
-    type(cost_t), intent(inout) :: cost
-    type(solver_options_t) :: newton
 
-    select case (options%method)
+    select case (self%options%method)
     case ('mixing')
-      call solve_mixing(problem, grid, control, options, state, converged, cost)
+      call solve_mixing(self%equations_t, self%options, control, state, converged)
     case ('newton')
-      ! The same iteration with the Jacobian renewed at every step and nothing to accelerate.
-      newton = options
-      newton%patience = 1
-      newton%depth = 0
-      frozen%factors%valid = .false.
-      call solve_anderson(problem, grid, control, newton, frozen, state, converged, cost)
+      self%frozen%factors%valid = .false.
+      call solve_anderson(self%equations_t, newton_of(self%options), self%frozen, control, state, &
+        converged)
     case default
-      call solve_anderson(problem, grid, control, options, frozen, state, converged, cost)
+      call solve_anderson(self%equations_t, self%options, self%frozen, control, state, converged)
     end select
-  end subroutine solve_state
+  end subroutine solve
 
 end module solver

@@ -3,7 +3,7 @@ module solver_options
   use kinds, only: wp
   implicit none
   private
-  public :: solver_options_t, tightened
+  public :: solver_options_t, tightened, newton_of
 
   !> Well above the rounding of equations whose terms are hundreds of the law's lengths.
   real(wp), parameter :: tight_tolerance = 1.0e-12_wp
@@ -37,5 +37,16 @@ contains
     tight = options
     tight%tolerance = min(options%tolerance, tight_tolerance)
   end function tightened
+
+  !> Newton's method: the accelerated iteration with the Jacobian renewed at every step and nothing
+  !> to accelerate.
+  pure function newton_of(options) result(newton)
+    type(solver_options_t), intent(in) :: options
+    type(solver_options_t) :: newton
+
+    newton = options
+    newton%patience = 1
+    newton%depth = 0
+  end function newton_of
 
 end module solver_options

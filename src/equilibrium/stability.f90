@@ -6,7 +6,7 @@ module stability
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, first_node
   use equilibrium, only: control_t, state_t, cost_t
-  use jacobian, only: factorise_jacobian
+  use jacobian, only: factorise_on
   use linear_algebra, only: factorisation_t, solve, determinant_sign, multiply, eigenvalues, &
     positive_definite, positive_eigenvalues
   implicit none
@@ -97,7 +97,7 @@ contains
     first = eigenvalue
     shift = first - room(close, first, widest)
     control%scale = state%scale
-    call factorise_jacobian(problem, grid, control, state, factors, cost, -shift)
+    call factorise_on(problem, grid, control, state, factors, cost, -shift)
     if (.not. factors%valid) return
     if (determinant_sign(factors) < 0) return
     associate (weight => grid%weight(:size(factor)))

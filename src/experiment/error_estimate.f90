@@ -7,17 +7,22 @@
 !> folds.
 module error_estimate
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
-  use discretisation, only: discretisation_t
   use regridding, only: regrid
-  use equilibrium, only: control_t, state_t, cost_t
-  use anderson, only: frozen_jacobian_t, solve_anderson
-  use solver_options, only: solver_options_t
+  use equilibrium, only: control_t, state_t, equations_t
+  use solver, only: solver_t
   use reported, only: reported_t, error_t
   implicit none
   private
-  public :: judge_at_h0, to_rounding, unknown_error, profile_error, nearly_solved, rounding, &
-    worst_residual, what_is_left
+  public :: finer_t, judge_at_h0, unknown_error, profile_error, rounding, worst_residual, &
+    what_is_left
+
+  !> Solves on finer meshes. Differences count `margin` times.
+  type, extends(solver_t) :: finer_t
+    real(wp) :: margin = 1
+  contains
+    procedure :: take_over
+    procedure :: find
+  end type finer_t
 
   !> Rounding of a whole calculation, below which no error is claimed.
   real(wp), parameter :: rounding = 1.0e-13_wp
@@ -30,11 +35,29 @@ module error_estimate
 
 contains
 
-  !> As well as rounding allows: the iteration stops at its own floor.
-  pure type(solver_options_t) function to_rounding() result(options)
-    options%tolerance = 0
-    options%patience = 2
-  end function to_rounding
+  !> Solves the same problem as `steps` on the meshes that self%pair is to be, and goes on counting
+  !> what they have cost.
+  subroutine take_over(self, steps)
+    class(finer_t), intent(inout) :: self
+    class(solver_t), intent(in) :: steps
+
+    self%problem = steps%problem
+    self%cost = steps%cost
+    ! The iteration stops at its own floor.
+    self%options%tolerance = 0
+    self%options%patience = 2
+  end subroutine take_over
+
+  !> Solves as well as rounding allows. found: it leaves no doubt which state it is.
+  subroutine find(self, control, state, found)
+    class(finer_t), intent(inout) :: self
+    type(control_t), intent(in) :: control
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: found
+
+    call self%solve(control, state, found)
+    found = found .or. state%residual < nearly_solved
+  end subroutine find
 
   !> The error of a reported state that has no counterpart on the finer mesh: as large as itself.
   pure type(error_t) function unknown_error(reported) result(error)
@@ -44,38 +67,37 @@ contains
       displacement=max(abs(reported%displacement), 1.0_wp), profile=1.0_wp)
   end function unknown_error
 
-  !> Errors of a reported state by its witness: on `fine`, of which `nodes` nodes are used, at the
-  !> same h0; the difference counts `margin` times.
-  subroutine judge_at_h0(problem, mesh, fine, nodes, margin, reported, cost)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: mesh, fine
+  !> Errors of a reported state by its witness: on the finer mesh, of which `nodes` nodes are used,
+  !> at the same h0.
+  subroutine judge_at_h0(own, fine, nodes, reported)
+    type(equations_t), intent(in) :: own
+    type(finer_t), intent(inout) :: fine
     integer, intent(in) :: nodes
-    real(wp), intent(in) :: margin
     type(reported_t), intent(inout) :: reported
-    type(cost_t), intent(inout) :: cost
-    type(frozen_jacobian_t) :: frozen
     type(state_t) :: state, shifted
     type(control_t) :: control
     real(wp) :: left
-    logical :: converged
+    logical :: found
 
     reported%error = unknown_error(reported)
     associate (witness => reported%witness, error => reported%error)
       ! What did not converge has no counterpart.
       if (.not. witness%state%residual < 1) return
-      state = regrid(witness%state, mesh, fine, witness%state%scale, nodes)
-      call solve_anderson(problem, fine, witness%control, to_rounding(), frozen, state, &
-        converged, cost)
-      if (.not. (converged .or. state%residual < nearly_solved)) return
-      error = error_t(load=margin*abs(state%load - reported%load) + rounding*abs(reported%load), &
-        displacement=margin*abs(state%axis_gap - state%h0 - reported%displacement), &
-        profile=margin*profile_error(problem, mesh, witness%state, fine, state))
-      if (.not. problem%coupling > 0) return
+      state = regrid(witness%state, own%pair%grid(witness%mesh), fine%pair%grid(witness%mesh), &
+        witness%state%scale, nodes)
+      fine%frozen%factors%valid = .false.
+      call fine%find(witness%control, state, found)
+      if (.not. found) return
+      error = error_t(load=fine%margin*abs(state%load - reported%load) + &
+        rounding*abs(reported%load), displacement=fine%margin* &
+        abs(state%axis_gap - state%h0 - reported%displacement), &
+        profile=fine%margin*profile_error(own, fine, witness%mesh, witness%state, state))
+      if (.not. own%problem%coupling > 0) return
       control = witness%control
       control%value = control%value + shift
       shifted = state
-      call solve_anderson(problem, fine, control, to_rounding(), frozen, shifted, converged, cost)
-      if (.not. (converged .or. shifted%residual < nearly_solved)) return
+      call fine%find(control, shifted, found)
+      if (.not. found) return
       left = what_is_left(witness%state)/shift
       error%load = error%load + left*abs(shifted%load - state%load)
       error%displacement = error%displacement + &
@@ -94,24 +116,26 @@ contains
 
   !> The largest difference of gaps, and of pressures over the largest of them, between a state and
   !> one on a finer mesh, on the axis and at its nodes.
-  pure real(wp) function profile_error(problem, mesh, state, fine, right) result(largest)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: mesh, fine
+  pure real(wp) function profile_error(own, fine, mesh, state, right) result(largest)
+    type(equations_t), intent(in) :: own
+    type(finer_t), intent(in) :: fine
+    integer, intent(in) :: mesh
     type(state_t), intent(in) :: state, right
     real(wp) :: x, last, strongest
     integer :: j
 
-    last = fine%x(size(right%gap))
-    strongest = max(maxval(abs(right%pressure)), tiny(1.0_wp))
-    largest = max(abs(right%axis_gap - state%axis_gap), &
-      maxval(abs(problem%law%pressure([right%axis_gap]) - &
-      problem%law%pressure([state%axis_gap])))/strongest)
-    do j = 1, size(state%gap)
-      x = state%scale*mesh%x(j)/right%scale
-      if (x > last) exit
-      largest = max(largest, abs(fine%interpolate(right%gap, x) - state%gap(j)), &
-        abs(fine%interpolate(right%pressure, x) - state%pressure(j))/strongest)
-    end do
+    associate (law => own%problem%law, finer => fine%pair%grid(mesh))
+      last = finer%x(size(right%gap))
+      strongest = max(maxval(abs(right%pressure)), tiny(1.0_wp))
+      largest = max(abs(right%axis_gap - state%axis_gap), &
+        maxval(abs(law%pressure([right%axis_gap]) - law%pressure([state%axis_gap])))/strongest)
+      do j = 1, size(state%gap)
+        x = state%scale*own%pair%grid(mesh)%x(j)/right%scale
+        if (x > last) exit
+        largest = max(largest, abs(finer%interpolate(right%gap, x) - state%gap(j)), &
+          abs(finer%interpolate(right%pressure, x) - state%pressure(j))/strongest)
+      end do
+    end associate
   end function profile_error
 
 end module error_estimate

@@ -6,6 +6,7 @@ module experiment
   use experiment_request, only: request_t
   use numerics_choice, only: choice_t, choose, fixed_mesh
   use edge_locked, only: new_mesh_pair, beyond_contact
+  use ending, only: turn_not_reached
   use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
   use locked_stepper, only: locked_stepper_t, has_path
   use path_stepper, only: path_stepper_t
@@ -113,11 +114,13 @@ contains
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
     steps%cost = outcome%cost
     began = seconds()
-    steps%mesh = fixed_mesh(outcome%chosen, problem, low)
+    steps%pair%grid(1) = fixed_mesh(outcome%chosen, problem, low)
     steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
-    steps%cost%kernel_entries = steps%cost%kernel_entries + steps%mesh%kernel_entries()
-    outcome%nodes = outcome%nodes + steps%mesh%nodes
-    call use_threads_for(steps%mesh%nodes)
+    associate (mesh => steps%pair%grid(1))
+      steps%cost%kernel_entries = steps%cost%kernel_entries + mesh%kernel_entries()
+      outcome%nodes = outcome%nodes + mesh%nodes
+      call use_threads_for(mesh%nodes)
+    end associate
     began = seconds()
     call run_kept_cycle(request, steps, observer, outcome, keeper)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
@@ -241,7 +244,7 @@ contains
       allocate (outcome%unloading(size(from)))
       do k = 1, size(from)
         if (.not. allocated(turning(k)%state%gap)) then
-          outcome%unloading(k)%reason = 'loading did not reach the turning point'
+          outcome%unloading(k)%ending%cause = turn_not_reached
           cycle
         end if
         position = turning(k)

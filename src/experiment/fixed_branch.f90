@@ -2,11 +2,9 @@
 module fixed_branch
   use kinds, only: wp
   use dimensionless_problem, only: over_neck => spacing_over_neck
-  use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t
   use jacobian, only: factorise_jacobian, control_derivative
   use linear_algebra, only: solve, determinant_sign, log_determinant
-  use solver, only: solve_state
   use prediction, only: extrapolated, moved_with_edge, towards_fold
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   implicit none
@@ -14,7 +12,6 @@ module fixed_branch
   public :: fixed_branch_t, change, jump
 
   type, abstract, extends(stepper_t) :: fixed_branch_t
-    type(discretisation_t) :: mesh
   contains
     procedure :: continue_to
     procedure :: expected_at
@@ -73,11 +70,11 @@ contains
     type(state_t) :: expected
 
     if (self%options%method == 'mixing' .or. &
-      .not. over_neck(self%problem, self%mesh%spacing) <= resolved) then
-      expected = extrapolated(self%mesh, position, h0)
+      .not. over_neck(self%problem, self%pair%grid(1)%spacing) <= resolved) then
+      expected = extrapolated(self%pair%grid(1), position, h0)
       return
     end if
-    expected = moved_with_edge(self%problem%law, self%mesh, position, h0)
+    expected = moved_with_edge(self%problem%law, self%pair%grid(1), position, h0)
     ! A factorisation from before the edge moved across a good part of the neck does not serve.
     if (change(position%state, expected) > large_change) self%frozen%factors%valid = .false.
   end function expected_at
@@ -113,7 +110,7 @@ contains
     distance_before = huge(1.0_wp)
     call self%linearise(position%state, rate, determinant, regular)
     states = 0
-    allowed = max(few_states, int(min(most_cubes/real(self%mesh%nodes, wp)**3, 1.0e3_wp)))
+    allowed = max(few_states, int(min(most_cubes/real(self%pair%grid(1)%nodes, wp)**3, 1.0e3_wp)))
     do while (step > self%jump_tolerance)
       states = states + 1
       if (states > allowed) then
@@ -186,13 +183,13 @@ contains
     regular = .false.
     if (self%options%method == 'mixing') return
     control%value = state%h0
-    call factorise_jacobian(self%problem, self%mesh, control, state, self%frozen%factors, self%cost)
+    call factorise_jacobian(self%equations_t, control, state, self%frozen%factors)
     self%frozen%control_kind = control%kind
     self%frozen%served = 0
     regular = self%frozen%factors%valid
     if (.not. regular) return
     determinant = log_determinant(self%frozen%factors)
-    rate = -control_derivative(self%problem, self%mesh, control, state)
+    rate = -control_derivative(self%equations_t, control, state)
     call solve(self%frozen%factors, rate)
   end subroutine linearise
 
@@ -202,11 +199,8 @@ contains
     real(wp), intent(in) :: h0
     type(state_t), intent(inout) :: state
     type(step_result_t), intent(inout) :: event
-    type(control_t) :: control
 
-    control%value = h0
-    call solve_state(self%problem, self%mesh, control, self%options, self%frozen, state, &
-      event%converged, self%cost)
+    call self%solve(control_t(value=h0), state, event%converged)
   end subroutine solve_at
 
   !> Largest difference between the deformations of two states.

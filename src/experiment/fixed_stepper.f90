@@ -3,16 +3,15 @@
 module fixed_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap, over_neck => spacing_over_neck
-  use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, state_from, residual_floor, radius_of_gap, &
-    lost_in_rounding, beyond_rounding
-  use solver_options, only: solver_options_t
-  use solver, only: solve_state
+  use equilibrium, only: control_t, state_t, state_from, holds, radius_of_gap, &
+    lost_in_rounding
+  use solver_options, only: solver_options_t, newton_of
+  use anderson, only: solve_anderson
   use relaxation, only: relax
   use fixed_branch, only: fixed_branch_t, change, jump
   use edge_locked, only: largest_radius
-  use stepper, only: branch_point_t, step_result_t, remember, touching
-  use reported, only: error_probe_t
+  use ending, only: touching, beyond_rounding, no_equilibrium
+  use stepper, only: branch_point_t, step_result_t, remember
   implicit none
   private
   public :: fixed_stepper_t
@@ -21,9 +20,6 @@ module fixed_stepper
   contains
     procedure :: approach_to
     procedure :: step_to
-    procedure :: grid
-    procedure :: spacing_over_neck
-    procedure :: witness
     procedure, private :: stays
     procedure, private :: land
     procedure, private :: goes_on
@@ -62,22 +58,22 @@ contains
     integer :: i, steps, lost
 
     if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
-      event%reason = touching
+      event%ending%cause = touching
       return
     end if
     far = h0
     if (.not. self%problem%rigid) far = max(h0, calm_gap(self%problem))
-    state = state_from(self%mesh%nodes)
+    state = state_from(self%pair%grid(1)%nodes)
     state%h0 = far
     state%axis_gap = far
-    state%gap = far + 0.5_wp*self%mesh%x**2
+    state%gap = far + 0.5_wp*self%pair%grid(1)%x**2
     call self%solve_at(far, state, event)
     call remember(position, state, 1, .false.)
     steps = ceiling(min((far - h0)/approach_step, real(most_approach, wp)))
     lost = 0
     do i = 1, steps
       call self%step_to(merge(h0, far - (far - h0)*i/steps, lost > most_lost), position, event)
-      if (event%reason /= '' .or. lost > most_lost) exit
+      if (event%ending%early() .or. lost > most_lost) exit
       lost = merge(0, lost + 1, event%converged)
     end do
     event%jumped = .false.
@@ -94,7 +90,7 @@ contains
     integer :: rescues
 
     if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
-      event%reason = touching
+      event%ending%cause = touching
       return
     end if
     if (self%options%stop_on_change) then
@@ -108,14 +104,14 @@ contains
     end if
     ! No contact is larger than the mesh.
     if (self%problem%law%adhesion > 0 .and. lost_in_rounding(self%problem, &
-      min(largest_radius(self%problem, h0, 0.0_wp), self%mesh%end_of(self%mesh%nodes)))) then
-      event%reason = beyond_rounding
+      min(largest_radius(self%problem, h0, 0.0_wp), self%pair%grid(1)%end_of(self%pair%grid(1)%nodes)))) then
+      event%ending%cause = beyond_rounding
       return
     end if
     has_landed = self%options%method /= 'mixing' .and. &
       abs(h0 - position%state%h0) > short_step .and. &
       position%state%axis_gap < self%problem%law%edge_gap .and. &
-      over_neck(self%problem, self%mesh%spacing) < fine_enough
+      over_neck(self%problem, self%pair%grid(1)%spacing) < fine_enough
     if (has_landed) then
       call self%land(h0, position%state, landed, event)
       if (self%stays(position%state, landed, event)) then
@@ -169,12 +165,12 @@ contains
     if (.not. has_landed) call self%land(h0, before, landed, event)
     ! From where there was no equilibrium nothing jumps.
     event%jumped = event%converged .and. change(before, landed) > jump .and. &
-      before%residual <= max(self%options%tolerance, residual_floor(self%problem, before))
+      holds(self%problem, self%options%tolerance, before)
     if (.not. event%converged .and. self%problem%law%adhesion > 0 .and. &
       .not. self%problem%law%edge_gap > 0) then
       ! Nothing stops the fall of bodies that only attract.
       event%jumped = .true.
-      event%reason = 'no stable equilibrium exists beyond this h0'
+      event%ending%cause = no_equilibrium
     end if
     event%jump_h0 = 0.5_wp*(before%h0 + beyond)
     event%jump_load = before%load
@@ -191,17 +187,14 @@ contains
     type(state_t), intent(in) :: before
     type(state_t), intent(out) :: state
     type(solver_options_t) :: newton
-    type(control_t) :: control
 
     goes_on = .false.
     if (self%options%method == 'mixing') return
-    newton = self%options
-    newton%method = 'newton'
+    newton = newton_of(self%options)
     newton%most_iterations = newton_iterations
-    control%value = h0
     state = before
-    call solve_state(self%problem, self%mesh, control, newton, self%frozen, state, goes_on, &
-      self%cost)
+    self%frozen%factors%valid = .false.
+    call solve_anderson(self%equations_t, newton, self%frozen, control_t(value=h0), state, goes_on)
     self%frozen%factors%valid = .false.
     goes_on = goes_on .and. change(before, state) <= jump
   end function goes_on
@@ -216,8 +209,8 @@ contains
 
     stays = .false.
     if (.not. event%converged .or. .not. self%problem%law%edge_gap > 0) return
-    from = radius_of_gap(self%problem%law%edge_gap, self%mesh, before)
-    to = radius_of_gap(self%problem%law%edge_gap, self%mesh, after)
+    from = radius_of_gap(self%problem%law%edge_gap, self%pair%grid(1), before)
+    to = radius_of_gap(self%problem%law%edge_gap, self%pair%grid(1), after)
     stays = min(from, to) > 0.5_wp*max(from, to)
   end function stays
 
@@ -251,42 +244,14 @@ contains
     type(state_t), intent(in) :: before
     type(state_t), intent(inout) :: state
     type(step_result_t), intent(inout) :: event
-    type(control_t) :: control
 
     state = before
     if (self%options%method == 'mixing') then
       call self%solve_at(h0, state, event)
       return
     end if
-    control%value = h0
-    call relax(self%problem, self%mesh, control, self%options, state, event%converged, self%cost)
+    call relax(self%equations_t, self%options, control_t(value=h0), state, event%converged)
     self%frozen%factors%valid = .false.
   end subroutine land
-
-  function grid(self, position)
-    class(fixed_stepper_t), intent(in), target :: self
-    type(branch_point_t), intent(in) :: position
-    type(discretisation_t), pointer :: grid
-
-    ! One mesh for every position.
-    nullify (grid)
-    if (position%mesh > 0) grid => self%mesh
-  end function grid
-
-  pure real(wp) function spacing_over_neck(self, position)
-    class(fixed_stepper_t), intent(in) :: self
-    type(branch_point_t), intent(in) :: position
-
-    spacing_over_neck = over_neck(self%problem, position%state%scale*self%mesh%spacing)
-  end function spacing_over_neck
-
-  pure function witness(self, position)
-    class(fixed_stepper_t), intent(in) :: self
-    type(branch_point_t), intent(in) :: position
-    type(error_probe_t) :: witness
-
-    witness%control%value = position%state%h0
-    witness%state = position%state
-  end function witness
 
 end module fixed_stepper

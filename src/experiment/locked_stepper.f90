@@ -4,26 +4,19 @@
 !> for every h0.
 module locked_stepper
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t, calm_gap, over_neck => spacing_over_neck
-  use discretisation, only: discretisation_t
-  use equilibrium, only: state_t, state_from, at_edge_radius, at_h0_with_edge
-  use solver, only: solve_state
-  use edge_locked, only: mesh_pair_t, approach, contact
+  use dimensionless_problem, only: problem_t, calm_gap
+  use equilibrium, only: state_t, state_from
+  use edge_locked, only: approach, contact
   use locked_meshes, only: h0_control, scale_at
   use continuation, only: node_count
-  use reported, only: error_probe_t
-  use stepper, only: stepper_t, branch_point_t, step_result_t, remember, touching
+  use ending, only: ending_t, touching, nothing_afar
+  use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   implicit none
   private
   public :: locked_stepper_t, has_path
 
   type, abstract, extends(stepper_t) :: locked_stepper_t
-    type(mesh_pair_t) :: pair
   contains
-    procedure :: grid
-    procedure :: spacing_over_neck
-    procedure :: witness
-    procedure :: mesh_of
     procedure :: begin_afar
     procedure :: far_away
     procedure :: attempt
@@ -55,7 +48,7 @@ contains
     if (self%problem%rigid) then
       far = h0
       if (h0 < self%problem%law%smallest_gap) then
-        event%reason = touching
+        event%ending%cause = touching
         return
       end if
     end if
@@ -67,9 +60,8 @@ contains
       state%gap = far + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2
     end associate
     call self%attempt(far, state, mesh, event)
-    if (.not. event%converged) write (event%reason, '(a, i0, a, es7.1)') &
-      'no equilibrium was found far from contact: after ', state%iterations, &
-      ' iterations the residual was ', state%residual
+    if (.not. event%converged) &
+      event%ending = ending_t(nothing_afar, state%iterations, state%residual)
     call remember(position, state, mesh, .false.)
   end subroutine begin_afar
 
@@ -88,45 +80,7 @@ contains
     integer, intent(in) :: mesh
     type(step_result_t), intent(inout) :: event
 
-    call solve_state(self%problem, self%pair%grid(mesh), h0_control(self%pair, mesh, h0), &
-      self%options, self%frozen, state, event%converged, self%cost)
+    call self%solve(h0_control(self%pair, mesh, h0), state, event%converged)
   end subroutine attempt
-
-  !> A scale that is prescribed or unknown belongs to the contact, and so does everything where
-  !> there is no other mesh.
-  pure integer function mesh_of(self, kind)
-    class(locked_stepper_t), intent(in) :: self
-    integer, intent(in) :: kind
-
-    mesh_of = approach
-    if (kind == at_h0_with_edge .or. kind == at_edge_radius .or. .not. self%pair%traceable) &
-      mesh_of = contact
-  end function mesh_of
-
-  pure function witness(self, position)
-    class(locked_stepper_t), intent(in) :: self
-    type(branch_point_t), intent(in) :: position
-    type(error_probe_t) :: witness
-
-    witness%mesh = position%mesh
-    witness%control = h0_control(self%pair, position%mesh, position%state%h0)
-    witness%state = position%state
-  end function witness
-
-  function grid(self, position)
-    class(locked_stepper_t), intent(in), target :: self
-    type(branch_point_t), intent(in) :: position
-    type(discretisation_t), pointer :: grid
-
-    grid => self%pair%grid(position%mesh)
-  end function grid
-
-  pure real(wp) function spacing_over_neck(self, position)
-    class(locked_stepper_t), intent(in) :: self
-    type(branch_point_t), intent(in) :: position
-
-    spacing_over_neck = over_neck(self%problem, &
-      position%state%scale*self%pair%grid(position%mesh)%spacing)
-  end function spacing_over_neck
 
 end module locked_stepper

@@ -6,6 +6,7 @@ module path
   use equilibrium, only: state_t
   use edge_locked, only: contact
   use traced_path, only: traced_path_t
+  use ending, only: ending_t, state_lost
   use known_path, only: known_path_t, interval_at
   use locked_meshes, only: h0_control
   use path_stepper, only: path_stepper_t
@@ -29,8 +30,7 @@ module path
     real(wp) :: worst_residual = 0, worst_spacing = 0
     !> Whether it ends in the fall of bodies that nothing keeps apart.
     logical :: fallen = .false.
-    !> Why the path ends before its end; empty where it does not.
-    character(len=160) :: reason = ''
+    type(ending_t) :: ending
   end type path_t
 
   !> One row: its state and mesh, the point of the path that it is (0: none), its unstable modes,
@@ -60,7 +60,7 @@ contains
 
     allocate (path%fold(0), path%extremum(0), path%unstable_after(0), path%profile(0))
     path%fallen = steps%known%fallen
-    if (.not. path%fallen) path%reason = steps%known%ends_because
+    if (.not. path%fallen) path%ending = steps%known%ending
     first = 1
     if (present(h0_start)) first = first_crossing(steps%known%path, h0_start)
     call find_end(steps%known, h0_end, last, ends_between)
@@ -109,7 +109,7 @@ contains
 
     last = known%path%held
     ends_between = .false.
-    if (known%ends_because /= '') return
+    if (known%ending%early()) return
     do k = size(known%piece), 1, -1
       ends_between = h0_end >= known%piece(k)%low .and. h0_end <= known%piece(k)%high
       if (.not. ends_between) cycle
@@ -204,7 +204,7 @@ contains
         spacing_over_neck(steps%problem, state%scale*grid%spacing))
     end associate
     if (.not. row%converged) then
-      if (path%reason == '') path%reason = 'a state at a given h0 did not converge'
+      if (.not. path%ending%early()) path%ending%cause = state_lost
       return
     end if
     reported = reported_row(steps, row)

@@ -6,19 +6,16 @@
 !> That holds beside folds too, where an h0 that is off by little moves the load by much.
 module path_errors
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
-  use edge_locked, only: mesh_pair_t
   use regridding, only: regrid
-  use equilibrium, only: state_t, cost_t, load_reach
-  use anderson, only: frozen_jacobian_t, solve_anderson
+  use equilibrium, only: state_t, equations_t, load_reach
   use continuation, only: path_control, coordinate_of
   use path_slopes, only: slopes_along_path
   use potential_energy, only: energy_of
   use traced_path, only: path_point_t
   use known_path, only: known_path_t, landing_t, landing_over
   use reported, only: reported_t, error_t, measure_t
-  use error_estimate, only: to_rounding, unknown_error, profile_error, nearly_solved, rounding, &
-    worst_residual, what_is_left
+  use error_estimate, only: finer_t, unknown_error, profile_error, rounding, worst_residual, &
+    what_is_left
   implicit none
   private
   public :: judge_on_path, finer_nodes
@@ -39,6 +36,14 @@ module path_errors
   !> What defines a state: it is an extremum of h0 or of the load, or it is at a given h0.
   integer, parameter :: extremum_of_h0 = 1, extremum_of_load = 2, at_h0 = 3
 
+  !> The mesh of a state, what defines it, at `h0` if that is it; what the iteration has left, as a
+  !> change of h0; and whether the profile is to be judged too.
+  type :: sought_t
+    integer :: mesh = 1, kind = at_h0
+    real(wp) :: h0 = 0, left = 0
+    logical :: with_profile = .false.
+  end type sought_t
+
   !> Distance of the second state of an expansion; how far an expansion is believed; its longest
   !> move, and how often it may.
   real(wp), parameter :: apart = 1.0e-4_wp, believed = 1.0e-3_wp, farthest = 0.1_wp
@@ -50,15 +55,13 @@ module path_errors
 
 contains
 
-  !> Errors of a reported state. Differences count `margin` times. with_profile: of the profile too.
-  subroutine judge_on_path(problem, pair, fine, margin, with_profile, known, reported, cost)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair, fine
-    real(wp), intent(in) :: margin
+  !> Errors of a reported state. with_profile: of the profile too.
+  subroutine judge_on_path(own, fine, with_profile, known, reported)
+    type(equations_t), intent(in) :: own
+    type(finer_t), intent(inout) :: fine
     logical, intent(in) :: with_profile
     type(known_path_t), intent(inout) :: known
     type(reported_t), intent(inout) :: reported
-    type(cost_t), intent(inout) :: cost
     type(measure_t) :: on_fine
     integer :: k
     logical :: inside
@@ -66,188 +69,199 @@ contains
     if (reported%landing) then
       call landing_over(known, reported%point, k, inside)
       if (inside) then
-        call judge_landing(problem, pair, fine, margin, known, known%inward(k), cost)
+        call judge_landing(own, fine, known, known%inward(k))
         reported%error = known%inward(k)%error
       else
-        call judge_landing(problem, pair, fine, margin, known, known%outward(k), cost)
+        call judge_landing(own, fine, known, known%outward(k))
         reported%error = known%outward(k)%error
       end if
     else if (reported%point > 0 .and. with_profile) then
       ! The point's own errors leave the profile out.
       associate (point => known%path%point(reported%point))
-        call judge(problem, pair, fine, point%mesh, kind_of(point), point%state, &
-          point%state%h0, margin, tight, .true., on_fine, reported%error, cost)
+        call judge(own, fine, sought_at(point, .true.), point%state, on_fine, reported%error)
       end associate
     else if (reported%point > 0) then
-      call judge_point(problem, pair, fine, margin, known, reported%point, cost)
+      call judge_point(own, fine, known, reported%point)
       reported%error = known%path%point(reported%point)%error
     else
       associate (witness => reported%witness)
-        call judge(problem, pair, fine, witness%mesh, at_h0, witness%state, reported%h0, margin, &
-          what_is_left(witness%state), with_profile, on_fine, reported%error, cost)
+        call judge(own, fine, sought_t(witness%mesh, at_h0, reported%h0, &
+          what_is_left(witness%state), with_profile), witness%state, on_fine, reported%error)
       end associate
     end if
   end subroutine judge_on_path
 
   !> Nodes of the finer mesh for a state: they go beyond those that it has, for the error of the
   !> reach, which falls with its fifth power, must show.
-  pure integer function finer_nodes(pair, fine, mesh, state)
-    type(mesh_pair_t), intent(in) :: pair, fine
+  pure integer function finer_nodes(own, fine, mesh, state)
+    type(equations_t), intent(in) :: own
+    type(finer_t), intent(in) :: fine
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state
 
-    finer_nodes = fine%grid(mesh)%nodes_within( &
-      farther*load_reach(pair%grid(mesh), state)/state%scale)
+    finer_nodes = fine%pair%grid(mesh)%nodes_within( &
+      farther*load_reach(own%pair%grid(mesh), state)/state%scale)
   end function finer_nodes
 
   !> What defines a point of the path that is reported.
-  pure integer function kind_of(point)
+  pure type(sought_t) function sought_at(point, with_profile) result(sought)
     type(path_point_t), intent(in) :: point
+    logical, intent(in) :: with_profile
 
-    kind_of = merge(extremum_of_h0, extremum_of_load, point%fold)
-  end function kind_of
+    sought = sought_t(point%mesh, merge(extremum_of_h0, extremum_of_load, point%fold), &
+      point%state%h0, tight, with_profile)
+  end function sought_at
 
   !> Errors of a fold or an extremum of the load, kept in the path.
-  subroutine judge_point(problem, pair, fine, margin, known, i, cost)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair, fine
-    real(wp), intent(in) :: margin
+  subroutine judge_point(own, fine, known, i)
+    type(equations_t), intent(in) :: own
+    type(finer_t), intent(inout) :: fine
     type(known_path_t), intent(inout) :: known
     integer, intent(in) :: i
-    type(cost_t), intent(inout) :: cost
     type(measure_t) :: on_fine
 
     associate (point => known%path%point(i))
       if (allocated(point%error)) return
-      call judge(problem, pair, fine, point%mesh, kind_of(point), point%state, point%state%h0, &
-        margin, tight, .false., on_fine, point%error, cost)
+      call judge(own, fine, sought_at(point, .false.), point%state, on_fine, point%error)
       point%fine = on_fine
     end associate
   end subroutine judge_point
 
   !> Errors of a landing, whose h0 is that of the fold on the same mesh; kept with it.
-  subroutine judge_landing(problem, pair, fine, margin, known, landing, cost)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair, fine
-    real(wp), intent(in) :: margin
+  subroutine judge_landing(own, fine, known, landing)
+    type(equations_t), intent(in) :: own
+    type(finer_t), intent(inout) :: fine
     type(known_path_t), intent(inout) :: known
     type(landing_t), intent(inout) :: landing
-    type(cost_t), intent(inout) :: cost
     type(measure_t) :: on_fine
 
     if (allocated(landing%error)) return
-    call judge_point(problem, pair, fine, margin, known, landing%fold, cost)
-    if (.not. landing%converged) then
-      landing%error = unknown_error(reported_t(h0=known%path%point(landing%fold)%state%h0))
-      return
-    end if
-    call judge(problem, pair, fine, landing%mesh, at_h0, landing%state, &
-      known%path%point(landing%fold)%fine%h0, margin, tight, .false., on_fine, landing%error, cost)
-    landing%fine = on_fine
-    landing%error%h0 = known%path%point(landing%fold)%error%h0
+    call judge_point(own, fine, known, landing%fold)
+    associate (fold => known%path%point(landing%fold))
+      if (.not. landing%converged) then
+        landing%error = unknown_error(reported_t(h0=fold%state%h0))
+        return
+      end if
+      call judge(own, fine, sought_t(landing%mesh, at_h0, fold%fine%h0, tight, .false.), &
+        landing%state, on_fine, landing%error)
+      landing%fine = on_fine
+      landing%error%h0 = fold%error%h0
+    end associate
   end subroutine judge_landing
 
-  !> Errors of a state that is defined by `kind`, at `h0` if that is it, and what it is on the finer
-  !> mesh. left: what the iteration has left, as a change of h0.
-  subroutine judge(problem, pair, fine, mesh, kind, state, h0, margin, left, with_profile, &
-    on_fine, error, cost)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair, fine
-    integer, intent(in) :: mesh, kind
+  !> Errors of a state, and what it is on the finer mesh.
+  subroutine judge(own, fine, sought, state, on_fine, error)
+    type(equations_t), intent(in) :: own
+    type(finer_t), intent(inout) :: fine
+    type(sought_t), intent(in) :: sought
     type(state_t), intent(in) :: state
-    real(wp), intent(in) :: h0, margin, left
-    logical, intent(in) :: with_profile
     type(measure_t), intent(out) :: on_fine
     type(error_t), allocatable, intent(out) :: error
-    type(cost_t), intent(inout) :: cost
     type(expansion_t) :: near
-    type(measure_t) :: own, moved
+    type(measure_t) :: measure
     type(state_t) :: right
     real(wp) :: distance, uncertainty
-    integer :: move
     logical :: found
 
-    own = measure_t(state%h0, state%axis_gap - state%h0, state%load)
-    error = unknown_error(reported_t(own%h0, own%displacement, own%load))
-    on_fine = own
-    call energy_of(problem, pair%grid(mesh), state, on_fine%energy, uncertainty)
-    near%s = coordinate_of(problem, mesh, state)
-    near%state = regrid(state, pair%grid(mesh), fine%grid(mesh), state%scale, &
-      finer_nodes(pair, fine, mesh, state))
+    measure = measure_t(state%h0, state%axis_gap - state%h0, state%load)
+    error = unknown_error(reported_t(measure%h0, measure%displacement, measure%load))
+    on_fine = measure
+    call energy_of(own, sought%mesh, state, on_fine%energy, uncertainty)
+    near%s = coordinate_of(own%problem, sought%mesh, state)
+    near%state = regrid(state, own%pair%grid(sought%mesh), fine%pair%grid(sought%mesh), &
+      state%scale, finer_nodes(own, fine, sought%mesh, state))
+    call approach(fine, sought, near, distance, found)
+    if (.not. found) return
+    on_fine = measure_at(near, distance)
+    error = error_between(measure, near, on_fine, sought, fine%margin)
+    if (.not. sought%with_profile) return
+    right = near%state
+    call solve_fine(fine, sought%mesh, near%s + distance, right, found)
+    error%profile = 1
+    if (found) error%profile = fine%margin*profile_error(own, fine, sought%mesh, state, right)
+  end subroutine judge
+
+  !> Moves an expansion along the path until the state that is sought is near, and says how far it
+  !> is. found = .false.: the finer mesh has no such state.
+  subroutine approach(fine, sought, near, distance, found)
+    type(finer_t), intent(inout) :: fine
+    type(sought_t), intent(in) :: sought
+    type(expansion_t), intent(inout) :: near
+    real(wp), intent(out) :: distance
+    logical, intent(out) :: found
+    integer :: move
+
     do move = 1, most_moves
-      call expand(problem, fine, mesh, near, found, cost)
+      call expand(fine, sought%mesh, near, found)
       if (.not. found) return
-      distance = distance_to(near, kind, h0)
-      if (abs(distance) <= believed) exit
+      distance = distance_to(near, sought%kind, sought%h0)
+      found = abs(distance) <= believed
+      if (found) return
       near%s = near%s + sign(min(abs(distance), farthest), distance)
     end do
-    if (.not. abs(distance) <= believed) return
-    on_fine = measure_at(near, distance)
+  end subroutine approach
+
+  !> The difference between a state and the same on the finer mesh as an error, with what the
+  !> iteration and rounding leave.
+  pure type(error_t) function error_between(own, near, on_fine, sought, margin) result(error)
+    type(measure_t), intent(in) :: own, on_fine
+    type(expansion_t), intent(in) :: near
+    type(sought_t), intent(in) :: sought
+    real(wp), intent(in) :: margin
+    type(measure_t) :: moved
+
     error = error_t(h0=margin*abs(on_fine%h0 - own%h0), load=margin*abs(on_fine%load - own%load), &
       displacement=margin*abs(on_fine%displacement - own%displacement))
-    ! What the iteration leaves moves a state at a given h0 as if that were off.
-    moved = measure_at(near, distance_to(near, at_h0, &
-      on_fine%h0 + left))
-    if (kind == at_h0) then
+    if (sought%kind == at_h0) then
+      ! What the iteration leaves moves a state at a given h0 as if that were off.
+      moved = measure_at(near, distance_to(near, at_h0, on_fine%h0 + sought%left))
       error%h0 = 0
       error%load = error%load + abs(moved%load - on_fine%load)
       error%displacement = error%displacement + abs(moved%displacement - on_fine%displacement)
     else
-      error%h0 = error%h0 + left
+      error%h0 = error%h0 + sought%left
     end if
     error%load = error%load + (rounding + worst_residual*tight)*abs(own%load)
-    error%displacement = error%displacement + left + rounding*abs(own%displacement)
-    if (.not. with_profile) return
-    near%s = near%s + distance
-    right = near%state
-    call solve_fine(problem, fine, mesh, near%s, right, found, cost)
-    error%profile = 1
-    if (found) error%profile = margin*profile_error(problem, pair%grid(mesh), state, &
-      fine%grid(mesh), right)
-  end subroutine judge
+    error%displacement = error%displacement + sought%left + rounding*abs(own%displacement)
+  end function error_between
 
   !> Expands the path at near%s, from the guess near%state; found = .false. where the finer mesh has
   !> no such state.
-  subroutine expand(problem, fine, mesh, near, found, cost)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: fine
+  subroutine expand(fine, mesh, near, found)
+    type(finer_t), intent(inout) :: fine
     integer, intent(in) :: mesh
     type(expansion_t), intent(inout) :: near
     logical, intent(out) :: found
-    type(cost_t), intent(inout) :: cost
     type(state_t) :: second
     real(wp) :: slopes(2), slopes_there(2), uncertainty
 
-    call solve_fine(problem, fine, mesh, near%s, near%state, found, cost, slopes)
+    call solve_fine(fine, mesh, near%s, near%state, found, slopes)
     if (.not. found) return
     second = near%state
-    call solve_fine(problem, fine, mesh, near%s + apart, second, found, cost, slopes_there)
+    call solve_fine(fine, mesh, near%s + apart, second, found, slopes_there)
     if (.not. found) return
     near%h0 = parabola_t(near%state%h0, slopes(1), (slopes_there(1) - slopes(1))/apart)
     near%load = parabola_t(near%state%load, slopes(2), (slopes_there(2) - slopes(2))/apart)
     near%axis_gap = parabola_t(near%state%axis_gap, &
       (second%axis_gap - near%state%axis_gap)/apart, 0.0_wp)
-    call energy_of(problem, fine%grid(mesh), near%state, near%energy, uncertainty)
+    call energy_of(fine%equations_t, mesh, near%state, near%energy, uncertainty)
   end subroutine expand
 
   !> Solves for the state at the coordinate s on the finer mesh; slopes: of h0 and load by s.
-  subroutine solve_fine(problem, fine, mesh, s, state, found, cost, slopes)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: fine
+  subroutine solve_fine(fine, mesh, s, state, found, slopes)
+    type(finer_t), intent(inout) :: fine
     integer, intent(in) :: mesh
     real(wp), intent(in) :: s
     type(state_t), intent(inout) :: state
     logical, intent(out) :: found
-    type(cost_t), intent(inout) :: cost
     real(wp), intent(out), optional :: slopes(2)
-    type(frozen_jacobian_t) :: frozen
 
-    associate (control => path_control(problem, mesh, s), grid => fine%grid(mesh))
-      call solve_anderson(problem, grid, control, to_rounding(), frozen, state, found, cost)
-      found = found .or. state%residual < nearly_solved
+    fine%frozen%factors%valid = .false.
+    associate (control => path_control(fine%problem, mesh, s))
+      call fine%find(control, state, found)
       if (.not. (found .and. present(slopes))) return
-      call slopes_along_path(problem, grid, control, state, frozen, slopes(1), slopes(2), found, &
-        cost)
+      call slopes_along_path(fine%equations_t, control, state, fine%frozen, slopes(1), slopes(2), &
+        found)
       ! On both meshes the control's value is exp(s) and a constant.
       slopes = slopes*exp(s)
     end associate

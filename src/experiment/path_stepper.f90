@@ -9,11 +9,11 @@ module path_stepper
   use kinds, only: wp
   use listener, only: listener_t
   use equilibrium, only: state_t
-  use anderson, only: frozen_jacobian_t
   use edge_locked, only: contact
   use locked_meshes, only: nodes_to_use
   use locked_stepper, only: locked_stepper_t
   use continuation, only: coordinate_of, between
+  use ending, only: fallen_before, beyond_path
   use traced_path, only: traced_path_t
   use solve_at_h0, only: neighbours_t, neighbours_of, coordinate_at_h0, guess_at_h0, solve_between
   use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
@@ -55,11 +55,11 @@ contains
     type(step_result_t) :: event
 
     call self%begin_afar(h0_high, position, event)
-    if (event%reason == '') then
-      call trace(self%problem, self%pair, self%options, position%state, h0_low, into_contact, &
-        listener, self%known, self%cost)
+    if (.not. event%ending%early()) then
+      call trace(self%equations_t, self%options, position%state, h0_low, into_contact, listener, &
+        self%known)
     else
-      self%known%ends_because = event%reason
+      self%known%ending = event%ending
       allocate (self%known%piece(0))
     end if
     self%frozen%factors%valid = .false.
@@ -73,8 +73,7 @@ contains
 
     position%piece = 1
     call self%step_to(h0, position, event)
-    if (event%reason /= '' .and. self%known%fallen) event%reason = &
-      'the bodies have fallen onto each other before the h0 where it is to start'
+    if (event%ending%early() .and. self%known%fallen) event%ending%cause = fallen_before
     ! What the approach passed before the experiment began is not part of it.
     event%jumped = .false.
     event%fold = 0
@@ -92,14 +91,14 @@ contains
     real(wp) :: from
 
     lowest%load = huge(1.0_wp)
-    if (size(self%known%piece) == 0) event%reason = self%known%ends_because
-    if (event%reason /= '') return
+    if (size(self%known%piece) == 0) event%ending = self%known%ending
+    if (event%ending%early()) return
     from = h0
     if (position%held > 0) from = position%state%h0
     do while (h0 > self%known%piece(position%piece)%high .or. &
       h0 < self%known%piece(position%piece)%low)
       call self%step_over(h0 < self%known%piece(position%piece)%low, from, position, lowest, event)
-      if (event%reason == '') cycle
+      if (.not. event%ending%early()) cycle
       if (event%jumped) event%lowest = lowest
       return
     end do
@@ -141,8 +140,8 @@ contains
       end associate
     end if
     if (landing%piece == 0) then
-      event%reason = self%known%ends_because
-      if (event%reason == '') event%reason = 'this h0 is beyond the path that was traced'
+      event%ending = self%known%ending
+      if (.not. event%ending%early()) event%ending%cause = beyond_path
       return
     end if
     if (landing%state%load < lowest%load) &
@@ -172,7 +171,6 @@ contains
     type(step_result_t), intent(inout) :: event
     type(neighbours_t) :: near
     type(state_t) :: state
-    type(frozen_jacobian_t) :: frozen
     real(wp) :: s, ends(2)
     integer :: i, nodes, present
     logical :: jumped
@@ -199,8 +197,8 @@ contains
         event%converged = s >= minval(ends) - slack .and. s <= maxval(ends) + slack
       end if
     end if
-    if (.not. event%converged) call solve_between(self%problem, self%pair, near, h0, self%options, &
-      frozen, s, state, event%converged, self%cost)
+    if (.not. event%converged) call solve_between(self%equations_t, self%options, near, h0, s, &
+      state, event%converged)
     call remember(position, state, near%mesh, jumped)
   end subroutine solve_on_piece
 
@@ -242,13 +240,11 @@ contains
     type(state_t), intent(out) :: state
     logical, intent(out) :: converged
     type(neighbours_t) :: near
-    type(frozen_jacobian_t) :: frozen
     real(wp) :: s
 
     near = neighbours_of(self%known%path, i)
     mesh = near%mesh
-    call solve_between(self%problem, self%pair, near, h0, self%options, frozen, s, state, &
-      converged, self%cost)
+    call solve_between(self%equations_t, self%options, near, h0, s, state, converged)
   end subroutine state_at_h0
 
 end module path_stepper

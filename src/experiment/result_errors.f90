@@ -1,16 +1,15 @@
 !> Errors of all that an outcome reports, number by number, and the largest of them.
 module result_errors
   use kinds, only: wp
-  use discretisation, only: discretisation_t
   use numerics_choice, only: fixed_mesh, companion
-  use edge_locked, only: mesh_pair_t, new_mesh_pair, resolution_t
+  use edge_locked, only: new_mesh_pair, resolution_t
   use fixed_stepper, only: fixed_stepper_t
   use locked_stepper, only: locked_stepper_t
   use path_stepper, only: path_stepper_t
   use stepper, only: stepper_t
   use hysteresis, only: lost_energy_t, energy_lost
   use reported, only: reported_t, relative_error
-  use error_estimate, only: judge_at_h0, rounding
+  use error_estimate, only: finer_t, judge_at_h0, rounding
   use path_errors, only: judge_on_path, finer_nodes
   use stepped_branch, only: branch_t
   use tension_search, only: load_tolerance
@@ -35,8 +34,7 @@ module result_errors
   !> on the finer meshes.
   type :: judge_t
     class(stepper_t), pointer :: steps => null()
-    type(mesh_pair_t) :: fine
-    real(wp) :: margin = margin
+    type(finer_t) :: fine
     real(wp) :: largest = rounding
     logical :: judged = .false.
   end type judge_t
@@ -54,14 +52,15 @@ contains
 
     if (.not. reports(outcome)) return
     judge%steps => steps
+    call judge%fine%take_over(steps)
     finer = outcome%chosen%resolution
     finer%order = finer%order + more_nodes
     finer%farther = farther
     ! Without a contact edge nothing locks the mesh to what is sharp in a fall, and two nodes more
     ! gain less.
-    if (.not. steps%problem%law%edge_gap > 0) judge%margin = margin_unlocked
-    judge%fine = new_mesh_pair(steps%problem, high, low, finer)
-    steps%cost%kernel_entries = steps%cost%kernel_entries + sum(judge%fine%grid%kernel_entries())
+    judge%fine%margin = merge(margin, margin_unlocked, steps%problem%law%edge_gap > 0)
+    judge%fine%pair = new_mesh_pair(steps%problem, high, low, finer)
+    call count_kernel(judge)
     if (allocated(outcome%path)) call judge_path(judge, outcome%path)
     if (allocated(outcome%stepped_path)) call judge_branch(judge, outcome%stepped_path)
     call judge_cycle(judge, outcome)
@@ -82,12 +81,23 @@ contains
 
     if (.not. reports(outcome)) return
     judge%steps => steps
-    judge%fine%grid(1) = fixed_mesh(companion(outcome%chosen), steps%problem, low)
-    judge%margin = merge(margin_fixed, margin_coarser, judge%fine%grid(1)%nodes > steps%mesh%nodes)
-    steps%cost%kernel_entries = steps%cost%kernel_entries + judge%fine%grid(1)%kernel_entries()
+    call judge%fine%take_over(steps)
+    judge%fine%pair%grid(1) = fixed_mesh(companion(outcome%chosen), steps%problem, low)
+    judge%fine%margin = merge(margin_fixed, margin_coarser, &
+      judge%fine%pair%grid(1)%nodes > steps%pair%grid(1)%nodes)
+    call count_kernel(judge)
     call judge_cycle(judge, outcome)
     call conclude(judge, outcome)
   end subroutine judge_fixed
+
+  !> What the finer meshes cost.
+  subroutine count_kernel(judge)
+    type(judge_t), intent(inout) :: judge
+
+    associate (cost => judge%fine%cost)
+      cost%kernel_entries = cost%kernel_entries + sum(judge%fine%pair%grid%kernel_entries())
+    end associate
+  end subroutine count_kernel
 
   !> Whether there is anything to judge.
   pure logical function reports(outcome)
@@ -114,9 +124,10 @@ contains
 
   !> Of nothing there is no error; a path that was judged before counts too.
   subroutine conclude(judge, outcome)
-    type(judge_t), intent(in) :: judge
+    type(judge_t), intent(inout) :: judge
     type(experiment_result_t), intent(inout) :: outcome
 
+    judge%steps%cost = judge%fine%cost
     if (.not. judge%judged) return
     if (allocated(outcome%error_estimate)) then
       outcome%error_estimate = max(outcome%error_estimate, judge%largest)
@@ -166,22 +177,15 @@ contains
     logical, intent(in) :: with_profile
 
     if (reported%point == 0 .and. .not. allocated(reported%witness)) return
-    associate (fine => judge%fine, margin => judge%margin)
-      select type (steps => judge%steps)
-      class is (path_stepper_t)
-        call judge_on_path(steps%problem, steps%pair, fine, margin, &
-          with_profile, steps%known, reported, steps%cost)
-      class is (locked_stepper_t)
-        associate (mesh => reported%witness%mesh)
-          call judge_at_h0(steps%problem, steps%pair%grid(mesh), fine%grid(mesh), &
-            finer_nodes(steps%pair, fine, mesh, reported%witness%state), margin, &
-            reported, steps%cost)
-        end associate
-      class is (fixed_stepper_t)
-        call judge_at_h0(steps%problem, steps%mesh, fine%grid(1), fine%grid(1)%nodes, margin, &
-          reported, steps%cost)
-      end select
-    end associate
+    select type (steps => judge%steps)
+    class is (path_stepper_t)
+      call judge_on_path(steps%equations_t, judge%fine, with_profile, steps%known, reported)
+    class is (locked_stepper_t)
+      call judge_at_h0(steps%equations_t, judge%fine, finer_nodes(steps%equations_t, judge%fine, &
+        reported%witness%mesh, reported%witness%state), reported)
+    class default
+      call judge_at_h0(steps%equations_t, judge%fine, judge%fine%pair%grid(1)%nodes, reported)
+    end select
     if (allocated(reported%error) .and. .not. with_profile) reported%error%profile = 0
     if (allocated(reported%error) .and. reported%searched) &
       reported%error%load = reported%error%load + load_tolerance*abs(reported%load)
@@ -217,13 +221,12 @@ contains
       call judge_jump(steps%known%inward(k)%fold)
       call judge_jump(steps%known%outward(k + 1)%fold)
     end do
-    call energy_lost(steps%problem, steps%pair, steps%known, 1, turned, lowest, &
-      lost, whole)
-    if (whole) call energy_lost(steps%problem, steps%pair, steps%known, turned, 1, lowest, &
-      lost, whole)
+    call energy_lost(steps%equations_t, steps%known, 1, turned, lowest, lost, whole)
+    if (whole) call energy_lost(steps%equations_t, steps%known, turned, 1, lowest, lost, whole)
     if (.not. whole) return
     outcome%energy_lost = lost%energy
-    outcome%energy_uncertainty = judge%margin*abs(lost%energy - lost%fine_energy) + lost%rounding
+    outcome%energy_uncertainty = judge%fine%margin*abs(lost%energy - lost%fine_energy) + &
+      lost%rounding
 
   contains
 
@@ -234,8 +237,7 @@ contains
       if (fold == 0) return
       landed%point = fold
       landed%landing = .true.
-      call judge_on_path(steps%problem, steps%pair, judge%fine, judge%margin, &
-        .false., steps%known, landed, steps%cost)
+      call judge_on_path(steps%equations_t, judge%fine, .false., steps%known, landed)
     end subroutine judge_jump
 
   end subroutine judge_energy

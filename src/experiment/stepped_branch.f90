@@ -2,8 +2,9 @@
 !> from step to step.
 module stepped_branch
   use kinds, only: wp
-  use equilibrium, only: state_t, residual_floor
+  use equilibrium, only: holds
   use stepper, only: stepper_t, branch_point_t, step_result_t
+  use ending, only: ending_t
   use tension_search, only: tension_search_t
   use reported, only: reported_t, reported_state, add_reported
   use records, only: observer_t, record_of, stable_yes, stable_unasked
@@ -37,9 +38,9 @@ module stepped_branch
     integer :: first_piece = 0, last_piece = 0
     real(wp) :: worst_residual = 0, worst_spacing = 0
     integer :: states = 0, unconverged = 0
-    !> First h0 that did not converge, and why the branch ended early; empty if it did not.
+    !> First h0 that did not converge.
     real(wp) :: first_unconverged = 0
-    character(len=160) :: reason = ''
+    type(ending_t) :: ending
   end type branch_t
 
 contains
@@ -82,10 +83,13 @@ contains
       steps%cost%states = steps%cost%states + 1
       call note(branch, steps, position, event, plan%h0(i))
       call search%note_jump(steps, event)
-      if (event%reason /= '') exit
-      call observer%take(record_of(plan%name, steps%problem, steps%grid(position), position%state, &
-        merge(stable_yes, stable_unasked, plan%unique), holds(steps, position%state)), &
-        steps%problem, steps%grid(position), position%state, plan%profile(i))
+      if (event%ending%early()) exit
+      associate (state => position%state)
+        call observer%take(record_of(plan%name, steps%problem, steps%grid(position), state, &
+          merge(stable_yes, stable_unasked, plan%unique), &
+          holds(steps%problem, steps%options%tolerance, state)), &
+          steps%problem, steps%grid(position), state, plan%profile(i))
+      end associate
       if (event%converged) then
         branch%finish = reported_state(steps%witness(position))
         branch%last_piece = position%piece
@@ -106,14 +110,6 @@ contains
     branch%lowest%searched = .true.
   end subroutine run_branch
 
-  !> Whether a state is an equilibrium, which the paper's stopping rule does not say.
-  pure logical function holds(steps, state)
-    class(stepper_t), intent(in) :: steps
-    type(state_t), intent(in) :: state
-
-    holds = state%residual <= max(steps%options%tolerance, residual_floor(steps%problem, state))
-  end function holds
-
   !> Keeps the first, the worst and the lowest of what happened.
   subroutine note(branch, steps, position, event, h0)
     type(branch_t), intent(inout) :: branch
@@ -127,8 +123,8 @@ contains
       branch%jump_uncertainty = event%jump_uncertainty
     end if
     if (allocated(event%lowest)) call lower(branch, steps, position, event)
-    branch%reason = event%reason
-    if (event%reason /= '') return
+    branch%ending = event%ending
+    if (event%ending%early()) return
     branch%states = branch%states + 1
     if (.not. event%converged) then
       if (branch%unconverged == 0) branch%first_unconverged = h0

@@ -2,20 +2,17 @@
 !> approach from afar, then go from one h0 to the next, and say when they jumped.
 module stepper
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: state_t, cost_t
+  use equilibrium, only: state_t
+  use solver, only: solver_t
+  use ending, only: ending_t
+  use locked_meshes, only: h0_control
   use reported, only: error_probe_t
-  use anderson, only: frozen_jacobian_t
-  use solver_options, only: solver_options_t
   implicit none
   private
   public :: stepper_t, keeping_stepper_t, branch_point_t, step_result_t, extreme_t, memory, &
-    remember, touching
-
-  !> Why rigid bodies have no state below the smallest gap of their law.
-  character(len=*), parameter :: touching = &
-    'rigid bodies would touch: so near (h0 <= 0, or far below it) this law has no pressure'
+    remember
 
   !> States kept for extrapolation in h0.
   integer, parameter :: memory = 4
@@ -50,33 +47,24 @@ module stepper
     integer :: fold = 0
     !> The largest tension on the way, where the path that the step follows is known.
     type(extreme_t), allocatable :: lowest
-    !> Why there is no state, for the user; empty otherwise.
-    character(len=160) :: reason = ''
+    !> Early where there is no state.
+    type(ending_t) :: ending
   end type step_result_t
 
-  type, abstract :: stepper_t
-    type(problem_t) :: problem
-    type(solver_options_t) :: options
-    type(frozen_jacobian_t) :: frozen
-    type(cost_t) :: cost
+  type, abstract, extends(solver_t) :: stepper_t
     !> How closely jumps are to be located, in the law's lengths.
     real(wp) :: jump_tolerance = 1.0e-6_wp
   contains
     procedure(begin_at), deferred :: approach_to
     procedure(go_to), deferred :: step_to
-    !> The discretisation on which a position's state lives.
-    procedure(grid_of), deferred :: grid
-    !> Distance between nodes at the edge over the width of the neck, for a state; 0 without a neck.
-    procedure(spacing_of), deferred :: spacing_over_neck
-    !> The witness of a position's state: what its h0 was prescribed as.
-    procedure(witness_of), deferred :: witness
-    !> Which of the meshes the Jacobian for a kind of control lives on.
-    procedure :: mesh_of
+    procedure :: grid
+    procedure :: spacing_over_neck
+    procedure :: witness
   end type stepper_t
 
   !> A stepper between an experiment and whoever solves, which keeps the steps.
   type, abstract, extends(stepper_t) :: keeping_stepper_t
-    class(stepper_t), pointer :: solver => null()
+    class(stepper_t), pointer :: steps => null()
     !> Time [s] that the steps of an earlier run once took.
     real(wp) :: earlier_seconds = 0
   contains
@@ -102,48 +90,49 @@ module stepper
       type(branch_point_t), intent(inout) :: position
       type(step_result_t), intent(out) :: event
     end subroutine go_to
-
-    function grid_of(self, position) result(grid)
-      import :: stepper_t, branch_point_t, discretisation_t
-      class(stepper_t), intent(in), target :: self
-      type(branch_point_t), intent(in) :: position
-      type(discretisation_t), pointer :: grid
-    end function grid_of
-
-    pure real(wp) function spacing_of(self, position)
-      import :: stepper_t, branch_point_t, wp
-      class(stepper_t), intent(in) :: self
-      type(branch_point_t), intent(in) :: position
-    end function spacing_of
-
-    pure function witness_of(self, position) result(witness)
-      import :: stepper_t, branch_point_t, error_probe_t
-      class(stepper_t), intent(in) :: self
-      type(branch_point_t), intent(in) :: position
-      type(error_probe_t) :: witness
-    end function witness_of
   end interface
 
 contains
 
-  !> Makes `solver` the one whose steps are kept.
-  subroutine keep_steps_of(self, solver)
+  !> Makes `steps` those that are kept.
+  subroutine keep_steps_of(self, steps)
     class(keeping_stepper_t), intent(inout) :: self
-    class(stepper_t), intent(in), target :: solver
+    class(stepper_t), intent(in), target :: steps
 
-    self%solver => solver
-    self%problem = solver%problem
-    self%options = solver%options
-    self%jump_tolerance = solver%jump_tolerance
+    self%steps => steps
+    self%problem = steps%problem
+    self%options = steps%options
+    self%jump_tolerance = steps%jump_tolerance
   end subroutine keep_steps_of
 
-  !> With one mesh there is no choice.
-  pure integer function mesh_of(self, kind)
-    class(stepper_t), intent(in) :: self
-    integer, intent(in) :: kind
+  !> The discretisation on which a position's state lives.
+  function grid(self, position)
+    class(stepper_t), intent(in), target :: self
+    type(branch_point_t), intent(in) :: position
+    type(discretisation_t), pointer :: grid
 
-    mesh_of = 1
-  end function mesh_of
+    grid => self%pair%grid(position%mesh)
+  end function grid
+
+  !> Distance between nodes at the edge over the width of the neck, for a state; 0 without a neck.
+  pure real(wp) function spacing_over_neck(self, position)
+    class(stepper_t), intent(in) :: self
+    type(branch_point_t), intent(in) :: position
+
+    spacing_over_neck = over_neck(self%problem, &
+      position%state%scale*self%pair%grid(position%mesh)%spacing)
+  end function spacing_over_neck
+
+  !> The witness of a position's state: what its h0 was prescribed as.
+  pure function witness(self, position)
+    class(stepper_t), intent(in) :: self
+    type(branch_point_t), intent(in) :: position
+    type(error_probe_t) :: witness
+
+    witness%mesh = position%mesh
+    witness%control = h0_control(self%pair, position%mesh, position%state%h0)
+    witness%state = position%state
+  end function witness
 
   !> Makes `state` the position's present one; on another mesh, or after a jump, the past is
   !> forgotten.

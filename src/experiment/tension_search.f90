@@ -231,7 +231,7 @@ contains
     count = ceiling(abs(stretch%after - start)/short_step)
     do i = 1, count
       call steps%step_to(start + (stretch%after - start)*i/count, position, event)
-      if (.not. event%converged .or. event%reason /= '') exit
+      if (.not. event%converged .or. event%ending%early()) exit
       call self%note_jump(steps, event)
       if (position%state%load < best%state%load) best = position
     end do

@@ -7,7 +7,8 @@ module unique_stepper
   use locked_meshes, only: nodes_to_use, scale_at
   use locked_stepper, only: locked_stepper_t
   use continuation, only: between
-  use stepper, only: branch_point_t, step_result_t, remember, touching
+  use ending, only: touching, steps_lost
+  use stepper, only: branch_point_t, step_result_t, remember
   implicit none
   private
   public :: unique_stepper_t
@@ -32,7 +33,7 @@ contains
     type(step_result_t), intent(out) :: event
 
     call self%begin_afar(h0, position, event)
-    if (event%reason == '' .and. position%state%h0 > h0) call self%step_to(h0, position, event)
+    if (.not. event%ending%early() .and. position%state%h0 > h0) call self%step_to(h0, position, event)
   end subroutine approach_to
 
   subroutine step_to(self, h0, position, event)
@@ -43,7 +44,7 @@ contains
     type(state_t) :: state
 
     if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
-      event%reason = touching
+      event%ending%cause = touching
       return
     end if
     state = self%guess(h0, position)
@@ -90,7 +91,7 @@ contains
       else
         step = 0.3_wp*step
         if (abs(step) < smallest_creep) then
-          event%reason = 'no step, however small, converged'
+          event%ending%cause = steps_lost
           position%state = state
           return
         end if

@@ -5,6 +5,7 @@
 !> the edge stays at 1, and c is the coordinate. Both coordinates are monotone along the path.
 module edge_locked
   use kinds, only: wp, pi
+  use root_finding, only: bracket_t
   use dimensionless_problem, only: problem_t, neck_width
   use discretisation, only: discretisation_t
   use panels, only: new_panel_grid, graded_ends
@@ -130,20 +131,15 @@ contains
   !> of a law that decreases with the gap.
   pure real(wp) function contact_level(problem) result(level)
     type(problem_t), intent(in) :: problem
-    real(wp) :: low, high, pressure(1)
-    integer :: step
+    type(bracket_t) :: bracket
+    real(wp) :: pressure(1)
 
-    low = problem%law%smallest_gap
-    high = problem%law%range + 500
-    do step = 1, 100
-      level = 0.5_wp*(low + high)
-      pressure = problem%law%pressure([level])
-      if (2*problem%coupling*pressure(1) > 1) then
-        low = level
-      else
-        high = level
-      end if
+    bracket = bracket_t(problem%law%smallest_gap, problem%law%range + 500)
+    do while (bracket%is_open())
+      pressure = problem%law%pressure([bracket%middle()])
+      call bracket%narrow(2*problem%coupling*pressure(1) > 1)
     end do
+    level = bracket%middle()
   end function contact_level
 
   !> The smallest lateral feature of the pressure up to the contact radius c: the neck, or where

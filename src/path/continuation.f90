@@ -7,7 +7,7 @@ module continuation
   use dimensionless_problem, only: problem_t
   use interpolation, only: polynomial_weights
   use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, cost_t, at_axis_gap, at_edge_radius, &
+  use equilibrium, only: control_t, state_t, equations_t, at_axis_gap, at_edge_radius, &
     radius_of_gap
   use solver_options, only: solver_options_t
   use anderson, only: frozen_jacobian_t, solve_anderson
@@ -15,23 +15,25 @@ module continuation
   use regridding, only: regrid
   implicit none
   private
-  public :: continuation_t, new_continuation, path_control, coordinate_of, move_to_mesh, &
-    state_at, between, &
-    node_count
+  public :: arc_t, continuation_t, new_continuation, path_control, coordinate_of, state_at, &
+    between, node_count, most_states
 
-  !> States kept for the extrapolation, and limits of a step (relative change of the coordinate).
-  integer, parameter :: memory = 4
+  !> States of an arc; of them those kept for the extrapolation; and limits of a step (relative
+  !> change of the coordinate).
+  integer, parameter :: most_states = 6, memory = 4
   real(wp), parameter :: smallest_step = 1.0e-6_wp
 
-  type :: continuation_t
-    !> The mesh in use, `approach` or `contact`.
-    integer :: mesh = approach
+  !> Some states of the path on one mesh, `approach` or `contact`, and their coordinates, in order.
+  type :: arc_t
+    integer :: mesh = approach, held = 0
+    real(wp) :: coordinate(most_states) = 0
+    type(state_t) :: state(most_states)
+  end type arc_t
+
+  !> The last states on the mesh in use, newest last.
+  type, extends(arc_t) :: continuation_t
     real(wp) :: step = 0.05_wp, largest_step = 0.15_wp
     type(frozen_jacobian_t) :: frozen
-    !> The last states on this mesh and their coordinates, newest last.
-    integer :: held = 0
-    real(wp) :: coordinate(memory) = 0
-    type(state_t) :: past(memory)
   contains
     procedure :: advance
     procedure, private :: remember
@@ -63,13 +65,11 @@ contains
   end function sense_of
 
   !> The next state of the path, on the same mesh. lost: no step, however small, converged.
-  subroutine advance(self, problem, pair, options, lost, cost)
+  subroutine advance(self, equations, options, lost)
     class(continuation_t), intent(inout) :: self
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
-    type(cost_t), intent(inout) :: cost
     type(state_t) :: trial
     real(wp) :: s
     logical :: converged
@@ -77,11 +77,9 @@ contains
     lost = .false.
     do
       s = self%coordinate(self%held) + sense_of(self)*self%step
-      call state_at(problem, pair, self%mesh, s, self%coordinate(:self%held), &
-        self%past(:self%held), &
-        options, self%frozen, trial, converged, cost)
+      call state_at(equations, options, self%frozen, self%arc_t, s, trial, converged)
       if (converged) exit
-      cost%rejected_steps = cost%rejected_steps + 1
+      equations%cost%rejected_steps = equations%cost%rejected_steps + 1
       self%frozen%factors%valid = .false.
       self%step = 0.3_wp*self%step
       lost = self%step < smallest_step
@@ -89,7 +87,7 @@ contains
     end do
     if (trial%iterations <= 6) self%step = min(1.4_wp*self%step, self%largest_step)
     if (trial%iterations > 12) self%step = 0.7_wp*self%step
-    call self%remember(problem, trial)
+    call self%remember(equations%problem, trial)
   end subroutine advance
 
   !> The control that prescribes the path's coordinate s on a mesh: the logarithm of the gap on the
@@ -125,25 +123,24 @@ contains
 
   !> Solves a state of one mesh again on the other, at the same contact radius or axis gap.
   !> done = .false. where it has no contact edge to lock to, or did not converge.
-  subroutine move_to_mesh(problem, pair, from, to, options, frozen, state, done, cost)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
-    integer, intent(in) :: from, to
+  subroutine move_to_mesh(equations, options, frozen, from, to, state, done)
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     type(frozen_jacobian_t), intent(inout) :: frozen
+    integer, intent(in) :: from, to
     type(state_t), intent(inout) :: state
     logical, intent(out) :: done
-    type(cost_t), intent(inout) :: cost
     real(wp) :: c
 
-    c = 1
-    if (to == contact) c = radius_of_gap(problem%law%edge_gap, pair%grid(from), state)
-    done = c > 0
-    if (.not. done) return
-    state = regrid(state, pair%grid(from), pair%grid(to), c, node_count(pair, to, c))
-    call solve_anderson(problem, pair%grid(to), &
-      path_control(problem, to, coordinate_of(problem, to, state)), options, frozen, state, &
-      done, cost)
+    associate (problem => equations%problem, pair => equations%pair)
+      c = 1
+      if (to == contact) c = radius_of_gap(problem%law%edge_gap, pair%grid(from), state)
+      done = c > 0
+      if (.not. done) return
+      state = regrid(state, pair%grid(from), pair%grid(to), c, node_count(pair, to, c))
+      call solve_anderson(equations, options, frozen, &
+        path_control(problem, to, coordinate_of(problem, to, state)), state, done)
+    end associate
   end subroutine move_to_mesh
 
   !> Nodes of a mesh that are in use at the scale c.
@@ -156,29 +153,26 @@ contains
     if (mesh == contact) node_count = pair%grid(mesh)%nodes_within(pair%reach/c)
   end function node_count
 
-  !> State at the coordinate s: interpolated or extrapolated from states of the same mesh and
-  !> corrected. nodes: of the mesh; where absent, as many as reach far enough.
-  subroutine state_at(problem, pair, mesh, s, coordinate, states, options, frozen, state, &
-    converged, cost, nodes)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: s, coordinate(:)
-    type(state_t), intent(in) :: states(:)
+  !> State at the coordinate s: interpolated or extrapolated from those of an arc and corrected.
+  !> nodes: of the mesh; where absent, as many as reach far enough.
+  subroutine state_at(equations, options, frozen, arc, s, state, converged, nodes)
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     type(frozen_jacobian_t), intent(inout) :: frozen
+    type(arc_t), intent(in) :: arc
+    real(wp), intent(in) :: s
     type(state_t), intent(out) :: state
     logical, intent(out) :: converged
-    type(cost_t), intent(inout) :: cost
     integer, intent(in), optional :: nodes
     type(control_t) :: control
     integer :: used
 
-    control = path_control(problem, mesh, s)
-    used = node_count(pair, mesh, merge(control%value, 1.0_wp, mesh == contact))
+    control = path_control(equations%problem, arc%mesh, s)
+    used = node_count(equations%pair, arc%mesh, merge(control%value, 1.0_wp, arc%mesh == contact))
     if (present(nodes)) used = nodes
-    state = between(pair%grid(mesh), coordinate, states, s, used)
-    call solve_anderson(problem, pair%grid(mesh), control, options, frozen, state, converged, cost)
+    state = between(equations%pair%grid(arc%mesh), arc%coordinate(:arc%held), &
+      arc%state(:arc%held), s, used)
+    call solve_anderson(equations, options, frozen, control, state, converged)
   end subroutine state_at
 
   !> The polynomial through states at the given coordinates, evaluated at s, on `nodes` nodes.
@@ -222,45 +216,44 @@ contains
     type(state_t), intent(in) :: state
 
     if (self%held == memory) then
-      self%past(:memory - 1) = self%past(2:)
-      self%coordinate(:memory - 1) = self%coordinate(2:)
+      self%state(:memory - 1) = self%state(2:memory)
+      self%coordinate(:memory - 1) = self%coordinate(2:memory)
     else
       self%held = self%held + 1
     end if
-    self%past(self%held) = state
+    self%state(self%held) = state
     self%coordinate(self%held) = coordinate_of(problem, self%mesh, state)
   end subroutine remember
 
   !> Passes to the mesh for contact once the contact radius has crossed the passage (to be called
   !> after each `advance`), taking the last two states along, so that three neighbours on one mesh
   !> surround every fold.
-  subroutine change_mesh(self, problem, pair, options, lost, cost)
+  subroutine change_mesh(self, equations, options, lost)
     class(continuation_t), intent(inout) :: self
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
-    type(cost_t), intent(inout) :: cost
     type(state_t) :: taken(2)
     integer :: j
     logical :: done(2)
 
     lost = .false.
-    if (.not. problem%law%edge_gap > 0 .or. self%mesh == contact) return
-    if (radius_of_gap(problem%law%edge_gap, pair%grid(approach), self%past(self%held)) &
-      < pair%passage) return
+    associate (edge_gap => equations%problem%law%edge_gap, pair => equations%pair)
+      if (.not. edge_gap > 0 .or. self%mesh == contact) return
+      if (radius_of_gap(edge_gap, pair%grid(approach), self%state(self%held)) < pair%passage) return
+    end associate
     self%frozen%factors%valid = .false.
     done(1) = .false.
     do j = max(1, self%held - 1), self%held
-      taken(2 - self%held + j) = self%past(j)
-      call move_to_mesh(problem, pair, approach, contact, options, self%frozen, &
-        taken(2 - self%held + j), done(2 - self%held + j), cost)
+      taken(2 - self%held + j) = self%state(j)
+      call move_to_mesh(equations, options, self%frozen, approach, contact, &
+        taken(2 - self%held + j), done(2 - self%held + j))
     end do
     lost = .not. done(2)
     self%mesh = contact
     self%held = 0
     do j = 1, 2
-      if (done(j)) call self%remember(problem, taken(j))
+      if (done(j)) call self%remember(equations%problem, taken(j))
     end do
     self%step = 0.5_wp*self%step
   end subroutine change_mesh

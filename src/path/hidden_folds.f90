@@ -3,15 +3,14 @@
 !> show in the derivative of h0 along the path, which between them has the other sign.
 module hidden_folds
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
-  use equilibrium, only: state_t, cost_t
+  use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
   use anderson, only: frozen_jacobian_t
-  use edge_locked, only: mesh_pair_t
   use interpolation, only: polynomial_slope
+  use root_finding, only: false_position_t
   use path_extremum, only: extremum_t
   use path_slopes, only: slopes_along_path
-  use continuation, only: state_at, path_control
+  use continuation, only: arc_t, state_at, path_control
   implicit none
   private
   public :: find_hidden_folds
@@ -21,147 +20,163 @@ module hidden_folds
   real(wp), parameter :: suspicious = 0.15_wp
   integer, parameter :: places = 60
   !> Rounds in which the least derivative is searched, and in which a fold is.
-  integer, parameter :: searches = 5, halvings = 60
+  integer, parameter :: searches = 5, most_steps = 60
   !> Change of the path's coordinate below which a fold is found.
   real(wp), parameter :: near_enough = 1.0e-10_wp
 
+  !> The last three states of an arc: the coordinates between which they lie, and the mean
+  !> derivative of h0 there, whose sign is that of its course. lost: a solve failed.
+  type :: course_t
+    real(wp) :: begin = 0, finish = 0, mean = 0
+    logical :: lost = .false.
+    type(frozen_jacobian_t) :: frozen
+  end type course_t
+
 contains
 
-  !> The two folds between the last three of some states of a path, along which h0 goes one way;
-  !> none where there are none. Coordinates run one way.
-  subroutine find_hidden_folds(problem, pair, mesh, coordinate, states, options, folds, cost)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: coordinate(:)
-    type(state_t), intent(in) :: states(:)
+  !> The two folds between the last three states of an arc along which h0 goes one way; none where
+  !> there are none.
+  subroutine find_hidden_folds(equations, options, arc, folds)
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
+    type(arc_t), intent(in) :: arc
     type(extremum_t), allocatable, intent(out) :: folds(:)
-    type(cost_t), intent(inout) :: cost
-    type(frozen_jacobian_t) :: frozen
+    type(course_t) :: course
     type(extremum_t) :: first, second
-    real(wp) :: begin, finish, sense, mean, s, least, value, width, middle, beside(2)
-    integer :: n, k, round
-    logical :: lost
+    real(wp) :: inside, least
+    logical :: found
 
     allocate (folds(0))
-    n = size(states)
-    if (n < 4) return
-    begin = coordinate(n - 2)
-    finish = coordinate(n)
-    mean = (states(n)%h0 - states(n - 2)%h0)/(finish - begin)
-    sense = sign(1.0_wp, mean)
-    least = huge(1.0_wp)
-    middle = begin
-    do k = 1, places - 1
-      s = begin + (finish - begin)*k/places
-      value = sense*polynomial_slope(coordinate, states%h0, s)
-      if (value < least) then
-        least = value
-        middle = s
-      end if
-    end do
-    if (.not. least < suspicious*abs(mean)) return
-
-    ! The exact derivative's least value, by parabolas, until it is below zero.
-    lost = .false.
-    ! What lies near the newest state is in the middle with the next one, and surrounded then by
-    ! what is known.
-    width = min(0.1_wp*abs(finish - begin), 0.9_wp*abs(finish - middle), 0.9_wp*abs(middle - begin))
-    if (width < 0.03_wp*abs(finish - begin)) return
-    least = derivative(middle)
-    do round = 1, searches
-      if (lost) return
-      if (least < 0) exit
-      beside = [derivative(middle - width), derivative(middle + width)]
-      if (lost) return
-      if (minval(beside) < 0) then
-        middle = middle + merge(-width, width, beside(1) < 0)
-        least = minval(beside)
-        exit
-      end if
-      ! A parabola that has no lowest point here has none below zero either.
-      if (.not. beside(1) - 2*least + beside(2) > 0) return
-      s = middle + 0.5_wp*width*(beside(1) - beside(2))/(beside(1) - 2*least + beside(2))
-      middle = s
-      width = 0.25_wp*width
-      if (.not. (middle - width - begin)*(middle - width - finish) < 0) return
-      if (.not. (middle + width - begin)*(middle + width - finish) < 0) return
-      least = derivative(middle)
-    end do
-    if (lost .or. .not. least < 0) return
-    call locate(begin, middle, first)
-    call locate(finish, middle, second)
-    if (lost) return
+    if (arc%held < 4) return
+    associate (n => arc%held)
+      course%begin = arc%coordinate(n - 2)
+      course%finish = arc%coordinate(n)
+      course%mean = (arc%state(n)%h0 - arc%state(n - 2)%h0)/(course%finish - course%begin)
+    end associate
+    call find_least_interpolated(arc, course, inside, least)
+    if (.not. least < suspicious*abs(course%mean)) return
+    call find_reversal(equations, options, arc, course, inside, found)
+    if (.not. found) return
+    call locate(equations, options, arc, course, course%begin, inside, first)
+    call locate(equations, options, arc, course, course%finish, inside, second)
+    if (course%lost) return
+    ! Along the way h0 first turns against its course, then back to it.
+    first%sense = merge(1, -1, arc%state(arc%held)%h0 > arc%state(arc%held - 2)%h0)
+    second%sense = -first%sense
     deallocate (folds)
     allocate (folds(2))
-    ! Along the way h0 first turns against its course, then back to it.
-    first%sense = merge(1, -1, states(n)%h0 > states(n - 2)%h0)
-    second%sense = -first%sense
     folds(1) = first
     folds(2) = second
-
-  contains
-
-    !> dh0/ds in the sense of the path's h0, so that it is positive but between folds; up to a
-    !> positive factor, and with the state it is of.
-    real(wp) function derivative(s, fold)
-      real(wp), intent(in) :: s
-      type(extremum_t), intent(out), optional :: fold
-      type(state_t) :: state
-      real(wp) :: h0_slope, load_slope
-      logical :: fine
-
-      derivative = 0
-      call state_at(problem, pair, mesh, s, coordinate, states, options, frozen, state, fine, cost)
-      if (fine) call slopes_along_path(problem, pair%grid(mesh), path_control(problem, mesh, s), &
-        state, &
-        frozen, h0_slope, load_slope, fine, cost)
-      lost = lost .or. .not. fine
-      if (.not. fine) return
-      derivative = sense*h0_slope
-      if (.not. present(fold)) return
-      fold%coordinate = s
-      fold%state = state
-      fold%load_slope = load_slope
-    end function derivative
-
-    !> The fold between a place where the derivative is positive and one where it is negative, by
-    !> false position in which an end that stays counts half.
-    subroutine locate(outside, inside, fold)
-      real(wp), intent(in) :: outside, inside
-      type(extremum_t), intent(out) :: fold
-      real(wp) :: a, b, at_a, at_b, s, value
-      integer :: step, side
-
-      a = outside
-      b = inside
-      at_a = derivative(a)
-      at_b = derivative(b, fold)
-      ! The fold may be just beyond a state; then h0 itself shows it.
-      lost = lost .or. .not. (at_a > 0 .and. at_b < 0)
-      side = 0
-      do step = 1, halvings
-        if (lost .or. abs(b - a) < near_enough) return
-        s = (a*at_b - b*at_a)/(at_b - at_a)
-        value = derivative(s, fold)
-        if (.not. abs(value) > 0) return
-        if (value > 0) then
-          if (abs(s - a) < near_enough) return
-          a = s
-          at_a = value
-          if (side == 1) at_b = 0.5_wp*at_b
-          side = 1
-        else
-          if (abs(s - b) < near_enough) return
-          b = s
-          at_b = value
-          if (side == -1) at_a = 0.5_wp*at_a
-          side = -1
-        end if
-      end do
-    end subroutine locate
-
   end subroutine find_hidden_folds
+
+  !> Where the derivative of the polynomial through the states is least, in the sense of the course.
+  pure subroutine find_least_interpolated(arc, course, place, least)
+    type(arc_t), intent(in) :: arc
+    type(course_t), intent(in) :: course
+    real(wp), intent(out) :: place, least
+    real(wp) :: s, value
+    integer :: k
+
+    least = huge(1.0_wp)
+    place = course%begin
+    do k = 1, places - 1
+      s = course%begin + (course%finish - course%begin)*k/places
+      value = sign(1.0_wp, course%mean)* &
+        polynomial_slope(arc%coordinate(:arc%held), arc%state(:arc%held)%h0, s)
+      if (value < least) then
+        least = value
+        place = s
+      end if
+    end do
+  end subroutine find_least_interpolated
+
+  !> Moves `middle`, which is near the least value of the exact derivative, by parabolas to where
+  !> that is below zero, if it is anywhere.
+  subroutine find_reversal(equations, options, arc, course, middle, found)
+    type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
+    type(arc_t), intent(in) :: arc
+    type(course_t), intent(inout) :: course
+    real(wp), intent(inout) :: middle
+    logical, intent(out) :: found
+    real(wp) :: least, width, beside(2)
+    integer :: round
+
+    found = .false.
+    associate (begin => course%begin, finish => course%finish)
+      ! What lies near the newest state is in the middle with the next one, and surrounded then by
+      ! what is known.
+      width = min(0.1_wp*abs(finish - begin), 0.9_wp*abs(finish - middle), &
+        0.9_wp*abs(middle - begin))
+      if (width < 0.03_wp*abs(finish - begin)) return
+      do round = 1, searches + 1
+        call take_slope(equations, options, arc, course, middle, least)
+        found = least < 0 .and. .not. course%lost
+        if (found .or. course%lost .or. round > searches) return
+        call take_slope(equations, options, arc, course, middle - width, beside(1))
+        call take_slope(equations, options, arc, course, middle + width, beside(2))
+        found = minval(beside) < 0 .and. .not. course%lost
+        if (found) middle = middle + merge(-width, width, beside(1) < 0)
+        ! A parabola that has no lowest point here has none below zero either.
+        if (found .or. course%lost .or. .not. beside(1) - 2*least + beside(2) > 0) return
+        middle = middle + 0.5_wp*width*(beside(1) - beside(2))/(beside(1) - 2*least + beside(2))
+        width = 0.25_wp*width
+        if (.not. (middle - width - begin)*(middle - width - finish) < 0) return
+        if (.not. (middle + width - begin)*(middle + width - finish) < 0) return
+      end do
+    end associate
+  end subroutine find_reversal
+
+  !> dh0/ds at a coordinate in the sense of the course, so that it is positive but between folds; up
+  !> to a positive factor; and the state there, as a fold.
+  subroutine take_slope(equations, options, arc, course, s, slope, fold)
+    type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
+    type(arc_t), intent(in) :: arc
+    type(course_t), intent(inout) :: course
+    real(wp), intent(in) :: s
+    real(wp), intent(out) :: slope
+    type(extremum_t), intent(out), optional :: fold
+    type(extremum_t) :: here
+    real(wp) :: h0_slope
+    logical :: solved
+
+    slope = 0
+    here%coordinate = s
+    call state_at(equations, options, course%frozen, arc, s, here%state, solved)
+    if (solved) call slopes_along_path(equations, path_control(equations%problem, arc%mesh, s), &
+      here%state, course%frozen, h0_slope, here%load_slope, solved)
+    course%lost = course%lost .or. .not. solved
+    if (.not. solved) return
+    slope = sign(1.0_wp, course%mean)*h0_slope
+    if (present(fold)) fold = here
+  end subroutine take_slope
+
+  !> The fold between a place where the derivative is positive and one where it is negative.
+  subroutine locate(equations, options, arc, course, outside, inside, fold)
+    type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
+    type(arc_t), intent(in) :: arc
+    type(course_t), intent(inout) :: course
+    real(wp), intent(in) :: outside, inside
+    type(extremum_t), intent(out) :: fold
+    type(false_position_t) :: search
+    real(wp) :: s, slope
+    integer :: step
+
+    search = false_position_t(outside, inside)
+    call take_slope(equations, options, arc, course, outside, search%at_positive)
+    call take_slope(equations, options, arc, course, inside, search%at_negative, fold)
+    ! The fold may be just beyond a state; then h0 itself shows it.
+    course%lost = course%lost .or. .not. (search%at_positive > 0 .and. search%at_negative < 0)
+    do step = 1, most_steps
+      if (course%lost .or. abs(search%negative - search%positive) < near_enough) return
+      s = search%next()
+      call take_slope(equations, options, arc, course, s, slope, fold)
+      if (.not. abs(slope) > 0) return
+      if (abs(s - merge(search%positive, search%negative, slope > 0)) < near_enough) return
+      call search%take(s, slope)
+    end do
+  end subroutine locate
 
 end module hidden_folds

@@ -3,8 +3,7 @@
 !> cycle it is the area between the ways out and back.
 module hysteresis
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
-  use edge_locked, only: mesh_pair_t
+  use equilibrium, only: equations_t
   use known_path, only: known_path_t, landing_t
   use potential_energy, only: energy_of
   implicit none
@@ -21,9 +20,8 @@ contains
 
   !> Adds what is lost in the jumps that lead from the stable piece `from` to the piece `to`, h0
   !> going no lower than `lowest`; whole = .false. where no jumps lead there.
-  subroutine energy_lost(problem, pair, known, from, to, lowest, lost, whole)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
+  subroutine energy_lost(equations, known, from, to, lowest, lost, whole)
+    type(equations_t), intent(in) :: equations
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: from, to
     real(wp), intent(in) :: lowest
@@ -54,8 +52,8 @@ contains
       if (.not. whole) return
       associate (fold => known%path%point(landing%fold))
         whole = fold%state%h0 >= lowest
-        call energy_of(problem, pair%grid(fold%mesh), fold%state, before, uncertainty(1))
-        call energy_of(problem, pair%grid(landing%mesh), landing%state, after, uncertainty(2))
+        call energy_of(equations, fold%mesh, fold%state, before, uncertainty(1))
+        call energy_of(equations, landing%mesh, landing%state, after, uncertainty(2))
         lost%energy = lost%energy + (before - after)
         if (allocated(fold%fine) .and. allocated(landing%fine)) &
           lost%fine_energy = lost%fine_energy + (fold%fine%energy - landing%fine%energy)

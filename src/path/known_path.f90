@@ -4,12 +4,11 @@
 module known_path
   use kinds, only: wp
   use listener, only: listener_t
-  use dimensionless_problem, only: problem_t
-  use equilibrium, only: state_t, cost_t, lost_in_rounding, beyond_rounding
+  use equilibrium, only: state_t, equations_t, lost_in_rounding
   use solver_options, only: solver_options_t
-  use anderson, only: frozen_jacobian_t
-  use edge_locked, only: mesh_pair_t, approach, contact, largest_radius
+  use edge_locked, only: approach, contact, largest_radius
   use continuation, only: continuation_t, new_continuation
+  use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
   use traced_path, only: traced_path_t, extend, collapsed
   use reported, only: error_t, measure_t
   use solve_at_h0, only: neighbours_t, neighbours_of, solve_between
@@ -43,9 +42,8 @@ module known_path
     !> From afar inward; and the landings from each over the fold at its inner and outer end.
     type(stable_piece_t), allocatable :: piece(:)
     type(landing_t), allocatable :: inward(:), outward(:)
-    !> Why the path ends before it should; empty where it does not. Whether it ends in the fall of
-    !> bodies that nothing keeps apart.
-    character(len=160) :: ends_because = ''
+    !> How the path ends; and whether in the fall of bodies that nothing keeps apart.
+    type(ending_t) :: ending
     logical :: fallen = .false.
   end type known_path_t
 
@@ -61,16 +59,14 @@ contains
 
   !> Traces the path from a state far from contact, on the mesh for the approach, until it is stable
   !> at h0_low; into_contact: until it is also on the mesh for contact.
-  subroutine trace(problem, pair, options, start, h0_low, into_contact, listener, known, cost)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
+  subroutine trace(equations, options, start, h0_low, into_contact, listener, known)
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     type(state_t), intent(in) :: start
     real(wp), intent(in) :: h0_low
     logical, intent(in) :: into_contact
     class(listener_t), intent(inout) :: listener
     type(known_path_t), intent(inout) :: known
-    type(cost_t), intent(inout) :: cost
     type(continuation_t) :: walker
     type(solver_options_t) :: for_path
     character(len=40) :: so_far
@@ -78,22 +74,23 @@ contains
     integer :: k
 
     ! Where rounding hides the contact the path is of use up to its first fold.
-    blind = lost_in_rounding(problem, largest_radius(problem, h0_low, pair%level))
+    blind = lost_in_rounding(equations%problem, &
+      largest_radius(equations%problem, h0_low, equations%pair%level))
     for_path = options
     for_path%tolerance = min(options%tolerance, path_tolerance)
-    walker = new_continuation(problem, start, approach, path_step)
+    walker = new_continuation(equations%problem, start, approach, path_step)
     finished = .false.
-    do while (known%ends_because == '' .and. .not. finished)
-      call extend(known%path, walker, problem, pair, for_path, lost, cost)
+    do while (.not. (known%ending%early() .or. finished))
+      call extend(known%path, walker, equations, for_path, lost)
       write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
       call listener%hear(trim(so_far))
-      known%fallen = collapsed(problem, known%path)
+      known%fallen = collapsed(equations%problem, known%path)
       if (lost .or. known%path%held >= longest) then
-        known%ends_because = 'the equilibrium path was lost: no step, however small, converged'
+        known%ending%cause = path_lost
       else if (known%fallen) then
-        known%ends_because = 'no stable equilibrium exists beyond this h0'
+        known%ending%cause = no_equilibrium
       else if (blind .and. any(known%path%point(:known%path%held)%fold)) then
-        known%ends_because = beyond_rounding
+        known%ending%cause = beyond_rounding
       end if
       ! What lies before the last point but one is final.
       associate (n => known%path%held)
@@ -106,8 +103,8 @@ contains
     known%piece = pieces_of(known%path)
     allocate (known%inward(size(known%piece)), known%outward(size(known%piece)))
     do k = 1, size(known%piece)
-      call land(problem, pair, known, k, .true., options, known%inward(k), cost)
-      call land(problem, pair, known, k, .false., options, known%outward(k), cost)
+      call land(equations, options, known, k, .true., known%inward(k))
+      call land(equations, options, known, k, .false., known%outward(k))
     end do
   end subroutine trace
 
@@ -173,17 +170,14 @@ contains
   end function interval_at
 
   !> Where the bodies land that leave a piece over the fold at its inner or outer end.
-  subroutine land(problem, pair, known, from, inward, options, landing, cost)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
+  subroutine land(equations, options, known, from, inward, landing)
+    type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: from
     logical, intent(in) :: inward
-    type(solver_options_t), intent(in) :: options
     type(landing_t), intent(out) :: landing
-    type(cost_t), intent(inout) :: cost
     type(neighbours_t) :: near
-    type(frozen_jacobian_t) :: frozen
     real(wp) :: h0
 
     associate (left => known%piece(from))
@@ -195,9 +189,8 @@ contains
     if (landing%piece == 0) return
     near = neighbours_of(known%path, interval_at(known, landing%piece, h0))
     landing%mesh = near%mesh
-    call solve_between(problem, pair, near, h0, options, frozen, landing%coordinate, &
-      landing%state, &
-      landing%converged, cost)
+    call solve_between(equations, options, near, h0, landing%coordinate, landing%state, &
+      landing%converged)
   end subroutine land
 
   !> The landing over a fold: inward(k) or outward(k), with inside telling which; k = 0 where the

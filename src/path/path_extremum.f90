@@ -1,14 +1,13 @@
 !> Extrema of h0 or of the load along the equilibrium path, to the solver's tolerance.
 module path_extremum
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
-  use equilibrium, only: state_t, cost_t
+  use equilibrium, only: state_t, equations_t
   use solver_options, only: solver_options_t
   use anderson, only: frozen_jacobian_t
-  use edge_locked, only: mesh_pair_t
   use path_slopes, only: slopes_along_path
   use interpolation, only: interpolated_maximum
-  use continuation, only: state_at, path_control
+  use root_finding, only: bracket_t, secant_root
+  use continuation, only: arc_t, state_at, path_control
   implicit none
   private
   public :: extremum_t, polish_extremum, of_h0, of_load
@@ -30,44 +29,36 @@ module path_extremum
 
 contains
 
-  !> The extremum of h0 or load that the last three of some states of the path surround: a root of
-  !> its exact derivative along the path, begun at the extremum of the polynomial through the states
-  !> and found by secants. lost: a solve failed.
-  subroutine polish_extremum(problem, pair, mesh, quantity, coordinate, states, options, found, &
-    lost, &
-    cost)
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
-    integer, intent(in) :: mesh, quantity
-    real(wp), intent(in) :: coordinate(:)
-    type(state_t), intent(in) :: states(:)
+  !> The extremum of h0 or load that the last three states of an arc surround: a root of its exact
+  !> derivative along the path, begun at the extremum of the polynomial through the states and found
+  !> by secants. lost: a solve failed.
+  subroutine polish_extremum(equations, options, arc, quantity, found, lost)
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
+    type(arc_t), intent(in) :: arc
+    integer, intent(in) :: quantity
     type(extremum_t), intent(out) :: found
     logical, intent(out) :: lost
-    type(cost_t), intent(inout) :: cost
     type(state_t) :: trial
     type(frozen_jacobian_t) :: frozen
-    real(wp) :: slopes(2), slope, slope_size, slope_before, s, s_before, s_next, low, high
-    integer :: round, n
-    logical :: converged
+    type(bracket_t) :: bracket
+    real(wp) :: slopes(2), slope, slope_size, slope_before, s, s_before, s_next
+    integer :: round
+    logical :: solved
 
-    n = size(states)
-    associate (value => merge(states%h0, states%load, quantity == of_h0))
-      found%sense = merge(1, -1, value(n - 1) > value(n))
-      low = minval(coordinate(n - 2:))
-      high = maxval(coordinate(n - 2:))
-      s = interpolated_maximum(coordinate, found%sense*value, low, high)
+    associate (n => arc%held)
+      associate (value => merge(arc%state(:n)%h0, arc%state(:n)%load, quantity == of_h0))
+        found%sense = merge(1, -1, value(n - 1) > value(n))
+        bracket = bracket_t(minval(arc%coordinate(n - 2:n)), maxval(arc%coordinate(n - 2:n)))
+        s = interpolated_maximum(arc%coordinate(:n), found%sense*value, bracket%low, bracket%high)
+      end associate
     end associate
     slope_size = huge(1.0_wp)
     do round = 1, most_rounds
-      call state_at(problem, pair, mesh, s, coordinate, states, options, frozen, trial, converged, &
-        cost)
-      lost = .not. converged
-      if (lost) return
-      call slopes_along_path(problem, pair%grid(mesh), path_control(problem, mesh, s), trial, &
-        frozen, &
-        slopes(1), slopes(2), converged, cost)
-      lost = .not. converged
+      call state_at(equations, options, frozen, arc, s, trial, solved)
+      if (solved) call slopes_along_path(equations, path_control(equations%problem, arc%mesh, s), &
+        trial, frozen, slopes(1), slopes(2), solved)
+      lost = .not. solved
       if (lost) return
       slope = slopes(quantity)
       if (abs(slope) < slope_size) then
@@ -80,19 +71,15 @@ contains
         exit
       end if
       ! A maximum has its rising side before it.
-      if ((slope > 0) .eqv. (found%sense > 0)) then
-        low = s
-      else
-        high = s
-      end if
+      call bracket%narrow((slope > 0) .eqv. (found%sense > 0), s)
       if (round == 1) then
-        s_next = s + sign(1.0e-4_wp*(high - low) + 1.0e-7_wp, found%sense*slope)
+        s_next = s + sign(1.0e-4_wp*(bracket%high - bracket%low) + 1.0e-7_wp, found%sense*slope)
       else if (abs(slope - slope_before) > tiny(slope)) then
-        s_next = s - slope*(s - s_before)/(slope - slope_before)
+        s_next = secant_root(s, slope, s_before, slope_before)
       else
         exit
       end if
-      if (s_next < low .or. s_next > high) s_next = 0.5_wp*(low + high)
+      s_next = bracket%within(s_next)
       if (abs(s_next - s) < root_tolerance) exit
       s_before = s
       slope_before = slope

@@ -1,9 +1,7 @@
 !> Derivatives of H0 and load along the equilibrium path, exact to the solver's tolerance.
 module path_slopes
   use kinds, only: wp, pi
-  use dimensionless_problem, only: problem_t
-  use discretisation, only: discretisation_t
-  use equilibrium, only: control_t, state_t, cost_t, at_edge_radius, load_reach
+  use equilibrium, only: control_t, state_t, equations_t, at_edge_radius, load_reach
   use jacobian, only: factorise_jacobian, control_derivative
   use linear_algebra, only: solve
   use anderson, only: frozen_jacobian_t
@@ -16,39 +14,39 @@ contains
   !> h0_slope and load_slope: derivatives of H0 and load by the value of the control at an
   !> equilibrium under it; found = .false. where the Jacobian is singular. Renews the factorisation,
   !> which then fits the state exactly.
-  subroutine slopes_along_path(problem, grid, control, state, frozen, h0_slope, load_slope, &
-    found, cost)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
+  subroutine slopes_along_path(equations, control, state, frozen, h0_slope, load_slope, found)
+    type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(frozen_jacobian_t), intent(inout) :: frozen
     real(wp), intent(out) :: h0_slope, load_slope
     logical, intent(out) :: found
-    type(cost_t), intent(inout) :: cost
     real(wp), allocatable :: dz(:)
     real(wp) :: reach, c_slope, gap(1)
     integer :: n
 
     n = size(state%gap)
-    call factorise_jacobian(problem, grid, control, state, frozen%factors, cost)
+    call factorise_jacobian(equations, control, state, frozen%factors)
     frozen%control_kind = control%kind
     h0_slope = 0
     load_slope = 0
     found = frozen%factors%valid
     if (.not. found) return
-    dz = -control_derivative(problem, grid, control, state)
+    dz = -control_derivative(equations, control, state)
     call solve(frozen%factors, dz)
     h0_slope = dz(n + 1)
     c_slope = merge(1.0_wp, 0.0_wp, control%kind == at_edge_radius)
-    ! The load is 2 pi (c^2 sum(w P) + E(gap at the end of the mesh)), whose last gap moves with the
-    ! last node's and with the end itself.
-    reach = load_reach(grid, state)
-    gap = state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)
-    load_slope = 2*pi*(2*state%scale*c_slope*dot_product(grid%weight(:n), state%pressure) + &
-      state%scale**2*sum(grid%weight(:n)*problem%law%slope(state%gap)*dz(:n)) - &
-      sum(problem%law%pressure(gap))*(dz(n) + c_slope/state%scale*(reach**2 - &
-      (state%scale*grid%x(n))**2)))
+    associate (grid => equations%pair%grid(equations%mesh_of(control)), &
+      law => equations%problem%law)
+      ! The load is 2 pi (c^2 sum(w P) + E(gap at the end of the mesh)), whose last gap moves with
+      ! the last node's and with the end itself.
+      reach = load_reach(grid, state)
+      gap = state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)
+      load_slope = 2*pi*(2*state%scale*c_slope*dot_product(grid%weight(:n), state%pressure) + &
+        state%scale**2*sum(grid%weight(:n)*law%slope(state%gap)*dz(:n)) - &
+        sum(law%pressure(gap))*(dz(n) + c_slope/state%scale*(reach**2 - &
+        (state%scale*grid%x(n))**2)))
+    end associate
   end subroutine slopes_along_path
 
 end module path_slopes

@@ -4,9 +4,7 @@
 !> integral along the path is needed.
 module potential_energy
   use kinds, only: wp, pi
-  use dimensionless_problem, only: problem_t
-  use discretisation, only: discretisation_t
-  use equilibrium, only: state_t, load_reach
+  use equilibrium, only: state_t, equations_t, load_reach
   use quadrature, only: gauss_legendre
   implicit none
   private
@@ -20,26 +18,27 @@ contains
   !> 2 pi Int [e(H) + P (H - H0 - rho^2/2)/2] rho drho in units of load times length: e is the
   !> energy of the surface force per area, and the bodies have yielded by H - H0 - rho^2/2.
   !> uncertainty: what rounding, and a residual of the equations, leave of it.
-  subroutine energy_of(problem, grid, state, energy, uncertainty)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
+  subroutine energy_of(equations, mesh, state, energy, uncertainty)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: mesh
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: energy, uncertainty
     real(wp) :: node(points), weight(points), last
     real(wp), dimension(size(state%gap)) :: of_surface, of_bodies
 
-    associate (n => size(state%gap), c => state%scale)
-      of_surface = c**2*grid%weight(:n)*problem%law%energy(state%gap)
+    call gauss_legendre(node, weight)
+    associate (n => size(state%gap), c => state%scale, grid => equations%pair%grid(mesh), &
+      law => equations%problem%law)
+      of_surface = c**2*grid%weight(:n)*law%energy(state%gap)
       of_bodies = c**2*grid%weight(:n)*0.5_wp*state%pressure* &
         (state%gap - state%h0 - 0.5_wp*(c*grid%x(:n))**2)
       uncertainty = 2*pi*(epsilon(1.0_wp)*sum(abs(of_surface) + abs(of_bodies)) + &
         0.5_wp*state%residual*c**2*sum(abs(grid%weight(:n)*state%pressure)))
       ! Beyond the mesh rho drho = dH. With H = last/x the interval is finite.
       last = state%gap(n) + 0.5_wp*(load_reach(grid, state)**2 - (c*grid%x(n))**2)
+      energy = 2*pi*(sum(of_surface) + sum(of_bodies) + &
+        last*sum(weight*law%energy(last/node)/node**2))
     end associate
-    call gauss_legendre(node, weight)
-    energy = 2*pi*(sum(of_surface) + sum(of_bodies) + &
-      last*sum(weight*problem%law%energy(last/node)/node**2))
   end subroutine energy_of
 
 end module potential_energy

@@ -11,9 +11,9 @@
 module traced_path
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use equilibrium, only: state_t, cost_t
+  use equilibrium, only: state_t, equations_t
   use solver_options, only: solver_options_t, tightened
-  use edge_locked, only: mesh_pair_t, approach, contact
+  use edge_locked, only: approach, contact
   use reported, only: error_t, measure_t
   use path_extremum, only: extremum_t, polish_extremum, of_h0, of_load
   use continuation, only: continuation_t
@@ -114,31 +114,29 @@ contains
   !> passed. An extremum between the two newest points is seen only with the next one, so what lies
   !> before the newest but one is final. A new path begins with the tracer's own newest state. lost:
   !> no step, however small, converged.
-  subroutine extend(path, walker, problem, pair, options, lost, cost)
+  subroutine extend(path, walker, equations, options, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
-    type(cost_t), intent(inout) :: cost
     integer :: n
 
     if (path%held == 0) call append(path, walker)
-    call walker%advance(problem, pair, options, lost, cost)
+    call walker%advance(equations, options, lost)
     if (lost) return
     call append(path, walker)
     n = walker%held
     if (n >= 3) then
-      if (surrounded(walker%past(n - 2:n)%h0)) then
-        call insert_extremum(path, walker, of_h0, problem, pair, options, lost, cost)
+      if (surrounded(walker%state(n - 2:n)%h0)) then
+        call insert_extremum(path, walker, of_h0, equations, options, lost)
       else if (.not. any(path%point(max(1, path%held - 4):path%held)%fold)) then
-        call insert_hidden(path, walker, problem, pair, options, cost)
+        call insert_hidden(path, walker, equations, options)
       end if
-      if (.not. lost .and. surrounded(walker%past(n - 2:n)%load)) &
-        call insert_extremum(path, walker, of_load, problem, pair, options, lost, cost)
+      if (.not. lost .and. surrounded(walker%state(n - 2:n)%load)) &
+        call insert_extremum(path, walker, of_load, equations, options, lost)
     end if
-    if (.not. lost) call change_mesh(path, walker, problem, pair, options, lost, cost)
+    if (.not. lost) call change_mesh(path, walker, equations, options, lost)
   end subroutine extend
 
   !> Whether the middle one of three values is an extremum.
@@ -155,28 +153,26 @@ contains
     type(path_point_t) :: point
 
     if (path%held > 0) point%modes = path%point(path%held)%modes
-    point%state = walker%past(walker%held)
+    point%state = walker%state(walker%held)
     point%mesh = walker%mesh
     point%coordinate = walker%coordinate(walker%held)
     call insert(path, path%held + 1, point)
   end subroutine append
 
   !> Lets the tracer change its mesh, and keeps what it took along as twins.
-  subroutine change_mesh(path, walker, problem, pair, options, lost, cost)
+  subroutine change_mesh(path, walker, equations, options, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
-    type(cost_t), intent(inout) :: cost
     real(wp) :: before(2)
     integer :: mesh, n, i, k, taken
 
     mesh = walker%mesh
     n = walker%held
     before = walker%coordinate([max(1, n - 1), n])
-    call walker%change_mesh(problem, pair, options, lost, cost)
+    call walker%change_mesh(equations, options, lost)
     if (lost .or. walker%mesh == mesh) return
     ! One or both of the last two, the newest last.
     taken = walker%held
@@ -184,45 +180,35 @@ contains
       do i = path%held, 1, -1
         if (path%point(i)%mesh == mesh .and. abs(path%point(i)%coordinate - before(k)) <= 0) exit
       end do
-      if (i > 0) path%point(i)%twin = walker%past(k - 2 + taken)
+      if (i > 0) path%point(i)%twin = walker%state(k - 2 + taken)
     end do
   end subroutine change_mesh
 
   !> Polishes the extremum that the walker's last three states surround and puts it in its place.
-  subroutine insert_extremum(path, walker, quantity, problem, pair, options, lost, cost)
+  subroutine insert_extremum(path, walker, quantity, equations, options, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(in) :: walker
     integer, intent(in) :: quantity
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
-    type(cost_t), intent(inout) :: cost
     type(extremum_t) :: found
 
-    associate (n => walker%held)
-      call polish_extremum(problem, pair, walker%mesh, quantity, walker%coordinate(:n), &
-        walker%past(:n), tightened(options), found, lost, cost)
-    end associate
+    call polish_extremum(equations, tightened(options), walker%arc_t, quantity, found, lost)
     if (lost) return
     call put(path, walker, quantity, found)
   end subroutine insert_extremum
 
   !> Puts folds that the walker's last three states pass over in their places.
-  subroutine insert_hidden(path, walker, problem, pair, options, cost)
+  subroutine insert_hidden(path, walker, equations, options)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(in) :: walker
-    type(problem_t), intent(in) :: problem
-    type(mesh_pair_t), intent(in) :: pair
+    type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
-    type(cost_t), intent(inout) :: cost
     type(extremum_t), allocatable :: folds(:)
     integer :: i
 
-    associate (n => walker%held)
-      call find_hidden_folds(problem, pair, walker%mesh, walker%coordinate(:n), walker%past(:n), &
-        tightened(options), folds, cost)
-    end associate
+    call find_hidden_folds(equations, tightened(options), walker%arc_t, folds)
     do i = 1, size(folds)
       call put(path, walker, of_h0, folds(i))
     end do

@@ -12,6 +12,7 @@ module summarise
   use experiment_result, only: experiment_result_t
   use reported, only: reported_t
   use stepped_branch, only: branch_t
+  use ending_text, only: text_of
   use summary, only: summary_t
   use summary_entries, only: take_jump, take_profiles, raise_tension, widen_spacing
   use quality_warnings, only: judge_resolution, judge_accuracy, short_number
@@ -76,10 +77,10 @@ contains
     type(experiment_result_t), intent(in) :: outcome
 
     ended = .true.
-    if (allocated(outcome%path)) ended = outcome%path%reason == ''
-    if (allocated(outcome%stepped_path)) ended = ended .and. outcome%stepped_path%reason == ''
-    if (allocated(outcome%loading)) ended = ended .and. outcome%loading%reason == ''
-    if (allocated(outcome%unloading)) ended = ended .and. all(outcome%unloading%reason == '')
+    if (allocated(outcome%path)) ended = .not. outcome%path%ending%early()
+    if (allocated(outcome%stepped_path)) ended = ended .and. .not. outcome%stepped_path%ending%early()
+    if (allocated(outcome%loading)) ended = ended .and. .not. outcome%loading%ending%early()
+    if (allocated(outcome%unloading)) ended = ended .and. .not. any(outcome%unloading%ending%early())
   end function ended_as_planned
 
   !> What follows from the deck alone.
@@ -168,9 +169,9 @@ contains
         short_number(problem%law%separation_of(branch%first_unconverged))//' m; the largest residual is '// &
         short_number(branch%worst_residual)//' lengths of the force law')
     end if
-    if (branch%reason /= '') then
+    if (branch%ending%early()) then
       call summary%set('converged', .false.)
-      call summary%warn(name//' ended early: '//trim(branch%reason))
+      call summary%warn(name//' ended early: '//trim(text_of(branch%ending)))
     end if
   end subroutine take_branch
 
@@ -226,9 +227,9 @@ contains
       call summary%set('worst_residual', max(summary%number('worst_residual'), &
         path%worst_residual))
       call widen_spacing(summary, path%worst_spacing)
-      if (path%reason /= '') then
+      if (path%ending%early()) then
         call summary%set('converged', .false.)
-        call summary%warn('path: '//trim(path%reason))
+        call summary%warn('path: '//trim(text_of(path%ending)))
       end if
       if (path%fallen) call summary%warn('path: nothing keeps the bodies apart under this law: '// &
         'the path ends in their fall onto each other, and there is no state in contact')

@@ -6,6 +6,7 @@ module resumable_stepper
   use discretisation, only: discretisation_t
   use equilibrium, only: cost_t
   use jacobian, only: factorise_again
+  use ending, only: ending_t, not_kept
   use stepper, only: keeping_stepper_t, branch_point_t, step_result_t
   use reported, only: error_probe_t
   use journal, only: journal_t
@@ -53,7 +54,7 @@ contains
     if (self%recall(h0, nowhere, position, event)) return
     began = seconds()
     call self%catch_up()
-    call self%solver%approach_to(h0, position, event)
+    call self%steps%approach_to(h0, position, event)
     call self%keep(h0, nowhere, position, event, began)
   end subroutine approach_to
 
@@ -69,7 +70,7 @@ contains
     if (self%recall(h0, before, position, event)) return
     began = seconds()
     call self%catch_up()
-    call self%solver%step_to(h0, position, event)
+    call self%steps%step_to(h0, position, event)
     call self%keep(h0, before, position, event, began)
   end subroutine step_to
 
@@ -92,34 +93,30 @@ contains
       fits = abs(kept_h0 - h0) <= 0
       call take_position(record, self%problem%law, before, position)
       call take_event(record, event)
-      call take_frozen(record, self%solver%frozen)
+      call take_frozen(record, self%steps%frozen)
       call take_cost(record, cost)
       self%earlier_seconds = cost%solve_seconds
       ! Times are this run's own.
-      cost%kernel_seconds = self%solver%cost%kernel_seconds
-      cost%solve_seconds = self%solver%cost%solve_seconds
-      cost%estimate_seconds = self%solver%cost%estimate_seconds
-      self%solver%cost = cost
+      cost%kernel_seconds = self%steps%cost%kernel_seconds
+      cost%solve_seconds = self%steps%cost%solve_seconds
+      cost%estimate_seconds = self%steps%cost%estimate_seconds
+      self%steps%cost = cost
       self%behind = .true.
       if (record%exhausted .or. .not. fits) call self%journal%reject()
     end if
     if (.not. allocated(self%journal%trouble)) return
     known = .true.
-    event = step_result_t(reason='what was found can no longer be kept')
+    event = step_result_t(ending=ending_t(not_kept))
   end function recall
 
   !> Gives the solver the factorisation that it had at the end of the last record.
   subroutine catch_up(self)
     class(resumable_stepper_t), intent(inout) :: self
-    type(branch_point_t) :: on_mesh
 
     if (.not. self%behind) return
     self%behind = .false.
-    associate (factors => self%solver%frozen%factors)
-      if (factors%valid) then
-        on_mesh%mesh = self%solver%mesh_of(nint(factors%origin(1)))
-        call factorise_again(self%problem, self%solver%grid(on_mesh), factors)
-      end if
+    associate (factors => self%steps%frozen%factors)
+      if (factors%valid) call factorise_again(self%steps%equations_t, factors)
       self%known = factors%made
     end associate
   end subroutine catch_up
@@ -137,10 +134,10 @@ contains
     call record%put(h0)
     call put_position(record, self%problem%law, before, position)
     call put_event(record, event)
-    call put_frozen(record, self%solver%frozen, self%known == self%solver%frozen%factors%made)
-    self%known = self%solver%frozen%factors%made
+    call put_frozen(record, self%steps%frozen, self%known == self%steps%frozen%factors%made)
+    self%known = self%steps%frozen%factors%made
     self%own_seconds = self%own_seconds + seconds() - began
-    cost = self%solver%cost
+    cost = self%steps%cost
     cost%solve_seconds = self%earlier_seconds + self%own_seconds
     call put_cost(record, cost)
     call self%journal%append(record)
@@ -151,14 +148,14 @@ contains
     type(branch_point_t), intent(in) :: position
     type(discretisation_t), pointer :: grid
 
-    grid => self%solver%grid(position)
+    grid => self%steps%grid(position)
   end function grid
 
   pure real(wp) function spacing_over_neck(self, position)
     class(resumable_stepper_t), intent(in) :: self
     type(branch_point_t), intent(in) :: position
 
-    spacing_over_neck = self%solver%spacing_over_neck(position)
+    spacing_over_neck = self%steps%spacing_over_neck(position)
   end function spacing_over_neck
 
   pure function witness(self, position)
@@ -166,7 +163,7 @@ contains
     type(branch_point_t), intent(in) :: position
     type(error_probe_t) :: witness
 
-    witness = self%solver%witness(position)
+    witness = self%steps%witness(position)
   end function witness
 
 end module resumable_stepper

@@ -184,7 +184,9 @@ contains
     call record%put(event%jump_h0)
     call record%put(event%jump_load)
     call record%put(event%jump_uncertainty)
-    call record%put(trim(event%reason))
+    call record%put(event%ending%cause)
+    call record%put(event%ending%iterations)
+    call record%put(event%ending%residual)
     call record%put(event%fold)
     call record%put(allocated(event%lowest))
     if (.not. allocated(event%lowest)) return
@@ -198,7 +200,6 @@ contains
   subroutine take_event(record, event)
     type(byte_record_t), intent(inout) :: record
     type(step_result_t), intent(out) :: event
-    character(len=:), allocatable :: reason
     logical :: known
 
     call record%take(event%converged)
@@ -206,8 +207,9 @@ contains
     call record%take(event%jump_h0)
     call record%take(event%jump_load)
     call record%take(event%jump_uncertainty)
-    call record%take(reason)
-    event%reason = reason
+    call record%take(event%ending%cause)
+    call record%take(event%ending%iterations)
+    call record%take(event%ending%residual)
     call record%take(event%fold)
     call record%take(known)
     if (.not. known) return

@@ -10,6 +10,7 @@
 module maugis
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp, pi
+  use root_finding, only: bracket_t, golden
   implicit none
   private
   public :: lennard_jones_strength, maugis_lambda
@@ -102,29 +103,24 @@ contains
   elemental function maugis_radius_at_displacement(displacement, radius, stiffness, &
     surface_energy, strength) result(contact_radius)
     real(wp), intent(in) :: displacement, radius, stiffness, surface_energy, strength
-    real(wp) :: contact_radius, lambda, unit, wanted, low, high, middle, least
+    real(wp) :: contact_radius, lambda, unit, wanted, a, least
+    type(bracket_t) :: bracket
 
     contact_radius = ieee_value(contact_radius, ieee_quiet_nan)
     lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
     unit = unit_length(radius, stiffness, surface_energy)
     wanted = displacement*radius/unit**2
-    call find_least(of_displacement, lambda, low, least)
+    call find_least(of_displacement, lambda, a, least)
     if (.not. wanted >= least) return
-    high = max(1.0_wp, 2*low)
-    do while (scaled_displacement(high, lambda) < wanted)
-      high = 2*high
+    bracket = bracket_t(a, max(1.0_wp, 2*a))
+    do while (scaled_displacement(bracket%high, lambda) < wanted)
+      bracket%high = 2*bracket%high
     end do
     ! The displacement grows with the contact from its least value on.
-    do
-      middle = low + (high - low)/2
-      if (.not. (middle > low .and. middle < high)) exit
-      if (scaled_displacement(middle, lambda) < wanted) then
-        low = middle
-      else
-        high = middle
-      end if
+    do while (bracket%is_open())
+      call bracket%narrow(scaled_displacement(bracket%middle(), lambda) < wanted)
     end do
-    contact_radius = unit*high
+    contact_radius = unit*bracket%high
   end function maugis_radius_at_displacement
 
   !> The least P (`of_load`) or D (`of_displacement`) over all A, and where.
@@ -132,7 +128,6 @@ contains
     integer, intent(in) :: quantity
     real(wp), intent(in) :: lambda
     real(wp), intent(out) :: a, least
-    real(wp), parameter :: golden = 0.6180339887498949_wp
     ! JKR's least load is at A = 1.5^(1/3) = 1.145 and its least displacement at (1/6)^(1/3); those
     ! of a longer-ranged tension are at a smaller A.
     real(wp), parameter :: a_max = 1.5_wp
@@ -144,6 +139,7 @@ contains
     right = a_max
     inner = [right - golden*(right - left), left + golden*(right - left)]
     value = scaled(quantity, inner, lambda)
+    ! Not by a bracket: each value here takes a search of its own, and one of two is kept.
     do while (right - left > tolerance)
       if (value(1) <= value(2)) then
         right = inner(2)
@@ -207,28 +203,26 @@ contains
     integer, parameter :: max_steps = 100
     ! The step taken from here squares this error.
     real(wp), parameter :: close_enough = 1e-9_wp
-    real(wp) :: s, left, right, wide, narrow, total, excess
+    type(bracket_t) :: bracket
+    real(wp) :: s, wide, narrow, total, excess
     integer :: step
 
     wide = lambda*a**2/2
     narrow = 4*lambda**2*a/3
     s = 0
-    left = -huge(s)
-    right = huge(s)
+    bracket = bracket_t(-huge(s), huge(s))
     do step = 1, max_steps
       t = exp(s)
       total = wide*profile_term(t) + narrow*tension_term(t)
       excess = log(total)
       if (excess > 0) then
-        left = max(left, s - excess)
-        right = s
+        bracket = bracket_t(max(bracket%low, s - excess), s)
       else
-        left = s
-        right = min(right, s - excess)
+        bracket = bracket_t(s, min(bracket%high, s - excess))
       end if
       s = s - excess*total/(t*(wide*profile_slope(t) + narrow*tension_slope(t)))
       if (abs(excess) <= close_enough) exit
-      if (.not. (s > left .and. s < right)) s = left + (right - left)/2
+      s = bracket%within(s)
     end do
     t = exp(s)
   end function zone_width

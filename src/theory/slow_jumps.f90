@@ -5,6 +5,7 @@
 module slow_jumps
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp, pi
+  use root_finding, only: bracket_t
   use dimensionless_problem, only: problem_t
   use slow_deformation, only: attraction_only, has_form, slow_displacement, slow_slope
   implicit none
@@ -14,12 +15,18 @@ module slow_jumps
   !> What a gap is searched for: an h0, a fold of h0, the stability criterion (29).
   integer, parameter :: at_h0 = 1, at_fold = 2, at_criterion = 3
 
+  !> A search: in which form of the approximation, and for what (the h0, where that is it).
+  type :: search_t
+    integer :: form = 0, condition = at_h0
+    real(wp) :: h0 = 0
+  end type search_t
+
   !> Steps of a search, as a fraction of the change of gap over which a law may be linearised, and
   !> how many: enough for a gap of the algebraic law to fall by 26 orders of magnitude.
   real(wp), parameter :: search_step = 0.1_wp
   integer, parameter :: most_steps = 2000
-  !> Halvings that take an interval of any size to rounding.
-  integer, parameter :: most_halvings = 100
+  !> Golden sections for a maximum, to half the digits: it is flat there.
+  integer, parameter :: most_sections = 40
 
 contains
 
@@ -30,7 +37,7 @@ contains
     integer, intent(in) :: form
     real(wp), intent(in) :: h0, lowest
 
-    gap = largest_gap(problem, form, at_h0, h0, lowest)
+    gap = largest_gap(problem, search_t(form, at_h0, h0), lowest)
   end function gap_of_h0
 
   !> The gap on the axis at which approaching bodies come to violate the stability criterion (29),
@@ -41,7 +48,7 @@ contains
     integer, intent(in) :: form
 
     gap = nan()
-    if (problem%law%adhesion > 0) gap = largest_gap(problem, form, at_criterion, 0.0_wp, &
+    if (problem%law%adhesion > 0) gap = largest_gap(problem, search_t(form, at_criterion), &
       rest_of(problem))
   end function criterion_gap
 
@@ -67,7 +74,7 @@ contains
       return
     end if
     gap = nan()
-    if (problem%law%adhesion > 0) gap = largest_gap(problem, form, at_fold, 0.0_wp, &
+    if (problem%law%adhesion > 0) gap = largest_gap(problem, search_t(form, at_fold), &
       rest_of(problem))
   end function fold_gap
 
@@ -81,131 +88,119 @@ contains
 
   !> The largest gap not below `nearest` at which the excess is zero; far away it is negative. NaN
   !> where there is none.
-  pure real(wp) function largest_gap(problem, form, condition, h0, nearest) result(found)
+  pure real(wp) function largest_gap(problem, search, nearest) result(found)
     type(problem_t), intent(in) :: problem
-    integer, intent(in) :: form, condition
-    real(wp), intent(in) :: h0, nearest
-    !> Beyond several gaps of most tension, once that little is left of what reaches 1 at a jump, it
-    !> falls to zero without turning.
-    real(wp), parameter :: edges = 4, settled = -0.999_wp
-    real(wp) :: lowest, gap, next, stride, value, top, above_top, below_top
+    type(search_t), intent(in) :: search
+    real(wp), intent(in) :: nearest
+    type(bracket_t) :: top
+    real(wp) :: lowest, gap, next, value, highest
     integer :: step
 
     found = nan()
     lowest = max(nearest, problem%law%smallest_gap)
-    if (.not. has_form(problem, form)) return
-    if (condition /= at_h0 .and. .not. problem%coupling > 0) return
-    gap = edges*max(problem%law%edge_gap, 1.0_wp)
-    if (condition == at_h0) gap = max(h0, lowest, 1.0_wp)
-    stride = linear_range(gap)
-    do step = 1, most_steps
-      if (excess(gap) < merge(0.0_wp, settled, condition == at_h0)) exit
-      gap = gap + stride
-      stride = 2*stride
-    end do
-
+    if (.not. has_form(problem, search%form)) return
+    if (search%condition /= at_h0 .and. .not. problem%coupling > 0) return
+    gap = far_gap(problem, search, lowest)
     ! Inwards, to the first change of sign.
-    top = -huge(1.0_wp)
-    above_top = gap
-    below_top = gap
+    highest = -huge(1.0_wp)
+    top = bracket_t(gap, gap)
     do step = 1, most_steps
       if (gap <= lowest) exit
-      next = inwards(gap)
-      value = excess(next)
+      next = inwards(problem, gap, lowest)
+      value = excess(problem, search, next)
       if (value >= 0) then
-        found = root(next, gap)
+        found = root_between(problem, search, next, gap)
         return
       end if
-      if (value > top) then
-        top = value
-        above_top = gap
-        below_top = inwards(next)
+      if (value > highest) then
+        highest = value
+        top = bracket_t(inwards(problem, next, lowest), gap)
       end if
       gap = next
     end do
     ! Between two steps the excess may just reach zero and turn.
-    gap = maximum(below_top, above_top)
-    if (excess(gap) >= 0) found = root(gap, above_top)
-
-  contains
-
-    !> Negative beyond the gap that is searched for, positive short of it.
-    pure real(wp) function excess(gap)
-      real(wp), intent(in) :: gap
-      real(wp) :: pressure(1), slope(1)
-
-      select case (condition)
-      case (at_h0)
-        excess = h0 - (gap - slow_displacement(problem, form, gap))
-      case (at_fold)
-        excess = slow_slope(problem, form, gap) - 1
-      case default
-        ! The criterion is for bodies that attract each other.
-        excess = -1
-        pressure = problem%law%pressure([gap])
-        slope = problem%law%slope([gap])
-        if (pressure(1) < 0) &
-          excess = slow_displacement(problem, form, gap)*slope(1)/pressure(1) - 1
-      end select
-    end function excess
-
-    !> Change of gap within which the law may be linearised.
-    pure real(wp) function linear_range(gap)
-      real(wp), intent(in) :: gap
-
-      real(wp) :: most(1)
-
-      most = problem%law%closure([gap])
-      linear_range = most(1)
-    end function linear_range
-
-    !> The next gap of the search.
-    pure real(wp) function inwards(gap)
-      real(wp), intent(in) :: gap
-
-      inwards = max(gap - search_step*linear_range(gap), lowest)
-    end function inwards
-
-    !> Where the excess changes its sign between two gaps, by bisection.
-    pure real(wp) function root(near, far)
-      real(wp), intent(in) :: near, far
-      real(wp) :: low, high
-      integer :: halving
-
-      low = near
-      high = far
-      do halving = 1, most_halvings
-        root = low + (high - low)/2
-        if (root <= low .or. root >= high) exit
-        if (excess(root) >= 0) then
-          low = root
-        else
-          high = root
-        end if
-      end do
-    end function root
-
-    !> Where the excess is largest between two gaps, by golden section, to half the digits: it is
-    !> flat there.
-    pure real(wp) function maximum(low, high)
-      real(wp), intent(in) :: low, high
-      real(wp), parameter :: golden = 0.618033988749894848_wp
-      real(wp) :: a, b
-      integer :: step
-
-      a = low
-      b = high
-      do step = 1, 40
-        if (excess(b - golden*(b - a)) > excess(a + golden*(b - a))) then
-          b = a + golden*(b - a)
-        else
-          a = b - golden*(b - a)
-        end if
-      end do
-      maximum = a + (b - a)/2
-    end function maximum
-
+    next = top%high
+    do step = 1, most_sections
+      call top%keep_larger(excess(problem, search, top%golden_points()))
+    end do
+    gap = top%middle()
+    if (excess(problem, search, gap) >= 0) found = root_between(problem, search, gap, next)
   end function largest_gap
+
+  !> A gap beyond all at which the excess is zero.
+  pure real(wp) function far_gap(problem, search, lowest) result(gap)
+    type(problem_t), intent(in) :: problem
+    type(search_t), intent(in) :: search
+    real(wp), intent(in) :: lowest
+    !> Beyond several gaps of most tension, once that little is left of what reaches 1 at a jump, it
+    !> falls to zero without turning.
+    real(wp), parameter :: edges = 4, settled = -0.999_wp
+    real(wp) :: stride
+    integer :: step
+
+    gap = edges*max(problem%law%edge_gap, 1.0_wp)
+    if (search%condition == at_h0) gap = max(search%h0, lowest, 1.0_wp)
+    stride = linear_range(problem, gap)
+    do step = 1, most_steps
+      if (excess(problem, search, gap) < merge(0.0_wp, settled, search%condition == at_h0)) exit
+      gap = gap + stride
+      stride = 2*stride
+    end do
+  end function far_gap
+
+  !> Negative beyond the gap that is searched for, positive short of it.
+  elemental real(wp) function excess(problem, search, gap)
+    type(problem_t), intent(in) :: problem
+    type(search_t), intent(in) :: search
+    real(wp), intent(in) :: gap
+    real(wp) :: pressure(1), slope(1)
+
+    select case (search%condition)
+    case (at_h0)
+      excess = search%h0 - (gap - slow_displacement(problem, search%form, gap))
+    case (at_fold)
+      excess = slow_slope(problem, search%form, gap) - 1
+    case default
+      ! The criterion is for bodies that attract each other.
+      excess = -1
+      pressure = problem%law%pressure([gap])
+      slope = problem%law%slope([gap])
+      if (pressure(1) < 0) &
+        excess = slow_displacement(problem, search%form, gap)*slope(1)/pressure(1) - 1
+    end select
+  end function excess
+
+  !> Change of gap within which the law may be linearised.
+  pure real(wp) function linear_range(problem, gap)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: gap
+    real(wp) :: most(1)
+
+    most = problem%law%closure([gap])
+    linear_range = most(1)
+  end function linear_range
+
+  !> The next gap of the search.
+  pure real(wp) function inwards(problem, gap, lowest)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: gap, lowest
+
+    inwards = max(gap - search_step*linear_range(problem, gap), lowest)
+  end function inwards
+
+  !> Where the excess changes its sign between two gaps.
+  pure real(wp) function root_between(problem, search, near, far) result(root)
+    type(problem_t), intent(in) :: problem
+    type(search_t), intent(in) :: search
+    real(wp), intent(in) :: near, far
+    type(bracket_t) :: bracket
+
+    bracket = bracket_t(near, far)
+    do while (bracket%is_open())
+      call bracket%narrow(excess(problem, search, bracket%middle()) >= 0)
+    end do
+    root = bracket%middle()
+  end function root_between
 
   elemental real(wp) function nan()
     nan = ieee_value(nan, ieee_quiet_nan)

@@ -1,0 +1,138 @@
+!> Searches for roots and maxima of a function of one variable. A search says where it wants a value
+!> next and is told what was found there; evaluating the function, what that costs and how it may
+!> fail are the caller's.
+module root_finding
+  use kinds, only: wp
+  implicit none
+  private
+  public :: bracket_t, false_position_t, secant_root, golden
+
+  !> An interval that what is searched for lies in, its ends in any order. A root is found by
+  !> `narrow` while the bracket `is_open`, a maximum by `keep_larger`.
+  type :: bracket_t
+    real(wp) :: low = 0, high = 0
+    integer, private :: narrowed = 0
+  contains
+    procedure :: middle
+    procedure :: is_open
+    procedure :: within
+    procedure :: narrow
+    procedure :: golden_points
+    procedure :: keep_larger
+  end type bracket_t
+
+  !> A root between places where the function is positive and where it is negative.
+  type :: false_position_t
+    real(wp) :: positive = 0, negative = 0
+    real(wp) :: at_positive = 0, at_negative = 0
+    integer, private :: last_moved = 0
+  contains
+    procedure :: next
+    procedure :: take
+  end type false_position_t
+
+  !> The part of an interval that a golden section keeps.
+  real(wp), parameter :: golden = 0.618033988749894848_wp
+  !> Halvings that take an interval of any size to rounding.
+  integer, parameter :: most_halvings = 100
+
+contains
+
+  elemental real(wp) function middle(self)
+    class(bracket_t), intent(in) :: self
+
+    middle = 0.5_wp*(self%low + self%high)
+  end function middle
+
+  !> Whether there is a number between the ends, and so few halvings were made that the next tells
+  !> anything.
+  elemental logical function is_open(self)
+    class(bracket_t), intent(in) :: self
+
+    is_open = self%narrowed < most_halvings .and. abs(self%middle() - self%low) > 0 .and. &
+      abs(self%middle() - self%high) > 0
+  end function is_open
+
+  !> x if it lies in the interval (low < high), else the middle.
+  elemental real(wp) function within(self, x)
+    class(bracket_t), intent(in) :: self
+    real(wp), intent(in) :: x
+
+    within = x
+    if (.not. (x >= self%low .and. x <= self%high)) within = self%middle()
+  end function within
+
+  !> Moves an end to the middle or, where it is given, to `at`: the low one where the root is beyond
+  !> it, else the high one.
+  elemental subroutine narrow(self, root_beyond, at)
+    class(bracket_t), intent(inout) :: self
+    logical, intent(in) :: root_beyond
+    real(wp), intent(in), optional :: at
+    real(wp) :: place
+
+    place = self%middle()
+    if (present(at)) place = at
+    if (root_beyond) then
+      self%low = place
+    else
+      self%high = place
+    end if
+    self%narrowed = self%narrowed + 1
+  end subroutine narrow
+
+  !> The two places that a golden section compares, the one nearer to `low` first.
+  pure function golden_points(self) result(points)
+    class(bracket_t), intent(in) :: self
+    real(wp) :: points(2)
+
+    points = [self%high - golden*(self%high - self%low), self%low + golden*(self%high - self%low)]
+  end function golden_points
+
+  !> Drops the end beyond the golden point with the smaller one of these values.
+  pure subroutine keep_larger(self, values)
+    class(bracket_t), intent(inout) :: self
+    real(wp), intent(in) :: values(2)
+    real(wp) :: points(2)
+
+    points = self%golden_points()
+    if (values(1) > values(2)) then
+      self%high = points(2)
+    else
+      self%low = points(1)
+    end if
+  end subroutine keep_larger
+
+  !> Where the line through the two ends is zero.
+  elemental real(wp) function next(self)
+    class(false_position_t), intent(in) :: self
+
+    next = (self%positive*self%at_negative - self%negative*self%at_positive)/ &
+      (self%at_negative - self%at_positive)
+  end function next
+
+  !> Moves the end of the same sign to x. An end that stays twice counts half (Illinois).
+  elemental subroutine take(self, x, value)
+    class(false_position_t), intent(inout) :: self
+    real(wp), intent(in) :: x, value
+
+    if (value > 0) then
+      self%positive = x
+      self%at_positive = value
+      if (self%last_moved == 1) self%at_negative = 0.5_wp*self%at_negative
+      self%last_moved = 1
+    else
+      self%negative = x
+      self%at_negative = value
+      if (self%last_moved == -1) self%at_positive = 0.5_wp*self%at_positive
+      self%last_moved = -1
+    end if
+  end subroutine take
+
+  !> Where the line through (x, value) and (x_before, value_before) is zero; the values differ.
+  elemental real(wp) function secant_root(x, value, x_before, value_before)
+    real(wp), intent(in) :: x, value, x_before, value_before
+
+    secant_root = x - value*(x - x_before)/(value - value_before)
+  end function secant_root
+
+end module root_finding

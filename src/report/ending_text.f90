@@ -1,0 +1,46 @@
+!> What a user is told of an experiment that ends before it should.
+module ending_text
+  use ending, only: ending_t, touching, beyond_rounding, no_equilibrium, path_lost, steps_lost, &
+    fallen_before, beyond_path, nothing_afar, state_lost, turn_not_reached, not_kept
+  implicit none
+  private
+  public :: text_of
+
+contains
+
+  !> The reason in words, blank if it ended as planned. (Not of deferred length, which gfortran keeps
+  !> in static storage that the cases of a sweep share.)
+  pure function text_of(ending) result(text)
+    type(ending_t), intent(in) :: ending
+    character(len=160) :: text
+
+    select case (ending%cause)
+    case (touching)
+      text = 'rigid bodies would touch: so near (h0 <= 0, or far below it) this law has no pressure'
+    case (beyond_rounding)
+      text = 'adhesion is so strong that rounding hides the force law once the bodies are in contact'
+    case (no_equilibrium)
+      text = 'no stable equilibrium exists beyond this h0'
+    case (path_lost)
+      text = 'the equilibrium path was lost: no step, however small, converged'
+    case (steps_lost)
+      text = 'no step, however small, converged'
+    case (fallen_before)
+      text = 'the bodies have fallen onto each other before the h0 where it is to start'
+    case (beyond_path)
+      text = 'this h0 is beyond the path that was traced'
+    case (nothing_afar)
+      write (text, '(a, i0, a, es7.1)') 'no equilibrium was found far from contact: after ', &
+        ending%iterations, ' iterations the residual was ', ending%residual
+    case (state_lost)
+      text = 'a state at a given h0 did not converge'
+    case (turn_not_reached)
+      text = 'loading did not reach the turning point'
+    case (not_kept)
+      text = 'what was found can no longer be kept'
+    case default
+      text = ''
+    end select
+  end function text_of
+
+end module ending_text
