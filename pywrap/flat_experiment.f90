@@ -89,7 +89,7 @@ contains
         locked => one_by_one
       end if
       call prepare(locked, problem, outcome%chosen, accuracy)
-      locked%pair = new_mesh_pair(problem, high, low, outcome%chosen%resolution)
+      locked%pair = new_mesh_pair(problem, high, low, outcome%chosen%accuracy)
       call use_threads_for(maxval(locked%pair%grid%nodes))
       select type (locked)
       class is (path_stepper_t)
@@ -100,6 +100,7 @@ contains
       call judge_locked(locked, high, low, outcome)
     else
       call prepare(fixed, problem, outcome%chosen, accuracy)
+      allocate (fixed%pair%grid(1))
       fixed%pair%grid(1) = fixed_mesh(outcome%chosen, problem, low)
       call use_threads_for(fixed%pair%grid(1)%nodes)
       call run_stretches(fixed, h0/problem%length, rows, stretch)

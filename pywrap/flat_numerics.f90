@@ -254,6 +254,7 @@ contains
     if (stat /= 0) return
     this%problem%coupling = coupling
     this%problem%rigid = .not. coupling > 0
+    allocate (this%pair%grid(1))
     call make_mesh(kind, centre, panel_end, order, coupling > 0, this%pair%grid(1), stat, message)
     if (stat /= 0) return
 

@@ -5,8 +5,8 @@ module forecast
   use dimensionless_problem, only: problem_t
   use equilibrium, only: lost_in_rounding
   use numerics_choice, only: choice_t, choose, companion
-  use edge_locked, only: mesh_pair_t, new_mesh_pair, largest_radius, contact_level, &
-    smallest_feature
+  use edge_locked, only: mesh_pair_t, new_mesh_pair
+  use contact_scales, only: largest_radius, contact_level, smallest_feature
   use experiment, only: range_of
   use scene_problem, only: problem_of
   use locked_stepper, only: has_path
@@ -79,7 +79,7 @@ contains
     square = 0
     n = 0
     if (allocated(scene%path) .or. chosen%grid == 'edge_locked') then
-      pair = new_mesh_pair(problem, high, low, chosen%resolution, shape_only=.true.)
+      pair = new_mesh_pair(problem, high, low, chosen%accuracy, shape_only=.true.)
       expected%nodes = maxval(pair%grid%nodes)
       n = expected%nodes
       ! Both kernels, one factorisation and another for a fold, and about half as much

@@ -19,7 +19,7 @@ module anderson
   !> A factorisation kept from state to state, and the kind of control that it belongs to.
   type :: frozen_jacobian_t
     type(factorisation_t) :: factors
-    integer :: control_kind = 0
+    integer :: control_kind = 0, mesh = 0
     !> States solved with it.
     integer :: served = 0
   end type frozen_jacobian_t
@@ -70,7 +70,8 @@ contains
     now%z = unknowns_of(control, state)
     now%z_best = now%z
     allocate (now%g(size(now%z)))
-    if (frozen%control_kind /= control%kind) frozen%factors%valid = .false.
+    if (frozen%control_kind /= control%kind .or. frozen%mesh /= control%mesh) &
+      frozen%factors%valid = .false.
     if (frozen%factors%valid) frozen%factors%valid = size(frozen%factors%lu, 1) == size(now%z)
     best = state_from(size(state%gap))
     converged = .false.
@@ -104,7 +105,7 @@ contains
     type(state_t), intent(inout) :: state
     real(wp), dimension(size(state%gap)) :: z, g
 
-    associate (grid => equations%pair%grid(equations%mesh_of(control)))
+    associate (grid => equations%pair%grid(control%mesh))
       z = control%value + 0.5_wp*(control%scale*grid%x(:size(z)))**2
     end associate
     call residual(equations, control, z, g, state)
@@ -121,6 +122,7 @@ contains
 
     call factorise_jacobian(equations, control, state, frozen%factors)
     frozen%control_kind = control%kind
+    frozen%mesh = control%mesh
     frozen%served = 0
     now%history%held = 0
     if (allocated(now%history%f_before)) deallocate (now%history%f_before)
@@ -178,7 +180,7 @@ contains
     if (control%kind /= at_h0_with_edge) return
     ! The parabola between the bodies is quadratic in the scale: its second-order part is known, and
     ! far out it is large.
-    associate (n => size(step) - 1, grid => equations%pair%grid(equations%mesh_of(control)))
+    associate (n => size(step) - 1, grid => equations%pair%grid(control%mesh))
       now%z(:n) = now%z(:n) + 0.5_wp*(step(n + 1)*grid%x(:n))**2
     end associate
   end subroutine advance

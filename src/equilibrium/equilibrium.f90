@@ -9,13 +9,13 @@ module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
-  use edge_locked, only: mesh_pair_t, approach, contact
+  use edge_locked, only: mesh_pair_t
   use linear_algebra, only: multiply
   use root_finding, only: bracket_t
   implicit none
   private
   public :: control_t, state_t, cost_t, equations_t, residual, largest_step, state_from, &
-    unknowns_of, holds, residual_floor, load_reach, radius_of_gap, lost_in_rounding
+    unknowns_of, holds, residual_floor, gap_at_end, above_parabola, radius_of_gap, lost_in_rounding
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 prescribed at a fixed scale; no further unknown.
@@ -39,6 +39,8 @@ module equilibrium
     real(wp) :: value = 0
     !> The scale c of the mesh, where it is not an unknown.
     real(wp) :: scale = 1
+    !> The mesh that it is prescribed on.
+    integer :: mesh = 1
   end type control_t
 
   !> One state of the two bodies, dimensionless.
@@ -66,22 +68,9 @@ module equilibrium
     type(problem_t) :: problem
     type(mesh_pair_t) :: pair
     type(cost_t) :: cost
-  contains
-    procedure :: mesh_of
   end type equations_t
 
 contains
-
-  !> The mesh that a control belongs to: a scale that is prescribed or unknown is that of the
-  !> contact, and so is everything where there is no other mesh.
-  pure integer function mesh_of(self, control)
-    class(equations_t), intent(in) :: self
-    type(control_t), intent(in) :: control
-
-    mesh_of = approach
-    if (any(control%kind == [at_h0_with_edge, at_edge_radius]) .or. .not. self%pair%traceable) &
-      mesh_of = contact
-  end function mesh_of
 
   !> g(:nodes) = G and, where the control has one, g(nodes + 1) = its own equation, for the unknowns
   !> z = (gaps [, H0 or c]). On return `state` is what z stands for, with its load and residual.
@@ -94,7 +83,7 @@ contains
     real(wp), intent(out) :: g(:)
     type(state_t), intent(inout) :: state
 
-    associate (grid => equations%pair%grid(equations%mesh_of(control)))
+    associate (grid => equations%pair%grid(control%mesh))
       call evaluate(equations%problem, grid, control, z, g, state, equations%cost)
     end associate
   end subroutine residual
@@ -108,7 +97,7 @@ contains
     type(state_t), intent(inout) :: state
     type(cost_t), intent(inout) :: cost
     real(wp) :: raised(first_node - 1 + node_count(control, size(z)))
-    real(wp) :: axis_gap, edge_gap, reach
+    real(wp) :: axis_gap, edge_gap
     integer :: n, columns
 
     n = node_count(control, size(z))
@@ -142,10 +131,10 @@ contains
       g(n + 1) = edge_gap - problem%law%edge_gap
     end select
     state%axis_gap = axis_gap
+    state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
     ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
-    reach = load_reach(grid, state)
-    state%load = 2*pi*(state%scale**2*dot_product(grid%weight(:n), state%pressure) + &
-      sum(problem%law%energy([state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)])))
+    if (grid%is_bounded()) &
+      state%load = state%load + 2*pi*sum(problem%law%energy([gap_at_end(grid, state)]))
     state%residual = maxval(abs(g))
     ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
     if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
@@ -206,15 +195,25 @@ contains
     end select
   end function unknowns_of
 
-  !> Where the part of the mesh that a state uses ends, lateral units.
-  pure real(wp) function load_reach(grid, state)
+  !> The gap where a bounded mesh ends, the deformation there being that of the last node.
+  pure real(wp) function gap_at_end(grid, state) result(gap)
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
 
-    load_reach = state%scale*grid%end_of(size(state%gap))
-  end function load_reach
+    gap = state%gap(grid%nodes) + 0.5_wp*state%scale**2*(grid%end**2 - grid%x(grid%nodes)**2)
+  end function gap_at_end
 
-  !> An empty state on the leading `nodes` nodes of a mesh.
+  !> By how much the gaps of a state exceed the parabola: bounded, so that it can be interpolated on
+  !> any mesh.
+  pure function above_parabola(grid, state) result(raised)
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp) :: raised(grid%nodes)
+
+    raised = state%gap - 0.5_wp*(state%scale*grid%x)**2
+  end function above_parabola
+
+  !> An empty state on so many nodes.
   pure function state_from(nodes) result(state)
     integer, intent(in) :: nodes
     type(state_t) :: state
@@ -229,6 +228,7 @@ contains
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     type(bracket_t) :: bracket
+    real(wp) :: raised(grid%nodes)
     integer :: j
 
     do j = size(state%gap) - 1, 1, -1
@@ -241,8 +241,11 @@ contains
     else
       bracket = bracket_t(grid%x(j), grid%x(j + 1))
     end if
+    raised = above_parabola(grid, state)
     do while (bracket%is_open())
-      call bracket%narrow(grid%interpolate(state%gap, bracket%middle()) < level)
+      associate (x => bracket%middle())
+        call bracket%narrow(grid%interpolate(raised, x) + 0.5_wp*(state%scale*x)**2 < level)
+      end associate
     end do
     c = state%scale*bracket%low
   end function radius_of_gap

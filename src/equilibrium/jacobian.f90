@@ -4,7 +4,6 @@ module jacobian
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
-  use edge_locked, only: contact
   use linear_algebra, only: factorisation_t, factorise
   use equilibrium, only: control_t, state_t, cost_t, equations_t, at_h0, at_axis_gap, &
     at_edge_radius, at_h0_with_edge
@@ -24,7 +23,7 @@ contains
     type(factorisation_t), intent(inout) :: factors
     real(wp), intent(in), optional :: shift
 
-    associate (grid => equations%pair%grid(equations%mesh_of(control)))
+    associate (grid => equations%pair%grid(control%mesh))
       call factorise_on(equations%problem, grid, control, state, factors, equations%cost, shift)
     end associate
   end subroutine factorise_jacobian
@@ -65,8 +64,8 @@ contains
     if (m > n) call border(problem, grid, control, state, factors%lu(:, m))
     call factorise(factors)
     cost%factorisations = cost%factorisations + 1
-    factors%origin = [real(control%kind, wp), control%value, control%scale, diagonal - 1, &
-      state%h0, state%scale, state%gap]
+    factors%origin = [real([control%kind, control%mesh], wp), control%value, control%scale, &
+      diagonal - 1, state%h0, state%scale, state%gap]
   end subroutine factorise_on
 
   !> Factors of the Jacobian that factors%origin tells of, bit by bit what `factorise_jacobian` made
@@ -80,13 +79,13 @@ contains
     real(wp) :: shift
 
     associate (origin => factors%origin)
-      control = control_t(nint(origin(1)), origin(2), origin(3))
-      shift = origin(4)
-      state%h0 = origin(5)
-      state%scale = origin(6)
-      state%gap = origin(7:)
+      control = control_t(nint(origin(1)), origin(3), origin(4), nint(origin(2)))
+      shift = origin(5)
+      state%h0 = origin(6)
+      state%scale = origin(7)
+      state%gap = origin(8:)
     end associate
-    associate (grid => equations%pair%grid(equations%mesh_of(control)))
+    associate (grid => equations%pair%grid(control%mesh))
       call factorise_on(equations%problem, grid, control, state, factors, not_counted, shift)
     end associate
   end subroutine factorise_again
@@ -142,7 +141,7 @@ contains
       allocate (derivative(n + 1), source=0.0_wp)
       derivative(n + 1) = -1
     case (at_edge_radius)
-      derivative = scale_derivative(equations%problem, equations%pair%grid(contact), state)
+      derivative = scale_derivative(equations%problem, equations%pair%grid(control%mesh), state)
     end select
   end function control_derivative
 

@@ -71,7 +71,7 @@ contains
 
     if (self%options%method == 'mixing' .or. &
       .not. over_neck(self%problem, self%pair%grid(1)%spacing) <= resolved) then
-      expected = extrapolated(self%pair%grid(1), position, h0)
+      expected = extrapolated(position, h0)
       return
     end if
     expected = moved_with_edge(self%problem%law, self%pair%grid(1), position, h0)
@@ -185,6 +185,7 @@ contains
     control%value = state%h0
     call factorise_jacobian(self%equations_t, control, state, self%frozen%factors)
     self%frozen%control_kind = control%kind
+    self%frozen%mesh = control%mesh
     self%frozen%served = 0
     regular = self%frozen%factors%valid
     if (.not. regular) return

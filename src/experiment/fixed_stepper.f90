@@ -9,7 +9,7 @@ module fixed_stepper
   use anderson, only: solve_anderson
   use relaxation, only: relax
   use fixed_branch, only: fixed_branch_t, change, jump
-  use edge_locked, only: largest_radius
+  use contact_scales, only: largest_radius
   use ending, only: touching, beyond_rounding, no_equilibrium
   use stepper, only: branch_point_t, step_result_t, remember
   implicit none
@@ -104,7 +104,7 @@ contains
     end if
     ! No contact is larger than the mesh.
     if (self%problem%law%adhesion > 0 .and. lost_in_rounding(self%problem, &
-      min(largest_radius(self%problem, h0, 0.0_wp), self%pair%grid(1)%end_of(self%pair%grid(1)%nodes)))) then
+      min(largest_radius(self%problem, h0, 0.0_wp), self%pair%grid(1)%end))) then
       event%ending%cause = beyond_rounding
       return
     end if

@@ -7,7 +7,7 @@
 module path_errors
   use kinds, only: wp
   use regridding, only: regrid
-  use equilibrium, only: state_t, equations_t, load_reach
+  use equilibrium, only: state_t, equations_t
   use continuation, only: path_control, coordinate_of
   use path_slopes, only: slopes_along_path
   use potential_energy, only: energy_of
@@ -18,7 +18,7 @@ module path_errors
     what_is_left
   implicit none
   private
-  public :: judge_on_path, finer_nodes
+  public :: judge_on_path
 
   !> Value, slope and second derivative by the path's coordinate.
   type :: parabola_t
@@ -48,8 +48,6 @@ module path_errors
   !> move, and how often it may.
   real(wp), parameter :: apart = 1.0e-4_wp, believed = 1.0e-3_wp, farthest = 0.1_wp
   integer, parameter :: most_moves = 8
-  !> Reach of a state on the finer mesh over its own.
-  real(wp), parameter :: farther = 1.6_wp
   !> Tolerance of states that are looked for along the path (law's lengths).
   real(wp), parameter :: tight = 1.0e-12_wp
 
@@ -90,18 +88,6 @@ contains
       end associate
     end if
   end subroutine judge_on_path
-
-  !> Nodes of the finer mesh for a state: they go beyond those that it has, for the error of the
-  !> reach, which falls with its fifth power, must show.
-  pure integer function finer_nodes(own, fine, mesh, state)
-    type(equations_t), intent(in) :: own
-    type(finer_t), intent(in) :: fine
-    integer, intent(in) :: mesh
-    type(state_t), intent(in) :: state
-
-    finer_nodes = fine%pair%grid(mesh)%nodes_within( &
-      farther*load_reach(own%pair%grid(mesh), state)/state%scale)
-  end function finer_nodes
 
   !> What defines a point of the path that is reported.
   pure type(sought_t) function sought_at(point, with_profile) result(sought)
@@ -169,7 +155,7 @@ contains
     call energy_of(own, sought%mesh, state, on_fine%energy, uncertainty)
     near%s = coordinate_of(own%problem, sought%mesh, state)
     near%state = regrid(state, own%pair%grid(sought%mesh), fine%pair%grid(sought%mesh), &
-      state%scale, finer_nodes(own, fine, sought%mesh, state))
+      state%scale)
     call approach(fine, sought, near, distance, found)
     if (.not. found) return
     on_fine = measure_at(near, distance)

@@ -44,8 +44,6 @@ module discretisation
   contains
     procedure :: interpolate
     procedure :: is_bounded
-    procedure :: end_of
-    procedure :: nodes_within
     procedure :: kernel_entries
   end type discretisation_t
 
@@ -94,24 +92,6 @@ contains
 
     is_bounded = self%end < huge(1.0_wp)
   end function is_bounded
-
-  !> Where the panels of the first `nodes` nodes end, from the axis.
-  pure real(wp) function end_of(self, nodes)
-    class(discretisation_t), intent(in) :: self
-    integer, intent(in) :: nodes
-
-    end_of = self%centre + self%panel(count(self%first < nodes))%right
-  end function end_of
-
-  !> Number of leading nodes whose panels reach to the position x (at least one panel's).
-  pure integer function nodes_within(self, x)
-    class(discretisation_t), intent(in) :: self
-    real(wp), intent(in) :: x
-    integer :: last
-
-    last = max(1, count(self%centre + self%panel%left < x))
-    nodes_within = self%first(last) + size(self%local(self%which(last))%node) - 1
-  end function nodes_within
 
   !> Number of kernel entries that were computed.
   elemental integer(long) function kernel_entries(self)

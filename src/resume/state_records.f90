@@ -228,6 +228,7 @@ contains
 
     call record%put(frozen%factors%valid)
     call record%put(frozen%control_kind)
+    call record%put(frozen%mesh)
     call record%put(frozen%served)
     call record%put(known .or. .not. allocated(frozen%factors%origin))
     if (.not. known .and. allocated(frozen%factors%origin)) call record%put(frozen%factors%origin)
@@ -242,6 +243,7 @@ contains
 
     call record%take(frozen%factors%valid)
     call record%take(frozen%control_kind)
+    call record%take(frozen%mesh)
     call record%take(frozen%served)
     call record%take(known)
     if (.not. known) call record%take(frozen%factors%origin)
