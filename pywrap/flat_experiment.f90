@@ -89,7 +89,7 @@ contains
         locked => one_by_one
       end if
       call prepare(locked, problem, outcome%chosen, accuracy)
-      locked%pair = new_mesh_pair(problem, high, low, outcome%chosen%accuracy)
+      locked%pair = new_mesh_pair(problem, high, low, outcome%chosen%digits)
       call use_threads_for(maxval(locked%pair%grid%nodes))
       select type (locked)
       class is (path_stepper_t)

@@ -79,7 +79,7 @@ contains
     square = 0
     n = 0
     if (allocated(scene%path) .or. chosen%grid == 'edge_locked') then
-      pair = new_mesh_pair(problem, high, low, chosen%accuracy, shape_only=.true.)
+      pair = new_mesh_pair(problem, high, low, chosen%digits, shape_only=.true.)
       expected%nodes = maxval(pair%grid%nodes)
       n = expected%nodes
       ! Both kernels, one factorisation and another for a fold, and about half as much

@@ -78,7 +78,7 @@ contains
     ! The path has no use for mixing.
     if (steps%options%method == 'mixing') steps%options%method = 'anderson'
     began = seconds()
-    steps%pair = new_mesh_pair(problem, high, low, outcome%chosen%accuracy)
+    steps%pair = new_mesh_pair(problem, high, low, outcome%chosen%digits)
     steps%cost%kernel_seconds = seconds() - began
     steps%cost%kernel_entries = sum(steps%pair%grid%kernel_entries())
     outcome%nodes = sum(steps%pair%grid%nodes)

@@ -5,6 +5,7 @@ module numerics_choice
   use discretisation, only: discretisation_t
   use uniform_grid, only: new_uniform_grid
   use panels, only: new_panel_grid, graded_ends
+  use mesh_rule, only: digits_for
   use contact_scales, only: largest_radius, contact_level, smallest_feature
   use experiment_request, only: numerics_t
   use solver_options, only: solver_options_t
@@ -16,8 +17,8 @@ module numerics_choice
     !> 'edge_locked' panels, or fixed 'uniform' or 'panels'.
     character(len=:), allocatable :: grid, because
     type(solver_options_t) :: options
-    !> Relative accuracy of load and displacement that edge-locked meshes are to have.
-    real(wp) :: accuracy = 1.0e-6_wp
+    !> Digits that edge-locked meshes are to have.
+    real(wp) :: digits = 7
     !> Fixed grids: nodes and extent (lateral units), and nodes of a panel.
     integer :: nodes = 0, panel_order = 12
     real(wp) :: extent = 0
@@ -63,7 +64,7 @@ contains
       end if
     end associate
 
-    chosen%accuracy = numerics%accuracy
+    chosen%digits = digits_for(problem, numerics%accuracy)
     chosen%panel_order = panel_order_for(numerics%accuracy)
     if (allocated(numerics%panel_order)) chosen%panel_order = numerics%panel_order
     if (numerics%grid == 'uniform') then

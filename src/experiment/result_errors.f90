@@ -19,8 +19,8 @@ module result_errors
   private
   public :: judge_locked, judge_fixed
 
-  !> The accuracy of edge-locked finer meshes over that of the meshes.
-  real(wp), parameter :: finer = 0.03_wp
+  !> Digits that edge-locked finer meshes have more.
+  real(wp), parameter :: more_digits = 1.5_wp
   !> Differences are raised by this much for the error of the finer mesh: a tenth or less for
   !> panels, a third for a uniform grid, which is of second order and of lower order in places; and
   !> because other states may be somewhat worse than those compared. Against a grid twice as coarse
@@ -54,7 +54,7 @@ contains
     ! less.
     judge%fine%margin = merge(margin, margin_unlocked, steps%problem%law%edge_gap > 0)
     judge%fine%pair = new_mesh_pair(steps%problem, high, low, &
-      finer*outcome%chosen%accuracy)
+      outcome%chosen%digits + more_digits)
     call count_kernel(judge)
     if (allocated(outcome%path)) call judge_path(judge, outcome%path)
     if (allocated(outcome%stepped_path)) call judge_branch(judge, outcome%stepped_path)

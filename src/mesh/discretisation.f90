@@ -34,6 +34,8 @@ module discretisation
     !> axis_row is the axis, row centre_row the mesh's centre, and rows from first_node on are the
     !> nodes. Not allocated for rigid bodies.
     real(wp), allocatable :: kernel(:, :)
+    !> Weights of nodal values in the value on the axis, by interpolation, (nodes).
+    real(wp), allocatable :: at_axis(:)
     !> The panels from the axis outward, the first node of each, and which of the local nodes are
     !> its own.
     type(panel_map_t), allocatable :: panel(:)
@@ -43,6 +45,7 @@ module discretisation
     real(wp) :: spacing = 0
   contains
     procedure :: interpolate
+    procedure :: note_axis
     procedure :: is_bounded
     procedure :: kernel_entries
   end type discretisation_t
@@ -85,6 +88,16 @@ contains
         self%panel(low)%local(offset)), values(first:first + size(local%node) - 1))
     end associate
   end function interpolate
+
+  !> Fills in at_axis, once the panels are known.
+  pure subroutine note_axis(self)
+    class(discretisation_t), intent(inout) :: self
+
+    allocate (self%at_axis(self%nodes), source=0.0_wp)
+    associate (local => self%local(self%which(1)))
+      self%at_axis(:size(local%node)) = lagrange_basis(local%node, local%barycentric, 0.0_wp)
+    end associate
+  end subroutine note_axis
 
   !> Whether the mesh ends somewhere.
   elemental logical function is_bounded(self)

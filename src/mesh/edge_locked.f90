@@ -38,11 +38,11 @@ module edge_locked
 
 contains
 
-  !> Meshes for H0 from h0_high down to h0_low and a relative accuracy of load and displacement.
+  !> Meshes for H0 from h0_high down to h0_low, good for so many digits (`mesh_rule`).
   !> shape_only leaves the kernels out, to learn how large they would be.
-  function new_mesh_pair(problem, h0_high, h0_low, accuracy, shape_only) result(pair)
+  function new_mesh_pair(problem, h0_high, h0_low, digits, shape_only) result(pair)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0_high, h0_low, accuracy
+    real(wp), intent(in) :: h0_high, h0_low, digits
     logical, intent(in), optional :: shape_only
     type(mesh_pair_t) :: pair
     real(wp) :: first, widest
@@ -65,10 +65,10 @@ contains
     allocate (pair%grid(approach + bands))
     pair%passage = [first, (first*(widest/first)**(real(k, wp)/bands), k=1, bands)]
     if (pair%traceable) pair%grid(approach) = new_mapped_mesh( &
-      approach_shape(problem, max(h0_high, calm_gap(problem)), accuracy), elastic)
+      approach_shape(problem, max(h0_high, calm_gap(problem)), digits), elastic)
     do k = contact, size(pair%grid)
       pair%grid(k) = new_mapped_mesh(contact_shape(problem, pair%passage(k - 1), &
-        pair%passage(k), pair%level, accuracy), elastic)
+        pair%passage(k), pair%level, digits), elastic)
     end do
   end function new_mesh_pair
 

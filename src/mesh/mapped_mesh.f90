@@ -111,6 +111,7 @@ contains
       end associate
     end do
     grid%x = grid%centre + offset
+    call grid%note_axis()
   end subroutine place_nodes
 
 end module mapped_mesh

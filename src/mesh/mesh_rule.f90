@@ -1,5 +1,5 @@
-!> How many nodes, and where: the shape of a mapped mesh that gives a relative accuracy of load and h0
-!> along its stretch of the equilibrium path. Fitted to the errors of whole bands of states, at
+!> How many nodes, and where: the shape of a mapped mesh that gives load and h0 so many digits along its
+!> stretch of the equilibrium path. Fitted to the errors of whole bands of states, at
 !> adhesion strengths from 1e-4 to 1e5 (tools/bench/mesh_study.py).
 module mesh_rule
   use kinds, only: wp, pi
@@ -9,7 +9,7 @@ module mesh_rule
   use mapped_mesh, only: mapped_shape_t
   implicit none
   private
-  public :: approach_shape, contact_shape
+  public :: approach_shape, contact_shape, digits_for
 
   !> d over the smallest feature: errors change little from half of it to twice.
   real(wp), parameter :: finer = 0.5_wp
@@ -24,18 +24,29 @@ module mesh_rule
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 2.5_wp
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
-  !> Accuracies that the rule is good for.
-  real(wp), parameter :: fewest_digits = 2, most_digits = 12
+  !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
+  !> which come the nearer to one another the stronger adhesion is.
+  real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_digits = 12
 
 contains
 
-  !> Before contact, about the axis, for H0 up to h0_high.
-  pure type(mapped_shape_t) function approach_shape(problem, h0_high, accuracy) result(shape)
+  !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy:
+  !> folds and extrema, and the gap on the axis between nodes, are more sensitive.
+  pure real(wp) function digits_for(problem, accuracy) result(digits)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0_high, accuracy
-    real(wp) :: digits, density, reach
+    real(wp), intent(in) :: accuracy
 
-    digits = digits_of(accuracy)
+    digits = max(0.6_wp - 1.1_wp*log10(accuracy), &
+      fewest_digits + more_for_folds*log10(1 + strength(problem)))
+    digits = min(digits, most_digits)
+  end function digits_for
+
+  !> Before contact, about the axis, for H0 up to h0_high.
+  pure type(mapped_shape_t) function approach_shape(problem, h0_high, digits) result(shape)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0_high, digits
+    real(wp) :: density, reach
+
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
       (1 + 0.03_wp*log(1 + strength(problem)))
     reach = max(4.0_wp, beyond_poles*sqrt(2*h0_high))
@@ -47,18 +58,17 @@ contains
 
   !> In contact, about the edge, for contact radii from `low` to `high` (lateral units). level: the
   !> gap at which a law without adhesion begins to deform the bodies.
-  pure type(mapped_shape_t) function contact_shape(problem, low, high, level, accuracy) result(shape)
+  pure type(mapped_shape_t) function contact_shape(problem, low, high, level, digits) result(shape)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: low, high, level, accuracy
-    real(wp) :: digits, density, outer, reach, inside
+    real(wp), intent(in) :: low, high, level, digits
+    real(wp) :: density, outer, reach, inside
 
-    digits = digits_of(accuracy)
     if (problem%law%adhesion > 0) then
       ! Where the repulsion is strong it begins inside the edge, and where adhesion is, a small
       ! contact is drawn out far: both need more nodes.
       density = (0.15_wp + digits*(0.24_wp + 0.0105_wp*digits))* &
         (1 + 0.18_wp*log(1 + high/(pi*strength(problem))))* &
-        (1 + 0.045_wp*log(1 + strength(problem)/(1 + high)**2))
+        (1 + 0.015_wp*log(1 + strength(problem)/(1 + high)**2))
     else
       density = 1.5_wp*(0.15_wp + digits*(0.24_wp + 0.0105_wp*digits))
     end if
@@ -130,12 +140,6 @@ contains
 
     strength = problem%coupling*problem%law%adhesion
   end function strength
-
-  pure real(wp) function digits_of(accuracy) result(digits)
-    real(wp), intent(in) :: accuracy
-
-    digits = min(most_digits, max(fewest_digits, -log10(accuracy)))
-  end function digits_of
 
   !> Digits of the kernel: its errors matter less than those of the pressure's polynomials.
   pure real(wp) function kernel_digits(digits)
