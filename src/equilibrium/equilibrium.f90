@@ -122,10 +122,10 @@ contains
       cost%operator_columns = cost%operator_columns + columns
     end if
     g(:n) = state%gap - state%h0 - 0.5_wp*(state%scale*grid%x(:n))**2 - raised(first_node:)
-    state%axis_gap = axis_gap_of(problem, grid, state, state%h0 + raised(axis_row))
+    state%axis_gap = state%h0 + raised(axis_row)
+    if (grid%centre > 0) state%axis_gap = axis_gap_in_contact(problem, grid, state, state%axis_gap)
     select case (control%kind)
     case (at_axis_gap)
-      state%axis_gap = state%h0 + raised(axis_row)
       g(n + 1) = state%axis_gap - control%value
     case (at_edge_radius, at_h0_with_edge)
       edge_gap = state%h0 + 0.5_wp*state%scale**2 + raised(centre_row)
@@ -140,10 +140,10 @@ contains
     if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
   end subroutine evaluate
 
-  !> The gap on the axis, which need not be a node, as if it were a further one. By the equation there
-  !> it is `integrated`. In a stiff contact that is off by many times what the polynomials lack of the
+  !> The gap on the axis, which is no node, as if it were a further one. By the equation there it is
+  !> `integrated`. In a stiff contact that is off by many times what the polynomials lack of the
   !> pressure between the nodes, and the gaps of the nodes tell it better.
-  pure real(wp) function axis_gap_of(problem, grid, state, integrated) result(gap)
+  pure real(wp) function axis_gap_in_contact(problem, grid, state, integrated) result(gap)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
@@ -155,7 +155,7 @@ contains
     ! The pressure within the first node raises the axis by 2 coupling c 2 x(1) of it.
     stiffness = 4*problem%coupling*state%scale*grid%x(1)*abs(slope(1))
     gap = (integrated + stiffness*interpolated)/(1 + stiffness)
-  end function axis_gap_of
+  end function axis_gap_in_contact
 
   !> Whether unknowns are such that pressures, and all that follows from them, are numbers.
   pure logical function defined(problem, z, state)

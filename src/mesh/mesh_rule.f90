@@ -68,7 +68,7 @@ contains
       ! contact is drawn out far: both need more nodes.
       density = (0.15_wp + digits*(0.24_wp + 0.0105_wp*digits))* &
         (1 + 0.18_wp*log(1 + high/(pi*strength(problem))))* &
-        (1 + 0.015_wp*log(1 + strength(problem)/(1 + high)**2))
+        (1 + 0.03_wp*log(1 + strength(problem)/(1 + high)**2))
     else
       density = 1.5_wp*(0.15_wp + digits*(0.24_wp + 0.0105_wp*digits))
     end if

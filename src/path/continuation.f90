@@ -21,6 +21,8 @@ module continuation
   !> change of the coordinate).
   integer, parameter :: most_states = 6, memory = 4
   real(wp), parameter :: smallest_step = 1.0e-6_wp
+  !> The least contact radius over that of a passage for a state to be taken to the next mesh.
+  real(wp), parameter :: nearly_passed = 0.5_wp
 
   !> Some states of the path on one mesh and their coordinates, in order.
   type :: arc_t
@@ -37,6 +39,7 @@ module continuation
     procedure :: advance
     procedure, private :: remember
     procedure :: change_mesh
+    procedure, private :: contact_radius
   end type continuation_t
 
 contains
@@ -203,24 +206,22 @@ contains
 
   !> Passes to the next mesh once the contact radius has crossed the passage to it (to be called
   !> after each `advance`), taking the last two states along, so that three neighbours on one mesh
-  !> surround every fold.
+  !> surround every fold. That mesh must not be too coarse for the first of the two.
   subroutine change_mesh(self, equations, options, lost)
     class(continuation_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
     type(state_t) :: taken(2)
-    real(wp) :: c
     integer :: j
     logical :: done(2)
 
     lost = .false.
-    associate (edge_gap => equations%problem%law%edge_gap, pair => equations%pair)
-      if (.not. edge_gap > 0 .or. self%mesh == size(pair%grid)) return
-      c = self%state(self%held)%scale
-      if (self%mesh == approach) &
-        c = radius_of_gap(edge_gap, pair%grid(approach), self%state(self%held))
-      if (c < pair%passage(self%mesh)) return
+    associate (pair => equations%pair)
+      if (.not. equations%problem%law%edge_gap > 0 .or. self%mesh == size(pair%grid)) return
+      if (self%contact_radius(equations, self%held) < pair%passage(self%mesh)) return
+      if (self%contact_radius(equations, max(1, self%held - 1)) < &
+        nearly_passed*pair%passage(self%mesh)) return
     end associate
     self%frozen%factors%valid = .false.
     done(1) = .false.
@@ -237,5 +238,16 @@ contains
     end do
     self%step = 0.5_wp*self%step
   end subroutine change_mesh
+
+  !> Contact radius of the j-th state that is held, lateral units; 0 without a contact.
+  pure real(wp) function contact_radius(self, equations, j) result(c)
+    class(continuation_t), intent(in) :: self
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: j
+
+    c = self%state(j)%scale
+    if (self%mesh == approach) c = radius_of_gap(equations%problem%law%edge_gap, &
+      equations%pair%grid(approach), self%state(j))
+  end function contact_radius
 
 end module continuation
