@@ -49,7 +49,7 @@ module forecast
   real(wp), parameter :: other_bytes = 1.0e7_wp
   !> Operations of a verified eigenvalue over the cube of the nodes, at the rate of factorisations,
   !> and the matrices that it needs.
-  real(wp), parameter :: eigenvalue_work = 7, eigenvalue_matrices = 2
+  real(wp), parameter :: eigenvalue_work = 15, eigenvalue_matrices = 5
 
 contains
 

@@ -15,7 +15,7 @@ module equilibrium
   implicit none
   private
   public :: control_t, state_t, cost_t, equations_t, residual, largest_step, state_from, &
-    unknowns_of, holds, residual_floor, gap_at_end, above_parabola, radius_of_gap, lost_in_rounding
+    unknowns_of, holds, residual_floor, gap_at_end, above_parabola, far_gap, radius_of_gap, lost_in_rounding
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 prescribed at a fixed scale; no further unknown.
@@ -29,6 +29,9 @@ module equilibrium
 
   !> No length of an equilibrium, in the law's or in lateral units, is larger; its cube is a number.
   real(wp), parameter :: largest_unknown = 1.0e80_wp
+
+  !> Where gaps are that large, in the law's lengths, no force depends on their last digits.
+  real(wp), parameter :: far_gap = 1000
 
   !> A residual that rounding excuses, in the law's lengths: beyond it the law is not resolved.
   real(wp), parameter :: largest_floor = 1.0e-3_wp
@@ -48,7 +51,7 @@ module equilibrium
     real(wp), allocatable :: gap(:), pressure(:)
     real(wp) :: h0 = 0, scale = 1
     real(wp) :: axis_gap = 0, load = 0
-    !> Largest |G|, in units of the law's length.
+    !> Largest |G|, in units of the law's length; of gaps beyond `far_gap` as a part of them.
     real(wp) :: residual = huge(1.0_wp)
     !> Operator products that this state took.
     integer :: iterations = 0
@@ -135,7 +138,8 @@ contains
     ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
     if (grid%is_bounded()) &
       state%load = state%load + 2*pi*sum(problem%law%energy([gap_at_end(grid, state)]))
-    state%residual = maxval(abs(g))
+    state%residual = maxval(abs(g(n + 1:)))
+    state%residual = max(state%residual, maxval(abs(g(:n))/max(1.0_wp, state%gap/far_gap)))
     ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
     if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
   end subroutine evaluate
@@ -283,7 +287,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
 
-    residual_floor = 2*epsilon(1.0_wp)*(abs(state%h0) + maxval(abs(state%gap)) + &
+    residual_floor = 2*epsilon(1.0_wp)*(abs(state%h0) + min(maxval(abs(state%gap)), far_gap) + &
       4*problem%coupling*state%scale*maxval(abs(state%pressure)))
     residual_floor = min(residual_floor, largest_floor)
   end function residual_floor

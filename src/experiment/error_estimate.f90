@@ -8,7 +8,7 @@
 module error_estimate
   use kinds, only: wp
   use regridding, only: regrid
-  use equilibrium, only: control_t, state_t, equations_t, above_parabola
+  use equilibrium, only: control_t, state_t, equations_t, above_parabola, far_gap
   use solver, only: solver_t
   use reported, only: reported_t, error_t
   implicit none
@@ -109,7 +109,7 @@ contains
     type(state_t), intent(in) :: state
 
     what_is_left = rounding + worst_residual* &
-      max(state%residual - 4*epsilon(1.0_wp)*maxval(state%gap), 0.0_wp)
+      max(state%residual - 4*epsilon(1.0_wp)*min(maxval(state%gap), far_gap), 0.0_wp)
   end function what_is_left
 
   !> The largest difference of gaps, and of pressures over the largest of them, between a state and

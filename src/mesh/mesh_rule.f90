@@ -26,7 +26,7 @@ module mesh_rule
   real(wp), parameter :: farthest = 60
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
   !> which come the nearer to one another the stronger adhesion is.
-  real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_digits = 12
+  real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_digits = 13
 
 contains
 
@@ -36,7 +36,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: accuracy
 
-    digits = max(0.6_wp - 1.1_wp*log10(accuracy), &
+    digits = max(0.7_wp - 1.1_wp*log10(accuracy), &
       fewest_digits + more_for_folds*log10(1 + strength(problem)))
     digits = min(digits, most_digits)
   end function digits_for
@@ -67,7 +67,7 @@ contains
       ! Where the repulsion is strong it begins inside the edge, and where adhesion is, a small
       ! contact is drawn out far: both need more nodes.
       density = (0.15_wp + digits*(0.24_wp + 0.0105_wp*digits))* &
-        (1 + 0.18_wp*log(1 + high/(pi*strength(problem))))* &
+        (1 + 0.25_wp*log(1 + high/(pi*strength(problem))))* &
         (1 + 0.03_wp*log(1 + strength(problem)/(1 + high)**2))
     else
       density = 1.5_wp*(0.15_wp + digits*(0.24_wp + 0.0105_wp*digits))
