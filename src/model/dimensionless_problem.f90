@@ -94,11 +94,12 @@ contains
     if (last > 0) gap = max(gap, at(last))
   end function calm_gap
 
-  !> gamma [J/m^2], the depth of the energy minimum; 0 for a law that does not attract.
+  !> gamma [J/m^2], the work of adhesion; 0 for a law that does not attract, negative where contact
+  !> is only metastable.
   pure real(wp) function surface_energy(problem)
     type(problem_t), intent(in) :: problem
 
-    surface_energy = problem%law%adhesion*problem%pressure*problem%length
+    surface_energy = problem%law%work*problem%pressure*problem%length
   end function surface_energy
 
   !> Largest tension of the law [Pa], that at the contact edge; 0 for a law without a largest one.

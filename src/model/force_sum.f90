@@ -58,11 +58,13 @@ contains
   end subroutine add_term
 
   !> Units and scales of a law whose terms are complete. A sum is looked at in units of its shortest
-  !> term first. If it has a well its units are then those of the well: the range, which is the
-  !> depth over the largest tension, and the largest tension, with the contact at gap 1.
+  !> term first. If it has a well its units are then those of the well: z0 of the first term that
+  !> has one, else the range, which is the depth over the largest tension; and the largest tension.
+  !> The contact is at gap 1.
   subroutine settle(law)
     class(force_law_t), intent(inout) :: law
     real(wp) :: most(1), length, unit, origin
+    integer :: i
 
     select type (law)
     type is (force_sum_t)
@@ -71,6 +73,13 @@ contains
       if (law%edge_gap > 0 .and. law%adhesion > 0) then
         most = -law%pressure([law%edge_gap])
         length = law%length*law%adhesion/most(1)
+        law%has_z0 = .false.
+        do i = 1, size(law%term)
+          if (.not. law%term(i)%law%has_z0) cycle
+          length = law%term(i)%law%length
+          law%has_z0 = .true.
+          exit
+        end do
         unit = law%pressure_unit*most(1)
         origin = law%separation_of(law%rest_gap) - length
         call take_units(law, length, unit, origin)
@@ -91,12 +100,16 @@ contains
     law%pressure_unit = unit
     law%origin = origin
     law%adhesion = 0
+    law%work = 0
     law%edge_gap = 0
     law%rest_gap = 0
     law%range = 0
     law%smallest_gap = -huge(1.0_wp)
     law%repulsion_length = huge(1.0_wp)
     law%tail_power = huge(1.0_wp)
+    law%period = 0
+    law%step_at = 0
+    law%step_width = 0
     do i = 1, size(law%term)
       associate (term => law%term(i), part => law%term(i)%law)
         term%stretch = length/part%length
@@ -104,6 +117,10 @@ contains
         law%smallest_gap = max(law%smallest_gap, (part%smallest_gap - term%shift)/term%stretch)
         law%repulsion_length = min(law%repulsion_length, part%repulsion_length/term%stretch)
         law%tail_power = min(law%tail_power, part%tail_power)
+        if (part%period > 0) law%period = part%period/term%stretch
+        if (.not. part%step_width > 0) cycle
+        law%step_at = (part%step_at - term%shift)/term%stretch
+        law%step_width = part%step_width/term%stretch
       end associate
     end do
     ! Messages point at the first.

@@ -5,7 +5,14 @@ module law_scan
   use force_law, only: force_law_t
   implicit none
   private
-  public :: find_scales
+  public :: find_scales, surroundings_t, surroundings_of
+
+  !> What a law has outside the well of contact, law's units: the highest barrier of energy, with the
+  !> largest pressure on its far side, and the deepest of the outer wells.
+  type :: surroundings_t
+    logical :: has_barrier = .false., has_well = .false.
+    real(wp) :: barrier_pressure = 0, barrier_energy = 0, well_gap = 0, well_energy = 0
+  end type surroundings_t
 
   !> Gaps that are looked at, in the law's lengths: geometrically from `nearest` to `farthest` above
   !> the smallest gap of a law that is singular there, and evenly below for one that is not.
@@ -15,80 +22,156 @@ module law_scan
   !> and the length, in lengths beyond the gap at rest, after which a tail no longer matters: where
   !> a repulsion of the ninth power is below that.
   real(wp), parameter :: ended = 1.0e-16_wp, longest = 59
+  !> Pressure over the largest tension below which there is no barrier and no outer well.
+  real(wp), parameter :: nothing = 1.0e-12_wp
 
 contains
 
-  !> Fills in adhesion, edge_gap, rest_gap and range of a law, unless the law has set its range.
+  !> Fills in adhesion, work, edge_gap, rest_gap and range of a law that has not set its range.
   subroutine find_scales(law)
     class(force_law_t), intent(inout) :: law
-    real(wp), allocatable :: gap(:), pressure(:), slope(:)
-    real(wp) :: energy(1), least(1)
+    real(wp), allocatable :: gap(:), pressure(:)
+    real(wp) :: largest
     integer :: i, rest
 
-    if (law%range > 0) return
+    if (law%range > 0) then
+      law%work = law%adhesion
+      return
+    end if
     gap = gaps_of(law)
     pressure = law%pressure(gap)
-    slope = law%slope(gap)
-    rest = 0
-    do i = 1, size(gap) - 1
-      if (.not. (pressure(i) > 0 .and. pressure(i + 1) <= 0)) cycle
-      rest = i
-      exit
-    end do
-    least = law%pressure_unit/law%pressure_unit
+    rest = next_zero(pressure, 1, falling=.true.)
+    largest = 1
     if (rest > 0) then
-      law%rest_gap = zero_between(gap(rest), gap(rest + 1), .false.)
-      energy = law%energy([law%rest_gap])
-      law%adhesion = max(-energy(1), 0.0_wp)
-      do i = rest, size(gap) - 1
-        if (.not. (slope(i) < 0 .and. slope(i + 1) >= 0)) cycle
-        law%edge_gap = zero_between(gap(i), gap(i + 1), .true.)
-        least = abs(law%pressure([law%edge_gap]))
-        exit
-      end do
+      law%rest_gap = zero_between(law, gap(rest), gap(rest + 1), of_slope=.false.)
+      law%work = -energy_at(law, law%rest_gap)
+      law%adhesion = law%work
+      i = next_zero(pressure, rest + 1, falling=.false.)
+      if (i > 0) law%adhesion = law%work + &
+        energy_at(law, zero_between(law, gap(i), gap(i + 1), of_slope=.false.))
+      i = next_zero(law%slope(gap), rest, falling=.false.)
+      if (i > 0) then
+        law%edge_gap = zero_between(law, gap(i), gap(i + 1), of_slope=.true.)
+        largest = -pressure_at(law, law%edge_gap)
+      end if
+    else if (pressure(1) < 0) then
+      ! Without a well there is no depth: the energy at one length stands for it.
+      law%adhesion = -energy_at(law, 1.0_wp)
+      law%work = law%adhesion
     end if
     law%range = law%rest_gap + longest
-    do i = size(gap), 1, -1
-      if (abs(pressure(i)) > ended*least(1)) exit
+    i = findloc(abs(pressure) > ended*largest, .true., 1, back=.true.)
+    if (i > 0 .and. i < size(gap)) law%range = min(law%range, gap(i + 1))
+  end subroutine find_scales
+
+  !> What lies outside the well of contact.
+  function surroundings_of(law) result(found)
+    class(force_law_t), intent(in) :: law
+    type(surroundings_t) :: found
+    real(wp), allocatable :: gap(:), pressure(:)
+    real(wp) :: top, bottom, depth
+    integer :: i, j, peak
+
+    gap = gaps_of(law)
+    pressure = law%pressure(gap)
+    i = next_zero(pressure, 1, falling=.true.)
+    if (i == 0 .or. .not. law%edge_gap > 0) return
+    ! Less than this is rounding, or of no consequence.
+    where (abs(pressure) < nothing*abs(pressure_at(law, law%edge_gap))) pressure = 0
+    do
+      j = next_zero(pressure, i + 1, falling=.false.)
+      if (j == 0) return
+      i = next_zero(pressure, j + 1, falling=.true.)
+      top = zero_between(law, gap(j), gap(j + 1), of_slope=.false.)
+      peak = j + maxloc(pressure(j + 1:merge(i, size(gap), i > 0)), 1)
+      if (.not. pressure(peak) > 0) return
+      if (.not. found%has_barrier .or. energy_at(law, top) > found%barrier_energy) then
+        found%barrier_energy = energy_at(law, top)
+        found%barrier_pressure = pressure(peak)
+        if (peak > 1 .and. peak < size(gap)) found%barrier_pressure = &
+          pressure_at(law, zero_between(law, gap(peak - 1), gap(peak + 1), of_slope=.true.))
+        found%has_barrier = .true.
+      end if
+      if (i == 0) return
+      bottom = zero_between(law, gap(i), gap(i + 1), of_slope=.false.)
+      depth = -energy_at(law, bottom)
+      if (.not. found%has_well .or. depth > -found%well_energy) then
+        found%has_well = .true.
+        found%well_gap = bottom
+        found%well_energy = -depth
+      end if
     end do
-    if (i < size(gap) .and. i > 0) law%range = min(law%range, gap(i + 1))
+  end function surroundings_of
+
+  !> The first index from `from` after which values change their sign, falling or rising; 0 if none
+  !> does.
+  pure integer function next_zero(value, from, falling) result(i)
+    real(wp), intent(in) :: value(:)
+    integer, intent(in) :: from
+    logical, intent(in) :: falling
+
+    do i = from, size(value) - 1
+      if (falling .and. value(i) > 0 .and. value(i + 1) <= 0) return
+      if (.not. falling .and. value(i) < 0 .and. value(i + 1) >= 0) return
+    end do
+    i = 0
+  end function next_zero
+
+  !> A zero of the pressure, or of its slope, between two gaps where it has different signs: by
+  !> bisection to the last bit, since everything else is built on it.
+  real(wp) function zero_between(law, from, to, of_slope) result(middle)
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: from, to
+    logical, intent(in) :: of_slope
+    real(wp) :: low, high
+    logical :: positive
+
+    low = from
+    high = to
+    positive = is_positive(low)
+    do
+      middle = low + 0.5_wp*(high - low)
+      if (middle <= low .or. middle >= high) exit
+      if (is_positive(middle) .eqv. positive) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
 
   contains
 
-    !> A zero of the pressure, or of its slope, between two gaps where it has different signs: by
-    !> bisection to the last bit, since everything else is built on it.
-    real(wp) function zero_between(from, to, of_slope) result(middle)
-      real(wp), intent(in) :: from, to
-      logical, intent(in) :: of_slope
-      real(wp) :: low, high
-
-      low = from
-      high = to
-      do
-        middle = low + 0.5_wp*(high - low)
-        if (middle <= low .or. middle >= high) exit
-        if ((value(middle, of_slope) > 0) .eqv. (value(low, of_slope) > 0)) then
-          low = middle
-        else
-          high = middle
-        end if
-      end do
-    end function zero_between
-
-    real(wp) function value(gap, of_slope)
+    logical function is_positive(gap)
       real(wp), intent(in) :: gap
-      logical, intent(in) :: of_slope
-      real(wp) :: values(1)
+      real(wp) :: value(1)
 
       if (of_slope) then
-        values = law%slope([gap])
+        value = law%slope([gap])
       else
-        values = law%pressure([gap])
+        value = law%pressure([gap])
       end if
-      value = values(1)
-    end function value
+      is_positive = value(1) > 0
+    end function is_positive
 
-  end subroutine find_scales
+  end function zero_between
+
+  real(wp) function pressure_at(law, gap)
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: gap
+    real(wp) :: value(1)
+
+    value = law%pressure([gap])
+    pressure_at = value(1)
+  end function pressure_at
+
+  real(wp) function energy_at(law, gap)
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: gap
+    real(wp) :: value(1)
+
+    value = law%energy([gap])
+    energy_at = value(1)
+  end function energy_at
 
   !> The gaps of the scan.
   pure function gaps_of(law) result(gap)

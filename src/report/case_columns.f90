@@ -75,6 +75,8 @@ contains
       single = [single, pack([(i, i=1, size(rows))], rows%sweep == 'classical')]
     if (allocated(scene%approximations)) &
       single = [single, pack([(i, i=1, size(rows))], rows%sweep == 'approximations')]
+    if (.not. scene%law%of_paper) &
+      single = [single, pack([(i, i=1, size(rows))], rows%sweep == '(forces)')]
   end function single_columns
 
   !> Whether a row is one column for each turning point.

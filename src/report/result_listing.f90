@@ -96,6 +96,8 @@ contains
       note = ''
     case ('always')
       note = 'in sweep.csv'
+    case ('(forces)')
+      note = 'in sweep.csv with forces other than a plain &force'
     case ('unloading')
       note = 'in sweep.csv for each turning point'
     case default

@@ -7,10 +7,10 @@ module result_rows
 
   !> The group of summary.nml that a row belongs to.
   integer, parameter :: in_summary = 1, in_cost = 2
-  !> When a row is a column of sweep.csv: never, always, with a group of the deck, or once for each
-  !> turning point.
+  !> When a row is a column of sweep.csv: never, always, with a group of the deck, with forces that
+  !> are not the paper's, or once for each turning point.
   character(len=*), parameter :: never = '', always = 'always', classical = 'classical', &
-    approximations = 'approximations', turning = 'unloading'
+    approximations = 'approximations', forces = '(forces)', turning = 'unloading'
 
   !> Key, unit and meaning; what is an array has one value a turning point, fold or profile.
   type :: row_t
@@ -33,6 +33,16 @@ module result_rows
       'strength of exponential repulsion, (39) of the paper at h0 = 0', always), &
     row_t('surface_energy', 'J/m^2', &
       'surface energy of the force law, the depth of its minimum', always), &
+    row_t('work_of_adhesion', 'J/m^2', &
+      'energy needed to separate unit area from contact; negative: contact is metastable', forces), &
+    row_t('rest_gap', 'm', 'innermost separation of no force', forces), &
+    row_t('edge_gap', 'm', 'separation of largest tension', forces), &
+    row_t('cohesive_stress', 'Pa', 'largest tension', forces), &
+    row_t('cohesive_range', 'm', 'depth of the well of contact over cohesive_stress', forces), &
+    row_t('barrier_pressure', 'Pa', 'largest repulsion outside the well of contact', forces), &
+    row_t('barrier_energy', 'J/m^2', 'energy of the highest barrier', forces), &
+    row_t('secondary_minimum_gap', 'm', 'separation of the deepest outer well', forces), &
+    row_t('secondary_minimum_energy', 'J/m^2', 'energy there', forces), &
     row_t('jkr_pull_off', 'N', 'pull-off of JKR theory, positive', always), &
     row_t('dmt_pull_off', 'N', 'pull-off of DMT theory, positive', always), &
     row_t('maugis_lambda', '', 'Maugis'' parameter, 1.157 times Tabor''s', classical), &

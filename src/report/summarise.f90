@@ -13,6 +13,7 @@ module summarise
   use reported, only: reported_t
   use stepped_branch, only: branch_t
   use ending_text, only: text_of
+  use force_entries, only: take_forces
   use summary, only: summary_t
   use summary_entries, only: take_jump, take_profiles, raise_tension, widen_spacing
   use quality_warnings, only: judge_resolution, judge_accuracy, short_number
@@ -90,9 +91,11 @@ contains
     type(summary_t), intent(inout) :: summary
 
     if (problem%law%adhesion > 0) then
-      call summary%set('surface_energy', surface_energy(problem))
-      call summary%set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
-      call summary%set('dmt_pull_off', -dmt_pull_off(problem%radius, surface_energy(problem)))
+      if (problem%law%work > 0) then
+        call summary%set('surface_energy', surface_energy(problem))
+        call summary%set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
+        call summary%set('dmt_pull_off', -dmt_pull_off(problem%radius, surface_energy(problem)))
+      end if
       if (.not. problem%rigid) then
         call summary%set('sigma', problem%coupling*problem%law%adhesion)
         call summary%set('tabor', tabor_parameter(problem))
@@ -100,6 +103,7 @@ contains
     else if (problem%law%coupling_name /= '' .and. .not. problem%rigid) then
       call summary%set(trim(problem%law%coupling_name), problem%coupling)
     end if
+    if (.not. problem%law%of_paper) call take_forces(problem, summary)
     if (allocated(scene%classical)) call take_maugis(problem, summary)
     if (allocated(scene%approximations)) call estimate_jumps(problem, summary)
   end subroutine describe

@@ -129,6 +129,10 @@ def sample_value(description):
     """Some value that a key described so takes."""
     if match := re.match(r"one of ('\w+')", description):
         return match[1]
+    if " from 1 to 2" in description:
+        return "2"
+    if " > 1" in description:
+        return "9"
     return next(value for start, value in SAMPLE.items() if description.startswith(start))
 
 

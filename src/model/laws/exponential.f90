@@ -1,16 +1,20 @@
-!> Exponential repulsion, (30) of the paper: p = p0 exp(-h/decay_length).
+!> Exponential repulsion, (30) of the paper: p = p0 exp(-h/decay_length). Other forces that decay so
+!> share it, attractions too.
 module exponential
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_key
   use force_law, only: force_law_t
+  use force_sum, only: add_term
   use law_reading, only: is_law, check_parameter, check_decades
   implicit none
   private
-  public :: exponential_t, new_exponential, keys, read_law
+  public :: exponential_t, new_exponential, keys, read_law, read_exponentials
 
   type, extends(force_law_t) :: exponential_t
+    !> 1, or -1 for an attraction.
+    real(wp) :: sense = 1
   contains
     procedure :: pressure
     procedure :: slope
@@ -50,12 +54,60 @@ contains
     if (.not. allocated(error)) allocate (law, source=new_exponential(p0, decay_length))
   end subroutine read_law
 
+  !> The terms of a group with the lists `decay_length` and `energy` or `pressure`, of a sense: 1 for
+  !> repulsion, -1 for attraction. One value of a list stands for all.
+  subroutine read_exponentials(deck, group, sense, law, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: group
+    real(wp), intent(in) :: sense
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    class(force_law_t), allocatable :: term
+    type(exponential_t) :: this
+    real(wp), allocatable :: lengths(:), strengths(:)
+    character(len=:), allocatable :: key
+    logical :: of_energy
+    integer :: i, n
+
+    if (.not. deck%has_group(group)) return
+    of_energy = deck%is_set(group, 'energy')
+    if (of_energy .eqv. deck%is_set(group, 'pressure')) then
+      call deck%mistake(group, 'energy', 'give either energy or pressure', error)
+      return
+    end if
+    key = 'pressure'
+    if (of_energy) key = 'energy'
+    call deck%get(group, 'decay_length', lengths)
+    call deck%get(group, key, strengths)
+    n = max(size(lengths), size(strengths))
+    if (any([size(lengths), size(strengths)] /= n .and. [size(lengths), size(strengths)] /= 1)) then
+      call deck%mistake(group, key, 'has another number of values than decay_length', error)
+      return
+    end if
+    if (size(lengths) < n) lengths = spread(lengths(1), 1, n)
+    if (size(strengths) < n) strengths = spread(strengths(1), 1, n)
+    do i = 1, n
+      call check_decades(deck, group, key, &
+        log10(strengths(i)) - merge(log10(lengths(i)), 0.0_wp, of_energy), 'a pressure', ' Pa', error)
+      if (allocated(error)) return
+      this = new_exponential(strengths(i)/merge(lengths(i), 1.0_wp, of_energy), lengths(i))
+      this%sense = sense
+      this%coupling_name = ''
+      this%of_paper = .false.
+      this%group = group
+      this%strength_key = key
+      allocate (term, source=this)
+      call add_term(law, term)
+    end do
+  end subroutine read_exponentials
+
   !> p0 [Pa], decay_length [m], both positive.
   pure function new_exponential(p0, decay_length) result(law)
     real(wp), intent(in) :: p0, decay_length
     type(exponential_t) :: law
 
     law%length = decay_length
+    law%of_paper = .true.
     law%pressure_unit = p0
     law%range = 45
     law%coupling_name = 'big_lambda'
@@ -66,7 +118,7 @@ contains
     law%closure_length = 2
   end function new_exponential
 
-  !> exp(-gap); 0 without underflow at large gaps, finite at any gap.
+  !> sense*exp(-gap); 0 without underflow at large gaps, finite at any gap.
   pure function pressure(self, gap) result(value)
     class(exponential_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
@@ -74,7 +126,7 @@ contains
 
     ! Both branches of a mask may be evaluated everywhere, hence the bounds on both sides.
     where (gap < largest_exponent)
-      value = exp(-max(min(gap, largest_exponent), -largest_exponent))
+      value = self%sense*exp(-max(min(gap, largest_exponent), -largest_exponent))
     elsewhere
       value = 0
     end where

@@ -5,8 +5,9 @@ module lennard_jones
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key, word_key
+  use deck_keys, only: key_spec, real_key, list_key, word_key
   use force_law, only: force_law_t
+  use power_pair, only: new_power_pair, pair_factor
   use law_reading, only: is_law, check_parameter, check_decades
   implicit none
   private
@@ -33,6 +34,11 @@ contains
                otherwise='none; lennard_jones needs it'), &
       real_key('force', 'z0', 'm', 'lennard_jones: separation of zero force.', above=zero, &
                otherwise='none; lennard_jones needs it'), &
+      real_key('force', 'surface_energy', 'J/m^2', 'lennard_jones: energy needed to separate ' // &
+               'unit area, in place of hamaker.', above=zero), &
+      list_key('force', 'exponents', '', 'lennard_jones: exponents n, m of the pressure: 9, 3 ' // &
+               'half-spaces; 10, 4 half-space and sheet; 11, 5 sheets.', most=2, above=1.0_wp, &
+               high=30.0_wp, otherwise='9, 3'), &
       word_key('force', 'part', 'full repulsive attractive', 'lennard_jones: the part of the ' // &
                'law that acts.', otherwise='full')]
   end function keys
@@ -43,19 +49,59 @@ contains
     class(force_law_t), allocatable, intent(out) :: law
     type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: part
-    real(wp) :: hamaker, z0
+    real(wp), allocatable :: exponents(:)
+    real(wp) :: hamaker, z0, surface_energy
 
-    call check_parameter(deck, 'lennard_jones', 'hamaker', .true., error)
+    call check_parameter(deck, 'lennard_jones', 'hamaker', &
+      .not. deck%is_set('force', 'surface_energy'), error)
     call check_parameter(deck, 'lennard_jones', 'z0', .true., error)
+    call check_parameter(deck, 'lennard_jones', 'surface_energy', .false., error)
+    call check_parameter(deck, 'lennard_jones', 'exponents', .false., error)
     call check_parameter(deck, 'lennard_jones', 'part', .false., error)
     if (allocated(error) .or. .not. is_law(deck, 'lennard_jones')) return
     call deck%assume('force', 'part', 'full')
-    call deck%get('force', 'hamaker', hamaker)
+    if (deck%is_set('force', 'surface_energy') .and. deck%is_set('force', 'hamaker')) &
+      call deck%mistake('force', 'surface_energy', 'and hamaker give the same thing; give one', &
+      error)
     call deck%get('force', 'z0', z0)
     call deck%get('force', 'part', part)
+    call deck%get('force', 'exponents', exponents)
+    if (size(exponents) > 0) then
+      call check_exponents()
+      if (allocated(error)) return
+    end if
+    ! gamma = A/(16 pi z0^2), (34).
+    if (deck%is_set('force', 'surface_energy')) then
+      call deck%get('force', 'surface_energy', surface_energy)
+      hamaker = 16*pi*surface_energy*z0**2
+    else
+      call deck%get('force', 'hamaker', hamaker)
+    end if
     call check_decades(deck, 'force', 'hamaker', log10(hamaker) - log10(16*pi) - 3*log10(z0), &
       'a pressure', ' Pa', error)
-    if (.not. allocated(error)) allocate (law, source=new_lennard_jones(hamaker, z0, part))
+    if (allocated(error)) return
+    allocate (law, source=new_lennard_jones(hamaker, z0, part))
+    if (size(exponents) == 0) return
+    ! The attraction is that of the Hamaker constant, A/(6 pi h^3), where there is one.
+    if (.not. deck%is_set('force', 'surface_energy')) &
+      surface_energy = hamaker/(6*pi*z0**2*pair_factor(exponents))
+    deallocate (law)
+    allocate (law, source=new_power_pair(surface_energy, z0, exponents, part))
+
+  contains
+
+    subroutine check_exponents()
+      if (size(exponents) /= 2) then
+        call deck%mistake('force', 'exponents', 'are two', error)
+      else if (exponents(1) <= exponents(2)) then
+        call deck%mistake('force', 'exponents', 'the repulsion''s, which is first, must be the '// &
+          'larger', error)
+      else if (abs(exponents(2) - 3) > 0 .and. .not. deck%is_set('force', 'surface_energy')) then
+        call deck%mistake('force', 'surface_energy', 'missing; a Hamaker constant goes with an '// &
+          'attraction of h^-3', error)
+      end if
+    end subroutine check_exponents
+
   end subroutine read_law
 
   !> hamaker [J] and z0 [m] positive; part is 'full', 'repulsive' or 'attractive'.
@@ -65,6 +111,8 @@ contains
     type(lennard_jones_t) :: law
 
     law%length = z0
+    law%has_z0 = .true.
+    law%of_paper = .true.
     law%pressure_unit = hamaker/(16*pi*z0**2)/z0
     law%range = 60
     law%tail_power = 3

@@ -1,0 +1,99 @@
+!> Born repulsion between half-spaces, p = A/(6 pi z0^3) (z0/h)^n: with n = 9 and a van der Waals
+!> attraction of the same Hamaker constant it makes the Lennard-Jones law (33) of the paper.
+module born
+  use kinds, only: wp, pi
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, real_key
+  use force_law, only: force_law_t
+  use law_reading, only: check_decades
+  implicit none
+  private
+  public :: keys, read_law
+
+  type, extends(force_law_t) :: born_t
+    real(wp) :: exponent = 9
+  contains
+    procedure :: pressure
+    procedure :: slope
+    procedure :: energy
+  end type born_t
+
+contains
+
+  !> &born.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      group('born', 'Born repulsion, A/(6 pi z0^3) (z0/h)^n.'), &
+      real_key('born', 'hamaker', 'J', 'Hamaker constant A that sets its strength.', above=zero, &
+               otherwise='as in &van_der_waals'), &
+      real_key('born', 'z0', 'm', 'Separation at which it balances the attraction.', above=zero, &
+               required=.true.), &
+      real_key('born', 'exponent', '', 'Exponent n.', above=1.0_wp, high=30.0_wp, default='9')]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    type(born_t) :: this
+    real(wp) :: hamaker
+
+    if (.not. deck%has_group('born')) return
+    if (.not. (deck%is_set('born', 'hamaker') .or. deck%has_group('van_der_waals'))) then
+      call deck%mistake('born', 'hamaker', 'missing; give it, or &van_der_waals whose constant '// &
+        'it takes', error)
+      return
+    end if
+    hamaker = 0
+    call deck%get('van_der_waals', 'hamaker', hamaker)
+    if (hamaker > 0) call deck%assume('born', 'hamaker', hamaker)
+    call deck%get('born', 'hamaker', hamaker)
+    call deck%get('born', 'z0', this%length)
+    call deck%get('born', 'exponent', this%exponent)
+    call check_decades(deck, 'born', 'hamaker', &
+      log10(hamaker) - log10(6*pi) - 3*log10(this%length), 'a pressure', ' Pa', error)
+    if (allocated(error)) return
+    this%pressure_unit = hamaker/(6*pi*this%length**3)
+    this%has_z0 = .true.
+    this%tail_power = this%exponent
+    ! The slope is 1e121 there: even its square is a number.
+    this%smallest_gap = 10.0_wp**(-120/(this%exponent + 1))
+    this%repulsion_length = 0.9_wp/this%exponent
+    this%closure_fraction = 2.7_wp/this%exponent
+    this%group = 'born'
+    this%strength_key = 'hamaker'
+    this%length_key = 'z0'
+    allocate (law, source=this)
+  end subroutine read_law
+
+
+  pure function pressure(self, gap) result(value)
+    class(born_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = gap**(-self%exponent)
+  end function pressure
+
+  pure function slope(self, gap) result(value)
+    class(born_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = -self%exponent*gap**(-self%exponent - 1)
+  end function slope
+
+  pure function energy(self, gap) result(value)
+    class(born_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = gap**(1 - self%exponent)/(self%exponent - 1)
+  end function energy
+
+end module born

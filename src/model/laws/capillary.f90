@@ -1,0 +1,72 @@
+!> Capillary bridge at equilibrium with the vapour: the pressure in it, surface_tension/r_K, acts where
+!> the separation is below r_K (cos theta_1 + cos theta_2). r_K is Kelvin's radius, given or from the
+!> humidity: molar_volume surface_tension/(R T ln(1/humidity)). Smoothed (`step_attraction`).
+module capillary
+  use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, real_key, list_key
+  use force_law, only: force_law_t
+  use step_attraction, only: new_step, smoothing_key
+  implicit none
+  private
+  public :: keys, read_law
+
+contains
+
+  !> &capillary.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      group('capillary', 'Capillary bridge at equilibrium. Either kelvin_radius, or humidity.'), &
+      real_key('capillary', 'surface_tension', 'N/m', 'Surface tension of the liquid.', &
+               above=zero, default='0.0728'), &
+      list_key('capillary', 'contact_angle', 'rad', 'Contact angles of the two surfaces; one ' &
+               // 'value: the same.', most=2, low=zero, below=1.5707963_wp, otherwise='0'), &
+      real_key('capillary', 'kelvin_radius', 'm', 'Radius of curvature of the bridge.', &
+               above=zero), &
+      real_key('capillary', 'humidity', '', 'Vapour pressure over that of saturation.', &
+               above=zero, below=1.0_wp), &
+      real_key('capillary', 'molar_volume', 'm^3/mol', 'Molar volume of the liquid.', above=zero, &
+               default='1.807e-5'), &
+      real_key('capillary', 'temperature', 'K', 'Temperature.', above=zero, default='293.15'), &
+      smoothing_key('capillary')]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    !> [J/(mol K)]
+    real(wp), parameter :: gas_constant = 8.31446261815324_wp
+    real(wp), allocatable :: angles(:)
+    real(wp) :: tension, radius, humidity, volume, temperature
+    character(len=:), allocatable :: key
+
+    if (.not. deck%has_group('capillary')) return
+    call deck%get('capillary', 'surface_tension', tension)
+    call deck%get('capillary', 'contact_angle', angles)
+    if (size(angles) == 0) angles = [0.0_wp]
+    if (deck%is_set('capillary', 'kelvin_radius') .eqv. deck%is_set('capillary', 'humidity')) then
+      call deck%mistake('capillary', 'kelvin_radius', 'give either kelvin_radius or humidity', &
+        error)
+      return
+    end if
+    if (deck%is_set('capillary', 'humidity')) then
+      key = 'humidity'
+      call deck%get('capillary', 'humidity', humidity)
+      call deck%get('capillary', 'molar_volume', volume)
+      call deck%get('capillary', 'temperature', temperature)
+      radius = volume*tension/(gas_constant*temperature*log(1/humidity))
+    else
+      key = 'kelvin_radius'
+      call deck%get('capillary', 'kelvin_radius', radius)
+    end if
+    call new_step(deck, 'capillary', 'surface_tension', key, tension/radius, &
+      radius*(cos(angles(1)) + cos(angles(size(angles)))), law, error)
+  end subroutine read_law
+
+end module capillary

@@ -1,0 +1,42 @@
+!> Depletion force between walls in a solution of hard spheres (Asakura and Oosawa): the osmotic
+!> pressure acts from outside where no sphere fits between them. Smoothed (`step_attraction`).
+module depletion
+  use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, real_key
+  use force_law, only: force_law_t
+  use step_attraction, only: new_step, smoothing_key
+  implicit none
+  private
+  public :: keys, read_law
+
+contains
+
+  !> &depletion.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      group('depletion', 'Depletion attraction in a solution of particles.'), &
+      real_key('depletion', 'osmotic_pressure', 'Pa', 'Osmotic pressure of the particles.', &
+               above=zero, required=.true.), &
+      real_key('depletion', 'diameter', 'm', 'Their diameter.', above=zero, required=.true.), &
+      smoothing_key('depletion')]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: pressure, diameter
+
+    if (.not. deck%has_group('depletion')) return
+    call deck%get('depletion', 'osmotic_pressure', pressure)
+    call deck%get('depletion', 'diameter', diameter)
+    call new_step(deck, 'depletion', 'osmotic_pressure', 'diameter', pressure, diameter, law, error)
+  end subroutine read_law
+
+end module depletion

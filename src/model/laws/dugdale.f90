@@ -1,0 +1,41 @@
+!> Dugdale's law: a constant attraction up to a separation, smoothed (`step_attraction`).
+module dugdale
+  use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, real_key
+  use force_law, only: force_law_t
+  use step_attraction, only: new_step, smoothing_key
+  implicit none
+  private
+  public :: keys, read_law
+
+contains
+
+  !> &dugdale.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      group('dugdale', 'Constant attraction up to a separation; needs a repulsion beside it.'), &
+      real_key('dugdale', 'stress', 'Pa', 'The attraction.', above=zero, required=.true.), &
+      real_key('dugdale', 'range', 'm', 'Separation at which it ends.', above=zero, &
+               required=.true.), &
+      smoothing_key('dugdale')]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: stress, range
+
+    if (.not. deck%has_group('dugdale')) return
+    call deck%get('dugdale', 'stress', stress)
+    call deck%get('dugdale', 'range', range)
+    call new_step(deck, 'dugdale', 'stress', 'range', stress, range, law, error)
+  end subroutine read_law
+
+end module dugdale

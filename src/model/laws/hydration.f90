@@ -1,0 +1,39 @@
+!> Hydration repulsion: p = (W/l) exp(-h/l); several values of the keys are several terms.
+module hydration
+  use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, list_key
+  use exponential, only: read_exponentials
+  use force_law, only: force_law_t
+  implicit none
+  private
+  public :: keys, read_law
+
+contains
+
+  !> &hydration.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      group('hydration', 'Hydration repulsion. Either energy or pressure; lists are several ' // &
+            'terms.'), &
+      list_key('hydration', 'energy', 'J/m^2', 'Energy W at h = 0.', most=8, above=zero), &
+      list_key('hydration', 'pressure', 'Pa', 'Pressure at h = 0, W over the decay length.', &
+               most=8, above=zero), &
+      list_key('hydration', 'decay_length', 'm', 'Decay length l.', most=8, above=zero, &
+               required=.true.)]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+
+    call read_exponentials(deck, 'hydration', 1.0_wp, law, error)
+  end subroutine read_law
+
+end module hydration

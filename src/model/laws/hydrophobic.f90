@@ -1,0 +1,38 @@
+!> Hydrophobic attraction: p = -(W/l) exp(-h/l); several values of the keys are several terms.
+module hydrophobic
+  use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, list_key
+  use exponential, only: read_exponentials
+  use force_law, only: force_law_t
+  implicit none
+  private
+  public :: keys, read_law
+
+contains
+
+  !> &hydrophobic.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      group('hydrophobic', 'Hydrophobic attraction; lists are several terms. Needs a ' // &
+            'repulsion beside it.'), &
+      list_key('hydrophobic', 'energy', 'J/m^2', 'Energy W at h = 0, twice the interfacial ' // &
+               'energy times the hydrophobic fraction.', most=8, above=zero, required=.true.), &
+      list_key('hydrophobic', 'decay_length', 'm', 'Decay length l.', most=8, above=zero, &
+               required=.true.)]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+
+    call read_exponentials(deck, 'hydrophobic', -1.0_wp, law, error)
+  end subroutine read_law
+
+end module hydrophobic

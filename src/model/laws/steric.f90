@@ -1,0 +1,119 @@
+!> Steric repulsion of polymer brushes of thickness L, which meet at h = 2 L (one brush: L). With u the
+!> gap over that: Alexander and de Gennes, p = kT Gamma^(3/2) (u^(-9/4) - u^(3/4)), or Milner, Witten and
+!> Cates, p = kT Gamma^(3/2) (1/(2 u^2) - u + u^4/2); none beyond u = 1.
+module steric
+  use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, real_key, integer_key, word_key
+  use force_law, only: force_law_t
+  use law_reading, only: check_decades
+  implicit none
+  private
+  public :: keys, read_law
+
+  type, extends(force_law_t) :: steric_t
+    !> Whether the model is that of Milner, Witten and Cates.
+    logical :: parabolic = .false.
+  contains
+    procedure :: pressure
+    procedure :: slope
+    procedure :: energy
+  end type steric_t
+
+  !> Boltzmann's constant [J/K].
+  real(wp), parameter :: boltzmann = 1.380649e-23_wp
+
+contains
+
+  !> &steric.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      group('steric', 'Repulsion of polymer brushes.'), &
+      word_key('steric', 'model', 'alexander_de_gennes milner_witten_cates', 'Profile of the ' &
+               // 'brush: a step, whose force begins with a kink, or a parabola.', &
+               default='alexander_de_gennes'), &
+      real_key('steric', 'brush_thickness', 'm', 'Thickness L of a brush.', above=zero, &
+               required=.true.), &
+      real_key('steric', 'grafting_density', '1/m^2', 'Chains a unit area.', above=zero, &
+               required=.true.), &
+      integer_key('steric', 'sides', 'Surfaces that carry a brush.', 1, 2, default='2'), &
+      real_key('steric', 'temperature', 'K', 'Temperature.', above=zero, default='298.15')]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    type(steric_t) :: this
+    character(len=:), allocatable :: model
+    real(wp) :: thickness, density, temperature
+    integer :: sides
+
+    if (.not. deck%has_group('steric')) return
+    call deck%get('steric', 'model', model)
+    call deck%get('steric', 'brush_thickness', thickness)
+    call deck%get('steric', 'grafting_density', density)
+    call deck%get('steric', 'sides', sides)
+    call deck%get('steric', 'temperature', temperature)
+    call check_decades(deck, 'steric', 'grafting_density', &
+      log10(boltzmann) + log10(temperature) + 1.5_wp*log10(density), 'a pressure', ' Pa', error)
+    if (allocated(error)) return
+    this%parabolic = model == 'milner_witten_cates'
+    this%length = sides*thickness
+    this%pressure_unit = boltzmann*temperature*density**1.5_wp
+    this%smallest_gap = 1.0e-12_wp
+    this%closure_fraction = 0.3_wp
+    this%group = 'steric'
+    this%strength_key = 'grafting_density'
+    this%length_key = 'brush_thickness'
+    allocate (law, source=this)
+  end subroutine read_law
+
+
+  pure function pressure(self, gap) result(value)
+    class(steric_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap)), u(size(gap))
+
+    u = min(gap, 1.0_wp)
+    if (self%parabolic) then
+      value = 0.5_wp/u**2 - u + 0.5_wp*u**4
+    else
+      value = u**(-2.25_wp) - u**0.75_wp
+    end if
+  end function pressure
+
+  pure function slope(self, gap) result(value)
+    class(steric_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap)), u(size(gap))
+
+    u = min(gap, 1.0_wp)
+    if (self%parabolic) then
+      value = -1/u**3 - 1 + 2*u**3
+    else
+      value = -2.25_wp*u**(-3.25_wp) - 0.75_wp*u**(-0.25_wp)
+    end if
+    where (gap >= 1) value = 0
+  end function slope
+
+  pure function energy(self, gap) result(value)
+    class(steric_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap)), u(size(gap))
+
+    u = min(gap, 1.0_wp)
+    if (self%parabolic) then
+      value = 0.5_wp/u + 0.5_wp*u**2 - 0.1_wp*u**5 - 0.9_wp
+    else
+      value = 0.8_wp*u**(-1.25_wp) + 4*u**1.75_wp/7 - 48.0_wp/35
+    end if
+    where (gap >= 1) value = 0
+  end function energy
+
+end module steric

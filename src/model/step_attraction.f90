@@ -1,0 +1,99 @@
+!> An attraction that is constant up to some separation and then ends: p = -stress erfc((h - range)/s)/2.
+!> A jump of the pressure would have no Jacobian, hence the smoothing length s. Dugdale's law, the
+!> depletion force and a capillary bridge at equilibrium are of this kind.
+module step_attraction
+  use kinds, only: wp, pi
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, real_key
+  use force_law, only: force_law_t
+  use law_reading, only: check_decades
+  implicit none
+  private
+  public :: new_step, smoothing_key
+
+  !> In units of its range and stress.
+  type, extends(force_law_t) :: step_t
+    real(wp) :: smoothing = 0
+  contains
+    procedure :: pressure
+    procedure :: slope
+    procedure :: energy
+  end type step_t
+
+  !> Smoothing where the deck does not say, over the range; and beyond how many smoothing lengths
+  !> the error function is what it is at infinity.
+  real(wp), parameter :: usual = 0.02_wp, farthest = 26
+
+contains
+
+  !> The row of the key `smoothing`.
+  pure function smoothing_key(group) result(row)
+    character(len=*), intent(in) :: group
+    type(key_spec) :: row
+
+    row = real_key(group, 'smoothing', 'm', 'Length over which the attraction ends.', &
+      above=0.0_wp, otherwise='0.02 of its range')
+  end function smoothing_key
+
+  !> stress [Pa], range [m]; `group` and its keys for messages. The key `smoothing` is read.
+  subroutine new_step(deck, group, strength_key, length_key, stress, range, law, error)
+    type(deck_t), intent(inout) :: deck
+    character(len=*), intent(in) :: group, strength_key, length_key
+    real(wp), intent(in) :: stress, range
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    type(step_t) :: this
+
+    call check_decades(deck, group, strength_key, log10(stress), 'a pressure', ' Pa', error)
+    call deck%assume(group, 'smoothing', usual*range)
+    call deck%get(group, 'smoothing', this%smoothing)
+    if (this%smoothing > 0.5_wp*range) call deck%mistake(group, 'smoothing', &
+      'is more than half of the range, beyond which there is no step', error)
+    if (allocated(error)) return
+    this%length = range
+    this%pressure_unit = stress
+    this%smoothing = this%smoothing/range
+    this%closure_length = this%smoothing
+    this%step_at = 1
+    this%step_width = this%smoothing
+    this%group = group
+    this%strength_key = strength_key
+    this%length_key = length_key
+    allocate (law, source=this)
+  end subroutine new_step
+
+  !> The gap from the step in smoothing lengths.
+  elemental real(wp) function place(self, gap)
+    class(step_t), intent(in) :: self
+    real(wp), intent(in) :: gap
+
+    place = min((gap - 1)/self%smoothing, farthest)
+  end function place
+
+  pure function pressure(self, gap) result(value)
+    class(step_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = -0.5_wp*erfc(place(self, gap))
+  end function pressure
+
+  pure function slope(self, gap) result(value)
+    class(step_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = exp(-min(place(self, gap)**2, farthest**2))/(self%smoothing*sqrt(pi))
+  end function slope
+
+  pure function energy(self, gap) result(value)
+    class(step_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap)), x(size(gap))
+
+    x = place(self, gap)
+    value = -0.5_wp*self%smoothing*(exp(-min(x**2, farthest**2))/sqrt(pi) - x*erfc(x))
+  end function energy
+
+end module step_attraction
