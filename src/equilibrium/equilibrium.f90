@@ -85,64 +85,54 @@ contains
     real(wp), intent(in) :: z(:)
     real(wp), intent(out) :: g(:)
     type(state_t), intent(inout) :: state
-
-    associate (grid => equations%pair%grid(control%mesh))
-      call evaluate(equations%problem, grid, control, z, g, state, equations%cost)
-    end associate
-  end subroutine residual
-
-  subroutine evaluate(problem, grid, control, z, g, state, cost)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    type(control_t), intent(in) :: control
-    real(wp), intent(in) :: z(:)
-    real(wp), intent(out) :: g(:)
-    type(state_t), intent(inout) :: state
-    type(cost_t), intent(inout) :: cost
     real(wp) :: raised(first_node - 1 + node_count(control, size(z)))
     real(wp) :: edge_gap
     integer :: n, columns
 
-    n = node_count(control, size(z))
-    call unpack(control, z, state%h0, state%scale)
-    state%gap = z(:n)
-    if (.not. defined(problem, z, state)) then
-      g = 0
-      state%pressure = 0*g(:n)
-      state%load = 0
-      state%axis_gap = state%h0
-      state%residual = huge(1.0_wp)
-      return
-    end if
-    state%pressure = problem%law%pressure(state%gap)
-    cost%pressure_evaluations = cost%pressure_evaluations + n
-    raised = 0
-    if (problem%coupling > 0) then
-      columns = acting_columns(state%pressure)
-      call multiply(grid%kernel, columns, state%pressure, raised)
-      raised = 2*problem%coupling*state%scale*raised
-      cost%operator_products = cost%operator_products + 1
-      cost%operator_columns = cost%operator_columns + columns
-    end if
-    g(:n) = state%gap - state%h0 - 0.5_wp*(state%scale*grid%x(:n))**2 - raised(first_node:)
-    state%axis_gap = state%h0 + raised(axis_row)
-    if (grid%centre > 0) state%axis_gap = axis_gap_in_contact(problem, grid, state, state%axis_gap)
-    select case (control%kind)
-    case (at_axis_gap)
-      g(n + 1) = state%axis_gap - control%value
-    case (at_edge_radius, at_h0_with_edge)
-      edge_gap = state%h0 + 0.5_wp*state%scale**2 + raised(centre_row)
-      g(n + 1) = edge_gap - problem%law%edge_gap
-    end select
-    state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
-    ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
-    if (grid%is_bounded()) &
-      state%load = state%load + 2*pi*sum(problem%law%energy([gap_at_end(grid, state)]))
-    state%residual = maxval(abs(g(n + 1:)))
-    state%residual = max(state%residual, maxval(abs(g(:n))/max(1.0_wp, state%gap/far_gap)))
-    ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
-    if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
-  end subroutine evaluate
+    associate (problem => equations%problem, cost => equations%cost, &
+      grid => equations%pair%grid(control%mesh))
+      n = node_count(control, size(z))
+      call unpack(control, z, state%h0, state%scale)
+      state%gap = z(:n)
+      if (.not. defined(problem, z, state)) then
+        g = 0
+        state%pressure = 0*g(:n)
+        state%load = 0
+        state%axis_gap = state%h0
+        state%residual = huge(1.0_wp)
+        return
+      end if
+      state%pressure = problem%law%pressure(state%gap)
+      cost%pressure_evaluations = cost%pressure_evaluations + n
+      raised = 0
+      if (problem%coupling > 0) then
+        columns = acting_columns(state%pressure)
+        call multiply(grid%kernel, columns, state%pressure, raised)
+        raised = 2*problem%coupling*state%scale*raised
+        cost%operator_products = cost%operator_products + 1
+        cost%operator_columns = cost%operator_columns + columns
+      end if
+      g(:n) = state%gap - state%h0 - 0.5_wp*(state%scale*grid%x(:n))**2 - raised(first_node:)
+      state%axis_gap = state%h0 + raised(axis_row)
+      if (grid%centre > 0) &
+        state%axis_gap = axis_gap_in_contact(problem, grid, state, state%axis_gap)
+      select case (control%kind)
+      case (at_axis_gap)
+        g(n + 1) = state%axis_gap - control%value
+      case (at_edge_radius, at_h0_with_edge)
+        edge_gap = state%h0 + 0.5_wp*state%scale**2 + raised(centre_row)
+        g(n + 1) = edge_gap - problem%law%edge_gap
+      end select
+      state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
+      ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
+      if (grid%is_bounded()) &
+        state%load = state%load + 2*pi*sum(problem%law%energy([gap_at_end(grid, state)]))
+      state%residual = maxval(abs(g(n + 1:)))
+      state%residual = max(state%residual, maxval(abs(g(:n))/max(1.0_wp, state%gap/far_gap)))
+      ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
+      if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
+    end associate
+  end subroutine residual
 
   !> The gap on the axis, which is no node, as if it were a further one. By the equation there it is
   !> `integrated`. In a stiff contact that is off by many times what the polynomials lack of the

@@ -19,7 +19,6 @@ module experiment
   use result_errors, only: judge_locked, judge_fixed
   use path, only: follow_path
   use records, only: observer_t
-  use equilibrium, only: cost_t
   use clock, only: seconds
   use blas_threads, only: use_threads_for
   implicit none

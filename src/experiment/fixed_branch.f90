@@ -17,8 +17,21 @@ module fixed_branch
     procedure :: expected_at
     procedure :: follow
     procedure :: solve_at
+    procedure, private :: try_step
     procedure, private :: linearise
   end type fixed_branch_t
+
+  !> What lies ahead on a branch: dH/dH0 and the logarithm of the Jacobian's determinant where it is
+  !> regular, and that before the last step; how far ahead a fold is, huge where none shows, whether
+  !> it is near enough to go for, and whether what was foreseen has been borne out.
+  type :: outlook_t
+    real(wp), allocatable :: rate(:)
+    real(wp) :: determinant = 0, before = 0, distance = huge(1.0_wp)
+    logical :: regular = .false., foreseen = .false., trusted = .true.
+  contains
+    procedure :: foresee
+    procedure :: forget
+  end type outlook_t
 
   !> A state continues the branch that was extrapolated to it if it lies no farther from the
   !> extrapolation than half the extrapolated change plus this many of the law's lengths. Where even
@@ -94,10 +107,10 @@ contains
     type(step_result_t), intent(inout) :: event
     real(wp), intent(out) :: beyond
     logical, intent(out) :: arrived, at_fold
-    type(state_t) :: state, expected
-    real(wp), allocatable :: rate(:)
-    real(wp) :: step, next, distance, distance_before, sense, left, determinant, determinant_before
-    logical :: continues, foreseen, trusted, regular
+    type(outlook_t) :: ahead
+    type(state_t) :: state
+    real(wp) :: step, next, sense
+    logical :: continues
     integer :: states, allowed
 
     sense = sign(1.0_wp, h0 - position%state%h0)
@@ -105,40 +118,17 @@ contains
     beyond = h0
     arrived = .false.
     at_fold = .false.
-    foreseen = .false.
-    trusted = .true.
-    distance_before = huge(1.0_wp)
-    call self%linearise(position%state, rate, determinant, regular)
-    states = 0
+    call self%linearise(position%state, ahead)
     allowed = max(few_states, int(min(most_cubes/real(self%pair%grid(1)%nodes, wp)**3, 1.0e3_wp)))
-    do while (step > self%jump_tolerance)
-      states = states + 1
-      if (states > allowed) then
-        beyond = h0
-        return
-      end if
+    do states = 1, allowed
+      if (.not. step > self%jump_tolerance) return
       next = position%state%h0 + sense*step
       if (abs(h0 - position%state%h0) <= 1.1_wp*step) next = h0
-      if (foreseen) then
-        expected = towards_fold(position%state, rate, next, distance)
-      else
-        expected = self%expected_at(next, position)
-      end if
-      call self%continue_to(next, position, expected, state, event, continues)
-      determinant_before = determinant
-      if (continues .and. self%options%method /= 'mixing') then
-        foreseen = regular
-        call self%linearise(state, rate, determinant, regular)
-        foreseen = foreseen .and. regular
-        ! Not beyond the fold, on the unstable branch.
-        if (regular) continues = determinant_sign(self%frozen%factors) > 0
-      end if
+      call self%try_step(next, position, ahead, state, event, continues)
       if (.not. continues) then
         beyond = next
         step = step/3
-        foreseen = .false.
-        trusted = .true.
-        distance_before = huge(1.0_wp)
+        call ahead%forget()
         cycle
       end if
       step = abs(next - position%state%h0)
@@ -147,51 +137,95 @@ contains
       if (arrived) return
       ! What failed before may have been too long a step.
       if ((beyond - next)*sense <= 0) beyond = h0
-      left = exp(2*(determinant - determinant_before))
-      foreseen = foreseen .and. left < 1
-      distance = huge(1.0_wp)
-      if (foreseen) distance = step*left/(1 - left)
-      at_fold = distance < near_fold*self%jump_tolerance
-      ! A fold that recedes is none: the edge only passes a node.
-      trusted = trusted .and. distance < 0.5_wp*distance_before
-      distance_before = merge(distance, huge(1.0_wp), foreseen)
-      foreseen = trusted .and. distance < abs(h0 - next)
-      if (.not. trusted) then
-        step = 2*step
-      else if (.not. foreseen) then
-        step = merge(0.5_wp*min(distance, abs(h0 - next)), 2*step, left < 1)
-      else if (distance > 2*self%jump_tolerance) then
-        step = distance - max(left_over*distance, self%jump_tolerance)
-      else
-        step = distance + self%jump_tolerance
-      end if
+      call ahead%foresee(abs(h0 - next), self%jump_tolerance, step)
+      at_fold = ahead%distance < near_fold*self%jump_tolerance
     end do
+    if (step > self%jump_tolerance) beyond = h0
   end subroutine follow
 
-  !> dH/dH0 along the branch at a state, and the logarithm of the Jacobian's determinant; regular:
-  !> there are such. Mixing, the iteration without derivatives, does without. The factorisation is
-  !> left for the next solution.
-  subroutine linearise(self, state, rate, determinant, regular)
+  !> Takes a step to h0 from a position, towards the fold that is foreseen or as extrapolated.
+  subroutine try_step(self, h0, position, ahead, state, event, continues)
+    class(fixed_branch_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(in) :: position
+    type(outlook_t), intent(inout) :: ahead
+    type(state_t), intent(out) :: state
+    type(step_result_t), intent(inout) :: event
+    logical, intent(out) :: continues
+    type(state_t) :: expected
+
+    if (ahead%foreseen) then
+      expected = towards_fold(position%state, ahead%rate, h0, ahead%distance)
+    else
+      expected = self%expected_at(h0, position)
+    end if
+    call self%continue_to(h0, position, expected, state, event, continues)
+    ahead%before = ahead%determinant
+    if (.not. continues .or. self%options%method == 'mixing') return
+    ahead%foreseen = ahead%regular
+    call self%linearise(state, ahead)
+    ahead%foreseen = ahead%foreseen .and. ahead%regular
+    ! Not beyond the fold, on the unstable branch.
+    if (ahead%regular) continues = determinant_sign(self%frozen%factors) > 0
+  end subroutine try_step
+
+  !> Looks for a fold after a step, and makes it the next one; left: what is left of the way.
+  pure subroutine foresee(self, left, tolerance, step)
+    class(outlook_t), intent(inout) :: self
+    real(wp), intent(in) :: left, tolerance
+    real(wp), intent(inout) :: step
+    real(wp) :: ratio, distance
+
+    ratio = exp(2*(self%determinant - self%before))
+    self%foreseen = self%foreseen .and. ratio < 1
+    distance = huge(1.0_wp)
+    if (self%foreseen) distance = step*ratio/(1 - ratio)
+    ! A fold that recedes is none: the edge only passes a node.
+    self%trusted = self%trusted .and. distance < 0.5_wp*self%distance
+    self%distance = distance
+    self%foreseen = self%trusted .and. distance < left
+    if (.not. self%trusted) then
+      step = 2*step
+    else if (.not. self%foreseen) then
+      step = merge(0.5_wp*min(distance, left), 2*step, ratio < 1)
+    else if (distance > 2*tolerance) then
+      step = distance - max(left_over*distance, tolerance)
+    else
+      step = distance + tolerance
+    end if
+  end subroutine foresee
+
+  !> Starts looking anew where a step has failed.
+  pure subroutine forget(self)
+    class(outlook_t), intent(inout) :: self
+
+    self%foreseen = .false.
+    self%trusted = .true.
+    self%distance = huge(1.0_wp)
+  end subroutine forget
+
+  !> dH/dH0 along the branch at a state, and the logarithm of the Jacobian's determinant, if it is
+  !> regular. Mixing, the iteration without derivatives, does without. The factorisation is left for
+  !> the next solution.
+  subroutine linearise(self, state, ahead)
     class(fixed_branch_t), intent(inout) :: self
     type(state_t), intent(in) :: state
-    real(wp), allocatable, intent(out) :: rate(:)
-    real(wp), intent(out) :: determinant
-    logical, intent(out) :: regular
+    type(outlook_t), intent(inout) :: ahead
     type(control_t) :: control
 
-    determinant = 0
-    regular = .false.
+    ahead%determinant = 0
+    ahead%regular = .false.
     if (self%options%method == 'mixing') return
     control%value = state%h0
     call factorise_jacobian(self%equations_t, control, state, self%frozen%factors)
     self%frozen%control_kind = control%kind
     self%frozen%mesh = control%mesh
     self%frozen%served = 0
-    regular = self%frozen%factors%valid
-    if (.not. regular) return
-    determinant = log_determinant(self%frozen%factors)
-    rate = -control_derivative(self%equations_t, control, state)
-    call solve(self%frozen%factors, rate)
+    ahead%regular = self%frozen%factors%valid
+    if (.not. ahead%regular) return
+    ahead%determinant = log_determinant(self%frozen%factors)
+    ahead%rate = -control_derivative(self%equations_t, control, state)
+    call solve(self%frozen%factors, ahead%rate)
   end subroutine linearise
 
   !> Solves at h0 from the guess `state`.

@@ -118,7 +118,8 @@ contains
     end do
   end subroutine judge_cycle
 
-  !> Of nothing there is no error; a path that was judged before counts too.
+  !> Hands the cost back to the steps, and the largest error on. Of nothing there is no error; a
+  !> path that was judged before counts too.
   subroutine conclude(judge, outcome)
     type(judge_t), intent(inout) :: judge
     type(experiment_result_t), intent(inout) :: outcome

@@ -3,7 +3,6 @@
 module unique_stepper
   use kinds, only: wp
   use equilibrium, only: state_t
-  use edge_locked, only: contact
   use locked_stepper, only: locked_stepper_t
   use continuation, only: between
   use ending, only: touching, steps_lost
@@ -32,7 +31,8 @@ contains
     type(step_result_t), intent(out) :: event
 
     call self%begin_afar(h0, position, event)
-    if (.not. event%ending%early() .and. position%state%h0 > h0) call self%step_to(h0, position, event)
+    if (event%ending%early()) return
+    if (position%state%h0 > h0) call self%step_to(h0, position, event)
   end subroutine approach_to
 
   subroutine step_to(self, h0, position, event)

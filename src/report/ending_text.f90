@@ -8,8 +8,8 @@ module ending_text
 
 contains
 
-  !> The reason in words, blank if it ended as planned. (Not of deferred length, which gfortran keeps
-  !> in static storage that the cases of a sweep share.)
+  !> The reason in words, blank if it ended as planned. (Not of deferred length, which gfortran
+  !> keeps in static storage that the cases of a sweep share.)
   pure function text_of(ending) result(text)
     type(ending_t), intent(in) :: ending
     character(len=160) :: text
@@ -18,7 +18,8 @@ contains
     case (touching)
       text = 'rigid bodies would touch: so near (h0 <= 0, or far below it) this law has no pressure'
     case (beyond_rounding)
-      text = 'adhesion is so strong that rounding hides the force law once the bodies are in contact'
+      text = 'adhesion is so strong that rounding hides the force law once the bodies are in ' // &
+        'contact'
     case (no_equilibrium)
       text = 'no stable equilibrium exists beyond this h0'
     case (path_lost)

@@ -76,12 +76,14 @@ contains
   !> Whether every branch came to its end.
   pure logical function ended_as_planned(outcome) result(ended)
     type(experiment_result_t), intent(in) :: outcome
+    logical :: early
 
-    ended = .true.
-    if (allocated(outcome%path)) ended = .not. outcome%path%ending%early()
-    if (allocated(outcome%stepped_path)) ended = ended .and. .not. outcome%stepped_path%ending%early()
-    if (allocated(outcome%loading)) ended = ended .and. .not. outcome%loading%ending%early()
-    if (allocated(outcome%unloading)) ended = ended .and. .not. any(outcome%unloading%ending%early())
+    early = .false.
+    if (allocated(outcome%path)) early = outcome%path%ending%early()
+    if (allocated(outcome%stepped_path)) early = early .or. outcome%stepped_path%ending%early()
+    if (allocated(outcome%loading)) early = early .or. outcome%loading%ending%early()
+    if (allocated(outcome%unloading)) early = early .or. any(outcome%unloading%ending%early())
+    ended = .not. early
   end function ended_as_planned
 
   !> What follows from the deck alone.

@@ -174,10 +174,10 @@ contains
   pure real(wp) function linear_range(problem, gap)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap
-    real(wp) :: most(1)
+    real(wp) :: range(1)
 
-    most = problem%law%closure([gap])
-    linear_range = most(1)
+    range = problem%law%closure([gap])
+    linear_range = range(1)
   end function linear_range
 
   !> The next gap of the search.

@@ -1,0 +1,183 @@
+!> How a branch on a mesh fixed in space ends, and where the bodies go from there.
+module fixed_jumps
+  use kinds, only: wp
+  use equilibrium, only: control_t, state_t, holds, radius_of_gap, lost_in_rounding
+  use solver_options, only: solver_options_t, newton_of
+  use anderson, only: solve_anderson
+  use relaxation, only: relax
+  use contact_scales, only: largest_radius
+  use ending, only: no_equilibrium
+  use fixed_branch, only: fixed_branch_t, change, jump
+  use stepper, only: branch_point_t, step_result_t, remember
+  implicit none
+  private
+  public :: fixed_jumps_t, locate_jump
+
+  type, abstract, extends(fixed_branch_t) :: fixed_jumps_t
+  contains
+    procedure :: is_lost
+    procedure :: follow_to_end
+    procedure :: slip_to
+    procedure :: jump_to
+    procedure :: land
+    procedure :: stays
+    procedure, private :: goes_on
+  end type fixed_jumps_t
+
+  !> Newton's method needs few iterations, or is not going to arrive.
+  integer, parameter :: newton_iterations = 12
+  !> How often Newton's method may help the iteration on in a step before that is said to fail.
+  integer, parameter :: most_rescues = 5
+
+contains
+
+  !> Whether rounding hides the contact at h0. No contact is larger than the mesh.
+  pure logical function is_lost(self, h0)
+    class(fixed_jumps_t), intent(in) :: self
+    real(wp), intent(in) :: h0
+
+    associate (mesh => self%pair%grid(1))
+      is_lost = self%problem%law%adhesion > 0 .and. lost_in_rounding(self%problem, &
+        min(largest_radius(self%problem, h0, 0.0_wp), mesh%end))
+    end associate
+  end function is_lost
+
+  !> Follows the branch towards h0. stalled: it goes on, but the iteration does not. Neither that
+  !> nor arrived: it ends before `beyond`.
+  subroutine follow_to_end(self, h0, position, event, beyond, arrived, stalled)
+    class(fixed_jumps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+    real(wp), intent(out) :: beyond
+    logical, intent(out) :: arrived, stalled
+    type(state_t) :: state
+    logical :: at_fold
+    integer :: rescues
+
+    do rescues = 0, most_rescues
+      call self%follow(h0, position, event, beyond, arrived, at_fold)
+      stalled = .false.
+      if (.not. (arrived .or. at_fold)) stalled = self%goes_on(beyond, position%state, state)
+      if (.not. stalled) return
+      ! Near its end a branch turns sharply, and is worth another try.
+      call remember(position, state, 1, .false.)
+      event%converged = .true.
+      arrived = abs(beyond - h0) <= 0.0_wp
+      if (arrived) return
+    end do
+  end subroutine follow_to_end
+
+  !> From the end of a branch to where the edge, held by the next nodes, may come to rest before h0,
+  !> and the tension grow again.
+  subroutine slip_to(self, beyond, h0, position, event, slipped)
+    class(fixed_jumps_t), intent(inout) :: self
+    real(wp), intent(in) :: beyond, h0
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+    logical, intent(out) :: slipped
+    type(state_t) :: landed
+
+    slipped = .false.
+    if (.not. position%state%axis_gap < self%problem%law%edge_gap .or. &
+      self%options%method == 'mixing') return
+    call self%land(beyond, position%state, landed, event)
+    slipped = self%stays(position%state, landed, event) .and. abs(beyond - h0) > 0.0_wp
+    if (.not. slipped) return
+    event%jumped = .true.
+    call locate_jump(event, position%state, beyond)
+    call remember(position, landed, 1, .true.)
+  end subroutine slip_to
+
+  !> From the end of a branch, which is before `beyond`, the bodies go to where they went from
+  !> before it (has_landed: to `landed`).
+  subroutine jump_to(self, h0, beyond, has_landed, landed, position, event)
+    class(fixed_jumps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0, beyond
+    logical, intent(in) :: has_landed
+    type(state_t), intent(inout) :: landed
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+
+    event%converged = has_landed
+    if (.not. has_landed) call self%land(h0, position%state, landed, event)
+    associate (before => position%state, law => self%problem%law)
+      ! From where there was no equilibrium nothing jumps.
+      event%jumped = event%converged .and. change(before, landed) > jump .and. &
+        holds(self%problem, self%options%tolerance, before)
+      if (.not. event%converged .and. law%adhesion > 0 .and. .not. law%edge_gap > 0) then
+        ! Nothing stops the fall of bodies that only attract.
+        event%jumped = .true.
+        event%ending%cause = no_equilibrium
+      end if
+      call locate_jump(event, before, beyond)
+    end associate
+    call remember(position, landed, 1, event%jumped)
+  end subroutine jump_to
+
+  !> A jump from the branch of `before`, which ends between its h0 and `beyond`.
+  pure subroutine locate_jump(event, before, beyond)
+    type(step_result_t), intent(inout) :: event
+    type(state_t), intent(in) :: before
+    real(wp), intent(in) :: beyond
+
+    event%jump_h0 = 0.5_wp*(before%h0 + beyond)
+    event%jump_load = before%load
+    event%jump_uncertainty = 0.5_wp*abs(beyond - before%h0)
+  end subroutine locate_jump
+
+  !> Whether the branch of the state `before` goes on to an h0 close by, where the iteration has not
+  !> found it: by Newton's method, whatever the deck says of iterations. Where it does, to `state`,
+  !> the iteration has failed; where not, the bodies jump.
+  logical function goes_on(self, h0, before, state)
+    class(fixed_jumps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(state_t), intent(in) :: before
+    type(state_t), intent(out) :: state
+    type(solver_options_t) :: newton
+
+    goes_on = .false.
+    if (self%options%method == 'mixing') return
+    newton = newton_of(self%options)
+    newton%most_iterations = newton_iterations
+    state = before
+    self%frozen%factors%valid = .false.
+    call solve_anderson(self%equations_t, newton, self%frozen, control_t(value=h0), state, goes_on)
+    self%frozen%factors%valid = .false.
+    goes_on = goes_on .and. change(before, state) <= jump
+  end function goes_on
+
+  !> Where the bodies go from the state `before` when h0 is changed to a value at which its branch
+  !> has ended. Mixing relaxes by itself.
+  subroutine land(self, h0, before, state, event)
+    class(fixed_jumps_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(state_t), intent(in) :: before
+    type(state_t), intent(inout) :: state
+    type(step_result_t), intent(inout) :: event
+
+    state = before
+    if (self%options%method == 'mixing') then
+      call self%solve_at(h0, state, event)
+      return
+    end if
+    call relax(self%equations_t, self%options, control_t(value=h0), state, event%converged)
+    self%frozen%factors%valid = .false.
+  end subroutine land
+
+  !> Whether bodies that came from one state to the other by relaxation stayed in contact:
+  !> whatever jump there was on the way was one of the edge, from node to node.
+  logical function stays(self, before, after, event)
+    class(fixed_jumps_t), intent(in) :: self
+    type(state_t), intent(in) :: before, after
+    type(step_result_t), intent(in) :: event
+    real(wp) :: from, to
+
+    stays = .false.
+    if (.not. event%converged .or. .not. self%problem%law%edge_gap > 0) return
+    from = radius_of_gap(self%problem%law%edge_gap, self%pair%grid(1), before)
+    to = radius_of_gap(self%problem%law%edge_gap, self%pair%grid(1), after)
+    stays = min(from, to) > 0.5_wp*max(from, to)
+  end function stays
+
+end module fixed_jumps

@@ -1,0 +1,163 @@
+!> The path near a state on a finer mesh: a parabola in its coordinate, whose slopes are exact
+!> (`path_slopes`). From it the same state follows, at the h0 or at the extremum that defines it.
+!> That holds beside folds too, where an h0 that is off by little moves the load by much.
+module path_expansion
+  use kinds, only: wp
+  use equilibrium, only: state_t
+  use continuation, only: path_control
+  use path_slopes, only: slopes_along_path
+  use potential_energy, only: energy_of
+  use reported, only: measure_t
+  use error_estimate, only: finer_t
+  implicit none
+  private
+  public :: expansion_t, move_to, solve_fine, distance_to, measure_at
+  public :: extremum_of_h0, extremum_of_load, at_h0
+
+  !> Value, slope and second derivative by the path's coordinate.
+  type :: parabola_t
+    real(wp) :: value = 0, slope = 0, curvature = 0
+  end type parabola_t
+
+  !> The path near the coordinate s on a finer mesh, and the state there.
+  type :: expansion_t
+    real(wp) :: s = 0
+    type(parabola_t) :: h0, load, axis_gap
+    real(wp) :: energy = 0
+    type(state_t) :: state
+  end type expansion_t
+
+  !> What defines a state: it is an extremum of h0 or of the load, or it is at a given h0.
+  integer, parameter :: extremum_of_h0 = 1, extremum_of_load = 2, at_h0 = 3
+
+  !> Distance of the second state of an expansion; how far an expansion is believed; its longest
+  !> move, and how often it may.
+  real(wp), parameter :: apart = 1.0e-4_wp, believed = 1.0e-3_wp, farthest = 0.1_wp
+  integer, parameter :: most_moves = 8
+
+contains
+
+  !> Moves an expansion along the path until the state that `kind` defines, at h0 if that is it, is
+  !> near, and says how far it is. found = .false.: the finer mesh has no such state.
+  subroutine move_to(fine, mesh, kind, h0, near, distance, found)
+    type(finer_t), intent(inout) :: fine
+    integer, intent(in) :: mesh, kind
+    real(wp), intent(in) :: h0
+    type(expansion_t), intent(inout) :: near
+    real(wp), intent(out) :: distance
+    logical, intent(out) :: found
+    integer :: move
+
+    do move = 1, most_moves
+      call expand(fine, mesh, near, found)
+      if (.not. found) return
+      distance = distance_to(near, kind, h0)
+      found = abs(distance) <= believed
+      if (found) return
+      near%s = near%s + sign(min(abs(distance), farthest), distance)
+    end do
+  end subroutine move_to
+
+  !> Expands the path at near%s, from the guess near%state; found = .false. where the finer mesh has
+  !> no such state.
+  subroutine expand(fine, mesh, near, found)
+    type(finer_t), intent(inout) :: fine
+    integer, intent(in) :: mesh
+    type(expansion_t), intent(inout) :: near
+    logical, intent(out) :: found
+    type(state_t) :: second
+    real(wp) :: slopes(2), slopes_there(2), uncertainty
+
+    call solve_fine(fine, mesh, near%s, near%state, found, slopes)
+    if (.not. found) return
+    second = near%state
+    call solve_fine(fine, mesh, near%s + apart, second, found, slopes_there)
+    if (.not. found) return
+    near%h0 = parabola_t(near%state%h0, slopes(1), (slopes_there(1) - slopes(1))/apart)
+    near%load = parabola_t(near%state%load, slopes(2), (slopes_there(2) - slopes(2))/apart)
+    near%axis_gap = parabola_t(near%state%axis_gap, &
+      (second%axis_gap - near%state%axis_gap)/apart, 0.0_wp)
+    call energy_of(fine%equations_t, mesh, near%state, near%energy, uncertainty)
+  end subroutine expand
+
+  !> Solves for the state at the coordinate s on the finer mesh; slopes: of h0 and load by s.
+  subroutine solve_fine(fine, mesh, s, state, found, slopes)
+    type(finer_t), intent(inout) :: fine
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: found
+    real(wp), intent(out), optional :: slopes(2)
+
+    fine%frozen%factors%valid = .false.
+    associate (control => path_control(fine%problem, mesh, s))
+      call fine%find(control, state, found)
+      if (.not. (found .and. present(slopes))) return
+      call slopes_along_path(fine%equations_t, control, state, fine%frozen, slopes(1), slopes(2), &
+        found)
+      ! On both meshes the control's value is exp(s) and a constant.
+      slopes = slopes*exp(s)
+    end associate
+  end subroutine solve_fine
+
+  !> How far from the middle of an expansion the state is that `kind` defines. Beyond a fold, where
+  !> there is no state at h0, the fold stands for it.
+  pure real(wp) function distance_to(near, kind, h0) result(distance)
+    type(expansion_t), intent(in) :: near
+    integer, intent(in) :: kind
+    real(wp), intent(in) :: h0
+    real(wp) :: root
+
+    select case (kind)
+    case (extremum_of_h0)
+      distance = to_extremum(near%h0)
+    case (extremum_of_load)
+      distance = to_extremum(near%load)
+    case default
+      associate (missing => near%h0%value - h0, slope => near%h0%slope)
+        root = slope**2 - 2*near%h0%curvature*missing
+        if (root > 0) then
+          distance = -2*missing/(slope + sign(sqrt(root), slope))
+        else
+          distance = to_extremum(near%h0)
+        end if
+      end associate
+    end select
+
+  contains
+
+    pure real(wp) function to_extremum(parabola)
+      type(parabola_t), intent(in) :: parabola
+
+      to_extremum = huge(1.0_wp)
+      if (abs(parabola%curvature) > tiny(1.0_wp)) &
+        to_extremum = -parabola%slope/parabola%curvature
+    end function to_extremum
+
+  end function distance_to
+
+  !> What the state at a distance from the middle is reported by. The energy's derivative by h0 is
+  !> minus the load.
+  pure type(measure_t) function measure_at(near, distance) result(measure)
+    type(expansion_t), intent(in) :: near
+    real(wp), intent(in) :: distance
+
+    associate (h0 => near%h0, load => near%load)
+      measure%h0 = at(h0)
+      measure%load = at(load)
+      measure%displacement = at(near%axis_gap) - measure%h0
+      measure%energy = near%energy - distance*load%value*h0%slope - &
+        0.5_wp*distance**2*(load%slope*h0%slope + load%value*h0%curvature)
+    end associate
+
+  contains
+
+    pure real(wp) function at(parabola)
+      type(parabola_t), intent(in) :: parabola
+
+      at = parabola%value + distance*(parabola%slope + 0.5_wp*distance*parabola%curvature)
+    end function at
+
+  end function measure_at
+
+end module path_expansion
