@@ -113,9 +113,10 @@ contains
         cost%operator_columns = cost%operator_columns + columns
       end if
       g(:n) = state%gap - state%h0 - 0.5_wp*(state%scale*grid%x(:n))**2 - raised(first_node:)
+      ! In a stiff contact the equation for the axis, which is no node, is off by many times what the
+      ! polynomials lack of the pressure between the nodes; their gaps tell it better.
       state%axis_gap = state%h0 + raised(axis_row)
-      if (grid%centre > 0) &
-        state%axis_gap = axis_gap_in_contact(problem, grid, state, state%axis_gap)
+      if (grid%centre > 0) state%axis_gap = dot_product(grid%at_axis, above_parabola(grid, state))
       select case (control%kind)
       case (at_axis_gap)
         g(n + 1) = state%axis_gap - control%value
@@ -133,23 +134,6 @@ contains
       if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
     end associate
   end subroutine residual
-
-  !> The gap on the axis, which is no node, as if it were a further one. By the equation there it is
-  !> `integrated`. In a stiff contact that is off by many times what the polynomials lack of the
-  !> pressure between the nodes, and the gaps of the nodes tell it better.
-  pure real(wp) function axis_gap_in_contact(problem, grid, state, integrated) result(gap)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: integrated
-    real(wp) :: interpolated, slope(1), stiffness
-
-    interpolated = dot_product(grid%at_axis, above_parabola(grid, state))
-    slope = problem%law%slope([max(interpolated, problem%law%smallest_gap)])
-    ! The pressure within the first node raises the axis by 2 coupling c 2 x(1) of it.
-    stiffness = 4*problem%coupling*state%scale*grid%x(1)*abs(slope(1))
-    gap = (integrated + stiffness*interpolated)/(1 + stiffness)
-  end function axis_gap_in_contact
 
   !> Whether unknowns are such that pressures, and all that follows from them, are numbers.
   pure logical function defined(problem, z, state)

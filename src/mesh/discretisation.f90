@@ -7,10 +7,14 @@
 module discretisation
   use kinds, only: wp, long
   use panel_map, only: panel_map_t
+  use interpolation, only: polynomial_weights
   use quadrature, only: gauss_legendre, barycentric_weights, lagrange_basis
   implicit none
   private
   public :: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, first_node
+
+  !> Nodes that tell the value on the axis.
+  integer, parameter :: nodes_at_axis = 6
 
   !> Rows of the kernel matrix.
   integer, parameter :: axis_row = 1, centre_row = 2, first_node = 3
@@ -89,13 +93,14 @@ contains
     end associate
   end function interpolate
 
-  !> Fills in at_axis, once the panels are known.
+  !> Fills in at_axis, once the nodes are known: what is even in the distance from the axis is a
+  !> polynomial of its square, and through the nearest nodes that converges faster than the panel's.
   pure subroutine note_axis(self)
     class(discretisation_t), intent(inout) :: self
 
     allocate (self%at_axis(self%nodes), source=0.0_wp)
-    associate (local => self%local(self%which(1)))
-      self%at_axis(:size(local%node)) = lagrange_basis(local%node, local%barycentric, 0.0_wp)
+    associate (n => min(nodes_at_axis, self%nodes))
+      self%at_axis(:n) = polynomial_weights(self%x(:n)**2, 0.0_wp)
     end associate
   end subroutine note_axis
 
