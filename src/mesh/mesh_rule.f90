@@ -145,7 +145,7 @@ contains
   pure real(wp) function kernel_digits(digits)
     real(wp), intent(in) :: digits
 
-    kernel_digits = 3 + 0.5_wp*digits
+    kernel_digits = max(5.0_wp, 0.5_wp + 0.85_wp*digits)
   end function kernel_digits
 
 end module mesh_rule
