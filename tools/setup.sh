@@ -108,6 +108,15 @@ compile() {
   esac
 }
 
+# So that `import snapin` finds the package and its compiled half of this checkout in the virtual
+# environment's Python. Paths are those from the folder that the file is in.
+let_python_find_snapin() {
+  for site in "$venv"/lib/python3*/site-packages; do
+    [ -f "$site/snapin.pth" ] ||
+      printf '../../../../%s\n' pywrap build/pywrap > "$site/snapin.pth"
+  done
+}
+
 # What environment and build depend on: their place, since both contain absolute paths, the Python
 # they were made with, and the versions asked for.
 foundation() {
@@ -135,6 +144,7 @@ bring_up_to_date() {
     configure
     foundation > "$build/complete"
   fi
+  let_python_find_snapin
   compile
 }
 

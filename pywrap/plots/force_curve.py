@@ -7,8 +7,7 @@
 import itertools
 
 import numpy as np
-from matplotlib.figure import Figure
-from read_results import (
+from drawing import (
     BLACK,
     BLUE,
     GREEN,
@@ -17,15 +16,14 @@ from read_results import (
     PURPLE,
     SKY,
     VERMILION,
-    ResultsError,
     dress,
-    read_summary,
-    read_table,
     run,
     scale,
     smooth,
     title_of,
 )
+from matplotlib.figure import Figure
+from snapin.results import ResultsError, read_summary, read_table
 
 # Unloadings often lie on each other and on the loading: the later, the thinner.
 _LOADING = {"color": BLUE, "linewidth": 1.5, "zorder": 5}

@@ -6,10 +6,11 @@
 
 import matplotlib
 import numpy as np
+from drawing import dress, run, scale, title_of
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
-from read_results import ResultsError, dress, read_summary, read_table, run, scale, title_of
+from snapin.results import ResultsError, read_summary, read_table
 
 # Beyond the last place with this share of the largest pressure there is nothing to see.
 _FAINT = 0.02

@@ -1,8 +1,8 @@
-"""The snapin library as NumPy sees it: arrays in, arrays out, SI units, errors as exceptions.
+"""snapin from Python: a deck in, arrays and dictionaries out, SI units, errors as exceptions.
 
-`force_curve` and `equilibrium_path` run whole calculations, as the program does on decks; the rest
-is the pieces, for looking at by hand and for tests. Each module here wraps one part of the library;
-this file gathers the names that users call.
+`run` computes whatever a deck can ask for; `force_curve` and `equilibrium_path` write the deck
+themselves. The rest is the pieces, for looking at by hand and for tests. Each module here wraps one
+part of the library; this file gathers the names that users call.
 """
 
 import os
@@ -10,7 +10,7 @@ import os
 import _snapin
 
 from .approximations import approximation_rows, jump_estimates, slow_deformation
-from .arguments import SnapinError, SnapinWarning
+from .arguments import DeckError, SnapinError, SnapinWarning
 from .classical import (
     cohesive_zone,
     contact_curve,
@@ -19,7 +19,8 @@ from .classical import (
     profile,
     pull_off,
 )
-from .experiment import EquilibriumPath, ForceCurve, equilibrium_path, force_curve
+from .deck import deck_text, exponential, lennard_jones
+from .experiment import EquilibriumPath, ForceCurve, equilibrium_path, force_curve, run
 from .numerics import (
     equilibrium,
     force_law,
@@ -31,22 +32,24 @@ from .numerics import (
     panel_weights,
     uniform_mesh,
 )
-from .scene import ForceLaw, exponential, lennard_jones
+from .results import Result, read_results
 
 # Where there is no fork there is nothing to register.
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_snapin.snapin_flat.use_one_thread)
+    os.register_at_fork(after_in_child=_snapin.flat_deck.use_one_thread)
 
 __all__ = [
+    "DeckError",
     "EquilibriumPath",
     "ForceCurve",
-    "ForceLaw",
+    "Result",
     "SnapinError",
     "SnapinWarning",
     "approximation_rows",
     "cohesive_zone",
     "contact_curve",
     "contact_radius",
+    "deck_text",
     "equilibrium",
     "equilibrium_path",
     "exponential",
@@ -63,6 +66,8 @@ __all__ = [
     "panel_weights",
     "profile",
     "pull_off",
+    "read_results",
+    "run",
     "slow_deformation",
     "uniform_mesh",
 ]

@@ -1,6 +1,6 @@
-"""Slowly varying deformation: src/theory/slow_deformation.f90 and src/report/approximation_tables.f90.
+"""Slowly varying deformation, (21)-(37) of the paper: src/theory/slow_deformation.f90.
 
-(21)-(37) of the paper, SI. `radius`, `stiffness`, `rigid` and `law` are as in `force_curve`.
+SI; `radius`, `stiffness`, `rigid` and `law` are as in `force_curve`.
 """
 
 from typing import NamedTuple
@@ -8,14 +8,14 @@ from typing import NamedTuple
 import _snapin
 import numpy as np
 
-from .arguments import accept, one_of, positive_vector, scalar, vector
-from .arguments import count as whole
-from .scene import law_of, scene_of, within_reach
-
-_flat = _snapin.flat_approximations
+from .arguments import one_of, vector
+from .deck import accept_deck, problem_deck, scene
+from .experiment import run
+from .numerics import law_numbers
 
 _FORMS = ("quadrature", "closed_form", "attraction_only")
-_LARGEST_COUNT = 1000000
+# How &approximations calls what jumps, in the order of `JumpEstimates`.
+_JUMPS = ("jump_criterion_29", "jump_equation_37", "fold_attractive_only", "fold_closed_form")
 
 
 class SlowDeformation(NamedTuple):
@@ -45,55 +45,44 @@ class JumpEstimates(NamedTuple):
     fold: JumpState
 
 
-class Row(NamedTuple):
-    """A row of approximations.csv, SI; `contact_radius` is NaN."""
-
-    theory: str
-    h0: float
-    displacement: float
-    load: float
-    contact_radius: float
-
-
 def slow_deformation(gap, *, radius, stiffness=None, law, rigid=False, form="quadrature"):
     """Return the `SlowDeformation` at gaps on the axis [m].
 
     `form` is "quadrature", (22) and (23); "closed_form", (31) and (32) or (35a) and (36a); or
     "attraction_only", (35b) and (36b).
     """
-    law = law_of(law)
-    gap = (positive_vector if law.law == "lennard_jones" else vector)("gap", gap)
-    within_reach("gap", gap, law)
-    scene = scene_of(law, radius, stiffness, rigid)
-    *values, stat, message = _flat.slow_states(*scene, one_of("form", form, _FORMS), gap)
-    accept(stat, message)
+    gap = vector("gap", gap)
+    deck = problem_deck(law, radius, stiffness, rigid)
+    *values, stat, message = _snapin.flat_theory.slow_states(
+        deck, one_of("form", form, _FORMS), gap
+    )
+    accept_deck(stat, message)
     displacement, slope, load = values
+    if not np.isfinite(values).all():
+        raise ValueError("gap: displacement, slope or load leave the range of float64")
     return SlowDeformation(gap - displacement, displacement, slope, load)
 
 
 def jump_estimates(*, radius, stiffness=None, law, rigid=False):
     """Return the `JumpEstimates` for approaching bodies."""
-    values, stat, message = _flat.slow_jumps(*scene_of(law, radius, stiffness, rigid))
-    accept(stat, message)
-    return JumpEstimates(
-        *(None if np.isnan(jump).any() else JumpState(*map(float, jump)) for jump in values.T)
+    # Estimates do not depend on the range of the curves.
+    numbers = law_numbers(law)
+    far, near = (numbers.origin + n * numbers.length for n in (2, 1))
+    rows = approximation_rows(
+        far, near, radius=radius, stiffness=stiffness, law=law, rigid=rigid, count=2
     )
+    found = {row["theory"]: row for row in rows}
+    return JumpEstimates(*(_jump(found[name]) if name in found else None for name in _JUMPS))
+
+
+def _jump(row):
+    h0, displacement, load = (float(row[key]) for key in ("h0", "displacement", "load"))
+    return JumpState(h0 + displacement, h0, displacement, load)
 
 
 def approximation_rows(
     h0_start, h0_end, *, radius, stiffness=None, law, rigid=False, count=200
 ):
-    """Return the rows of approximations.csv over a range of h0 [m], a list of `Row`."""
-    h0_start, h0_end = scalar("h0_start", h0_start), scalar("h0_end", h0_end)
-    if not h0_end < h0_start:
-        raise ValueError(f"h0_end: {h0_end} is not below h0_start = {h0_start}")
-    scene = scene_of(law, radius, stiffness, rigid)
-    within_reach("h0_start", h0_start, law)
-    within_reach("h0_end", h0_end, law)
-    count = whole("count", count, 2, _LARGEST_COUNT)
-    theory, values, rows, stat, message = _flat.approximation_table(
-        *scene, h0_start, h0_end, count, 3 * count + 4
-    )
-    accept(stat, message)
-    names = (name.decode().strip() for name in theory[:rows])
-    return [Row(name, *map(float, row)) for name, row in zip(names, values.T)]
+    """Return the table of &approximations over a range of h0 [m]."""
+    group = {"h0_start": h0_start, "h0_end": h0_end, "count": count}
+    return run(scene(law, radius, stiffness, rigid, approximations=group)).approximations

@@ -17,18 +17,22 @@ class SnapinError(RuntimeError):
     """The library was asked for something sensible and could not do it."""
 
 
+class DeckError(SnapinError, ValueError):
+    """A deck is wrong; the message has line, group and key of every mistake."""
+
+
 class SnapinWarning(UserWarning):
     """A result is not all that was asked for: something did not converge, or is not resolved."""
 
 
-# Sizes go to Fortran as C ints, and results have up to eight columns.
+# Sizes go to Fortran as C ints.
 _MOST_VALUES = 2**27
 # Limits of a physical quantity in SI units: within them no product that the formulas form leaves
 # the range of float64, where NaN would pass for "no such state".
 _LEAST, _MOST = 1e-50, 1e50
 
 
-def _shown(value):
+def shown(value):
     """Return a short text for a message."""
     try:
         return reprlib.repr(value)
@@ -40,9 +44,9 @@ def _shown(value):
 # --- Numbers
 
 
-def _reals(name, values, most):
+def reals(name, values, most=np.inf):
     """Return `values`, of any shape, as a contiguous float64 array within +-`most`."""
-    refusal = f"{name}: real numbers are needed, not {_shown(values)}"
+    refusal = f"{name}: real numbers are needed, not {shown(values)}"
     try:
         given = np.asanyarray(values)
     except (TypeError, ValueError, OverflowError) as problem:
@@ -61,9 +65,9 @@ def _reals(name, values, most):
     except OverflowError:
         raise ValueError(f"{name}: too large for float64") from None
     if not np.isfinite(array).all():
-        raise ValueError(f"{name}: must be finite, not {_shown(values)}")
+        raise ValueError(f"{name}: must be finite, not {shown(values)}")
     if (abs(array) > most).any():
-        raise ValueError(f"{name}: must be within {most:g}, not {_shown(values)}")
+        raise ValueError(f"{name}: must be within {most:g}, not {shown(values)}")
     if given.dtype.kind != "f" and not _exact(given, array):
         raise ValueError(f"{name}: whole numbers this large are not exact in float64")
     return array
@@ -89,7 +93,7 @@ def _exact(given, array):
 
 def vector(name, values, *, most=_MOST):
     """Return `values` as a one-dimensional, contiguous array of finite float64; a number is one."""
-    array = _reals(name, values, most)
+    array = reals(name, values, most)
     if array.ndim > 1:
         raise ValueError(f"{name}: one dimension is needed, not shape {array.shape}")
     return array.reshape(-1)
@@ -123,7 +127,7 @@ def as_long_as(name, values, size):
 
 def scalar(name, value):
     """Return `value` as a finite float."""
-    array = _reals(name, value, _MOST)
+    array = reals(name, value, _MOST)
     if array.ndim > 0:
         raise TypeError(f"{name}: one number is needed, not shape {array.shape}")
     return float(array)
@@ -152,37 +156,30 @@ def count(name, value, least, most=2**31 - 1):
             raise TypeError
         number = operator.index(value)
     except (TypeError, ValueError):
-        raise TypeError(f"{name}: a whole number is needed, not {_shown(value)}") from None
+        raise TypeError(f"{name}: a whole number is needed, not {shown(value)}") from None
     if not least <= number <= most:
-        raise ValueError(f"{name}: must be from {least} to {most}, not {_shown(number)}")
+        raise ValueError(f"{name}: must be from {least} to {most}, not {shown(number)}")
     return number
 
 
-# --- Names and flags
+# --- Names
 
 
 def one_of(name, value, choices):
     """Return `value` as a str if it is one of `choices`."""
     if not isinstance(value, str) or value not in choices:
-        raise ValueError(f"{name}: must be one of {', '.join(choices)}, not {_shown(value)}")
+        raise ValueError(f"{name}: must be one of {', '.join(choices)}, not {shown(value)}")
     return str(value)
-
-
-def flag(name, value):
-    """Return `value` as a bool if it is True or False."""
-    if not isinstance(value, (bool, np.bool_)):
-        raise TypeError(f"{name}: True or False is needed, not {_shown(value)}")
-    return bool(value)
 
 
 def instance(name, value, kind, origin):
     """Return `value` if it is of this class; `origin` says where one comes from."""
     if not isinstance(value, kind):
-        raise TypeError(f"{name}: must come from {origin}, not {_shown(value)}")
+        raise TypeError(f"{name}: must come from {origin}, not {shown(value)}")
     return value
 
 
-# --- Memory, and what the library says
+# --- Memory
 
 
 def room_for(name, needed):
@@ -206,11 +203,3 @@ def _free_memory():
         return 1024 * int(rows["MemAvailable"].split()[0])
     except (OSError, KeyError, ValueError):
         return float("inf")
-
-
-def accept(stat, message):
-    """Raise what the library reported; `stat` is 0, or the kind in src/base/failure.f90."""
-    if stat == 0:
-        return
-    text = message.decode(errors="replace").strip()
-    raise ValueError(text) if stat == 1 else SnapinError(text)

@@ -7,10 +7,11 @@ the theory has no equilibrium.
 """
 
 import _snapin
+import numpy as np
 
-from .arguments import accept, not_negative, one_of, positive, positive_vector, vector
+from .arguments import not_negative, one_of, positive, positive_vector, vector
 
-_flat = _snapin.snapin_flat
+_flat = _snapin.flat_theory
 
 # The material constants each theory needs, besides radius and stiffness.
 _NEEDS = {
@@ -33,6 +34,14 @@ def _material(theory, radius, stiffness, surface_energy, strength=0.0):
     return positive("radius", radius), positive("stiffness", stiffness), *checked
 
 
+def _values(theory, quantity, x, material, a=0.0):
+    """Return a quantity of a theory at values `x`, `a` being a contact radius."""
+    values, stat = _flat.classical_values(theory, quantity, x, a, *material)
+    if stat:
+        raise ValueError(f"theory: {theory!r} has no {quantity.replace('_', ' ')}")
+    return values
+
+
 def contact_radius(
     theory, control, values, *, radius, stiffness, surface_energy=0.0, strength=0.0
 ):
@@ -47,9 +56,7 @@ def contact_radius(
     values = vector("values", values)
     if control == "edge_ratio" and not (values > 1).all():
         raise ValueError("values: every edge_ratio must be above 1")
-    a, stat, message = _flat.classical_states(theory, control, values, *material)
-    accept(stat, message)
-    return a
+    return _values(theory, f"radius at {control}", values, material)
 
 
 def contact_curve(
@@ -58,9 +65,7 @@ def contact_curve(
     """Return load [N] and displacement [m] at contact radii [m], all above zero."""
     material = _material(theory, radius, stiffness, surface_energy, strength)
     a = positive_vector("contact_radius", contact_radius)
-    load, displacement, stat, message = _flat.classical_curve(theory, a, *material)
-    accept(stat, message)
-    return load, displacement
+    return tuple(_values(theory, name, a, material) for name in ("load", "displacement"))
 
 
 def profile(theory, r, contact_radius, *, radius, stiffness, surface_energy=0.0):
@@ -70,18 +75,13 @@ def profile(theory, r, contact_radius, *, radius, stiffness, surface_energy=0.0)
     if (r < 0).any():
         raise ValueError("r: must not be negative")
     a = positive("contact_radius", contact_radius)
-    pressure, gap, stat, message = _flat.classical_profile(theory, r, a, *material[:3])
-    accept(stat, message)
-    return pressure, gap
+    return tuple(_values(theory, name, r, material, a) for name in ("pressure", "gap"))
 
 
 def load_at_displacement(theory, displacement, *, radius, stiffness, surface_energy=0.0):
     """Return loads [N] at displacements [m], on the branch stable at fixed displacement."""
     material = _material(theory, radius, stiffness, surface_energy, strength=1.0)
-    displacement = vector("displacement", displacement)
-    load, stat, message = _flat.classical_loads(theory, displacement, *material[:3])
-    accept(stat, message)
-    return load
+    return _values(theory, "load at displacement", vector("displacement", displacement), material)
 
 
 def pull_off(
@@ -90,9 +90,7 @@ def pull_off(
     """Return the load [N], negative, at which the bodies part at a fixed `control`."""
     material = _material(theory, radius, stiffness, surface_energy, strength)
     one_of("control", control, _CONTROLS)
-    load, stat, message = _flat.classical_pull_off(theory, control, *material)
-    accept(stat, message)
-    return load
+    return float(_values(theory, f"pull_off at {control}", np.zeros(1), material)[0])
 
 
 def cohesive_zone(contact_radius, *, radius, stiffness, surface_energy, z0):

@@ -1,33 +1,72 @@
-"""Whole experiments, as the program runs them on decks: a force curve, the equilibrium path.
+"""Runs of whole decks, as the program does them, and the two that need no more than arguments.
 
-`radius` is R [m] of the gap h0 + r^2/(2R); `stiffness` is E/(1-nu^2) [Pa] of two identical bodies,
-not given for `rigid` ones; `law` comes from `lennard_jones` or `exponential`; `accuracy` is the
-relative one of loads and displacements. The other options are keys of &numerics in a deck.
-
-What a result cannot vouch for is told by a `SnapinWarning`; numbers that do not exist are NaN.
-A calculation holds Python's global lock until it is done: threads wait, and so does Ctrl-C.
+A run holds Python's global lock until it is done: threads wait, and so does Ctrl-C.
 """
 
+import os
+import pathlib
+import tempfile
 import warnings
 from typing import NamedTuple
 
 import _snapin
 import numpy as np
 
-from .arguments import SnapinWarning, accept, one_of, positive, room_for, scalar, vector
-from .arguments import count as whole
-from .numerics import METHODS, MOST_NODES, bytes_for
-from .scene import accuracy_of, scene_of, within_reach
+from .arguments import DeckError, SnapinWarning, vector
+from .deck import accept_deck, deck_of, scene
+from .results import Result, read_results
 
-_flat = _snapin.flat_experiment
-
-_METHODS = ("auto", *METHODS)
-_GRIDS = ("auto", "uniform", "panels")
-# The path takes steps of its own choice; the program gives up after some 5000.
-_MOST_PATH_STATES = 20000
+_NO_CONVERGENCE = 2
+# By how much of a step the steps of h0 may differ: what the program takes for a whole step.
+_EQUAL = 1e-6
 
 
-# --- Experiments
+def run(deck, out=None, *, resume=False, quiet=True):
+    """Run a deck as the program does, and return its `Result`.
+
+    `deck` is a dictionary of groups, such as {"bodies": {"radius": 1.5e-2, "rigid": True}, ...},
+    the text of a deck, or the path of one. Nothing is left on the disk unless `out` names a folder
+    for the results; there `resume` goes on with what an interrupted run has left. Without `quiet`
+    progress and messages go to standard error.
+
+    A wrong deck is a `DeckError`, results that could not be written a `SnapinError`. What the
+    program warns of, states that did not converge among it, is a `SnapinWarning`; what was computed
+    is in the result.
+    """
+    return _run(deck, out, resume, quiet)
+
+
+def _run(deck, out=None, resume=False, quiet=True):
+    """Run a deck for a function that users call."""
+    name, text = deck_of(deck)
+    # f2py ends a text there.
+    if b"\0" in text:
+        raise DeckError(f"{name}: a NUL byte: a deck is plain text")
+    if out is not None:
+        return _run_into(pathlib.Path(out), name, text, resume, quiet)
+    if resume:
+        raise ValueError("resume: there is nothing to go on with unless out names its folder")
+    with tempfile.TemporaryDirectory(prefix="snapin-") as folder:
+        return _run_into(pathlib.Path(folder), name, text, resume, quiet)
+
+
+def _run_into(folder, name, text, resume, quiet):
+    place = os.fsencode(folder)
+    if b"\0" in place:
+        raise ValueError("out: the name of a folder has no NUL")
+    stat, message = _snapin.flat_deck.run_deck(
+        text, os.fsencode(name), place, bool(quiet), bool(resume)
+    )
+    if stat != _NO_CONVERGENCE or message.strip():
+        accept_deck(stat, message)
+    result = read_results(folder)
+    for warning in result.summary.get("warnings", []):
+        # Of who called the function that calls this through `_run`.
+        warnings.warn(warning, SnapinWarning, stacklevel=4)
+    return result
+
+
+# --- Two experiments by arguments
 
 
 class Point(NamedTuple):
@@ -38,14 +77,14 @@ class Point(NamedTuple):
 
 
 class ForceCurve(NamedTuple):
-    """A force curve, SI; arrays have one value for each h0.
+    """A force curve, SI; arrays have one value for each state that was found.
 
     `h_centre` is the gap on the axis, `displacement` h_centre - h0, `load` negative under tension,
     `contact_radius` where the gap is 1.1 times that of zero force, `residual` the largest error of
     the equations in lengths of the force law. `jumps` are in the order of the experiment.
     `max_tension` is positive, NaN if there was no tension; the largest between the h0 too.
     `error_estimate` is the relative error of loads and displacements. `converged` says that every
-    state was found.
+    state was found. `result` has all that the run reports.
     """
 
     h0: np.ndarray
@@ -59,6 +98,7 @@ class ForceCurve(NamedTuple):
     max_tension_h0: float
     error_estimate: float
     converged: bool
+    result: Result
 
 
 class EquilibriumPath(NamedTuple):
@@ -80,130 +120,87 @@ class EquilibriumPath(NamedTuple):
     max_tension_h0: float
     error_estimate: float
     converged: bool
+    result: Result
 
 
-def force_curve(
-    h0,
-    *,
-    radius,
-    stiffness=None,
-    law,
-    rigid=False,
-    method="auto",
-    grid="auto",
-    accuracy=1e-6,
-    nodes=None,
-    r_max=None,
-):
+def force_curve(h0, *, radius, stiffness=None, law, rigid=False, **numerics):
     """Return the `ForceCurve` through the separations `h0` [m], in the order of the experiment.
 
-    The bodies approach from afar to the first value; from there each state comes from the one
-    before, so that where h0 turns round the curve shows hysteresis. States that did not converge
-    are returned as they are, with a warning; after an early end there are NaN.
+    They fall in equal steps, as a &loading does; then they may rise in equal steps, as an
+    &unloading does, from the last of them or from one step above. Other experiments are for `run`.
 
-    `method` is "auto", "mixing", "anderson" or "newton", `grid` "auto", "uniform" or "panels";
-    `nodes` and `r_max` [m] are for grids that are fixed in space, "uniform" or those of mixing.
+    `radius`, `stiffness` and `rigid` are keys of &bodies, `law` the groups of a force law such as
+    `lennard_jones` returns, and `numerics` keys of &numerics: accuracy, method, grid and so on.
     """
-    h0 = vector("h0", h0).copy()
-    if h0.size < 2:
-        raise ValueError(f"h0: at least 2 values are needed, not {h0.size}")
-    scene = scene_of(law, radius, stiffness, rigid)
-    within_reach("h0", h0, law)
-    nodes = 0 if nodes is None else whole("nodes", nodes, 2, MOST_NODES)
-    room_for("nodes", bytes_for(nodes))
-    states, jumps, count, highest, error, reached, reason, told, stat, message = _flat.force_curve(
-        *scene,
-        one_of("method", method, _METHODS),
-        one_of("grid", grid, _GRIDS),
-        accuracy_of(accuracy),
-        nodes,
-        0.0 if r_max is None else positive("r_max", r_max),
-        h0,
-    )
-    accept(stat, message)
-    _, h_centre, displacement, load, contact_radius, _, residual, converged = states.T
-    _tell("force_curve", h0, states[:reached], reason, told)
-    return ForceCurve(
-        h0,
-        h_centre,
-        displacement,
-        load,
-        contact_radius,
-        residual,
-        _points(jumps[:count]),
-        *map(float, highest),
-        error,
-        bool((converged == 1).all()),
-    )
+    h0 = vector("h0", h0)
+    groups, repeated = _schedule(h0)
+    result = _run(scene(law, radius, stiffness, rigid, **groups, numerics=numerics))
+    curve = result.curve
+    if not repeated:
+        curve = np.delete(curve, np.flatnonzero(curve["branch"] == "unloading_1")[:1])
+    jumps = _points(result.summary, ("jump_in", "jump_out"))
+    return ForceCurve(**_fields(ForceCurve, curve, result), jumps=jumps)
 
 
 def equilibrium_path(
-    h0_end, *, radius, stiffness=None, law, rigid=False, h0_start=None, accuracy=1e-6
+    h0_end, *, radius, stiffness=None, law, rigid=False, h0_start=None, **numerics
 ):
     """Return the `EquilibriumPath` to the contact at `h0_end` [m].
 
     It holds the unstable states too, which no experiment at controlled h0 shows. It begins where
-    the bodies hardly deform, or farther apart at `h0_start` [m].
+    the bodies hardly deform, or farther apart at `h0_start` [m]. The other arguments are as in
+    `force_curve`.
     """
-    h0_end = scalar("h0_end", h0_end)
-    if h0_start is not None:
-        h0_start = scalar("h0_start", h0_start)
-        if h0_start <= h0_end:
-            raise ValueError(f"h0_start: {h0_start} is not above h0_end = {h0_end}")
-    scene = scene_of(law, radius, stiffness, rigid)
-    within_reach("h0_end", h0_end, law)
-    if h0_start is not None:
-        within_reach("h0_start", h0_start, law)
-    states, folds, count, highest, error, reached, reason, told, stat, message = (
-        _flat.equilibrium_path(
-            *scene,
-            accuracy_of(accuracy),
-            0.0 if h0_start is None else h0_start,
-            h0_start is not None,
-            h0_end,
-            _MOST_PATH_STATES,
-        )
+    ends = {"h0_start": h0_start, "h0_end": h0_end}
+    result = _run(
+        scene(law, radius, stiffness, rigid, equilibrium_path=ends, numerics=numerics)
     )
-    accept(stat, message)
-    states = states[:reached]
-    h0, h_centre, displacement, load, contact_radius, stable, residual, converged = states.T.copy()
-    _tell("equilibrium_path", h0, states, "", told)
-    return EquilibriumPath(
-        h0,
-        h_centre,
-        displacement,
-        load,
-        contact_radius,
-        stable == 1,
-        residual,
-        _points(folds[:count]),
-        *map(float, highest),
-        error,
-        bool((converged == 1).all()) and not reason.strip(),
-    )
+    fields = _fields(EquilibriumPath, result.curve, result)
+    fields["stable"] = fields["stable"] == 1
+    folds = _points(result.summary, ("folds",))
+    return EquilibriumPath(**fields, folds=folds)
 
 
-# --- What goes in and comes out
+def _schedule(h0):
+    """Return the groups &loading and &unloading for these h0, and whether the least is repeated."""
+    if h0.size < 2:
+        raise ValueError(f"h0: at least 2 values are needed, not {h0.size}")
+    least = int(np.argmin(h0))
+    down, up = h0[: least + 1], h0[least + 1 :]
+    repeated = up.size > 0 and up[0] == h0[least]
+    if not repeated and up.size > 0:
+        up = h0[least:]
+    groups = {
+        "loading": {"h0_start": down[0], "h0_end": down[-1], "h0_step": _step(-np.diff(down))}
+    }
+    if up.size > 0:
+        groups["unloading"] = {"h0_end": up[-1], "h0_step": _step(np.diff(up))}
+    return groups, repeated
 
 
-def _points(rows):
-    return [Point(*map(float, row)) for row in rows]
-
-
-def _tell(name, h0, states, reason, told):
-    """Warn of states that did not converge, of an early end, and of what the library warns of."""
-    texts = [text for text in told.decode().strip().split("\n") if text]
-    *_, residual, converged = states.T
-    wrong = np.flatnonzero(converged != 1)
-    if wrong.size:
-        texts.append(
-            f"{wrong.size} of {len(states)} states did not converge, the first at "
-            f"h0 = {h0[wrong[0]]:.4g} m; the largest residual is {residual[wrong].max():.2g} "
-            "lengths of the force law"
+def _step(steps):
+    """Return the step that all of these are."""
+    if steps.size == 0 or not (abs(steps - steps.mean()) <= _EQUAL * steps.mean()).all():
+        raise ValueError(
+            "h0: must fall in equal steps, and may then rise in equal steps; "
+            "for other experiments run a deck"
         )
-    if len(states) < h0.size:
-        texts.append(
-            f"ended early, before h0 = {h0[len(states)]:.4g} m: {reason.decode().strip()}"
-        )
-    for text in texts:
-        warnings.warn(f"{name}: {text}", SnapinWarning, stacklevel=3)
+    return steps.mean()
+
+
+def _fields(kind, curve, result):
+    """Return the fields of a kind of result that the curve or the summary has."""
+    fields = {name: curve[name].copy() for name in kind._fields if name in curve.dtype.names}
+    for name in "max_tension", "max_tension_h0", "error_estimate":
+        fields[name] = result.summary.get(name, np.nan)
+    return {**fields, "converged": result.converged, "result": result}
+
+
+def _points(summary, names):
+    """Return the points whose h0 and load the summary has under these names."""
+    return [
+        Point(float(h0), float(load))
+        for name in names
+        if f"{name}_h0" in summary
+        for h0, load in zip(*(np.atleast_1d(summary[f"{name}_{key}"]) for key in ("h0", "load")))
+    ]

@@ -1,8 +1,8 @@
 """Kernel, quadrature, force laws, meshes, and one state of equilibrium.
 
 Kernel, quadrature and meshes have no units. Force laws are in SI. A state of equilibrium is in the
-units of src/model/dimensionless_problem.f90: gaps in the law's length, lateral positions in sqrt(R length), pressures
-in the law's unit, loads in that unit times R length.
+units of src/model/dimensionless_problem.f90: gaps in the law's length, lateral positions in
+sqrt(R length), pressures in the law's unit, loads in that unit times R length.
 """
 
 from dataclasses import dataclass, field
@@ -12,7 +12,6 @@ import _snapin
 import numpy as np
 
 from .arguments import (
-    accept,
     as_long_as,
     ascending,
     count,
@@ -25,19 +24,15 @@ from .arguments import (
     scalar,
     vector,
 )
+from .deck import accept_deck, problem_deck
 
 _flat = _snapin.flat_numerics
 
-# The parameters that each law reads, and the parts that it has.
-LAWS = {
-    "lennard_jones": (("hamaker", "z0"), ("full", "repulsive", "attractive")),
-    "exponential": (("p0", "decay_length"), ("full",)),
-}
 METHODS = ("mixing", "anderson", "newton")
 
 _LARGEST_ORDER = 64
 # As in src/scene/scene_keys.f90.
-MOST_NODES = 20000
+_MOST_NODES = 20000
 _MOST_DEPTH = 1000
 
 
@@ -114,52 +109,34 @@ class LawValues(NamedTuple):
 
 
 class LawNumbers(NamedTuple):
-    """SI: units of gap and pressure, surface energy, and gaps; 0 where a law has no such gap."""
+    """SI: the law's own units and the separation that is gap 0 in them; surface energy;
+    separations of most tension and of zero pressure, NaN where there is none, and that beyond which
+    nothing is left of the repulsion."""
 
     length: float
     pressure_unit: float
+    origin: float
     surface_energy: float
     edge_gap: float
     rest_gap: float
     range: float
 
 
-def law_arguments(law, part, parameters):
-    """Return law, part and the four parameters that the library takes, checked; 0: not used."""
-    needed, parts = LAWS[one_of("law", law, LAWS)]
-    law, part = str(law), one_of("part", part, parts)
-    for name in needed:
-        if name not in parameters:
-            raise TypeError(f"{name}: needed by law {law!r}")
-    for name in parameters:
-        if name not in needed:
-            raise TypeError(f"{name}: not a parameter of law {law!r}")
-    known = {name: positive(name, value) for name, value in parameters.items()}
-    return law, part, *(known.get(name, 0.0) for name in ("hamaker", "z0", "p0", "decay_length"))
-
-
-def force_law(law, gap, *, part="full", **parameters):
-    """Return pressure, slope and energy of a law at gaps [m].
-
-    "lennard_jones" needs `hamaker` [J] and `z0` [m], "exponential" `p0` [Pa] and `decay_length`
-    [m]. A gap of exactly zero is refused for the former.
-    """
-    arguments = law_arguments(law, part, parameters)
+def force_law(law, gap):
+    """Return the `LawValues` at gaps [m] of a law: the groups of a deck that describe it."""
     gap = vector("gap", gap, most=np.inf)
-    if law == "lennard_jones" and not gap.all():
-        raise ValueError("gap: must not be zero")
-    *values, stat, message = _flat.law_values(*arguments, gap)
-    accept(stat, message)
+    *values, _, stat, message = _snapin.flat_deck.law_values(problem_deck(law), gap)
+    accept_deck(stat, message)
     if not np.isfinite(values).all():
         raise ValueError("gap: pressure, slope or energy leave the range of float64")
     return LawValues(*values)
 
 
-def law_numbers(law, *, part="full", **parameters):
-    """Return the numbers that characterise a law, SI; `parameters` as in `force_law`."""
-    *values, stat, message = _flat.law_numbers(*law_arguments(law, part, parameters))
-    accept(stat, message)
-    return LawNumbers(*values)
+def law_numbers(law):
+    """Return the `LawNumbers` that characterise a law, as in `force_law`."""
+    *_, numbers, stat, message = _snapin.flat_deck.law_values(problem_deck(law), np.empty(0))
+    accept_deck(stat, message)
+    return LawNumbers(*map(float, numbers))
 
 
 # --- Meshes
@@ -203,15 +180,14 @@ class Mesh:
         if not panels and (centre != 0 or ends[0] != 0 or ends.size != 2):
             raise ValueError("ends: a uniform mesh has centre 0 and ends 0 and its extent")
         name = "order" if panels else "nodes"
-        limits = (3, _LARGEST_ORDER) if panels else (2, MOST_NODES)
+        limits = (3, _LARGEST_ORDER) if panels else (2, _MOST_NODES)
         order = count(name, self.order, *limits)
-        if order * (ends.size - 1) > MOST_NODES:
-            raise ValueError(f"ends: these panels have more than {MOST_NODES} nodes")
+        if order * (ends.size - 1) > _MOST_NODES:
+            raise ValueError(f"ends: these panels have more than {_MOST_NODES} nodes")
         for key, value in {"kind": str(self.kind), "centre": centre, "ends": ends}.items():
             object.__setattr__(self, key, value)
         object.__setattr__(self, "order", order)
-        *values, stat, message = _flat.mesh_nodes(*self._description)
-        accept(stat, message)
+        values = _flat.mesh_nodes(*self._description)
         for key, value in zip(("x", "weight", "spacing"), values):
             if isinstance(value, np.ndarray):
                 value.flags.writeable = False
@@ -224,8 +200,7 @@ class Mesh:
     def matrix(self):
         """Return the `KernelMatrix`; computed anew at every call."""
         room_for("mesh", bytes_for(self.x.size))
-        rows, stat, message = _flat.mesh_matrix(*self._description)
-        accept(stat, message)
+        rows = _flat.mesh_matrix(*self._description)
         return KernelMatrix(rows[0], rows[1], rows[2:])
 
     def interpolate(self, values, at):
@@ -234,9 +209,7 @@ class Mesh:
         at = vector("at", at)
         if (at < self.centre + self.ends[0]).any() or (at > self.centre + self.ends[-1]).any():
             raise ValueError("at: lies outside the mesh")
-        found, stat, message = _flat.mesh_interpolation(*self._description, values, at)
-        accept(stat, message)
-        return found
+        return _flat.mesh_interpolation(*self._description, values, at)
 
 
 def uniform_mesh(nodes, extent):
@@ -279,7 +252,6 @@ def equilibrium(
     h0,
     coupling,
     *,
-    part="full",
     method="anderson",
     start=None,
     scale=1.0,
@@ -292,30 +264,28 @@ def equilibrium(
 ):
     """Return the state at a prescribed h0, iterated from the gaps `start`.
 
-    `coupling` is sigma (Lennard-Jones) or Lambda at h0 = 0 (exponential); 0 is rigid bodies. The
-    mesh is enlarged `scale` times. Without `start` the iteration begins from the undeformed gaps,
-    for Lennard-Jones none below 1. `depth` and `patience` are Anderson's, `mixing_limit` is
-    mixing's, and so is `displacement_tolerance`: with it mixing stops as the paper does, on a
-    small change of the gap on the axis.
+    `law` is as in `force_law`, in its own units here. `coupling` is sigma (40) for Lennard-Jones,
+    Lambda (39) at h0 = 0 for the exponential law; 0 is rigid bodies. The mesh is enlarged `scale`
+    times. Without `start` the iteration begins from the undeformed gaps, none below that of zero
+    force. `depth` and `patience` are Anderson's, `mixing_limit` is mixing's, and so is
+    `displacement_tolerance`: with it mixing stops as the paper does, on a small change of the gap
+    on the axis.
     """
-    law = one_of("law", law, LAWS)
-    part, method = one_of("part", part, LAWS[law][1]), one_of("method", method, METHODS)
+    deck = problem_deck(law)
+    method = one_of("method", method, METHODS)
     instance("mesh", mesh, Mesh, "uniform_mesh(...) or panel_mesh(...)")
     room_for("mesh", bytes_for(mesh.x.size))
     h0, scale = scalar("h0", h0), positive("scale", scale)
     if start is None:
-        start = h0 + (scale * mesh.x) ** 2 / 2
-        if law == "lennard_jones":
-            start = np.maximum(start, 1.0)
+        numbers = law_numbers(law)
+        rest = (numbers.rest_gap - numbers.origin) / numbers.length
+        start = np.fmax(h0 + (scale * mesh.x) ** 2 / 2, rest)
     start = as_long_as("start", start, mesh.x.size)
-    if law == "lennard_jones" and not (start > 0).all():
-        raise ValueError("start: all gaps must be positive")
     on_change = displacement_tolerance is not None
     if on_change and method != "mixing":
         raise ValueError("displacement_tolerance: only mixing has this stopping rule")
-    *values, stat, message = _flat.equilibrium_state(
-        law,
-        part,
+    gap, pressure, numbers, counts, stat, message = _flat.equilibrium_state(
+        deck,
         not_negative("coupling", coupling),
         *mesh._description,
         scale,
@@ -330,6 +300,6 @@ def equilibrium(
         int(on_change),
         not_negative("displacement_tolerance", displacement_tolerance) if on_change else 0.0,
     )
-    accept(stat, message)
-    state = State(*values)
-    return state._replace(converged=bool(state.converged))
+    accept_deck(stat, message)
+    converged, *spent = map(int, counts)
+    return State(gap, pressure, *map(float, numbers), bool(converged), *spent)

@@ -34,15 +34,16 @@ module simulation
 
 contains
 
-  !> Computes a scene and writes its results into the folder `out_dir`. exit_code: 0 done, 1
-  !> something failed; what was computed is kept and the summary says what failed. resume: what an
-  !> interrupted run has left in the folder is gone on with, and finished results are left as they
-  !> are.
-  subroutine run_scene(scene, out_dir, quiet, resume, exit_code)
+  !> Computes a scene and writes its results into the folder `out_dir`. converged: false where a
+  !> calculation failed; what was computed is kept and the summary says what failed. error: there are
+  !> no results, or they could not be written. resume: what an interrupted run has left in the folder
+  !> is gone on with, and finished results are left as they are.
+  subroutine run_scene(scene, out_dir, quiet, resume, converged, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: out_dir
     logical, intent(in) :: quiet, resume
-    integer, intent(out) :: exit_code
+    logical, intent(out) :: converged
+    type(failure_t), allocatable, intent(out) :: error
     type(results_t), target :: results
     type(stability_recorder_t), target :: recorder
     type(resumable_stepper_t), target :: keeper
@@ -50,29 +51,24 @@ contains
     type(problem_t) :: problem
     type(experiment_result_t) :: outcome
     type(summary_t) :: summary
-    type(failure_t), allocatable :: error
     character(len=:), allocatable :: name, resolved
     type(preflight_t) :: expected
     real(wp) :: began
     integer :: i, failed
-    logical :: curve, left_over, finished, converged, mended
+    logical :: curve, left_over, finished, mended
 
     began = seconds()
-    exit_code = 1
+    converged = .false.
     name = out_dir(index(out_dir, '/', .true.) + 1:)
     resolved = scene%deck%resolved()
     call mend(out_dir, mended, error)
-    if (allocated(error)) then
-      call say(out_dir//': '//error%message, .false.)
-      return
-    end if
+    if (allocated(error)) return
     if (mended) call say(out_dir//': put results in place that an interrupted run had completed', &
       quiet)
     left_over = file_exists(journal_of(out_dir))
     if (resume .and. .not. left_over) then
       call find_finished(out_dir, resolved, version, finished, converged)
       if (finished) then
-        if (converged) exit_code = 0
         call say(out_dir//': complete since an earlier run; nothing to do', quiet)
         if (.not. converged) call say(out_dir//': its summary says what failed then', quiet)
         return
@@ -86,10 +82,7 @@ contains
       curve .and. allocated(scene%profiles), curve .and. allocated(scene%stability), &
       ! Each case of a sweep has one thread, however many there are.
       identity_of(resolved, merge(0, thread_count(), allocated(scene%sweep))), resume, error)
-    if (allocated(error)) then
-      call say(out_dir//': '//error%message, .false.)
-      return
-    end if
+    if (allocated(error)) return
     if (.not. results%lock%is_held()) call say(out_dir//': warning: folders cannot be locked '// &
       'here; let no other run write into this one', quiet)
     if (left_over .and. resume) then
@@ -148,7 +141,7 @@ contains
     call results%write_summary(summary, outcome%cost, scene%deck)
     call results%finish(error)
     if (allocated(error)) then
-      call say(out_dir//': '//error%message//'; then go on with --resume', .false.)
+      error%message = error%message//'; then go on with --resume'
       return
     end if
     if (allocated(summary%warnings)) then
@@ -159,7 +152,7 @@ contains
     if (summary%has('grid')) call say(out_dir//': grid '//summary%text('grid')//', method '// &
       summary%text('method')//': '//summary%text('chosen_because'), quiet)
     call say(report(out_dir, summary, outcome), quiet)
-    if (summary%is_true('converged')) exit_code = 0
+    converged = summary%is_true('converged')
   end subroutine run_scene
 
   !> A count for a message.

@@ -60,7 +60,9 @@ contains
     type(scene_t), allocatable :: scenes(:)
     type(preflight_t) :: expected
     type(failure_t), allocatable :: trouble
-    integer :: i, outcome
+    character(len=:), allocatable :: folder
+    logical :: converged
+    integer :: i
 
     status = 0
     allocate (scenes(size(options%decks)))
@@ -78,9 +80,10 @@ contains
     end do
     if (options%check .or. status /= 0) return
     do i = 1, size(scenes)
-      call run_scene(scenes(i), options%out // '/' // stem_of(options%decks(i)%name), &
-                     options%quiet, options%resume, outcome)
-      status = max(status, outcome)
+      folder = options%out // '/' // stem_of(options%decks(i)%name)
+      call run_scene(scenes(i), folder, options%quiet, options%resume, converged, trouble)
+      if (allocated(trouble)) call print_line(error_unit, folder // ': ' // trouble%message)
+      if (allocated(trouble) .or. .not. converged) status = 1
     end do
   end function run_decks
 

@@ -36,7 +36,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: accuracy
 
-    digits = max(0.6_wp - 1.15_wp*log10(accuracy), &
+    digits = max(0.3_wp - 1.25_wp*log10(accuracy), &
       fewest_digits + more_for_folds*log10(1 + strength(problem)))
     digits = min(digits, most_digits)
   end function digits_for

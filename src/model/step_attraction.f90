@@ -77,6 +77,7 @@ contains
     real(wp) :: value(size(gap))
 
     value = -0.5_wp*erfc(place(self, gap))
+    where (place(self, gap) >= farthest) value = 0
   end function pressure
 
   pure function slope(self, gap) result(value)
@@ -85,6 +86,7 @@ contains
     real(wp) :: value(size(gap))
 
     value = exp(-min(place(self, gap)**2, farthest**2))/(self%smoothing*sqrt(pi))
+    where (abs(place(self, gap)) >= farthest) value = 0
   end function slope
 
   pure function energy(self, gap) result(value)
@@ -94,6 +96,7 @@ contains
 
     x = place(self, gap)
     value = -0.5_wp*self%smoothing*(exp(-min(x**2, farthest**2))/sqrt(pi) - x*erfc(x))
+    where (x >= farthest) value = 0
   end function energy
 
 end module step_attraction

@@ -5,7 +5,7 @@
 module deck
   use failure, only: failure_t
   use text, only: lower, guess, listing, clip
-  use deck_source, only: load_source
+  use deck_source, only: load_source, take_source
   use deck_scan, only: span_t, entry_t, scan_t, scan_deck
   use deck_keys, only: key_spec, ignored_group, allowed, names_of
   use deck_values, only: assumed, given, interpret, convert
@@ -19,19 +19,25 @@ module deck
 
 contains
 
-  !> Reads `file` against the table `specs`. `error` lists the mistakes found, each as
+  !> Reads `file` against the table `specs`; where `text` is given that is read, and `file` is only
+  !> its name in messages. `error` lists the mistakes found, each as
   !> `FILE:LINE: &group: key "x": what is wrong, what is allowed` with the line and a caret below.
-  subroutine read_deck(file, specs, deck, error)
+  subroutine read_deck(file, specs, deck, error, text)
     character(len=*), intent(in) :: file
     type(key_spec), intent(in) :: specs(:)
     type(deck_t), intent(out) :: deck
     type(failure_t), allocatable, intent(out) :: error
+    character(len=*), intent(in), optional :: text
     type(scan_t) :: found
     integer :: mistakes
 
     deck%specs = specs
     allocate (deck%values(size(specs)))
-    call load_source(file, deck%source, error)
+    if (present(text)) then
+      call take_source(file, text, deck%source, error)
+    else
+      call load_source(file, deck%source, error)
+    end if
     if (allocated(error)) return
     call scan_deck(deck%source, found, error)
     if (allocated(error)) return

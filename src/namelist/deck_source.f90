@@ -9,7 +9,7 @@ module deck_source
   use text, only: printable
   implicit none
   private
-  public :: source_t, load_source
+  public :: source_t, load_source, take_source
 
   character(len=*), parameter :: newline = new_line('a')
   !> Ten thousand sweep values take a quarter of this; anything larger is not a deck.
@@ -58,14 +58,29 @@ contains
     status = c_close(descriptor)
     if (n < 0) then
       call fail(error, file_trouble, source%file // ': cannot be read: ' // reason(int(n, c_int)))
-    else if (n > largest_deck) then
-      call fail(error, bad_input, source%file // ': larger than 1 MiB, so not a deck')
     else
-      call straighten(bytes(:n), source%text)
-      n = index(source%text, achar(0))
-      if (n > 0) call source%complain(n, '', '', 'a NUL byte: a deck is plain text', error)
+      call take_source(file, bytes(:n), source, error)
     end if
   end subroutine load_source
+
+  !> Takes the bytes of a deck; messages call it `name`. Fails where they are too many or not plain
+  !> text.
+  subroutine take_source(name, bytes, source, error)
+    character(len=*), intent(in) :: name, bytes
+    type(source_t), intent(out) :: source
+    type(failure_t), allocatable, intent(out) :: error
+    integer :: n
+
+    source%file = printable(name)
+    source%text = ''
+    if (len(bytes) > largest_deck) then
+      call fail(error, bad_input, source%file // ': larger than 1 MiB, so not a deck')
+      return
+    end if
+    call straighten(bytes, source%text)
+    n = index(source%text, achar(0))
+    if (n > 0) call source%complain(n, '', '', 'a NUL byte: a deck is plain text', error)
+  end subroutine take_source
 
   !> Makes every line end a single line feed (CR LF and CR are others') and drops a byte-order mark.
   pure subroutine straighten(bytes, text)

@@ -12,13 +12,14 @@ module result_rows
   character(len=*), parameter :: never = '', always = 'always', classical = 'classical', &
     approximations = 'approximations', forces = '(forces)', turning = 'unloading'
 
-  !> Key, unit and meaning; what is an array has one value a turning point, fold or profile.
+  !> Key, unit and meaning; a list has one value a turning point, fold, profile or the like.
   type :: row_t
     character(len=28) :: key = ''
     character(len=5) :: unit = ''
     character(len=88) :: meaning = ''
     character(len=14) :: sweep = never
     integer :: group = in_summary
+    logical :: list = .false.
   end type row_t
 
   !> In the order in which they are written.
@@ -64,23 +65,26 @@ module result_rows
     row_t('jump_out_load_error', 'N', 'estimated error of jump_out_load'), &
     row_t('jump_out_uncertainty', 'm', &
       'on a fixed grid: h0 of the jump is known to within plus or minus this'), &
-    row_t('unload_from', 'm', 'turning point of each unloading'), &
-    row_t('unload_max_tension', 'N', 'largest tension of each unloading, positive', turning), &
-    row_t('unload_max_tension_h0', 'm', 'h0 at the largest tension of each unloading'), &
+    row_t('unload_from', 'm', 'turning point of each unloading', list=.true.), &
+    row_t('unload_max_tension', 'N', 'largest tension of each unloading, positive', turning, &
+      list=.true.), &
+    row_t('unload_max_tension_h0', 'm', 'h0 at the largest tension of each unloading', &
+      list=.true.), &
     row_t('unload_jump_out_h0', 'm', &
-      'h0 at which the bodies jump apart in each unloading', turning), &
-    row_t('unload_max_tension_error', 'N', 'estimated error of unload_max_tension'), &
-    row_t('unload_max_tension_h0_error', 'm', 'estimated error of unload_max_tension_h0'), &
-    row_t('unload_jump_out_h0_error', 'm', 'estimated error of unload_jump_out_h0'), &
-    row_t('folds_h0', 'm', 'h0 of every fold of the path, in order'), &
-    row_t('folds_load', 'N', 'load at every fold of the path'), &
-    row_t('folds_stable', '', 'whether the path is stable after each fold, 1 or 0'), &
-    row_t('folds_h0_error', 'm', 'estimated error of folds_h0'), &
-    row_t('folds_load_error', 'N', 'estimated error of folds_load'), &
-    row_t('load_folds_h0', 'm', 'h0 of every extremum of the load along the path'), &
-    row_t('load_folds_load', 'N', 'load at every extremum'), &
-    row_t('load_folds_h0_error', 'm', 'estimated error of load_folds_h0'), &
-    row_t('load_folds_load_error', 'N', 'estimated error of load_folds_load'), &
+      'h0 at which the bodies jump apart in each unloading', turning, list=.true.), &
+    row_t('unload_max_tension_error', 'N', 'estimated error of unload_max_tension', list=.true.), &
+    row_t('unload_max_tension_h0_error', 'm', 'estimated error of unload_max_tension_h0', &
+      list=.true.), &
+    row_t('unload_jump_out_h0_error', 'm', 'estimated error of unload_jump_out_h0', list=.true.), &
+    row_t('folds_h0', 'm', 'h0 of every fold of the path, in order', list=.true.), &
+    row_t('folds_load', 'N', 'load at every fold of the path', list=.true.), &
+    row_t('folds_stable', '', 'whether the path is stable after each fold, 1 or 0', list=.true.), &
+    row_t('folds_h0_error', 'm', 'estimated error of folds_h0', list=.true.), &
+    row_t('folds_load_error', 'N', 'estimated error of folds_load', list=.true.), &
+    row_t('load_folds_h0', 'm', 'h0 of every extremum of the load along the path', list=.true.), &
+    row_t('load_folds_load', 'N', 'load at every extremum', list=.true.), &
+    row_t('load_folds_h0_error', 'm', 'estimated error of load_folds_h0', list=.true.), &
+    row_t('load_folds_load_error', 'N', 'estimated error of load_folds_load', list=.true.), &
     row_t('energy_lost', 'J', 'energy lost in the jumps of a cycle', always), &
     row_t('energy_lost_uncertainty', 'J', 'estimated error of energy_lost'), &
     row_t('end_h0', 'm', &
@@ -90,7 +94,8 @@ module result_rows
     row_t('end_displacement_error', 'm', 'estimated error of end_displacement'), &
     row_t('end_load_error', 'N', 'estimated error of end_load'), &
     row_t('profiles_error', '', &
-      'error of each profile: of gaps over the law''s length or of pressures over the largest'), &
+      'error of each profile: of gaps over the law''s length or of pressures over the largest', &
+      list=.true.), &
     row_t('jump_criterion_29_h0', 'm', &
       'h0 at which approaching bodies first violate (29)', approximations), &
     row_t('jump_criterion_29_load', 'N', 'load there', approximations), &
@@ -114,7 +119,7 @@ module result_rows
     row_t('compiler', '', 'compiler that made the program'), &
     row_t('blas', '', 'library of linear algebra'), &
     row_t('build_options', '', 'options of the compiler'), &
-    row_t('warnings', '', 'every warning of the run'), &
+    row_t('warnings', '', 'every warning of the run', list=.true.), &
     row_t('wall_seconds', 's', 'from beginning to end, interrupted runs included', group=in_cost), &
     row_t('kernel_seconds', 's', 'spent on matrices of the elastic kernel', group=in_cost), &
     row_t('solve_seconds', 's', 'spent on equilibria', group=in_cost), &

@@ -24,7 +24,8 @@ contains
     ! The groups of results, then the deck.
     finished = text(start + 1:) == resolved .and. &
       index(text(:start), new_line('a') // '  version = ''' // version // '''' // new_line('a')) > 0
-    converged = index(text(:start), new_line('a') // '  converged = .true.' // new_line('a')) > 0
+    converged = finished .and. &
+      index(text(:start), new_line('a') // '  converged = .true.' // new_line('a')) > 0
   end subroutine find_finished
 
 end module finished_run

@@ -22,15 +22,16 @@ module scene
 
 contains
 
-  !> Reads and checks a deck. `error` lists what is wrong, each mistake with file, line, group and
-  !> key.
-  subroutine read_scene(file, scene, error)
+  !> Reads and checks a deck: the file, or the text that is called `file` in messages. `error` lists
+  !> what is wrong, each mistake with file, line, group and key.
+  subroutine read_scene(file, scene, error, text)
     character(len=*), intent(in) :: file
     type(scene_t), intent(out) :: scene
     type(failure_t), allocatable, intent(out) :: error
+    character(len=*), intent(in), optional :: text
     type(deck_t) :: deck
 
-    call read_deck(file, keys_of_scene(), deck, error)
+    call read_deck(file, keys_of_scene(), deck, error, text)
     if (allocated(error)) return
     call make_scene(deck, scene, error)
     if (allocated(error)) return

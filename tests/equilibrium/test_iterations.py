@@ -9,13 +9,14 @@ import _snapin
 import numpy as np
 import pytest
 import snapin
-from test_solvers import MESH, PRESSURE, TOLERANCE, equations, every_method, solved
+from snapin.deck import problem_deck
+from test_solvers import LAW, MESH, PRESSURE, TOLERANCE, equations, every_method, solved
 
 
 @every_method
 def test_a_state_that_did_not_converge_says_so_and_how_far_it_is(method):
     state = snapin.equilibrium(
-        "lennard_jones", MESH, -2.0, 0.87, method=method, most_iterations=3
+        LAW["lennard_jones"], MESH, -2.0, 0.87, method=method, most_iterations=3
     )
     residual, *_ = equations("lennard_jones", 0.87, -2.0, state)
     assert not state.converged
@@ -26,10 +27,12 @@ def test_a_state_that_did_not_converge_says_so_and_how_far_it_is(method):
 def flat_state(start, method, stop_on_change, law, coupling=0.87):
     """Return residual and converged from the flat layer, which takes any start."""
     mesh = snapin.panel_mesh([0.0, 1.0, 3.0], 4)
-    physics = (law, "full", coupling, mesh.kind, mesh.centre, mesh.ends, mesh.order, 1.0, 0.0)
+    deck = problem_deck(LAW[law])
+    physics = (deck, coupling, mesh.kind, mesh.centre, mesh.ends, mesh.order, 1.0, 0.0)
     options = (method, 1e-8, 50, 5, 8, 0.2, stop_on_change, 1.0)
     values = _snapin.flat_numerics.equilibrium_state(*physics, start, *options)
-    return values[4], values[5]
+    (_, _, residual), (converged, *_) = values[2:4]
+    return residual, converged
 
 
 @every_method
@@ -50,6 +53,7 @@ def test_nan_never_passes_as_converged(law, method, stop_on_change, where):
     ("law", "gap", "coupling"),
     [
         ("lennard_jones", 0.0, 0.87),
+        ("lennard_jones", -1.0, 0.87),
         ("lennard_jones", 1e-200, 0.87),
         ("exponential", -1e3, 1e8),
         ("lennard_jones", math.inf, 0.87),
@@ -68,14 +72,14 @@ def test_infinite_pressure_is_not_taken_for_none(method):
     # it they would be an equilibrium.
     mesh = snapin.uniform_mesh(5, 4.0)
     start = np.maximum(mesh.x**2 / 2, 1e-40)
-    state = snapin.equilibrium("lennard_jones", mesh, 0.0, 0.87, method=method, start=start)
+    state = snapin.equilibrium(LAW["lennard_jones"], mesh, 0.0, 0.87, method=method, start=start)
     assert not state.converged
 
 
 def by_the_papers_rule(coupling, h0, displacement_tolerance):
     """Return the state at which mixing stops on a small change of the displacement."""
     return snapin.equilibrium(
-        "lennard_jones",
+        LAW["lennard_jones"],
         MESH,
         h0,
         coupling,

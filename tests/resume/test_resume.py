@@ -219,8 +219,8 @@ def test_a_killed_sweep_goes_on_again_and_again(sweep):
 
 def changes(text):
     """Changed decks, and what is said of them."""
-    lines = text.splitlines(keepends=True)
-    without = "".join(line for line in lines if not line.startswith("&unloading"))
+    before, after = text.split("&unloading\n")
+    without = before + after.partition("/\n")[2]
     yield text.replace("to = 100.0", "to = 200.0"), "&sweep to = 100 instead of 200"
     yield text.replace("count = 9", "count = 8"), "&sweep count = 9 instead of 8"
     yield without, "one with &unloading"

@@ -6,33 +6,15 @@ the paper is gamma itself, h0 is in units of z0, and loads come out in units of 
 
 import math
 import os
-import pathlib
-import sys
 from typing import NamedTuple
 
 import f90nml
+from snapin import deck_text, results
 from support.processes import HANG
-
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "pywrap" / "plots"))
-
-import read_results  # noqa: E402 (found through the line above)
 
 JKR = 1.5 * math.pi  # Pull-off of JKR theory in units of gamma R.
 
 # --- Decks
-
-
-def value_text(value):
-    """A value as Fortran's namelist input reads it, to all digits."""
-    if isinstance(value, bool):
-        return ".true." if value else ".false."
-    if isinstance(value, str):
-        return "'" + value.replace("'", "''") + "'"
-    if isinstance(value, int):
-        return str(value)
-    if isinstance(value, float):
-        return repr(float(value))
-    return ", ".join(value_text(item.item() if hasattr(item, "item") else item) for item in value)
 
 
 def deck(**groups):
@@ -40,13 +22,10 @@ def deck(**groups):
 
     `from` is a word of Python's: write from_.
     """
-    text = ""
-    for name, keys in groups.items():
-        if keys is None:
-            continue
-        pairs = [f"{key.rstrip('_')} = {value_text(value)}" for key, value in keys.items()]
-        text += f"&{name} " + ", ".join(pairs) + " /\n"
-    return text
+    return deck_text({
+        name: keys and {key.rstrip("_"): value for key, value in keys.items()}
+        for name, keys in groups.items()
+    })
 
 
 def lennard_jones(sigma, *, part="full", **groups):
@@ -100,7 +79,7 @@ class Table(NamedTuple):
 
 def read_table(path):
     """Read a CSV file of results as the plots do."""
-    columns = read_results.read_table(path.parent, path.name)
+    columns = results.read_table(path.parent, path.name)
     lines = path.read_text().splitlines()
     comments = [line for line in lines if line.startswith("#")]
     # All '#' lines come before the header, and no name is there twice.

@@ -25,6 +25,9 @@ def flat(result):
         return [part for item in result for part in flat(item)]
     if hasattr(result, "__dataclass_fields__"):
         return flat([getattr(result, name) for name in result.__dataclass_fields__])
+    if isinstance(result, snapin.Result):
+        # What it cost is in seconds too.
+        return flat([list(result.tables.values()), list(result.summary.values())])
     return [result]
 
 
@@ -71,6 +74,21 @@ def may_be_left_out(entry, name):
     return parameter is not None and parameter.default is None
 
 
+def names_one(problem, names, kinds):
+    """Whether a message names one of these arguments: it begins so, or a deck's mistake is in the
+    key, or a law's in its groups."""
+    text = str(problem)
+    known = [f"{one}: " for one in names]
+    in_deck = [f'key "{one}' for one in names]
+    if any(kinds[one] == "law" for one in names):
+        # Names of groups and keys are no arguments.
+        known += ["deck: ", "force: ", "hamaker: ", "p0: ", "part: ", "law: "]
+        in_deck += ["&force", "&frog"]
+    if isinstance(problem, snapin.DeckError):
+        return any(one in text for one in in_deck)
+    return text.startswith(tuple(known))
+
+
 def fault(entry, name, value, clean):
     """What is wrong with how the entry's call takes this value; None if nothing is."""
     result = attempt(entry, name, value)
@@ -79,11 +97,10 @@ def fault(entry, name, value, clean):
             return f"raised {type(result).__name__}: {str(result)[:200]}"
         # Where a value is right by itself another may be the one that does not fit.
         alone = clean is REFUSED and entry.kinds[name] != "paired"
-        named = tuple(f"{one}: " for one in ([name] if alone else entry.good))
-        if not str(result).startswith(named):
+        if not names_one(result, [name] if alone else entry.good, entry.kinds):
             return f"the message names no argument: {type(result).__name__}: {str(result)[:200]}"
-        if len(str(result)) > 400:
-            return "the message has more than 400 characters"
+        if max(map(len, str(result).splitlines())) > 400:
+            return "the message has more than 400 characters in a line"
         return None
     if clean is REFUSED:
         return f"was taken: {str(result)[:100]}"

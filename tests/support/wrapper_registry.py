@@ -1,8 +1,9 @@
 """Every public callable of the package `snapin`, with one good call of each and what its arguments
 are. tests/support/wrapper_values.py has the values, good and bad, for each kind of argument.
 
-A kind is a word: vector, paired (a vector as long as another), scalar, positive, count, name,
-flag, law, mesh.
+A kind is a word: vector, paired (a vector as long as another), scalar, positive, count, name, law,
+mesh; number, whole, word and switch are keys of a deck, whose range and type are the program's
+affair.
 """
 
 import dataclasses
@@ -25,7 +26,8 @@ LAW = snapin.lennard_jones(hamaker=5.0, z0=1.0)
 MESH = snapin.panel_mesh([0.0, 1.0, 3.0], 4)
 
 VECTOR, PAIRED, SCALAR, POSITIVE = "vector", "paired", "scalar", "positive"
-COUNT, NAME, FLAG, LAWS, MESHES = "count", "name", "flag", "law", "mesh"
+COUNT, NAME, LAWS, MESHES = "count", "name", "law", "mesh"
+NUMBER, WHOLE, WORD, SWITCH = "number", "whole", "word", "switch"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -46,12 +48,16 @@ def entry(call, **arguments):
     )
 
 
+# Equal steps of h0 downwards.
+STEPS = np.array([3.5, 3.0, 2.5, 2.0])
 RISING = np.array([0.5, 0.75, 1.25, 2.0])
 BODIES = {"radius": (POSITIVE, 1.0), "stiffness": (POSITIVE, 2.0)}
 ADHESION = {"surface_energy": (POSITIVE, 1.5)}
-SCENE = {**BODIES, "law": (LAWS, LAW), "rigid": (FLAG, False)}
+SCENE = {
+    "radius": (NUMBER, 1.0), "stiffness": (NUMBER, 2.0), "law": (LAWS, LAW), "rigid": (SWITCH, False),
+}
 ONE_STATE = {
-    "law": (NAME, "lennard_jones"),
+    "law": (LAWS, LAW),
     "mesh": (MESHES, MESH),
     "h0": (SCALAR, 3.0),
     "coupling": (SCALAR, 0.2),
@@ -63,10 +69,10 @@ ONE_STATE = {
 REGISTRY = {
     "approximation_rows": entry(
         snapin.approximation_rows,
-        h0_start=(SCALAR, 8.0),
-        h0_end=(SCALAR, 5.0),
+        h0_start=(NUMBER, 8.0),
+        h0_end=(NUMBER, 5.0),
         **SCENE,
-        count=(COUNT, 5),
+        count=(WHOLE, 5),
     ),
     "cohesive_zone": entry(
         snapin.cohesive_zone, contact_radius=(VECTOR, RISING), **BODIES, **ADHESION,
@@ -87,7 +93,6 @@ REGISTRY = {
     "equilibrium": entry(
         snapin.equilibrium,
         **ONE_STATE,
-        part=(NAME, "full"),
         method=(NAME, "mixing"),
         most_iterations=(COUNT, 60),
         depth=(COUNT, 5),
@@ -101,31 +106,26 @@ REGISTRY = {
         depth=(COUNT, 5),
     ),
     "equilibrium_path": entry(
-        snapin.equilibrium_path, h0_end=(SCALAR, 1.0), **SCENE, h0_start=(SCALAR, 20.0),
-        accuracy=(POSITIVE, 1e-2),
+        snapin.equilibrium_path, h0_end=(NUMBER, 1.0), **SCENE, h0_start=(NUMBER, 20.0),
+        accuracy=(NUMBER, 1e-2),
     ),
-    "exponential": entry(snapin.exponential, p0=(POSITIVE, 2.0), decay_length=(POSITIVE, 0.5)),
     "force_curve": entry(
         snapin.force_curve,
-        h0=(VECTOR, np.array([4.0, 3.0, 2.5, 2.0])),
+        h0=(VECTOR, STEPS),
         **SCENE,
-        method=(NAME, "anderson"),
-        grid=(NAME, "uniform"),
-        accuracy=(POSITIVE, 1e-2),
-        nodes=(COUNT, 60),
-        r_max=(POSITIVE, 12.0),
+        method=(WORD, "anderson"),
+        grid=(WORD, "uniform"),
+        accuracy=(NUMBER, 1e-2),
+        nodes=(WHOLE, 60),
+        r_max=(NUMBER, 12.0),
     ),
     "force_curve on locked panels": entry(
-        snapin.force_curve, h0=(VECTOR, np.array([4.0, 3.0, 2.5, 2.0])), **SCENE,
-        accuracy=(POSITIVE, 1e-2),
+        snapin.force_curve, h0=(VECTOR, STEPS), **SCENE, accuracy=(NUMBER, 1e-2),
     ),
-    "force_law": entry(
-        snapin.force_law, law=(NAME, "lennard_jones"), gap=(VECTOR, RISING), part=(NAME, "full"),
-        hamaker=(POSITIVE, 5.0), z0=(POSITIVE, 1.0),
-    ),
+    "force_law": entry(snapin.force_law, law=(LAWS, LAW), gap=(VECTOR, RISING)),
     "force_law, exponential": entry(
-        snapin.force_law, law=(NAME, "exponential"), gap=(VECTOR, RISING), p0=(POSITIVE, 5.0),
-        decay_length=(POSITIVE, 0.5),
+        snapin.force_law, law=(LAWS, snapin.exponential(p0=5.0, decay_length=0.5)),
+        gap=(VECTOR, RISING),
     ),
     "gauss_rule": entry(snapin.gauss_rule, points=(COUNT, 7)),
     "jump_estimates": entry(snapin.jump_estimates, **SCENE),
@@ -133,13 +133,7 @@ REGISTRY = {
     "kernel_log_coefficient": entry(
         snapin.kernel_log_coefficient, total=(PAIRED, RISING + 1), distance=(PAIRED, RISING)
     ),
-    "law_numbers": entry(
-        snapin.law_numbers, law=(NAME, "lennard_jones"), part=(NAME, "full"),
-        hamaker=(POSITIVE, 5.0), z0=(POSITIVE, 1.0),
-    ),
-    "lennard_jones": entry(
-        snapin.lennard_jones, hamaker=(POSITIVE, 5.0), z0=(POSITIVE, 1.0), part=(NAME, "full")
-    ),
+    "law_numbers": entry(snapin.law_numbers, law=(LAWS, LAW)),
     "load_at_displacement": entry(
         snapin.load_at_displacement, theory=(NAME, "jkr"), displacement=(VECTOR, RISING), **BODIES,
         **ADHESION,
@@ -177,12 +171,10 @@ REGISTRY = {
     ),
 }
 
-# Arguments that a good call leaves out, and arguments gathered by `**parameters`.
+# Arguments that a good call leaves out, and those gathered by `**numerics`.
 LEFT_OUT = {
     "equilibrium by Anderson": {
-        "part", "method", "most_iterations", "patience", "mixing_limit", "displacement_tolerance",
+        "method", "most_iterations", "patience", "mixing_limit", "displacement_tolerance",
     },
-    "force_curve on locked panels": {"method", "grid", "nodes", "r_max"},
-    "force_law, exponential": {"part"},
 }
-GATHERED = {"hamaker", "z0", "p0", "decay_length"}
+GATHERED = {"method", "grid", "accuracy", "nodes", "r_max"}

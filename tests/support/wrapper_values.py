@@ -5,11 +5,11 @@ must give (a contiguous float64 array, a float, an int, a str), if it is not ref
 """
 
 import array
+import types
 from decimal import Decimal
 from fractions import Fraction
 
 import numpy as np
-import snapin
 
 REFUSED = object()
 EXTREMES = (5e-324, 1e-308, 1e-150, 1e-30, 1e30, 1e150, 1e300, np.finfo(float).max)
@@ -226,37 +226,82 @@ def names(good):
     yield "numpy str", np.str_(good), good
 
 
-def flags(good):
-    """Cases of True or False."""
+def numbers(good):
+    """Cases of a number in a deck: one value may be a list, and which are in range the deck says."""
+    for label, value, clean in scalars(good):
+        if label in ("list", "1-d"):
+            clean = good
+        # Beyond float64's whole numbers the nearest is taken, as from a deck that someone wrote.
+        if label not in ("None", "inexact whole"):
+            yield label, value, clean
+
+
+def wholes(good):
+    """Cases of a whole number in a deck."""
+    for label, value, clean in counts(good):
+        if label in ("list", "1-d"):
+            clean = good
+        if label != "None":
+            yield label, value, clean
+
+
+def words(good):
+    """Cases of a word in a deck, which minds neither case nor blanks at the end."""
+    for label, value, clean in names(good):
+        if label in ("space behind", "upper case", "list", "tuple"):
+            clean = good
+        if label != "None":
+            yield label, value, clean
+
+
+def switches(good):
+    """Cases of True or False in a deck."""
     for label, value in {**FOREIGN, **NOT_FINITE}.items():
         if not isinstance(value, (bool, np.bool_)):
             yield label, value, REFUSED
     for label, value in {
-        "None": None, "0": 0, "1": 1, "list": [good], "array": np.array([good]), "name": "False",
+        "0": 0, "1": 1, "list": [good], "array": np.array([good]), "name": "False",
     }.items():
         yield label, value, REFUSED
     yield "numpy bool", np.bool_(good), good
 
 
 def laws(good):
-    """Cases of a law."""
+    """Cases of a law: a group, with one key exchanged."""
     for label, value in {**FOREIGN, **NOT_FINITE}.items():
         yield label, value, REFUSED
+    keys = good["force"]
+    number = next(key for key, value in keys.items() if isinstance(value, float))
     for label, value in {
         "None": None,
-        "name": good.law,
-        "tuple": tuple(good),
-        "unknown": good._replace(law="morse"),
-        "unknown part": good._replace(part="half"),
-        "no name": good._replace(law=None),
-        "negative": good._replace(z0=-1.0),
-        "nan": good._replace(hamaker=np.nan),
-        "strings": good._replace(hamaker="1"),
-        "parameter of another": good._replace(p0=1.0),
-        "arrays": good._replace(z0=np.ones(2)),
-        "empty": snapin.ForceLaw(*[None] * 6),
+        "name": keys["law"],
+        "keys without a group": keys,
+        "group of another kind": {"force": list(keys)},
+        "group without keys": {"force": True},
+        "unknown group": {**good, "frog": {}},
+        "name of a group that ends it": {"force / &x": keys},
+        "name of no kind": {1: keys},
     }.items():
         yield label, value, REFUSED
+    for label, change in {
+        "unknown": {"law": "none"},
+        "unknown part": {"part": "half"},
+        "no name": {"law": None},
+        "name of bytes": {"law": keys["law"].encode()},
+        "negative": {number: -1.0},
+        "nan": {number: np.nan},
+        "strings": {number: "1"},
+        "complex": {number: 1 + 1j},
+        "arrays": {number: np.ones(2)},
+        "unknown key": {"frog": 1.0},
+        "key that ends another": {"frog = 1, x": 1.0},
+        "text that ends itself": {"part": "full' / &loading /"},
+        "line end": {"part": "full\n"},
+        "NUL": {"part": "full\0"},
+    }.items():
+        yield label, {"force": {**keys, **change}}, REFUSED
+    yield "another mapping", types.MappingProxyType(good), good
+    yield "whole number", {"force": {**keys, number: 5}}, {"force": {**keys, number: 5.0}}
 
 
 def meshes(good):
@@ -274,7 +319,10 @@ CASES = {
     "positive": positives,
     "count": counts,
     "name": names,
-    "flag": flags,
+    "number": numbers,
+    "whole": wholes,
+    "word": words,
+    "switch": switches,
     "law": laws,
     "mesh": meshes,
 }

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 import snapin
-from snapin.numerics import LAWS
 from test_approximations import DECAY, FULL, P0, UNITS, lennard_jones
 
 
@@ -14,8 +13,7 @@ from test_approximations import DECAY, FULL, P0, UNITS, lennard_jones
 
 def criterion(gap, law):
     """The left side of (29) with its sign changed; bodies jump where it reaches 1."""
-    numbers = {name: getattr(law, name) for name in LAWS[law.law][0]}
-    pressure, slope, _ = snapin.force_law(law.law, gap, part=law.part, **numbers)
+    pressure, slope, _ = snapin.force_law(law, gap)
     return snapin.slow_deformation(gap, **UNITS, law=law).displacement * slope / pressure
 
 
@@ -117,6 +115,9 @@ def test_jumps_are_near_those_of_the_exact_solution(sigma, h0, load):
 STEPS = np.array([0, 0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32, 48, 64, 96, 128])
 
 
+EXPONENTIAL = snapin.exponential(p0=1.0, decay_length=1.0)
+
+
 def exact(law, h0, coupling, widths=STEPS):
     """Gap on the axis, displacement and load of the elastic problem."""
     state = snapin.equilibrium(
@@ -128,7 +129,7 @@ def exact(law, h0, coupling, widths=STEPS):
 
 def shortfall(big_lambda):
     """Relative errors by which (31), (32) are below the exact values at the same gap, and delta."""
-    gap, delta, load = exact("exponential", 0.0, big_lambda, STEPS[:13])
+    gap, delta, load = exact(EXPONENTIAL, 0.0, big_lambda, STEPS[:13])
     law = snapin.exponential(p0=big_lambda, decay_length=1.0)
     found = snapin.slow_deformation([gap], **UNITS, law=law, form="closed_form")
     return 1 - found.displacement[0] / delta, 1 - found.load[0] / (big_lambda * load), delta
@@ -176,7 +177,7 @@ def test_approximations_underestimate_repulsion_the_more_the_larger_lambda_is():
 def test_attraction_is_exact_in_the_limit_of_large_separation(sigma):
     errors = []
     for h0 in 10 * np.array([1, 2, 4, 8]) * sigma ** (2 / 7):
-        gap, delta, load = exact("lennard_jones", h0, sigma, math.sqrt(h0) * STEPS)
+        gap, delta, load = exact(lennard_jones(1.0), h0, sigma, math.sqrt(h0) * STEPS)
         found = snapin.slow_deformation([gap], **UNITS, law=lennard_jones(sigma))
         strain = abs(delta) / gap
         errors.append(
@@ -203,7 +204,7 @@ def test_attraction_is_exact_in_the_limit_of_large_separation(sigma):
 )
 def test_figure_8_attraction_is_overestimated_by_little_before_the_jump(h0, of_delta, of_load):
     # sigma 8.7, at the same gap; the criterion has the bodies jump from h0 = 6.32.
-    gap, delta, load = exact("lennard_jones", h0, 8.7, 3 * STEPS)
+    gap, delta, load = exact(lennard_jones(1.0), h0, 8.7, 3 * STEPS)
     found = snapin.slow_deformation([gap], **UNITS, law=lennard_jones(8.7))
     assert found.displacement[0] / delta - 1 == pytest.approx(of_delta, rel=0.03)
     assert found.load[0] / (8.7 * load) - 1 == pytest.approx(of_load, rel=0.03)

@@ -132,7 +132,7 @@ def test_what_is_missing_is_said_in_one_line(plot, results, args, phrase):
 
 def test_a_curve_is_smoothed_through_its_points(monkeypatch):
     monkeypatch.syspath_prepend(SCRIPTS)
-    from read_results import smooth
+    from drawing import smooth
 
     angle = np.linspace(0, np.pi, 9)
     circle = np.column_stack([np.cos(angle), 2 * np.sin(angle)])
@@ -145,7 +145,7 @@ def test_a_curve_is_smoothed_through_its_points(monkeypatch):
 
 def test_a_corner_stays_a_corner(monkeypatch):
     monkeypatch.syspath_prepend(SCRIPTS)
-    from read_results import smooth
+    from drawing import smooth
 
     zigzag = np.array([[0, 0], [1, 1], [2, 0], [3, 1.0]])
     np.testing.assert_array_equal(smooth(zigzag), zigzag)
@@ -157,7 +157,7 @@ def test_a_corner_stays_a_corner(monkeypatch):
 )
 def test_units_keep_numbers_short(monkeypatch, largest, factor, unit):
     monkeypatch.syspath_prepend(SCRIPTS)
-    from read_results import scale
+    from drawing import scale
 
     assert scale([-largest, np.nan], "N") == (factor, unit)
 

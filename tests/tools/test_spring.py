@@ -4,6 +4,7 @@ import sys
 
 import numpy as np
 import pytest
+import snapin
 from conftest import ROOT
 
 sys.path.append(str(ROOT / "tools" / "reproduce"))
@@ -18,7 +19,7 @@ LARGEST_SLOPE = HAMAKER / (6 * np.pi * Z0**4) * (3 * 7.5 ** (-2 / 3) - 9 * 7.5 *
 
 def lennard_jones():
     """Force and slope of the library's law, in SI, and the range of gaps to look at."""
-    return *spring.library_force("lennard_jones", hamaker=HAMAKER, z0=Z0), 0.6 * Z0, 60 * Z0
+    return *spring.library_force(snapin.lennard_jones(hamaker=HAMAKER, z0=Z0)), 0.6 * Z0, 60 * Z0
 
 
 def cubic():
@@ -163,6 +164,6 @@ def test_springs_stiffer_than_the_field_do_not_jump():
 
 def test_a_field_that_nothing_stops_is_refused():
     force, slope = spring.library_force(
-        "lennard_jones", hamaker=HAMAKER, z0=Z0, part="attractive")
+        snapin.lennard_jones(hamaker=HAMAKER, z0=Z0, part="attractive"))
     with pytest.raises(ValueError, match="1 times"):
         spring.jumps(force, slope, 0.1 * LARGEST_SLOPE, 0.6 * Z0, 60 * Z0)

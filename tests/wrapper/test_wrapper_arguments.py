@@ -2,7 +2,8 @@
 
 Every public callable of the package is called with every value of support/wrapper_values.py for
 every argument, in a process of its own (support/wrapper_child.py). Allowed are the result of a
-clean copy, to the bit, and an exception that begins with the argument's name.
+clean copy, to the bit, and an exception that begins with the argument's name or, where that is a key
+of a deck, is the program's message about that key. What decks are is in test_run.py.
 """
 
 import importlib
@@ -15,8 +16,9 @@ import snapin
 from support.processes import python
 from support.wrapper_registry import GATHERED, LEFT_OUT, REGISTRY
 
-# Modules of checks, which the callables of the others go through.
-CHECKS = {"snapin.arguments", "snapin.scene"}
+# Modules of checks, which the callables of the others go through, and of what has decks and files
+# for arguments.
+CHECKS = {"snapin.arguments", "snapin.deck", "snapin.results"}
 
 
 def public_callables():
@@ -48,8 +50,10 @@ def entries_of(name):
     return [key for key in REGISTRY if key == name or key.startswith((f"{name} ", f"{name},"))]
 
 
-# Plain helpers that take nothing from users.
-HELPERS = {"bytes_for", "law_arguments"}
+# A plain helper that takes nothing from users, and what takes or makes decks and folders.
+HELPERS = {
+    "bytes_for", "run", "deck_text", "lennard_jones", "exponential", "read_results",
+}
 
 
 @pytest.mark.parametrize(

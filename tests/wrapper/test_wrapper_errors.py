@@ -9,9 +9,6 @@ import pytest
 import snapin
 from support.wrapper_registry import UNIT, law_of
 
-# A law of hardly any force.
-WEAK = snapin.exponential(p0=1e-40, decay_length=1e30)
-
 
 # --- What did not converge
 
@@ -20,8 +17,8 @@ def test_states_that_do_not_converge_are_returned_and_warned_of():
     """Mixing stalls in a stiff contact."""
     numerics = {"method": "mixing", "nodes": 60, "r_max": 9.0}
     with pytest.warns(snapin.SnapinWarning) as caught:
-        curve = snapin.force_curve([9.0, 4.0, 0.0], **UNIT, law=law_of(8.7), **numerics)
-    text = "force_curve: 2 of 3 states did not converge, the first at h0 = 4 m; "
+        curve = snapin.force_curve([9.0, 4.5, 0.0], **UNIT, law=law_of(8.7), **numerics)
+    text = "loading: 2 of 3 states did not converge, the first at h0 = 4.50 m; "
     assert any(str(warning.message).startswith(text) for warning in caught)
     assert not curve.converged
     assert np.isfinite(curve.load).all()
@@ -29,23 +26,20 @@ def test_states_that_do_not_converge_are_returned_and_warned_of():
     assert all(warning.filename == __file__ for warning in caught)
 
 
-def test_an_early_end_leaves_nan_and_is_warned_of():
+def test_an_early_end_keeps_what_was_found_and_is_warned_of():
     """A law without repulsion has no state after the jump."""
-    h0 = np.r_[np.linspace(8, 0, 33), 8.0]
-    with pytest.warns(snapin.SnapinWarning, match="h0 = 3 m: no stable equilibrium"):
+    h0 = np.linspace(8, 0, 33)
+    with pytest.warns(snapin.SnapinWarning, match="loading ended early: no stable equilibrium"):
         curve = snapin.force_curve(h0, **UNIT, law=law_of(1.0, "attractive"))
-    reached = h0[:-1] > 3.0
     assert not curve.converged
-    assert np.isfinite(curve.load[:-1][reached]).all()
-    assert np.isnan(curve.load[:-1][~reached]).all()
-    assert math.isnan(curve.load[-1])
-    np.testing.assert_array_equal(curve.h0, h0)
+    np.testing.assert_array_equal(curve.h0, h0[h0 > 3])
+    assert np.isfinite(curve.load).all()
 
 
 def test_rigid_bodies_that_would_touch_have_no_state():
     with pytest.warns(snapin.SnapinWarning, match="rigid bodies would touch"):
         curve = snapin.force_curve([-1.0, -2.0], radius=1.0, rigid=True, law=law_of(1.0))
-    assert np.isnan(curve.load).all()
+    assert curve.load.size == 0
     assert math.isnan(curve.error_estimate)
 
 
@@ -83,60 +77,60 @@ def path_with(**changes):
         (curve_with(h0=[]), "h0"),
         (curve_with(h0=3.0), "h0"),
         (curve_with(h0=[[1.0, 2.0]]), "h0"),
+        (curve_with(h0=[2.0, 4.0]), "h0"),
+        (curve_with(h0=[4.0, 3.0, 2.5]), "h0"),
+        (curve_with(h0=[4.0, 3.0, 5.0, 2.0]), "h0"),
+        (curve_with(h0=[4.0, 3.0, 3.5, 5.0]), "h0"),
+        (curve_with(h0=[4.0, 4.0]), "h0"),
         (curve_with(h0=[1.0, math.nan]), "h0"),
         (curve_with(h0=[1.0, -math.inf]), "h0"),
         (curve_with(radius=0), "radius"),
         (curve_with(radius=math.inf), "radius"),
         (curve_with(stiffness=-1e10), "stiffness"),
         (curve_with(stiffness=math.nan), "stiffness"),
-        (curve_with(rigid=True), "stiffness"),
+        (curve_with(rigid=True), "rigid"),
         (curve_with(accuracy=0), "accuracy"),
         (curve_with(accuracy=0.5), "accuracy"),
         (curve_with(accuracy=1e-12), "accuracy"),
         (curve_with(nodes=1, grid="uniform"), "nodes"),
         (curve_with(nodes=10**9, grid="uniform"), "nodes"),
-        (curve_with(nodes=300), "nodes"),
-        (curve_with(r_max=10.0), "r_max"),
         (curve_with(r_max=-10.0, grid="uniform"), "r_max"),
         (path_with(h0_end=math.nan), "h0_end"),
         (path_with(h0_start=-3.0), "h0_start"),
         (path_with(h0_start=math.inf), "h0_start"),
         (path_with(radius=-1), "radius"),
         (path_with(accuracy=2), "accuracy"),
-        # Beyond all physical sense, beyond what was tried, or beyond float64.
+        # Beyond all physical sense, or beyond float64.
         (curve_with(radius=1e60), "radius"),
-        (curve_with(h0=[4e9, 2.0]), "h0"),
-        (curve_with(stiffness=1e-20), "stiffness"),
-        (curve_with(stiffness=1e40, radius=1e-50, law=WEAK), "stiffness"),
-        (path_with(h0_start=1e9), "h0_start"),
-        (lambda: snapin.force_law("lennard_jones", 1e-60, hamaker=1, z0=1), "gap"),
+        (curve_with(law=law_of(1e99)), "hamaker"),
+        (lambda: snapin.force_law(law_of(1.0), 1e-60), "gap"),
         (lambda: snapin.panel_mesh(np.arange(400.0), 64), "ends"),
         (lambda: snapin.numerics.Mesh("uniform", 1.0, [0.0, 2.0], 5), "ends"),
-        (lambda: snapin.lennard_jones(hamaker=-1, z0=1), "hamaker"),
-        (lambda: snapin.lennard_jones(hamaker=1, z0=0), "z0"),
-        (lambda: snapin.exponential(p0=math.nan, decay_length=1), "p0"),
-        (lambda: snapin.exponential(p0=1, decay_length=math.inf), "decay_length"),
+        (path_with(law=snapin.lennard_jones(hamaker=-1, z0=1)), "hamaker"),
+        (path_with(law=snapin.lennard_jones(hamaker=1, z0=0)), "z0"),
+        (path_with(law=snapin.exponential(p0=math.nan, decay_length=1)), "p0"),
+        (path_with(law=snapin.exponential(p0=1, decay_length=math.inf)), "decay_length"),
     ],
 )
-def test_a_bad_value_is_a_value_error_that_begins_with_its_name(call, name):
-    with pytest.raises(ValueError, match=rf"^{name}: "):
+def test_a_bad_value_is_a_value_error_with_its_name(call, name):
+    with pytest.raises(ValueError, match=rf'^{name}: |: key "{name}'):
         call()
 
 
 @pytest.mark.parametrize(
     ("call", "name", "known"),
     [
-        (curve_with(method="bisection"), "method", "auto, mixing, anderson, newton"),
-        (curve_with(grid="hexagonal"), "grid", "auto, uniform, panels"),
+        (curve_with(method="bisection"), "method", "'auto', 'mixing', 'anderson', 'newton'"),
+        (curve_with(grid="hexagonal"), "grid", "'auto', 'uniform', 'panels'"),
         (
-            lambda: snapin.lennard_jones(hamaker=1, z0=1, part="half"),
+            path_with(law=snapin.lennard_jones(hamaker=1, z0=1, part="half")),
             "part",
-            "full, repulsive, attractive",
+            "'full', 'repulsive', 'attractive'",
         ),
     ],
 )
 def test_an_unknown_name_is_answered_with_those_there_are(call, name, known):
-    with pytest.raises(ValueError, match=rf"^{name}: must be one of {known}, not"):
+    with pytest.raises(ValueError, match=rf'key "{name}": .* allowed: one of {known}'):
         call()
 
 
@@ -150,13 +144,13 @@ def test_an_unknown_name_is_answered_with_those_there_are(call, name, known):
         (curve_with(law="lennard_jones"), "law"),
         (curve_with(rigid=1), "rigid"),
         (curve_with(nodes=30.5, grid="uniform"), "nodes"),
-        (curve_with(method=["newton"]), "method"),
+        (curve_with(method=b"newton"), "method"),
         (path_with(h0_end="deep"), "h0_end"),
         (path_with(law=None), "law"),
     ],
 )
-def test_what_is_of_another_kind_is_an_error_that_begins_with_its_name(call, name):
-    with pytest.raises((TypeError, ValueError), match=rf"^{name}: "):
+def test_what_is_of_another_kind_is_an_error_with_its_name(call, name):
+    with pytest.raises((TypeError, ValueError), match=rf'^{name}: |: key "{name}"'):
         call()
 
 

@@ -21,7 +21,7 @@ WORK = """
 import os, numpy as np, snapin
 def work():
     mesh = snapin.panel_mesh(np.linspace(0.0, 5.0, 41), 12)
-    state = snapin.equilibrium("lennard_jones", mesh, 3.0, 0.2)
+    state = snapin.equilibrium(snapin.lennard_jones(hamaker=1.0, z0=1.0), mesh, 3.0, 0.2)
     return mesh.matrix().nodes.tobytes(), state.load
 """
 
@@ -74,7 +74,7 @@ import threading, numpy as np, snapin
 threading.stack_size(256 * 1024)
 def go():
     gap = np.linspace(1.0, 2.0, 2 * 10**5)
-    snapin.force_law("lennard_jones", gap, hamaker=1.0, z0=1.0)
+    snapin.force_law(snapin.lennard_jones(hamaker=1.0, z0=1.0), gap)
     bodies = {"radius": 1.0, "stiffness": 1.0}
     snapin.contact_curve("maugis", gap, **bodies, surface_energy=1.0, strength=1.0)
     law = snapin.lennard_jones(hamaker=1.0, z0=1.0)

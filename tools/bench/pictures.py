@@ -1,9 +1,9 @@
 """What the pictures have in common."""
 
-import program  # noqa: F401 (makes read_results importable)
+import program  # noqa: F401 (makes drawing importable)
+from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
-from read_results import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 
 COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK, GREY)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "h")

@@ -8,13 +8,13 @@ import shutil
 import subprocess
 import sys
 
+import f90nml
 import numpy as np
+from snapin.results import read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+# Where the plots' colours are.
 sys.path.insert(0, str(ROOT / "pywrap" / "plots"))
-
-import f90nml  # noqa: E402
-from read_results import read_table  # noqa: E402
 
 # The three numbers whose errors are drawn.
 QUANTITIES = ("pull_off", "jump_in", "load")

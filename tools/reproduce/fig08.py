@@ -4,7 +4,7 @@ import draws
 import numpy as np
 import style
 from published import Row
-from read_results import smooth
+from drawing import smooth
 
 DECKS = ("fig08", "fig07_exact_sigma", "fig10c_paper")
 TITLE = "Fig. 8: before the jump into contact"

@@ -6,6 +6,7 @@ import curves
 import draws
 import numpy as np
 import penetrations
+import snapin
 import spring
 import style
 from published import Row
@@ -39,7 +40,7 @@ _SHOWN = 0.28
 
 def _field():
     """Return force, slope and the largest slope, which is where h^6 = 7.5 z0^6, in SI."""
-    force, slope = spring.library_force("lennard_jones", hamaker=_HAMAKER, z0=_Z0)
+    force, slope = spring.library_force(snapin.lennard_jones(hamaker=_HAMAKER, z0=_Z0))
     return force, slope, float(slope(np.array([7.5 ** (1 / 6) * _Z0]))[0])
 
 

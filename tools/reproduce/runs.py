@@ -13,13 +13,12 @@ import time
 
 import draws
 import numpy as np
+from snapin.results import read_summary, read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INPUTS = ROOT / "inputs"
-sys.path[:0] = [str(ROOT / "pywrap" / "plots"), str(ROOT / "pywrap"),
-                str(ROOT / "build" / "pywrap")]
-
-from read_results import read_summary, read_table  # noqa: E402 (found through the line above)
+# Where the plots' curves and colours are.
+sys.path.insert(0, str(ROOT / "pywrap" / "plots"))
 
 
 # After so many seconds without news, what runs is named.

@@ -39,15 +39,15 @@ class Jumps(NamedTuple):
     outward: Jump
 
 
-def library_force(law, **parameters):
+def library_force(law):
     """Return (p, p') of a force law of the library, functions of the gap [m]: Pa and Pa/m."""
     import snapin
 
     def pressure(gap):
-        return snapin.force_law(law, np.atleast_1d(gap), **parameters).pressure
+        return snapin.force_law(law, np.atleast_1d(gap)).pressure
 
     def slope(gap):
-        return snapin.force_law(law, np.atleast_1d(gap), **parameters).slope
+        return snapin.force_law(law, np.atleast_1d(gap)).slope
 
     return pressure, slope
 

@@ -1,76 +1,21 @@
-"""Reading a folder of results, and what the figures made from one have in common."""
+"""What the figures made from a folder of results have in common."""
 
 import argparse
-import csv
 import pathlib
 import sys
 
-import f90nml
 import numpy as np
+from snapin.results import ResultsError
 
 # Okabe and Ito's colours, which stay apart for the colour-blind.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
 
-_TEXT_COLUMNS = ("branch", "theory")
 _PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"),
              (1e6, "M"), (1e9, "G"))
 
 # Cosine of the largest turn between two steps that is drawn as a bend and not as a corner.
 _GENTLE = 0.5
-
-
-class ResultsError(Exception):
-    """A file of results is missing or is not what it should be; the message says which."""
-
-
-def read_table(folder, name):
-    """Return the columns of a table as a dict of arrays, text for `branch` and `theory`."""
-    path = pathlib.Path(folder) / name
-    if path.with_name("INCOMPLETE.txt").exists():
-        raise ResultsError(f"files in {folder} may not belong together: see INCOMPLETE.txt there")
-    if not path.is_file():
-        raise ResultsError(f"no {name} in {folder}{_hint(path)}")
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.reader(line for line in file if not line.startswith("#")))
-    if not rows:
-        raise ResultsError(f"{path}: no header line")
-    header, rows = rows[0], rows[1:]
-    for row in rows:
-        if len(row) != len(header):
-            raise ResultsError(f"{path}: {len(row)} cells in a row, {len(header)} in the header")
-    try:
-        return {
-            column: np.array([row[i] for row in rows], str if column in _TEXT_COLUMNS else float)
-            for i, column in enumerate(header)
-        }
-    except ValueError as problem:
-        raise ResultsError(f"{path}: {problem}") from problem
-
-
-def _hint(path):
-    if not path.parent.is_dir():
-        return ": there is no such folder; ./run DECK writes results/<name of the deck>"
-    if path.with_name(path.name + ".partial").is_file():
-        return ": the run has not finished"
-    if path.with_name("sweep.csv").is_file():
-        return ": a &sweep keeps one row a case in sweep.csv, and no curves"
-    if path.name == "profiles.csv":
-        return ": the deck has no &profiles group"
-    if path.name == "curve.csv":
-        return ": the deck has neither &loading nor &equilibrium_path, or was not run"
-    return ""
-
-
-def read_summary(folder):
-    """Return the group &summary of summary.nml as a dict."""
-    path = pathlib.Path(folder) / "summary.nml"
-    if not path.is_file():
-        raise ResultsError(f"no summary.nml in {folder}{_hint(path)}")
-    groups = f90nml.read(path)
-    if "summary" not in groups:
-        raise ResultsError(f"{path}: no group &summary")
-    return groups["summary"]
 
 
 def title_of(folder, summary):

@@ -1,0 +1,99 @@
+!> Decks as f2py can see them: one is run, one is asked for its force law.
+!>
+!> For all flat modules: scalars, arrays of explicit shape with their sizes last, and for every
+!> procedure that may refuse its arguments `stat` (0, or the kind of `failure`) and `message`. No
+!> derived types, no optional arguments, no decisions: those live in the library, and the checks of
+!> shape and value in the Python package above. Kinds are those of C, which f2py knows; the length
+!> of `message` must be a literal for the same reason. A deck is its text.
+!>
+!> Nothing is kept from call to call. f2py holds Python's global lock, so that calls do not overlap;
+!> they must not (no `threadsafe`), since gfortran keeps lengths of intermediate strings in static
+!> variables where text is put together.
+module flat_deck
+  use iso_c_binding, only: c_double, c_int
+  implicit none
+  private
+  public :: run_deck, is_list, law_values, use_one_thread
+
+contains
+
+  !> Runs a deck, called `name` in messages, as the program does, into a folder. quiet, resume: 0 or
+  !> 1. A calculation that failed is stat 2 without a message: the summary in the folder says why.
+  subroutine run_deck(deck, name, folder, quiet, resume, stat, message)
+    use failure, only: failure_t, no_convergence
+    use scene, only: read_scene, scene_t
+    use simulation, only: run_scene
+    character(len=*), intent(in) :: deck, name, folder
+    integer(c_int), intent(in) :: quiet, resume
+    integer(c_int), intent(out) :: stat
+    character(len=16000), intent(out) :: message
+    type(scene_t) :: scene
+    type(failure_t), allocatable :: error
+    logical :: converged
+
+    stat = 0
+    message = ''
+    call read_scene(name, scene, error, deck)
+    if (.not. allocated(error)) then
+      call run_scene(scene, folder, quiet /= 0, resume /= 0, converged, error)
+      if (.not. converged) stat = no_convergence
+    end if
+    if (.not. allocated(error)) return
+    stat = error%kind
+    message = error%message
+  end subroutine run_deck
+
+  !> Whether a key of &summary or &cost is a list, though it may hold one value: 0 or 1.
+  subroutine is_list(key, list)
+    use result_rows, only: row_of, rows
+    character(len=*), intent(in) :: key
+    integer(c_int), intent(out) :: list
+    integer :: row
+
+    list = 0
+    row = row_of(key)
+    if (row > 0) list = merge(1_c_int, 0_c_int, rows(row)%list)
+  end subroutine is_list
+
+  !> The force law of a deck: pressure [Pa], its derivative by the separation [Pa/m] and its
+  !> integral from there to infinity [J/m^2], at separations `gap` [m]. numbers: units of gap [m]
+  !> and pressure [Pa], separation that is gap 0 [m], surface energy [J/m^2], separations of maximum
+  !> tension, of zero pressure and of vanishing repulsion [m]; NaN where there is none.
+  subroutine law_values(deck, gap, pressure, slope, energy, numbers, stat, message, n)
+    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+    use deck_problem, only: pose
+    use dimensionless_problem, only: problem_t, surface_energy
+    character(len=*), intent(in) :: deck
+    integer(c_int), intent(in) :: n
+    real(c_double), intent(in) :: gap(n)
+    real(c_double), intent(out) :: pressure(n), slope(n), energy(n), numbers(7)
+    integer(c_int), intent(out) :: stat
+    character(len=16000), intent(out) :: message
+    type(problem_t) :: problem
+
+    pressure = 0
+    slope = 0
+    energy = 0
+    numbers = 0
+    call pose(deck, problem, stat, message)
+    if (stat /= 0) return
+    associate (law => problem%law)
+      pressure = law%pressure_unit*law%pressure(law%gap_of(gap))
+      slope = law%pressure_unit/law%length*law%slope(law%gap_of(gap))
+      energy = law%pressure_unit*law%length*law%energy(law%gap_of(gap))
+      numbers = [law%length, law%pressure_unit, law%origin, surface_energy(problem), &
+        law%separation_of([law%edge_gap, law%rest_gap, law%range])]
+      if (.not. law%edge_gap > 0) numbers(5) = ieee_value(numbers(5), ieee_quiet_nan)
+      if (.not. law%rest_gap > 0) numbers(6) = ieee_value(numbers(6), ieee_quiet_nan)
+    end associate
+  end subroutine law_values
+
+  !> Lets the calling thread compute alone from now on: in a process that was forked after the
+  !> OpenMP run-time had started threads they are gone, and it would wait for them for ever.
+  subroutine use_one_thread()
+    !$ use omp_lib, only: omp_set_num_threads
+
+    !$ call omp_set_num_threads(1)
+  end subroutine use_one_thread
+
+end module flat_deck

@@ -1,0 +1,126 @@
+"""Decks: the text of one from a dictionary of groups, and one from whatever a caller has.
+
+Which groups and keys there are, and what they may be, is known to the program alone: a mistake is a
+`DeckError` with its message.
+"""
+
+import os
+import re
+from collections.abc import Mapping
+
+import numpy as np
+
+from .arguments import DeckError, SnapinError, reals, shown
+
+_BAD_INPUT = 1
+# f2py counts bytes in C ints; a deck may have far fewer, which the program says.
+_MOST_BYTES = 2**30
+
+
+def deck_of(deck):
+    """Return name and text of a deck: a dictionary of groups, a text (it has an &), or a path."""
+    if isinstance(deck, Mapping):
+        return "deck", deck_text(deck).encode()
+    if isinstance(deck, str) and "&" in deck:
+        try:
+            return "deck", deck.encode()
+        except UnicodeEncodeError:
+            raise ValueError("deck: a deck is plain text") from None
+    if not isinstance(deck, (str, os.PathLike)):
+        raise TypeError(f"deck: a dictionary, a text or a path is needed, not {shown(deck)}")
+    with open(deck, "rb") as file:
+        return os.fspath(deck), file.read(_MOST_BYTES)
+
+
+def deck_text(groups):
+    """Return the text of a deck, one key a line.
+
+    `groups` maps names of groups to dictionaries of their keys. True is a group without any; None
+    is left out, as a group and as the value of a key.
+    """
+    if not isinstance(groups, Mapping):
+        raise TypeError(f"deck: a dictionary of groups is needed, not {shown(groups)}")
+    return "".join(_group_text(name, keys) for name, keys in groups.items() if keys is not None)
+
+
+def _group_text(group, keys):
+    if keys is True:
+        keys = {}
+    if not isinstance(keys, Mapping):
+        raise TypeError(f"{_name(group)}: a dictionary of keys is needed, not {shown(keys)}")
+    lines = [
+        f"  {_name(key)} = {_value_text(key, value)}\n"
+        for key, value in keys.items()
+        if value is not None
+    ]
+    return f"&{_name(group)}\n{''.join(lines)}/\n"
+
+
+def _name(word):
+    """Return the name of a group or a key, which cannot be anything that ends it."""
+    if not isinstance(word, str) or not re.fullmatch(r"[A-Za-z]\w*", word, re.ASCII):
+        raise ValueError(f"deck: a name of a group or key is needed, not {shown(word)}")
+    return word
+
+
+def _value_text(name, value):
+    """Return a value as a namelist has it; numbers to all digits."""
+    if isinstance(value, (bool, np.bool_)):
+        return ".true." if value else ".false."
+    if isinstance(value, str):
+        return _quoted(name, value)
+    if isinstance(value, (list, tuple)) and value and all(isinstance(one, str) for one in value):
+        return ", ".join(_quoted(name, one) for one in value)
+    numbers = reals(name, value)
+    if numbers.ndim > 1 or numbers.size == 0:
+        raise ValueError(f"{name}: one or more values are needed, not shape {numbers.shape}")
+    kind = int if np.asarray(value).dtype.kind in "iu" else float
+    return ", ".join(repr(kind(number)) for number in numbers.flat)
+
+
+def _quoted(name, text):
+    if not text.isprintable():
+        raise ValueError(f"{name}: text of printable characters is needed, not {shown(text)}")
+    return "'" + text.replace("'", "''") + "'"
+
+
+def accept_deck(stat, message):
+    """Raise what the library reported of a deck; `stat` is 0 or a kind of src/base/failure.f90."""
+    if stat:
+        text = message.decode(errors="replace").rstrip()
+        raise DeckError(text) if stat == _BAD_INPUT else SnapinError(text)
+
+
+# --- The groups that a few arguments stand for
+
+
+def force(law, **keys):
+    """Return the group of a force law by its name in &force, with its keys."""
+    return {"force": {"law": law, **keys}}
+
+
+def lennard_jones(**keys):
+    """Return the group of the Lennard-Jones law; its keys are those of &force."""
+    return force("lennard_jones", **keys)
+
+
+def exponential(**keys):
+    """Return the group of the exponential repulsion; its keys are those of &force."""
+    return force("exponential", **keys)
+
+
+def scene(law, radius, stiffness, rigid, **groups):
+    """Return the groups of a deck: a law's, the two bodies, and others."""
+    if not isinstance(law, Mapping):
+        raise TypeError(f"law: a dictionary of groups is needed, not {shown(law)}")
+    return {
+        "bodies": {"radius": radius, "stiffness": stiffness, "rigid": rigid},
+        **law,
+        **groups,
+    }
+
+
+def problem_deck(law, radius=1.0, stiffness=None, rigid=True):
+    """Return the text of a deck whose law and bodies are meant alone, nothing being computed."""
+    nothing = {"h0_start": 1e-50, "h0_end": 0.0}
+    return deck_text(scene(law, radius, stiffness, rigid, classical=nothing)).encode()
