@@ -3,10 +3,9 @@ module forecast
   use kinds, only: wp
   use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t
-  use equilibrium, only: lost_in_rounding
   use numerics_choice, only: choice_t, choose, companion
   use edge_locked, only: mesh_pair_t, new_mesh_pair
-  use contact_scales, only: largest_radius, contact_level, smallest_feature
+  use contact_scales, only: largest_radius, contact_level, smallest_feature, lost_in_rounding
   use experiment, only: range_of
   use scene_problem, only: problem_of
   use locked_stepper, only: has_path

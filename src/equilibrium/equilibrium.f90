@@ -9,13 +9,14 @@ module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
+  use contact_scales, only: largest_floor
   use edge_locked, only: mesh_pair_t
   use linear_algebra, only: multiply
   use root_finding, only: bracket_t
   implicit none
   private
   public :: control_t, state_t, cost_t, equations_t, residual, largest_step, state_from, &
-    unknowns_of, holds, residual_floor, gap_at_end, above_parabola, far_gap, radius_of_gap, lost_in_rounding
+    unknowns_of, holds, residual_floor, gap_at_end, above_parabola, far_gap, radius_of_gap
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 prescribed at a fixed scale; no further unknown.
@@ -32,9 +33,6 @@ module equilibrium
 
   !> Where gaps are that large, in the law's lengths, no force depends on their last digits.
   real(wp), parameter :: far_gap = 1000
-
-  !> A residual that rounding excuses, in the law's lengths: beyond it the law is not resolved.
-  real(wp), parameter :: largest_floor = 1.0e-3_wp
 
   type :: control_t
     integer :: kind = at_h0
@@ -265,15 +263,6 @@ contains
       4*problem%coupling*state%scale*maxval(abs(state%pressure)))
     residual_floor = min(residual_floor, largest_floor)
   end function residual_floor
-
-  !> Whether the deformation of a contact of radius c (lateral units) under the law's largest
-  !> tension, about one unit of pressure, is so large that rounding hides the law.
-  pure logical function lost_in_rounding(problem, c)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: c
-
-    lost_in_rounding = 8*epsilon(1.0_wp)*problem%coupling*problem%law%adhesion*c > largest_floor
-  end function lost_in_rounding
 
   !> Number of gaps among `size` unknowns.
   pure integer function node_count(control, size)

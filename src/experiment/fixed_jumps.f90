@@ -1,11 +1,11 @@
 !> How a branch on a mesh fixed in space ends, and where the bodies go from there.
 module fixed_jumps
   use kinds, only: wp
-  use equilibrium, only: control_t, state_t, holds, radius_of_gap, lost_in_rounding
+  use equilibrium, only: control_t, state_t, holds, radius_of_gap
   use solver_options, only: solver_options_t, newton_of
   use anderson, only: solve_anderson
   use relaxation, only: relax
-  use contact_scales, only: largest_radius
+  use contact_scales, only: largest_radius, lost_in_rounding
   use ending, only: no_equilibrium
   use fixed_branch, only: fixed_branch_t, change, jump
   use stepper, only: branch_point_t, step_result_t, remember

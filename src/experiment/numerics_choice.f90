@@ -64,7 +64,8 @@ contains
       end if
     end associate
 
-    chosen%digits = digits_for(problem, numerics%accuracy)
+    widest = largest_radius(problem, h0_low, contact_level(problem))
+    chosen%digits = digits_for(problem, widest, numerics%accuracy)
     chosen%panel_order = panel_order_for(numerics%accuracy)
     if (allocated(numerics%panel_order)) chosen%panel_order = numerics%panel_order
     if (numerics%grid == 'uniform') then
@@ -85,7 +86,6 @@ contains
     end if
     if (chosen%grid == 'edge_locked') return
 
-    widest = largest_radius(problem, h0_low, contact_level(problem))
     feature = smallest_feature(problem, widest)
     chosen%extent = 1.5_wp*widest + 8
     if (allocated(numerics%r_max)) chosen%extent = numerics%r_max/problem%lateral

@@ -6,11 +6,15 @@ module contact_scales
   use dimensionless_problem, only: problem_t, neck_width
   implicit none
   private
-  public :: largest_radius, beyond_contact, hertz_scale, contact_level, smallest_feature
+  public :: largest_radius, beyond_contact, hertz_scale, contact_level, smallest_feature, &
+    lost_in_rounding, largest_floor
 
   !> Smallest feature over the contact radius that a mesh follows: where adhesion makes smaller
   !> ones, rounding hides them, and the mesh would grow for nothing.
   real(wp), parameter :: finest = 1.0e-13_wp
+
+  !> A residual that rounding excuses, in the law's lengths: beyond it the law is not resolved.
+  real(wp), parameter :: largest_floor = 1.0e-3_wp
 
 contains
 
@@ -74,5 +78,14 @@ contains
     smallest_feature = max(finest*max(c, 1.0_wp), min(neck_width(problem), 0.5_wp, &
       (problem%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3)))
   end function smallest_feature
+
+  !> Whether the deformation of a contact of radius c (lateral units) under the law's largest
+  !> tension, about one unit of pressure, is so large that rounding hides the law.
+  pure logical function lost_in_rounding(problem, c)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: c
+
+    lost_in_rounding = 8*epsilon(1.0_wp)*problem%coupling*problem%law%adhesion*c > largest_floor
+  end function lost_in_rounding
 
 end module contact_scales

@@ -10,7 +10,7 @@ module edge_locked
   use discretisation, only: discretisation_t
   use mapped_mesh, only: new_mapped_mesh
   use mesh_rule, only: approach_shape, contact_shape
-  use contact_scales, only: largest_radius, contact_level
+  use contact_scales, only: largest_radius, contact_level, lost_in_rounding
   implicit none
   private
   public :: mesh_pair_t, new_mesh_pair
@@ -60,6 +60,8 @@ contains
       bands = 1
       first = 1
     else if (problem%law%edge_gap > 0 .and. .not. problem%rigid) then
+      ! Where rounding hides the contact the path ends at its first fold.
+      if (lost_in_rounding(problem, widest)) widest = widest_band*first
       bands = ceiling(log(widest/first)/log(widest_band))
     end if
     allocate (pair%grid(approach + bands))

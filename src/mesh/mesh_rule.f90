@@ -31,14 +31,17 @@ module mesh_rule
 contains
 
   !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy:
-  !> folds and extrema, and the gap on the axis between nodes, are more sensitive.
-  pure real(wp) function digits_for(problem, accuracy) result(digits)
+  !> folds and extrema, and the gap on the axis between nodes, are more sensitive. widest: the
+  !> largest contact radius. No more than rounding leaves of the deformation.
+  pure real(wp) function digits_for(problem, widest, accuracy) result(digits)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: accuracy
+    real(wp), intent(in) :: widest, accuracy
+    real(wp) :: left
 
     digits = max(0.3_wp - 1.25_wp*log10(accuracy), &
       fewest_digits + more_for_folds*log10(1 + strength(problem)))
-    digits = min(digits, most_digits)
+    left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
+    digits = max(fewest_digits, min(digits, left, most_digits))
   end function digits_for
 
   !> Before contact, about the axis, for H0 up to h0_high.
