@@ -10,6 +10,7 @@ module flat_numerics
   private
   public :: kernel_values, gauss_rule, panel_integrals
   public :: mesh_nodes, mesh_matrix, mesh_interpolation
+  public :: mapped_nodes, mapped_matrix, mapped_interpolation
   public :: equilibrium_state
 
 contains
@@ -97,6 +98,54 @@ contains
     end do
   end subroutine mesh_interpolation
 
+  !> Nodes of a mesh mapped by sinh (`mapped_mesh`), and the weights of integral f x dx.
+  subroutine mapped_nodes(centre, d, inner, order, z_length, tail_order, decay, digits, x, weight, &
+    panels, nodes)
+    use discretisation, only: discretisation_t
+    use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
+    integer(c_int), intent(in) :: panels, nodes, inner, order(panels), tail_order
+    real(c_double), intent(in) :: centre, d, z_length(panels), decay, digits
+    real(c_double), intent(out) :: x(nodes), weight(nodes)
+    type(discretisation_t) :: mesh
+
+    mesh = new_mapped_mesh(mapped_shape_t(centre, d, inner, order, z_length, tail_order, decay, &
+      digits), .false.)
+    x = mesh%x
+    weight = mesh%weight
+  end subroutine mapped_nodes
+
+  !> The kernel's matrix: rows for the axis, for the mesh's centre, and for the nodes.
+  subroutine mapped_matrix(centre, d, inner, order, z_length, tail_order, decay, digits, matrix, &
+    panels, nodes)
+    use discretisation, only: discretisation_t
+    use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
+    integer(c_int), intent(in) :: panels, nodes, inner, order(panels), tail_order
+    real(c_double), intent(in) :: centre, d, z_length(panels), decay, digits
+    real(c_double), intent(out) :: matrix(nodes + 2, nodes)
+    type(discretisation_t) :: mesh
+
+    mesh = new_mapped_mesh(mapped_shape_t(centre, d, inner, order, z_length, tail_order, decay, &
+      digits), .true.)
+    matrix = mesh%kernel
+  end subroutine mapped_matrix
+
+  !> Values at positions `at` of the function with the given values at the nodes, bounded far away.
+  subroutine mapped_interpolation(centre, d, inner, order, z_length, tail_order, values, at, found, &
+    panels, nodes, n)
+    use discretisation, only: discretisation_t
+    use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
+    integer(c_int), intent(in) :: panels, nodes, n, inner, order(panels), tail_order
+    real(c_double), intent(in) :: centre, d, z_length(panels), values(nodes), at(n)
+    real(c_double), intent(out) :: found(n)
+    type(discretisation_t) :: mesh
+    integer :: i
+
+    mesh = new_mapped_mesh(mapped_shape_t(centre, d, inner, order, z_length, tail_order), .false.)
+    do i = 1, n
+      found(i) = mesh%interpolate(values, at(i))
+    end do
+  end subroutine mapped_interpolation
+
   !> One state of a deck's law at a prescribed H0 and coupling, in the units of
   !> `dimensionless_problem`, on a mesh enlarged `scale` times, from the gaps `start`.
   !> stop_on_change: 0 or 1. numbers: gap on the axis, load, residual. counts: converged (0 or 1),
@@ -129,6 +178,7 @@ contains
     if (stat /= 0) return
     this%problem%coupling = coupling
     this%problem%rigid = .not. coupling > 0
+    allocate (this%pair%grid(1))
     call make_mesh(kind, centre, panel_end, order, coupling > 0, this%pair%grid(1))
     this%options = solver_options_t(method=method, tolerance=tolerance, depth=depth, &
       patience=patience, most_iterations=most_iterations, mixing_limit=mixing_limit, &

@@ -3,10 +3,9 @@ module forecast
   use kinds, only: wp
   use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t
-  use equilibrium, only: lost_in_rounding
   use numerics_choice, only: choice_t, choose, companion
-  use edge_locked, only: mesh_pair_t, new_mesh_pair, largest_radius, contact_level, &
-    smallest_feature
+  use edge_locked, only: mesh_pair_t, new_mesh_pair
+  use contact_scales, only: largest_radius, contact_level, smallest_feature, lost_in_rounding
   use experiment, only: range_of
   use scene_problem, only: problem_of
   use locked_stepper, only: has_path
@@ -49,7 +48,7 @@ module forecast
   real(wp), parameter :: other_bytes = 1.0e7_wp
   !> Operations of a verified eigenvalue over the cube of the nodes, at the rate of factorisations,
   !> and the matrices that it needs.
-  real(wp), parameter :: eigenvalue_work = 7, eigenvalue_matrices = 2
+  real(wp), parameter :: eigenvalue_work = 15, eigenvalue_matrices = 5
 
 contains
 
@@ -102,7 +101,7 @@ contains
     type(mesh_pair_t) :: pair
     real(wp) :: n
 
-    pair = new_mesh_pair(problem, high, low, chosen%resolution, shape_only=.true.)
+    pair = new_mesh_pair(problem, high, low, chosen%digits, shape_only=.true.)
     expected%nodes = maxval(pair%grid%nodes)
     n = expected%nodes
     ! Both kernels, one factorisation and another for a fold, and about half as much

@@ -62,7 +62,8 @@ contains
     now%z = unknowns_of(control, state)
     now%z_best = now%z
     allocate (now%g(size(now%z)))
-    if (frozen%control%kind /= control%kind) frozen%factors%valid = .false.
+    if (frozen%control%kind /= control%kind .or. frozen%control%mesh /= control%mesh) &
+      frozen%factors%valid = .false.
     if (frozen%factors%valid) frozen%factors%valid = size(frozen%factors%lu, 1) == size(now%z)
     best = state_from(size(state%gap))
     converged = .false.
@@ -96,7 +97,7 @@ contains
     type(state_t), intent(inout) :: state
     real(wp), dimension(size(state%gap)) :: z, g
 
-    associate (grid => equations%pair%grid(equations%mesh_of(control)))
+    associate (grid => equations%pair%grid(control%mesh))
       z = control%value + 0.5_wp*(control%scale*grid%x(:size(z)))**2
     end associate
     call residual(equations, control, z, g, state)
@@ -169,7 +170,7 @@ contains
     if (control%kind /= at_h0_with_edge) return
     ! The parabola between the bodies is quadratic in the scale: its second-order part is known, and
     ! far out it is large.
-    associate (n => size(step) - 1, grid => equations%pair%grid(equations%mesh_of(control)))
+    associate (n => size(step) - 1, grid => equations%pair%grid(control%mesh))
       now%z(:n) = now%z(:n) + 0.5_wp*(step(n + 1)*grid%x(:n))**2
     end associate
   end subroutine advance

@@ -9,13 +9,14 @@ module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
-  use edge_locked, only: mesh_pair_t, approach, contact
+  use contact_scales, only: largest_floor
+  use edge_locked, only: mesh_pair_t
   use linear_algebra, only: multiply
   use root_finding, only: bracket_t
   implicit none
   private
   public :: control_t, state_t, cost_t, equations_t, residual, largest_step, state_from, &
-    unknowns_of, holds, residual_floor, load_reach, radius_of_gap, lost_in_rounding
+    unknowns_of, holds, residual_floor, gap_at_end, above_parabola, far_gap, radius_of_gap
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 prescribed at a fixed scale; no further unknown.
@@ -30,8 +31,8 @@ module equilibrium
   !> No length of an equilibrium, in the law's or in lateral units, is larger; its cube is a number.
   real(wp), parameter :: largest_unknown = 1.0e80_wp
 
-  !> A residual that rounding excuses, in the law's lengths: beyond it the law is not resolved.
-  real(wp), parameter :: largest_floor = 1.0e-3_wp
+  !> Where gaps are that large, in the law's lengths, no force depends on their last digits.
+  real(wp), parameter :: far_gap = 1000
 
   type :: control_t
     integer :: kind = at_h0
@@ -39,6 +40,8 @@ module equilibrium
     real(wp) :: value = 0
     !> The scale c of the mesh, where it is not an unknown.
     real(wp) :: scale = 1
+    !> The mesh that it is prescribed on.
+    integer :: mesh = 1
   end type control_t
 
   !> One state of the two bodies, dimensionless.
@@ -46,7 +49,7 @@ module equilibrium
     real(wp), allocatable :: gap(:), pressure(:)
     real(wp) :: h0 = 0, scale = 1
     real(wp) :: axis_gap = 0, load = 0
-    !> Largest |G|, in units of the law's length.
+    !> Largest |G|, in units of the law's length; of gaps beyond `far_gap` as a part of them.
     real(wp) :: residual = huge(1.0_wp)
     !> Operator products that this state took.
     integer :: iterations = 0
@@ -66,22 +69,9 @@ module equilibrium
     type(problem_t) :: problem
     type(mesh_pair_t) :: pair
     type(cost_t) :: cost
-  contains
-    procedure :: mesh_of
   end type equations_t
 
 contains
-
-  !> The mesh that a control belongs to: a scale that is prescribed or unknown is that of the
-  !> contact, and so is everything where there is no other mesh.
-  pure integer function mesh_of(self, control)
-    class(equations_t), intent(in) :: self
-    type(control_t), intent(in) :: control
-
-    mesh_of = approach
-    if (any(control%kind == [at_h0_with_edge, at_edge_radius]) .or. .not. self%pair%traceable) &
-      mesh_of = contact
-  end function mesh_of
 
   !> g(:nodes) = G and, where the control has one, g(nodes + 1) = its own equation, for the unknowns
   !> z = (gaps [, H0 or c]). On return `state` is what z stands for, with its load and residual.
@@ -94,11 +84,11 @@ contains
     real(wp), intent(out) :: g(:)
     type(state_t), intent(inout) :: state
     real(wp) :: raised(first_node - 1 + node_count(control, size(z)))
-    real(wp) :: axis_gap, edge_gap, reach
+    real(wp) :: edge_gap
     integer :: n, columns
 
     associate (problem => equations%problem, cost => equations%cost, &
-      grid => equations%pair%grid(equations%mesh_of(control)))
+      grid => equations%pair%grid(control%mesh))
       n = node_count(control, size(z))
       call unpack(control, z, state%h0, state%scale)
       state%gap = z(:n)
@@ -121,20 +111,23 @@ contains
         cost%operator_columns = cost%operator_columns + columns
       end if
       g(:n) = state%gap - state%h0 - 0.5_wp*(state%scale*grid%x(:n))**2 - raised(first_node:)
-      axis_gap = state%h0 + raised(axis_row)
+      ! In a stiff contact the equation for the axis, which is no node, is off by many times what the
+      ! polynomials lack of the pressure between the nodes; their gaps tell it better.
+      state%axis_gap = state%h0 + raised(axis_row)
+      if (grid%centre > 0) state%axis_gap = dot_product(grid%at_axis, above_parabola(grid, state))
       select case (control%kind)
       case (at_axis_gap)
-        g(n + 1) = axis_gap - control%value
+        g(n + 1) = state%axis_gap - control%value
       case (at_edge_radius, at_h0_with_edge)
         edge_gap = state%h0 + 0.5_wp*state%scale**2 + raised(centre_row)
         g(n + 1) = edge_gap - problem%law%edge_gap
       end select
-      state%axis_gap = axis_gap
+      state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
       ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
-      reach = load_reach(grid, state)
-      state%load = 2*pi*(state%scale**2*dot_product(grid%weight(:n), state%pressure) + &
-        sum(problem%law%energy([state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)])))
-      state%residual = maxval(abs(g))
+      if (grid%is_bounded()) &
+        state%load = state%load + 2*pi*sum(problem%law%energy([gap_at_end(grid, state)]))
+      state%residual = maxval(abs(g(n + 1:)))
+      state%residual = max(state%residual, maxval(abs(g(:n))/max(1.0_wp, state%gap/far_gap)))
       ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
       if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
     end associate
@@ -195,15 +188,25 @@ contains
     end select
   end function unknowns_of
 
-  !> Where the part of the mesh that a state uses ends, lateral units.
-  pure real(wp) function load_reach(grid, state)
+  !> The gap where a bounded mesh ends, the deformation there being that of the last node.
+  pure real(wp) function gap_at_end(grid, state) result(gap)
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
 
-    load_reach = state%scale*grid%end_of(size(state%gap))
-  end function load_reach
+    gap = state%gap(grid%nodes) + 0.5_wp*state%scale**2*(grid%end**2 - grid%x(grid%nodes)**2)
+  end function gap_at_end
 
-  !> An empty state on the leading `nodes` nodes of a mesh.
+  !> By how much the gaps of a state exceed the parabola: bounded, so that it can be interpolated on
+  !> any mesh.
+  pure function above_parabola(grid, state) result(raised)
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp) :: raised(grid%nodes)
+
+    raised = state%gap - 0.5_wp*(state%scale*grid%x)**2
+  end function above_parabola
+
+  !> An empty state on so many nodes.
   pure function state_from(nodes) result(state)
     integer, intent(in) :: nodes
     type(state_t) :: state
@@ -218,6 +221,7 @@ contains
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     type(bracket_t) :: bracket
+    real(wp) :: raised(grid%nodes)
     integer :: j
 
     do j = size(state%gap) - 1, 1, -1
@@ -230,8 +234,11 @@ contains
     else
       bracket = bracket_t(grid%x(j), grid%x(j + 1))
     end if
+    raised = above_parabola(grid, state)
     do while (bracket%is_open())
-      call bracket%narrow(grid%interpolate(state%gap, bracket%middle()) < level)
+      associate (x => bracket%middle())
+        call bracket%narrow(grid%interpolate(raised, x) + 0.5_wp*(state%scale*x)**2 < level)
+      end associate
     end do
     c = state%scale*bracket%low
   end function radius_of_gap
@@ -252,19 +259,10 @@ contains
     type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
 
-    residual_floor = 2*epsilon(1.0_wp)*(abs(state%h0) + maxval(abs(state%gap)) + &
+    residual_floor = 2*epsilon(1.0_wp)*(abs(state%h0) + min(maxval(abs(state%gap)), far_gap) + &
       4*problem%coupling*state%scale*maxval(abs(state%pressure)))
     residual_floor = min(residual_floor, largest_floor)
   end function residual_floor
-
-  !> Whether the deformation of a contact of radius c (lateral units) under the law's largest
-  !> tension, about one unit of pressure, is so large that rounding hides the law.
-  pure logical function lost_in_rounding(problem, c)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: c
-
-    lost_in_rounding = 8*epsilon(1.0_wp)*problem%coupling*problem%law%adhesion*c > largest_floor
-  end function lost_in_rounding
 
   !> Number of gaps among `size` unknowns.
   pure integer function node_count(control, size)

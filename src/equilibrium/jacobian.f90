@@ -4,7 +4,6 @@ module jacobian
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
-  use edge_locked, only: contact
   use linear_algebra, only: factorisation_t, factorise
   use equilibrium, only: control_t, state_t, cost_t, equations_t, at_h0, at_axis_gap, &
     at_edge_radius, at_h0_with_edge
@@ -24,7 +23,7 @@ contains
     type(factorisation_t), intent(inout) :: factors
     real(wp), intent(in), optional :: shift
 
-    associate (grid => equations%pair%grid(equations%mesh_of(control)))
+    associate (grid => equations%pair%grid(control%mesh))
       call factorise_on(equations%problem, grid, control, state, factors, equations%cost, shift)
     end associate
   end subroutine factorise_jacobian
@@ -118,7 +117,7 @@ contains
       allocate (derivative(n + 1), source=0.0_wp)
       derivative(n + 1) = -1
     case (at_edge_radius)
-      derivative = scale_derivative(equations%problem, equations%pair%grid(contact), state)
+      derivative = scale_derivative(equations%problem, equations%pair%grid(control%mesh), state)
     end select
   end function control_derivative
 

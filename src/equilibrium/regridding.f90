@@ -2,38 +2,37 @@
 module regridding
   use kinds, only: wp
   use discretisation, only: discretisation_t
-  use equilibrium, only: state_t
+  use equilibrium, only: state_t, above_parabola
   implicit none
   private
   public :: regrid
 
 contains
 
-  !> The state on another mesh (or a shorter or longer part of the same), at the scale given: gaps
-  !> interpolated, and beyond the old mesh those of a deformation that decays as 1/r.
-  pure function regrid(state, from, to, scale, nodes) result(new)
+  !> The state on another mesh, at the scale given: what bodies and forces add to the parabola is
+  !> interpolated, and beyond the old mesh it decays to H0 as 1/r.
+  pure function regrid(state, from, to, scale) result(new)
     type(state_t), intent(in) :: state
     type(discretisation_t), intent(in) :: from, to
     real(wp), intent(in) :: scale
-    integer, intent(in) :: nodes
     type(state_t) :: new
-    real(wp) :: r, last, raised
-    integer :: j, n
+    real(wp) :: r, at_end, raised(from%nodes)
+    integer :: j
 
-    n = size(state%gap)
-    last = state%scale*from%x(n)
-    raised = state%gap(n) - state%h0 - 0.5_wp*last**2
     new = state
     deallocate (new%gap, new%pressure)
-    allocate (new%gap(nodes), new%pressure(nodes))
+    allocate (new%gap(to%nodes), new%pressure(to%nodes))
     new%pressure = 0
     new%scale = scale
-    do j = 1, nodes
+    raised = above_parabola(from, state)
+    at_end = 0
+    if (from%is_bounded()) at_end = from%interpolate(raised, from%end) - state%h0
+    do j = 1, to%nodes
       r = scale*to%x(j)
-      if (r <= last) then
-        new%gap(j) = from%interpolate(state%gap, r/state%scale)
+      if (r/state%scale <= from%end) then
+        new%gap(j) = from%interpolate(raised, r/state%scale) + 0.5_wp*r**2
       else
-        new%gap(j) = state%h0 + 0.5_wp*r**2 + raised*last/r
+        new%gap(j) = state%h0 + at_end*state%scale*from%end/r + 0.5_wp*r**2
       end if
     end do
   end function regrid

@@ -8,7 +8,7 @@
 module error_estimate
   use kinds, only: wp
   use regridding, only: regrid
-  use equilibrium, only: control_t, state_t, equations_t
+  use equilibrium, only: control_t, state_t, equations_t, above_parabola, far_gap
   use solver, only: solver_t
   use reported, only: reported_t, error_t
   implicit none
@@ -67,12 +67,10 @@ contains
       displacement=max(abs(reported%displacement), 1.0_wp), profile=1.0_wp)
   end function unknown_error
 
-  !> Errors of a reported state by its witness: on the finer mesh, of which `nodes` nodes are used,
-  !> at the same h0.
-  subroutine judge_at_h0(own, fine, nodes, reported)
+  !> Errors of a reported state by its witness: on the finer mesh, at the same h0.
+  subroutine judge_at_h0(own, fine, reported)
     type(equations_t), intent(in) :: own
     type(finer_t), intent(inout) :: fine
-    integer, intent(in) :: nodes
     type(reported_t), intent(inout) :: reported
     type(state_t) :: state, shifted
     type(control_t) :: control
@@ -84,7 +82,7 @@ contains
       ! What did not converge has no counterpart.
       if (.not. witness%state%residual < 1) return
       state = regrid(witness%state, own%pair%grid(witness%mesh), fine%pair%grid(witness%mesh), &
-        witness%state%scale, nodes)
+        witness%state%scale)
       fine%frozen%factors%valid = .false.
       call fine%find(witness%control, state, found)
       if (.not. found) return
@@ -111,7 +109,7 @@ contains
     type(state_t), intent(in) :: state
 
     what_is_left = rounding + worst_residual* &
-      max(state%residual - 4*epsilon(1.0_wp)*maxval(state%gap), 0.0_wp)
+      max(state%residual - 4*epsilon(1.0_wp)*min(maxval(state%gap), far_gap), 0.0_wp)
   end function what_is_left
 
   !> The largest difference of gaps, and of pressures over the largest of them, between a state and
@@ -121,19 +119,20 @@ contains
     type(finer_t), intent(in) :: fine
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state, right
-    real(wp) :: x, last, strongest
+    real(wp) :: x, gap, strongest, raised(size(right%gap))
     integer :: j
 
     associate (law => own%problem%law, finer => fine%pair%grid(mesh))
-      last = finer%x(size(right%gap))
+      raised = above_parabola(finer, right)
       strongest = max(maxval(abs(right%pressure)), tiny(1.0_wp))
       largest = max(abs(right%axis_gap - state%axis_gap), &
         maxval(abs(law%pressure([right%axis_gap]) - law%pressure([state%axis_gap])))/strongest)
       do j = 1, size(state%gap)
         x = state%scale*own%pair%grid(mesh)%x(j)/right%scale
-        if (x > last) exit
-        largest = max(largest, abs(finer%interpolate(right%gap, x) - state%gap(j)), &
-          abs(finer%interpolate(right%pressure, x) - state%pressure(j))/strongest)
+        if (x > finer%end) exit
+        gap = finer%interpolate(raised, x) + 0.5_wp*(right%scale*x)**2
+        largest = max(largest, abs(gap - state%gap(j)), &
+          maxval(abs(law%pressure([gap]) - state%pressure(j)))/strongest)
       end do
     end associate
   end function profile_error

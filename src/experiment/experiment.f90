@@ -5,7 +5,8 @@ module experiment
   use dimensionless_problem, only: problem_t
   use experiment_request, only: request_t
   use numerics_choice, only: choice_t, choose, fixed_mesh
-  use edge_locked, only: new_mesh_pair, beyond_contact
+  use edge_locked, only: new_mesh_pair
+  use contact_scales, only: beyond_contact
   use ending, only: turn_not_reached
   use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
   use locked_stepper, only: locked_stepper_t, has_path
@@ -76,7 +77,7 @@ contains
     ! The path has no use for mixing.
     if (steps%options%method == 'mixing') steps%options%method = 'anderson'
     began = seconds()
-    steps%pair = new_mesh_pair(problem, high, low, outcome%chosen%resolution)
+    steps%pair = new_mesh_pair(problem, high, low, outcome%chosen%digits)
     steps%cost%kernel_seconds = seconds() - began
     steps%cost%kernel_entries = sum(steps%pair%grid%kernel_entries())
     outcome%nodes = sum(steps%pair%grid%nodes)
@@ -113,6 +114,7 @@ contains
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
     steps%cost = outcome%cost
     began = seconds()
+    allocate (steps%pair%grid(1))
     steps%pair%grid(1) = fixed_mesh(outcome%chosen, problem, low)
     steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
     associate (mesh => steps%pair%grid(1))

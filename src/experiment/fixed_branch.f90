@@ -85,7 +85,7 @@ contains
 
     if (self%options%method == 'mixing' .or. &
       .not. over_neck(self%problem, self%pair%grid(1)%spacing) <= resolved) then
-      expected = extrapolated(self%pair%grid(1), position, h0)
+      expected = extrapolated(position, h0)
       return
     end if
     expected = moved_with_edge(self%problem%law, self%pair%grid(1), position, h0)

@@ -1,11 +1,11 @@
 !> How a branch on a mesh fixed in space ends, and where the bodies go from there.
 module fixed_jumps
   use kinds, only: wp
-  use equilibrium, only: control_t, state_t, holds, radius_of_gap, lost_in_rounding
+  use equilibrium, only: control_t, state_t, holds, radius_of_gap
   use solver_options, only: solver_options_t, newton_of
   use anderson, only: solve_anderson
   use relaxation, only: relax
-  use edge_locked, only: largest_radius
+  use contact_scales, only: largest_radius, lost_in_rounding
   use ending, only: no_equilibrium
   use fixed_branch, only: fixed_branch_t, change, jump
   use stepper, only: branch_point_t, step_result_t, remember
@@ -38,7 +38,7 @@ contains
 
     associate (mesh => self%pair%grid(1))
       is_lost = self%problem%law%adhesion > 0 .and. lost_in_rounding(self%problem, &
-        min(largest_radius(self%problem, h0, 0.0_wp), mesh%end_of(mesh%nodes)))
+        min(largest_radius(self%problem, h0, 0.0_wp), mesh%end))
     end associate
   end function is_lost
 

@@ -8,7 +8,6 @@ module locked_stepper
   use equilibrium, only: state_t, state_from
   use edge_locked, only: approach, contact
   use locked_meshes, only: h0_control, scale_at
-  use continuation, only: node_count
   use ending, only: ending_t, touching, nothing_afar
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   implicit none
@@ -53,7 +52,7 @@ contains
       end if
     end if
     associate (grid => self%pair%grid(mesh))
-      state = state_from(node_count(self%pair, mesh, scale_at(self%pair, far)))
+      state = state_from(grid%nodes)
       state%h0 = far
       state%axis_gap = far
       state%scale = scale_at(self%pair, far)

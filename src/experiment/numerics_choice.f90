@@ -5,20 +5,22 @@ module numerics_choice
   use discretisation, only: discretisation_t
   use uniform_grid, only: new_uniform_grid
   use panels, only: new_panel_grid, graded_ends
-  use edge_locked, only: resolution_t, largest_radius, contact_level, smallest_feature
+  use mesh_rule, only: digits_for
+  use contact_scales, only: largest_radius, contact_level, smallest_feature
   use experiment_request, only: numerics_t
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: choice_t, choose, fixed_mesh, companion, resolution_for
+  public :: choice_t, choose, fixed_mesh, companion
 
   type :: choice_t
     !> 'edge_locked' panels, or fixed 'uniform' or 'panels'.
     character(len=:), allocatable :: grid, because
     type(solver_options_t) :: options
-    type(resolution_t) :: resolution
-    !> Fixed grids: nodes and extent (lateral units).
-    integer :: nodes = 0
+    !> Digits that edge-locked meshes are to have.
+    real(wp) :: digits = 7
+    !> Fixed grids: nodes and extent (lateral units), and nodes of a panel.
+    integer :: nodes = 0, panel_order = 12
     real(wp) :: extent = 0
   end type choice_t
 
@@ -28,6 +30,8 @@ module numerics_choice
   integer, parameter :: fewest = 200, most = 1500
   !> Nodes up to which the error of a uniform grid is estimated on a finer one.
   integer, parameter :: largest_doubled = 300
+  !> Size of panels fixed in space over the smallest feature.
+  real(wp), parameter :: panel_over_feature = 0.5_wp
 
 contains
 
@@ -60,8 +64,10 @@ contains
       end if
     end associate
 
-    chosen%resolution = resolution_for(numerics%accuracy)
-    if (allocated(numerics%panel_order)) chosen%resolution%order = numerics%panel_order
+    widest = largest_radius(problem, h0_low, contact_level(problem))
+    chosen%digits = digits_for(problem, widest, numerics%accuracy)
+    chosen%panel_order = panel_order_for(numerics%accuracy)
+    if (allocated(numerics%panel_order)) chosen%panel_order = numerics%panel_order
     if (numerics%grid == 'uniform') then
       chosen%grid = 'uniform'
       chosen%because = 'the deck asks for it'
@@ -80,7 +86,6 @@ contains
     end if
     if (chosen%grid == 'edge_locked') return
 
-    widest = largest_radius(problem, h0_low, contact_level(problem))
     feature = smallest_feature(problem, widest)
     chosen%extent = 1.5_wp*widest + 8
     if (allocated(numerics%r_max)) chosen%extent = numerics%r_max/problem%lateral
@@ -90,15 +95,12 @@ contains
     if (allocated(numerics%nodes)) chosen%nodes = numerics%nodes
   end function choose
 
-  !> Order and fineness of panels for a relative accuracy of load and displacement, from the
-  !> measured error (docs/accuracy.md).
-  pure function resolution_for(accuracy) result(resolution)
+  !> Nodes of panels fixed in space for a relative accuracy of load and displacement.
+  pure integer function panel_order_for(accuracy) result(order)
     real(wp), intent(in) :: accuracy
-    type(resolution_t) :: resolution
 
-    resolution%order = min(16, max(6, nint(4.6_wp - 0.8_wp*log10(accuracy))))
-    resolution%accuracy = 0.1_wp*accuracy
-  end function resolution_for
+    order = min(16, max(6, nint(4.6_wp - 0.8_wp*log10(accuracy))))
+  end function panel_order_for
 
   !> The mesh of a fixed grid: equal spacing, or equal panels as far as the contact reaches and
   !> doubling ones beyond.
@@ -116,13 +118,13 @@ contains
       return
     end if
     widest = min(largest_radius(problem, h0_low, contact_level(problem)), chosen%extent)
-    finest = chosen%resolution%fineness*smallest_feature(problem, widest)
+    finest = panel_over_feature*smallest_feature(problem, widest)
     ! No more nodes than a uniform grid would have been given.
-    count = ceiling(min(widest/finest, real(max(1, chosen%nodes/chosen%resolution%order), wp)))
+    count = ceiling(min(widest/finest, real(max(1, chosen%nodes/chosen%panel_order), wp)))
     finest = widest/count
     outer = widest + graded_ends(0.0_wp, max(chosen%extent, 2*widest) - widest, finest, 1.0_wp, &
       chosen%extent)
-    mesh = new_panel_grid(0.0_wp, [[(finest*j, j=0, count - 1)], outer], chosen%resolution%order, &
+    mesh = new_panel_grid(0.0_wp, [[(finest*j, j=0, count - 1)], outer], chosen%panel_order, &
       .not. problem%rigid)
   end function fixed_mesh
 
@@ -134,7 +136,7 @@ contains
     type(choice_t) :: companion
 
     companion = chosen
-    companion%resolution%order = chosen%resolution%order + 2
+    companion%panel_order = chosen%panel_order + 2
     if (chosen%nodes <= largest_doubled) then
       companion%extent = 1.2_wp*chosen%extent
       companion%nodes = 12*chosen%nodes/5

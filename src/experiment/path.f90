@@ -200,7 +200,7 @@ contains
         profile)
       path%states = path%states + 1
       path%worst_residual = max(path%worst_residual, state%residual)
-      if (row%mesh == contact) path%worst_spacing = max(path%worst_spacing, &
+      if (row%mesh >= contact) path%worst_spacing = max(path%worst_spacing, &
         spacing_over_neck(steps%problem, state%scale*grid%spacing))
     end associate
     if (.not. row%converged) then

@@ -3,7 +3,7 @@
 module path_errors
   use kinds, only: wp
   use regridding, only: regrid
-  use equilibrium, only: state_t, equations_t, load_reach
+  use equilibrium, only: state_t, equations_t
   use continuation, only: coordinate_of
   use potential_energy, only: energy_of
   use traced_path, only: path_point_t
@@ -15,7 +15,7 @@ module path_errors
     what_is_left
   implicit none
   private
-  public :: judge_on_path, finer_nodes
+  public :: judge_on_path
 
   !> The mesh of a state, what defines it, at `h0` if that is it; what the iteration has left, as a
   !> change of h0; and whether the profile is to be judged too.
@@ -25,8 +25,6 @@ module path_errors
     logical :: with_profile = .false.
   end type sought_t
 
-  !> Reach of a state on the finer mesh over its own.
-  real(wp), parameter :: farther = 1.6_wp
   !> Tolerance of states that are looked for along the path (law's lengths).
   real(wp), parameter :: tight = 1.0e-12_wp
 
@@ -67,18 +65,6 @@ contains
       end associate
     end if
   end subroutine judge_on_path
-
-  !> Nodes of the finer mesh for a state: they go beyond those that it has, for the error of the
-  !> reach, which falls with its fifth power, must show.
-  pure integer function finer_nodes(own, fine, mesh, state)
-    type(equations_t), intent(in) :: own
-    type(finer_t), intent(in) :: fine
-    integer, intent(in) :: mesh
-    type(state_t), intent(in) :: state
-
-    finer_nodes = fine%pair%grid(mesh)%nodes_within( &
-      farther*load_reach(own%pair%grid(mesh), state)/state%scale)
-  end function finer_nodes
 
   !> What defines a point of the path that is reported.
   pure type(sought_t) function sought_at(point, with_profile) result(sought)
@@ -146,7 +132,7 @@ contains
     call energy_of(own, sought%mesh, state, on_fine%energy, uncertainty)
     near%s = coordinate_of(own%problem, sought%mesh, state)
     near%state = regrid(state, own%pair%grid(sought%mesh), fine%pair%grid(sought%mesh), &
-      state%scale, finer_nodes(own, fine, sought%mesh, state))
+      state%scale)
     call move_to(fine, sought%mesh, sought%kind, sought%h0, near, distance, found)
     if (.not. found) return
     on_fine = measure_at(near, distance)

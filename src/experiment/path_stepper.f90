@@ -9,8 +9,6 @@ module path_stepper
   use kinds, only: wp
   use listener, only: listener_t
   use equilibrium, only: state_t
-  use edge_locked, only: contact
-  use locked_meshes, only: nodes_to_use
   use locked_stepper, only: locked_stepper_t
   use continuation, only: coordinate_of, between
   use ending, only: fallen_before, beyond_path
@@ -172,7 +170,7 @@ contains
     type(neighbours_t) :: near
     type(state_t) :: state
     real(wp) :: s, ends(2)
-    integer :: i, nodes, present
+    integer :: i
     logical :: jumped
 
     jumped = event%jumped
@@ -181,15 +179,10 @@ contains
     s = coordinate_at_h0(near, h0)
     ends = near%coordinate(near%lower:near%lower + 1)
     if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
-      present = 0
-      if (near%mesh == position%mesh .and. position%held > 0) present = size(position%state%gap)
-      nodes = nodes_to_use(self%pair, near%mesh, merge(exp(s), 1.0_wp, near%mesh == contact), &
-        present)
       if (near%mesh == position%mesh .and. goes_on(position, h0)) then
-        state = between(self%pair%grid(near%mesh), position%h0(:position%held), &
-          position%past(:position%held), h0, nodes)
+        state = between(position%h0(:position%held), position%past(:position%held), h0)
       else
-        state = guess_at_h0(self%pair, near, s, nodes)
+        state = guess_at_h0(near, s)
       end if
       call self%attempt(h0, state, near%mesh, event)
       if (event%converged) then

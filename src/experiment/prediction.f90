@@ -14,14 +14,12 @@ module prediction
 contains
 
   !> The state at h0 extrapolated from a position's past, node by node.
-  function extrapolated(mesh, position, h0) result(expected)
-    type(discretisation_t), intent(in) :: mesh
+  function extrapolated(position, h0) result(expected)
     type(branch_point_t), intent(in) :: position
     real(wp), intent(in) :: h0
     type(state_t) :: expected
 
-    expected = between(mesh, position%h0(:position%held), position%past(:position%held), h0, &
-      mesh%nodes)
+    expected = between(position%h0(:position%held), position%past(:position%held), h0)
     if (position%held == 1) expected%gap = expected%gap + (h0 - position%state%h0)
     expected%h0 = h0
   end function extrapolated
@@ -38,7 +36,7 @@ contains
     real(wp), allocatable :: deformation(:), parabola(:)
     integer :: i, k
 
-    expected = extrapolated(mesh, position, h0)
+    expected = extrapolated(position, h0)
     do k = 1, position%held
       radius(k) = radius_of_gap(law%edge_gap, mesh, position%past(k))
     end do
@@ -57,7 +55,7 @@ contains
       end do
     end do
     if (minval(expected%gap) < 0.5_wp*minval(position%state%gap)) &
-      expected = extrapolated(mesh, position, h0)
+      expected = extrapolated(position, h0)
   end function moved_with_edge
 
   !> The state expected at h0 on a branch that changes at the rate dH/dH0 and has a fold at a

@@ -2,7 +2,7 @@
 module result_errors
   use kinds, only: wp
   use numerics_choice, only: fixed_mesh, companion
-  use edge_locked, only: new_mesh_pair, resolution_t
+  use edge_locked, only: new_mesh_pair
   use fixed_stepper, only: fixed_stepper_t
   use locked_stepper, only: locked_stepper_t
   use path_stepper, only: path_stepper_t
@@ -10,7 +10,7 @@ module result_errors
   use hysteresis, only: lost_energy_t, energy_lost
   use reported, only: reported_t, relative_error
   use error_estimate, only: finer_t, judge_at_h0, rounding
-  use path_errors, only: judge_on_path, finer_nodes
+  use path_errors, only: judge_on_path
   use stepped_branch, only: branch_t
   use tension_search, only: load_tolerance
   use path, only: path_t
@@ -19,16 +19,14 @@ module result_errors
   private
   public :: judge_locked, judge_fixed
 
-  !> Panels: nodes that the finer mesh has more in each, and its reach over the mesh's. States take
-  !> whole panels, so that theirs may be up to twice that of the mesh; `finer_nodes` goes beyond it.
-  integer, parameter :: more_nodes = 2
-  real(wp), parameter :: farther = 4
+  !> Digits that edge-locked finer meshes have more.
+  real(wp), parameter :: more_digits = 1.5_wp
   !> Differences are raised by this much for the error of the finer mesh: a tenth or less for
   !> panels, a third for a uniform grid, which is of second order and of lower order in places; and
   !> because other states may be somewhat worse than those compared. Against a grid twice as coarse
   !> the difference itself is two to three times the error.
-  real(wp), parameter :: margin = 2, margin_fixed = 2.5_wp, margin_coarser = 1.2_wp, &
-    margin_unlocked = 4
+  real(wp), parameter :: margin = 3, margin_fixed = 2.5_wp, margin_coarser = 1.2_wp, &
+    margin_unlocked = 6
 
   !> How a reported state is judged: again on the path of `steps`, if it has one, or else at its h0,
   !> on the finer meshes.
@@ -48,18 +46,15 @@ contains
     real(wp), intent(in) :: high, low
     type(experiment_result_t), intent(inout) :: outcome
     type(judge_t) :: judge
-    type(resolution_t) :: finer
 
     if (.not. reports(outcome)) return
     judge%steps => steps
     call judge%fine%take_over(steps)
-    finer = outcome%chosen%resolution
-    finer%order = finer%order + more_nodes
-    finer%farther = farther
-    ! Without a contact edge nothing locks the mesh to what is sharp in a fall, and two nodes more
-    ! gain less.
+    ! Without a contact edge nothing locks the mesh to what is sharp in a fall, and more nodes gain
+    ! less.
     judge%fine%margin = merge(margin, margin_unlocked, steps%problem%law%edge_gap > 0)
-    judge%fine%pair = new_mesh_pair(steps%problem, high, low, finer)
+    judge%fine%pair = new_mesh_pair(steps%problem, high, low, &
+      outcome%chosen%digits + more_digits)
     call count_kernel(judge)
     if (allocated(outcome%path)) call judge_path(judge, outcome%path)
     if (allocated(outcome%stepped_path)) call judge_branch(judge, outcome%stepped_path)
@@ -82,6 +77,7 @@ contains
     if (.not. reports(outcome)) return
     judge%steps => steps
     call judge%fine%take_over(steps)
+    allocate (judge%fine%pair%grid(1))
     judge%fine%pair%grid(1) = fixed_mesh(companion(outcome%chosen), steps%problem, low)
     judge%fine%margin = merge(margin_fixed, margin_coarser, &
       judge%fine%pair%grid(1)%nodes > steps%pair%grid(1)%nodes)
@@ -181,11 +177,8 @@ contains
     select type (steps => judge%steps)
     class is (path_stepper_t)
       call judge_on_path(steps%equations_t, judge%fine, with_profile, steps%known, reported)
-    class is (locked_stepper_t)
-      call judge_at_h0(steps%equations_t, judge%fine, finer_nodes(steps%equations_t, judge%fine, &
-        reported%witness%mesh, reported%witness%state), reported)
     class default
-      call judge_at_h0(steps%equations_t, judge%fine, judge%fine%pair%grid(1)%nodes, reported)
+      call judge_at_h0(steps%equations_t, judge%fine, reported)
     end select
     if (allocated(reported%error) .and. .not. with_profile) reported%error%profile = 0
     if (allocated(reported%error) .and. reported%searched) &

@@ -3,7 +3,6 @@
 module unique_stepper
   use kinds, only: wp
   use equilibrium, only: state_t
-  use locked_meshes, only: nodes_to_use, scale_at
   use locked_stepper, only: locked_stepper_t
   use continuation, only: between
   use ending, only: touching, steps_lost
@@ -63,9 +62,7 @@ contains
     type(branch_point_t), intent(in) :: position
     type(state_t) :: guess
 
-    guess = between(self%pair%grid(position%mesh), position%h0(:position%held), &
-      position%past(:position%held), h0, nodes_to_use(self%pair, position%mesh, &
-      scale_at(self%pair, h0), size(position%state%gap)))
+    guess = between(position%h0(:position%held), position%past(:position%held), h0)
   end function guess
 
   !> Reaches h0 in shorter steps: a step is only ever too long.

@@ -1,154 +1,115 @@
 !> The discretised half-space: nodes, quadrature weights and the matrix of the elastic kernel.
-!> Solvers, cycle and path work on this object and do not know how it was built.
+!> Solvers, cycle and path work on this object and do not know how it was built (`linear_mesh`,
+!> `mapped_mesh`).
 !>
 !> All lengths are lateral and relative to a scale that the user of the object chooses; because the
 !> kernel is homogeneous, the same matrix serves every scale c (see `equilibrium`).
 module discretisation
   use kinds, only: wp, long
-  use product_integration, only: panel_rule_t, new_panel_rule, panel_weights
-  use quadrature, only: lagrange_basis
+  use panel_map, only: panel_map_t
+  use interpolation, only: polynomial_weights
+  use quadrature, only: gauss_legendre, barycentric_weights, lagrange_basis
   implicit none
   private
-  public :: discretisation_t, new_discretisation, axis_row, centre_row, first_node
+  public :: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, first_node
+
+  !> Nodes that tell the value on the axis.
+  integer, parameter :: nodes_at_axis = 6
 
   !> Rows of the kernel matrix.
   integer, parameter :: axis_row = 1, centre_row = 2, first_node = 3
 
+  !> Nodes of panels on [0, 1], weights of the integral, and barycentric weights.
+  type :: local_nodes_t
+    real(wp), allocatable :: node(:), weight(:), barycentric(:)
+  end type local_nodes_t
+
   type :: discretisation_t
-    !> Number of nodes, and of nodes from one panel's first to the next one's.
-    integer :: nodes = 0, stride = 0
+    integer :: nodes = 0
     !> Position of the mesh's centre: 0 for the axis, 1 for the contact edge.
     real(wp) :: centre = 0
+    !> Position where the mesh ends; huge where it goes on to infinity.
+    real(wp) :: end = 0
     !> Radial positions of the nodes (ascending), (nodes).
     real(wp), allocatable :: x(:)
     !> integral f x dx = sum(weight*f), (nodes).
     real(wp), allocatable :: weight(:)
     !> matmul(kernel, p) = integral k(r, t) p(t) t dt, (first_node - 1 + nodes, nodes): row
     !> axis_row is the axis, row centre_row the mesh's centre, and rows from first_node on are the
-    !> nodes, last so that a leading part of rows and columns is the operator of a leading part of
-    !> the nodes. Not allocated for rigid bodies.
+    !> nodes. Not allocated for rigid bodies.
     real(wp), allocatable :: kernel(:, :)
-    !> Ends of the panels as offsets from the centre (ascending), (panels + 1).
-    real(wp), allocatable :: panel_end(:)
-    !> What all panels have in common.
-    type(panel_rule_t) :: rule
-    !> Distance between neighbouring nodes of a panel; mean over the finest panel.
+    !> Weights of nodal values in the value on the axis, by interpolation, (nodes).
+    real(wp), allocatable :: at_axis(:)
+    !> The panels from the axis outward, the first node of each, and which of the local nodes are
+    !> its own.
+    type(panel_map_t), allocatable :: panel(:)
+    integer, allocatable :: first(:), which(:)
+    type(local_nodes_t), allocatable :: local(:)
+    !> Smallest distance between neighbouring nodes of a panel; mean over the finest panel.
     real(wp) :: spacing = 0
   contains
     procedure :: interpolate
-    procedure :: end_of
-    procedure :: nodes_within
+    procedure :: note_axis
+    procedure :: is_bounded
     procedure :: kernel_entries
   end type discretisation_t
 
 contains
 
-  !> Builds the object on the panels [end(k), end(k+1)] (offsets from the centre), each with the
-  !> nodes `local_node` of [0, 1]; a node at 1 is shared with the next panel's node at 0.
-  !> elastic = .false. leaves the kernel out.
-  function new_discretisation(centre, panel_end, local_node, elastic) result(grid)
-    real(wp), intent(in) :: centre, panel_end(:), local_node(:)
-    logical, intent(in) :: elastic
-    type(discretisation_t) :: grid
-    real(wp), allocatable :: x(:), target(:), weights(:)
-    real(wp) :: length
-    integer :: panels, order, panel, first, last, i
+  !> The Gauss-Legendre nodes of a panel.
+  pure function gauss_nodes(order) result(local)
+    integer, intent(in) :: order
+    type(local_nodes_t) :: local
 
-    order = size(local_node)
-    panels = size(panel_end) - 1
-    grid%centre = centre
-    grid%panel_end = panel_end
-    grid%rule = new_panel_rule(local_node)
-    grid%stride = order
-    if (local_node(order) >= 1) grid%stride = order - 1
-    grid%nodes = panels*grid%stride + (order - grid%stride)
-    grid%spacing = minval(panel_end(2:) - panel_end(:panels))/grid%stride
+    allocate (local%node(order), local%weight(order))
+    call gauss_legendre(local%node, local%weight)
+    local%barycentric = barycentric_weights(local%node)
+  end function gauss_nodes
 
-    allocate (target(first_node - 1 + grid%nodes), x(grid%nodes), grid%weight(grid%nodes))
-    grid%weight = 0
-    do panel = 1, panels
-      first = (panel - 1)*grid%stride + 1
-      last = first + order - 1
-      length = panel_end(panel + 1) - panel_end(panel)
-      x(first:last) = panel_end(panel) + length*local_node
-      if (order > 2) then
-        grid%weight(first:last) = length*grid%rule%weight*(centre + x(first:last))
-      else
-        ! The exact integral of hat function times x: end values a, b weigh (2a + b)/6, (a + 2b)/6.
-        grid%weight(first:last) = grid%weight(first:last) + length/6* &
-          (centre + x(first:last) + (2*centre + x(first) + x(last)))
-      end if
-    end do
-    grid%x = centre + x
-    if (.not. elastic) return
-
-    target(axis_row) = -centre
-    target(centre_row) = 0
-    target(first_node:) = x
-    allocate (grid%kernel(size(target), grid%nodes))
-    ! Panels that share a node meet in one column, so each thread owns rows, not panels.
-    !$omp parallel do schedule(dynamic, 8) private(panel, first, last, weights)
-    do i = 1, size(target)
-      allocate (weights(order))
-      grid%kernel(i, :) = 0
-      do panel = 1, panels
-        first = (panel - 1)*grid%stride + 1
-        last = first + order - 1
-        call panel_weights(grid%rule, centre, target(i), panel_end(panel), panel_end(panel + 1), &
-          weights)
-        grid%kernel(i, first:last) = grid%kernel(i, first:last) + weights
-      end do
-      deallocate (weights)
-    end do
-    !$omp end parallel do
-  end function new_discretisation
-
-  !> Value at position x of the function with the given nodal values, by the panel's polynomial.
-  !> Outside the mesh the nearest panel extrapolates; callers keep inside.
+  !> Value at position x of the function with the given nodal values, by the panel's polynomial: of
+  !> the inverse position where the mesh goes on to infinity, so that the function has to be bounded
+  !> there. Outside the mesh the nearest panel extrapolates; callers keep inside.
   pure function interpolate(self, values, x) result(value)
     class(discretisation_t), intent(in) :: self
     real(wp), intent(in) :: values(:), x
     real(wp) :: value
-    real(wp) :: offset, local
-    integer :: low, high, middle, order, first
+    real(wp) :: offset
+    integer :: low, high, middle
 
-    order = size(self%rule%node)
     offset = x - self%centre
     low = 1
-    high = size(self%panel_end)
+    high = size(self%panel) + 1
     do while (high - low > 1)
       middle = (low + high)/2
-      if (self%panel_end(middle) <= offset) then
+      if (self%panel(middle)%left <= offset) then
         low = middle
       else
         high = middle
       end if
     end do
-    local = (offset - self%panel_end(low))/(self%panel_end(low + 1) - self%panel_end(low))
-    first = (low - 1)*self%stride + 1
-    value = dot_product(lagrange_basis(self%rule%node, self%rule%barycentric, local), &
-      values(first:first + order - 1))
+    associate (local => self%local(self%which(low)), first => self%first(low))
+      value = dot_product(lagrange_basis(local%node, local%barycentric, &
+        self%panel(low)%local(offset)), values(first:first + size(local%node) - 1))
+    end associate
   end function interpolate
 
-  !> Where the panels of the first `nodes` nodes end, from the axis.
-  pure real(wp) function end_of(self, nodes)
+  !> Fills in at_axis, once the nodes are known: what is even in the distance from the axis is a
+  !> polynomial of its square, and through the nearest nodes that converges faster than the panel's.
+  pure subroutine note_axis(self)
+    class(discretisation_t), intent(inout) :: self
+
+    allocate (self%at_axis(self%nodes), source=0.0_wp)
+    associate (n => min(nodes_at_axis, self%nodes))
+      self%at_axis(:n) = polynomial_weights(self%x(:n)**2, 0.0_wp)
+    end associate
+  end subroutine note_axis
+
+  !> Whether the mesh ends somewhere.
+  elemental logical function is_bounded(self)
     class(discretisation_t), intent(in) :: self
-    integer, intent(in) :: nodes
-    integer :: panels
 
-    panels = (nodes - (size(self%rule%node) - self%stride))/self%stride
-    end_of = self%centre + self%panel_end(panels + 1)
-  end function end_of
-
-  !> Number of leading nodes whose panels reach to the position x (at least one panel's).
-  pure integer function nodes_within(self, x)
-    class(discretisation_t), intent(in) :: self
-    real(wp), intent(in) :: x
-    integer :: panels
-
-    panels = max(1, count(self%centre + self%panel_end(:size(self%panel_end) - 1) < x))
-    nodes_within = panels*self%stride + (size(self%rule%node) - self%stride)
-  end function nodes_within
+    is_bounded = self%end < huge(1.0_wp)
+  end function is_bounded
 
   !> Number of kernel entries that were computed.
   elemental integer(long) function kernel_entries(self)

@@ -1,157 +1,87 @@
-!> The two meshes on which the whole equilibrium path is resolved at any adhesion strength.
+!> The meshes on which the whole equilibrium path is resolved at any adhesion strength.
 !>
-!> Before contact the mesh is graded to the axis and the gap there is the coordinate of the path. In
-!> contact the mesh is locked to the contact edge: positions are in units of the contact radius c,
-!> the edge stays at 1, and c is the coordinate. Both coordinates are monotone along the path.
+!> Before contact the mesh is mapped to the axis and the gap there is the coordinate of the path. In
+!> contact meshes are locked to the contact edge: positions are in units of the contact radius c, the
+!> edge stays at 1, and c is the coordinate. Both coordinates are monotone along the path. A mesh
+!> serves a band of contact radii; the path passes from one to the next.
 module edge_locked
-  use kinds, only: wp, pi
-  use root_finding, only: bracket_t
-  use dimensionless_problem, only: problem_t, neck_width
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t, neck_width, calm_gap
   use discretisation, only: discretisation_t
-  use panels, only: new_panel_grid, graded_ends
+  use mapped_mesh, only: new_mapped_mesh
+  use mesh_rule, only: approach_shape, contact_shape
+  use contact_scales, only: largest_radius, contact_level, lost_in_rounding
   implicit none
   private
-  public :: mesh_pair_t, new_mesh_pair, hertz_scale, largest_radius, contact_level, &
-    smallest_feature, beyond_contact
+  public :: mesh_pair_t, new_mesh_pair
   public :: approach, contact
 
-  !> The two stretches of the path.
+  !> The mesh before contact, and the first of those in contact.
   integer, parameter :: approach = 1, contact = 2
 
+  !> Largest ratio of the contact radii that one mesh serves: a mesh for wider bands has more nodes,
+  !> and more bands have more meshes.
+  real(wp), parameter :: widest_band = 30
+
   type :: mesh_pair_t
-    type(discretisation_t) :: grid(2)
+    !> The meshes in the order of the path.
+    type(discretisation_t), allocatable :: grid(:)
+    !> Contact radius at which the path passes from a mesh to the next, lateral units; of the last it
+    !> is the largest that is expected.
+    real(wp), allocatable :: passage(:)
     !> Whether the path can be traced: the law attracts, or the bodies are rigid and it is trivial.
-    !> If not, only the mesh for contact exists, and its scale is prescribed by `hertz_scale`.
+    !> If not, there is one mesh for contact, and its scale is prescribed by `hertz_scale`.
     logical :: traceable = .true.
-    !> Lateral position up to which a state is resolved, and contact radius at which the path passes
-    !> from one mesh to the other; both in lateral units.
-    real(wp) :: reach = 0, passage = 0
     !> Gap at which a law without a contact edge begins to deform the bodies.
     real(wp) :: level = -huge(1.0_wp)
   end type mesh_pair_t
 
-  !> Smallest feature over the contact radius that a mesh follows: where adhesion makes smaller
-  !> ones, rounding hides them, and the mesh would grow for nothing.
-  real(wp), parameter :: finest = 1.0e-13_wp
-
-  !> How finely to resolve.
-  type, public :: resolution_t
-    !> Nodes a panel; size of the smallest panel over the smallest feature; relative error that the
-    !> finite reach of the mesh may cause.
-    integer :: order = 12
-    real(wp) :: fineness = 0.5_wp, accuracy = 1.0e-8_wp
-    !> Raises the reach above what follows from all else.
-    real(wp) :: farther = 1
-  end type resolution_t
-
 contains
 
-  !> Meshes for H0 from h0_high down to h0_low. shape_only leaves the kernels out, to learn how
-  !> large they would be.
-  function new_mesh_pair(problem, h0_high, h0_low, resolution, shape_only) result(pair)
+  !> Meshes for H0 from h0_high down to h0_low, good for so many digits (`mesh_rule`).
+  !> shape_only leaves the kernels out, to learn how large they would be.
+  function new_mesh_pair(problem, h0_high, h0_low, digits, shape_only) result(pair)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0_high, h0_low
-    type(resolution_t), intent(in) :: resolution
+    real(wp), intent(in) :: h0_high, h0_low, digits
     logical, intent(in), optional :: shape_only
     type(mesh_pair_t) :: pair
-    real(wp) :: feature, widest
+    real(wp) :: first, widest
     logical :: elastic
+    integer :: bands, k
 
     elastic = .not. problem%rigid
     if (present(shape_only)) elastic = elastic .and. .not. shape_only
     pair%traceable = problem%law%adhesion > 0 .or. problem%rigid
     if (.not. pair%traceable) pair%level = contact_level(problem)
     widest = largest_radius(problem, h0_low, pair%level)
-    feature = smallest_feature(problem, 1.0_wp)
-    pair%passage = min(0.6_wp*neck_width(problem), 0.4_wp)
-    ! Until then the axis of rigid bodies has come half the way from most tension to rest.
-    if (problem%law%edge_gap > 0) &
-      pair%passage = min(pair%passage, sqrt(problem%law%edge_gap - problem%law%rest_gap))
-    ! The neglected pressure of order rho^-6 lowers the gap by about 17 coupling/reach^5, and so for
-    ! other powers.
-    pair%reach = max(sqrt(2*max(problem%law%range - min(h0_low, 0.0_wp), 1.0_wp)), &
-      (17*problem%law%adhesion*problem%coupling**(1.0_wp/3)/resolution%accuracy)**(1/(2*problem%law%tail_power - 1)), &
-      4*problem%law%adhesion*widest, sqrt(100*problem%law%adhesion*max(h0_high, 1.0_wp)))
-    pair%reach = resolution%farther*pair%reach
-    associate (fineness => resolution%fineness, order => resolution%order)
-      if (pair%traceable) pair%grid(approach) = new_panel_grid(0.0_wp, &
-        graded_ends(0.0_wp, pair%reach, fineness*feature, 1.0_wp, pair%reach), order, elastic)
-      if (problem%law%edge_gap > 0 .and. .not. problem%rigid .or. .not. pair%traceable) &
-        pair%grid(contact) = new_locked_grid(pair%reach/min(pair%passage, 1.0_wp), &
-        fineness*smallest_feature(problem, widest)/widest, order, elastic)
-    end associate
+    first = min(passage_to_contact(problem), widest)
+    bands = 0
+    if (.not. pair%traceable) then
+      bands = 1
+      first = 1
+    else if (problem%law%edge_gap > 0 .and. .not. problem%rigid) then
+      ! Where rounding hides the contact the path ends at its first fold.
+      if (lost_in_rounding(problem, widest)) widest = widest_band*first
+      bands = ceiling(log(widest/first)/log(widest_band))
+    end if
+    allocate (pair%grid(approach + bands))
+    pair%passage = [first, (first*(widest/first)**(real(k, wp)/bands), k=1, bands)]
+    if (pair%traceable) pair%grid(approach) = new_mapped_mesh( &
+      approach_shape(problem, max(h0_high, calm_gap(problem)), digits), elastic)
+    do k = contact, size(pair%grid)
+      pair%grid(k) = new_mapped_mesh(contact_shape(problem, pair%passage(k - 1), &
+        pair%passage(k), pair%level, digits), elastic)
+    end do
   end function new_mesh_pair
 
-  !> A mesh locked to the edge at 1, out to `extent`, with smallest panels of size `finest`.
-  function new_locked_grid(extent, finest, order, elastic) result(grid)
-    real(wp), intent(in) :: extent, finest
-    integer, intent(in) :: order
-    logical, intent(in) :: elastic
-    type(discretisation_t) :: grid
-
-    grid = new_panel_grid(1.0_wp, &
-      graded_ends(1.0_wp, extent, min(finest, 0.25_wp), 1.0_wp, extent), order, elastic)
-  end function new_locked_grid
-
-  !> Contact radius that JKR theory (11) gives at H0, with a margin of a fifth; for a law without
-  !> adhesion that of Hertz, beginning at its level.
-  pure real(wp) function largest_radius(problem, h0, level) result(c)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0, level
-    integer :: step
-
-    if (problem%law%adhesion <= 0) then
-      c = hertz_scale(level, h0)
-      return
-    end if
-    c = 1
-    do step = 1, 200
-      c = sqrt(max(1 - h0, 0.0_wp) + sqrt(4*pi*problem%coupling*problem%law%adhesion*c))
-    end do
-    c = max(1.0_wp, 1.2_wp*c)
-  end function largest_radius
-
-  !> An H0 beyond which no contact reaches: the jump out of contact at fixed displacement of JKR
-  !> theory, the extremum of (11), with a margin of a fifth.
-  pure real(wp) function beyond_contact(problem)
+  !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a part of the
+  !> neck, and of the radius at which the axis of rigid bodies comes from most tension to rest.
+  pure real(wp) function passage_to_contact(problem) result(c)
     type(problem_t), intent(in) :: problem
 
-    beyond_contact = 1.2_wp*(1 + 3*(pi*problem%coupling*problem%law%adhesion/4)**(2.0_wp/3))
-  end function beyond_contact
-
-  !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins
-  !> at the given level, never less than 1.
-  pure real(wp) function hertz_scale(level, h0)
-    real(wp), intent(in) :: level, h0
-
-    hertz_scale = sqrt(1 + max(0.0_wp, level - h0))
-  end function hertz_scale
-
-  !> The gap at which the pressure over a unit radius deforms the bodies by one unit, by bisection
-  !> of a law that decreases with the gap.
-  pure real(wp) function contact_level(problem) result(level)
-    type(problem_t), intent(in) :: problem
-    type(bracket_t) :: bracket
-    real(wp) :: pressure(1)
-
-    bracket = bracket_t(problem%law%smallest_gap, problem%law%range + 500)
-    do while (bracket%is_open())
-      pressure = problem%law%pressure([bracket%middle()])
-      call bracket%narrow(2*problem%coupling*pressure(1) > 1)
-    end do
-    level = bracket%middle()
-  end function contact_level
-
-  !> The smallest lateral feature of the pressure up to the contact radius c: the neck, or where
-  !> that is wide, the half-width of the pressure between spheres near contact and the boundary
-  !> layer of a Hertz contact, whose gap opens as sqrt(c) s^(3/2) with the distance s from the edge
-  !> and changes the repulsion over one repulsion length.
-  pure real(wp) function smallest_feature(problem, c)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: c
-
-    smallest_feature = max(finest*max(c, 1.0_wp), min(neck_width(problem), 0.5_wp, &
-      (problem%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3)))
-  end function smallest_feature
+    c = 0.25_wp*neck_width(problem)
+    if (problem%law%edge_gap > 0) &
+      c = min(c, 0.25_wp*sqrt(problem%law%edge_gap - problem%law%rest_gap))
+  end function passage_to_contact
 
 end module edge_locked

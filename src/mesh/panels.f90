@@ -2,7 +2,8 @@
 !> with a few hundred nodes.
 module panels
   use kinds, only: wp
-  use discretisation, only: discretisation_t, new_discretisation
+  use discretisation, only: discretisation_t
+  use linear_mesh, only: new_linear_mesh
   use quadrature, only: gauss_legendre
   implicit none
   private
@@ -19,7 +20,7 @@ contains
     real(wp) :: node(order), weight(order)
 
     call gauss_legendre(node, weight)
-    grid = new_discretisation(centre, panel_end, node, elastic)
+    grid = new_linear_mesh(centre, panel_end, node, elastic)
   end function new_panel_grid
 
   !> Offsets of panel ends about a centre: size `finest` next to it, growing in proportion to the

@@ -1,7 +1,8 @@
 !> The paper's grid: equal spacing from the axis, pressure linear between the nodes.
 module uniform_grid
   use kinds, only: wp
-  use discretisation, only: discretisation_t, new_discretisation
+  use discretisation, only: discretisation_t
+  use linear_mesh, only: new_linear_mesh
   implicit none
   private
   public :: new_uniform_grid
@@ -16,7 +17,7 @@ contains
     type(discretisation_t) :: grid
     integer :: j
 
-    grid = new_discretisation(0.0_wp, [(extent*j/(nodes - 1), j=0, nodes - 1)], &
+    grid = new_linear_mesh(0.0_wp, [(extent*j/(nodes - 1), j=0, nodes - 1)], &
       [0.0_wp, 1.0_wp], elastic)
   end function new_uniform_grid
 

@@ -6,25 +6,26 @@ module continuation
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use interpolation, only: polynomial_weights
-  use discretisation, only: discretisation_t
   use equilibrium, only: control_t, state_t, equations_t, at_axis_gap, at_edge_radius, &
     radius_of_gap
   use solver_options, only: solver_options_t
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
-  use edge_locked, only: mesh_pair_t, approach, contact
+  use edge_locked, only: approach
   use regridding, only: regrid
   implicit none
   private
   public :: arc_t, continuation_t, new_continuation, path_control, coordinate_of, state_at, &
-    between, node_count, most_states
+    between, most_states
 
   !> States of an arc; of them those kept for the extrapolation; and limits of a step (relative
   !> change of the coordinate).
   integer, parameter :: most_states = 6, memory = 4
   real(wp), parameter :: smallest_step = 1.0e-6_wp
+  !> The least contact radius over that of a passage for a state to be taken to the next mesh.
+  real(wp), parameter :: nearly_passed = 0.5_wp
 
-  !> Some states of the path on one mesh, `approach` or `contact`, and their coordinates, in order.
+  !> Some states of the path on one mesh and their coordinates, in order.
   type :: arc_t
     integer :: mesh = approach, held = 0
     real(wp) :: coordinate(most_states) = 0
@@ -39,6 +40,7 @@ module continuation
     procedure :: advance
     procedure, private :: remember
     procedure :: change_mesh
+    procedure, private :: contact_radius
   end type continuation_t
 
 contains
@@ -99,6 +101,7 @@ contains
     real(wp), intent(in) :: s
     type(control_t) :: control
 
+    control%mesh = mesh
     if (mesh == approach) then
       control%kind = at_axis_gap
       control%value = exp(s) + 0.9_wp*problem%law%rest_gap
@@ -134,29 +137,18 @@ contains
     real(wp) :: c
 
     associate (problem => equations%problem, pair => equations%pair)
-      c = 1
-      if (to == contact) c = radius_of_gap(problem%law%edge_gap, pair%grid(from), state)
+      c = state%scale
+      if (from == approach) c = radius_of_gap(problem%law%edge_gap, pair%grid(from), state)
       done = c > 0
       if (.not. done) return
-      state = regrid(state, pair%grid(from), pair%grid(to), c, node_count(pair, to, c))
+      state = regrid(state, pair%grid(from), pair%grid(to), c)
       call solve_anderson(equations, options, frozen, &
         path_control(problem, to, coordinate_of(problem, to, state)), state, done)
     end associate
   end subroutine move_to_mesh
 
-  !> Nodes of a mesh that are in use at the scale c.
-  pure integer function node_count(pair, mesh, c)
-    type(mesh_pair_t), intent(in) :: pair
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: c
-
-    node_count = pair%grid(mesh)%nodes
-    if (mesh == contact) node_count = pair%grid(mesh)%nodes_within(pair%reach/c)
-  end function node_count
-
   !> State at the coordinate s: interpolated or extrapolated from those of an arc and corrected.
-  !> nodes: of the mesh; where absent, as many as reach far enough.
-  subroutine state_at(equations, options, frozen, arc, s, state, converged, nodes)
+  subroutine state_at(equations, options, frozen, arc, s, state, converged)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     type(frozen_jacobian_t), intent(inout) :: frozen
@@ -164,50 +156,37 @@ contains
     real(wp), intent(in) :: s
     type(state_t), intent(out) :: state
     logical, intent(out) :: converged
-    integer, intent(in), optional :: nodes
-    type(control_t) :: control
-    integer :: used
 
-    control = path_control(equations%problem, arc%mesh, s)
-    used = node_count(equations%pair, arc%mesh, merge(control%value, 1.0_wp, arc%mesh == contact))
-    if (present(nodes)) used = nodes
-    state = between(equations%pair%grid(arc%mesh), arc%coordinate(:arc%held), &
-      arc%state(:arc%held), s, used)
-    call solve_anderson(equations, options, frozen, control, state, converged)
+    state = between(arc%coordinate(:arc%held), arc%state(:arc%held), s)
+    call solve_anderson(equations, options, frozen, path_control(equations%problem, arc%mesh, s), &
+      state, converged)
   end subroutine state_at
 
-  !> The polynomial through states at the given coordinates, evaluated at s, on `nodes` nodes.
-  pure function between(grid, coordinate, states, s, nodes) result(guess)
-    type(discretisation_t), intent(in) :: grid
+  !> The polynomial through states of one mesh at the given coordinates, evaluated at s.
+  pure function between(coordinate, states, s) result(guess)
     real(wp), intent(in) :: coordinate(:), s
     type(state_t), intent(in) :: states(:)
-    integer, intent(in) :: nodes
-    type(state_t) :: guess, term
+    type(state_t) :: guess
     real(wp) :: weight(size(states)), h0, scale
-    real(wp) :: gap(nodes)
-    integer :: j, nearest
+    real(wp) :: gap(size(states(1)%gap))
+    integer :: j
 
     gap = 0
     h0 = 0
     scale = 0
     weight = polynomial_weights(coordinate, s)
     do j = 1, size(states)
-      term = states(j)
-      if (size(term%gap) /= nodes) term = regrid(states(j), grid, grid, states(j)%scale, nodes)
-      gap = gap + weight(j)*term%gap
-      h0 = h0 + weight(j)*term%h0
-      scale = scale + weight(j)*term%scale
+      gap = gap + weight(j)*states(j)%gap
+      h0 = h0 + weight(j)*states(j)%h0
+      scale = scale + weight(j)*states(j)%scale
     end do
     ! An extrapolation that leaves the law's domain is worth less than the nearest state.
-    nearest = minloc(abs(coordinate - s), 1)
-    term = states(nearest)
-    if (size(term%gap) /= nodes) term = regrid(term, grid, grid, term%scale, nodes)
-    guess = term
+    guess = states(minloc(abs(coordinate - s), 1))
     guess%pressure = 0*gap
-    if (minval(gap) < 0.5_wp*minval(term%gap) .and. minval(term%gap) > 0) return
+    if (minval(gap) < 0.5_wp*minval(guess%gap) .and. minval(guess%gap) > 0) return
     guess%gap = gap
     guess%h0 = h0
-    if (scale > 0.5_wp*term%scale) guess%scale = scale
+    if (scale > 0.5_wp*guess%scale) guess%scale = scale
   end function between
 
   !> Makes a state the newest.
@@ -226,9 +205,9 @@ contains
     self%coordinate(self%held) = coordinate_of(problem, self%mesh, state)
   end subroutine remember
 
-  !> Passes to the mesh for contact once the contact radius has crossed the passage (to be called
+  !> Passes to the next mesh once the contact radius has crossed the passage to it (to be called
   !> after each `advance`), taking the last two states along, so that three neighbours on one mesh
-  !> surround every fold.
+  !> surround every fold. That mesh must not be too coarse for the first of the two.
   subroutine change_mesh(self, equations, options, lost)
     class(continuation_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
@@ -239,24 +218,37 @@ contains
     logical :: done(2)
 
     lost = .false.
-    associate (edge_gap => equations%problem%law%edge_gap, pair => equations%pair)
-      if (.not. edge_gap > 0 .or. self%mesh == contact) return
-      if (radius_of_gap(edge_gap, pair%grid(approach), self%state(self%held)) < pair%passage) return
+    associate (pair => equations%pair)
+      if (.not. equations%problem%law%edge_gap > 0 .or. self%mesh == size(pair%grid)) return
+      if (self%contact_radius(equations, self%held) < pair%passage(self%mesh)) return
+      if (self%contact_radius(equations, max(1, self%held - 1)) < &
+        nearly_passed*pair%passage(self%mesh)) return
     end associate
     self%frozen%factors%valid = .false.
     done(1) = .false.
     do j = max(1, self%held - 1), self%held
       taken(2 - self%held + j) = self%state(j)
-      call move_to_mesh(equations, options, self%frozen, approach, contact, &
+      call move_to_mesh(equations, options, self%frozen, self%mesh, self%mesh + 1, &
         taken(2 - self%held + j), done(2 - self%held + j))
     end do
     lost = .not. done(2)
-    self%mesh = contact
+    self%mesh = self%mesh + 1
     self%held = 0
     do j = 1, 2
       if (done(j)) call self%remember(equations%problem, taken(j))
     end do
     self%step = 0.5_wp*self%step
   end subroutine change_mesh
+
+  !> Contact radius of the j-th state that is held, lateral units; 0 without a contact.
+  pure real(wp) function contact_radius(self, equations, j) result(c)
+    class(continuation_t), intent(in) :: self
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: j
+
+    c = self%state(j)%scale
+    if (self%mesh == approach) c = radius_of_gap(equations%problem%law%edge_gap, &
+      equations%pair%grid(approach), self%state(j))
+  end function contact_radius
 
 end module continuation

@@ -1,7 +1,7 @@
 !> Derivatives of H0 and load along the equilibrium path, exact to the solver's tolerance.
 module path_slopes
   use kinds, only: wp, pi
-  use equilibrium, only: control_t, state_t, equations_t, at_edge_radius, load_reach
+  use equilibrium, only: control_t, state_t, equations_t, at_edge_radius, gap_at_end
   use jacobian, only: control_derivative
   use linear_algebra, only: solve
   use frozen_jacobian, only: frozen_jacobian_t, freeze
@@ -22,7 +22,7 @@ contains
     real(wp), intent(out) :: h0_slope, load_slope
     logical, intent(out) :: found
     real(wp), allocatable :: dz(:)
-    real(wp) :: reach, c_slope, gap(1)
+    real(wp) :: c_slope
     integer :: n
 
     n = size(state%gap)
@@ -35,16 +35,15 @@ contains
     call solve(frozen%factors, dz)
     h0_slope = dz(n + 1)
     c_slope = merge(1.0_wp, 0.0_wp, control%kind == at_edge_radius)
-    associate (grid => equations%pair%grid(equations%mesh_of(control)), &
+    associate (grid => equations%pair%grid(control%mesh), &
       law => equations%problem%law)
-      ! The load is 2 pi (c^2 sum(w P) + E(gap at the end of the mesh)), whose last gap moves with
-      ! the last node's and with the end itself.
-      reach = load_reach(grid, state)
-      gap = state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)
-      load_slope = 2*pi*(2*state%scale*c_slope*dot_product(grid%weight(:n), state%pressure) + &
-        state%scale**2*sum(grid%weight(:n)*law%slope(state%gap)*dz(:n)) - &
-        sum(law%pressure(gap))*(dz(n) + c_slope/state%scale*(reach**2 - &
-        (state%scale*grid%x(n))**2)))
+      load_slope = 2*pi*(2*state%scale*c_slope*dot_product(grid%weight, state%pressure) + &
+        state%scale**2*sum(grid%weight*law%slope(state%gap)*dz(:n)))
+      if (.not. grid%is_bounded()) return
+      ! What is beyond a bounded mesh is 2 pi E(gap at its end), which moves with the last node's
+      ! gap and with the end itself.
+      load_slope = load_slope - 2*pi*sum(law%pressure([gap_at_end(grid, state)]))* &
+        (dz(n) + c_slope*state%scale*(grid%end**2 - grid%x(n)**2))
     end associate
   end subroutine slopes_along_path
 

@@ -4,7 +4,7 @@
 !> integral along the path is needed.
 module potential_energy
   use kinds, only: wp, pi
-  use equilibrium, only: state_t, equations_t, load_reach
+  use equilibrium, only: state_t, equations_t, gap_at_end
   use quadrature, only: gauss_legendre
   implicit none
   private
@@ -34,10 +34,11 @@ contains
         (state%gap - state%h0 - 0.5_wp*(c*grid%x(:n))**2)
       uncertainty = 2*pi*(epsilon(1.0_wp)*sum(abs(of_surface) + abs(of_bodies)) + &
         0.5_wp*state%residual*c**2*sum(abs(grid%weight(:n)*state%pressure)))
+      energy = 2*pi*(sum(of_surface) + sum(of_bodies))
+      if (.not. grid%is_bounded()) return
       ! Beyond the mesh rho drho = dH. With H = last/x the interval is finite.
-      last = state%gap(n) + 0.5_wp*(load_reach(grid, state)**2 - (c*grid%x(n))**2)
-      energy = 2*pi*(sum(of_surface) + sum(of_bodies) + &
-        last*sum(weight*law%energy(last/node)/node**2))
+      last = gap_at_end(grid, state)
+      energy = energy + 2*pi*last*sum(weight*law%energy(last/node)/node**2)
     end associate
   end subroutine energy_of
 

@@ -8,7 +8,7 @@ module solve_at_h0
   use solver_options, only: solver_options_t, tightened
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
-  use edge_locked, only: mesh_pair_t, contact
+  use edge_locked, only: contact
   use continuation, only: arc_t, state_at, between, coordinate_of, most_states
   use traced_path, only: traced_path_t
   implicit none
@@ -68,16 +68,13 @@ contains
     s = bracket%middle()
   end function coordinate_at_h0
 
-  !> The state that the neighbours let expect at the coordinate s, on `nodes` nodes of their mesh.
-  pure function guess_at_h0(pair, near, s, nodes) result(guess)
-    type(mesh_pair_t), intent(in) :: pair
+  !> The state that the neighbours let expect at the coordinate s.
+  pure function guess_at_h0(near, s) result(guess)
     type(neighbours_t), intent(in) :: near
     real(wp), intent(in) :: s
-    integer, intent(in) :: nodes
     type(state_t) :: guess
 
-    guess = between(pair%grid(near%mesh), near%coordinate(:near%held), near%state(:near%held), s, &
-      nodes)
+    guess = between(near%coordinate(:near%held), near%state(:near%held), s)
   end function guess_at_h0
 
   !> The state at h0 on the piece, on which h0 goes one way: the polynomial through the neighbours
@@ -95,29 +92,19 @@ contains
     type(frozen_jacobian_t) :: frozen
     type(state_t) :: trial
     real(wp) :: width
-    integer :: round, far, nodes
+    integer :: round
     logical :: inside
 
     state = near%state(near%lower)
-    far = near%lower + 1
-    if (abs(near%state(far)%h0 - h0) < abs(state%h0 - h0)) then
-      state = near%state(far)
-      far = near%lower
-    end if
-    nodes = size(state%gap)
-    if (size(near%state(far)%gap) /= nodes) then
-      ! More or fewer nodes beyond the edge move h0 by the error of the reach: beside a fold that is
-      ! far, and the curve would have a step.
-      call state_at(equations, tightened(options), frozen, near%arc_t, near%coordinate(far), &
-        trial, converged, nodes)
-      if (converged) near%state(far) = trial
-    end if
+    associate (other => near%state(near%lower + 1))
+      if (abs(other%h0 - h0) < abs(state%h0 - h0)) state = other
+    end associate
     width = huge(1.0_wp)
     do round = 1, most_rounds
       if (abs(state%h0 - h0) <= near_enough*max(1.0_wp, abs(h0))) exit
       call choose_next(near, h0, round, width, s, inside)
       if (.not. inside) exit
-      call state_at(equations, tightened(options), frozen, near%arc_t, s, trial, converged, nodes)
+      call state_at(equations, tightened(options), frozen, near%arc_t, s, trial, converged)
       if (.not. (converged .or. trial%residual <= options%tolerance)) exit
       if (abs(trial%h0 - h0) < abs(state%h0 - h0)) state = trial
       call join(near, s, trial, (trial%h0 - h0)*(near%state(near%lower)%h0 - h0) > 0)
@@ -171,7 +158,8 @@ contains
     logical :: arrived
 
     control%value = h0
-    if (mesh == contact) control%kind = at_h0_with_edge
+    control%mesh = mesh
+    if (mesh >= contact) control%kind = at_h0_with_edge
     trial = state
     call solve_anderson(equations, options, frozen, control, trial, arrived)
     if (arrived .and. abs(coordinate_of(equations%problem, mesh, trial) - s) < same_place) &

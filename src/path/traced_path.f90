@@ -13,7 +13,7 @@ module traced_path
   use dimensionless_problem, only: problem_t
   use equilibrium, only: state_t, equations_t
   use solver_options, only: solver_options_t, tightened
-  use edge_locked, only: approach, contact
+  use edge_locked, only: approach
   use reported, only: error_t, measure_t
   use path_extremum, only: extremum_t, polish_extremum, of_h0, of_load
   use continuation, only: continuation_t
@@ -32,7 +32,7 @@ module traced_path
     integer :: modes = 0
     !> Whether it is an extremum, of h0 or of the load.
     logical :: fold = .false., load_extremum = .false.
-    !> The last two equilibria before the mesh changes, on the mesh for contact too: every piece of
+    !> The last two equilibria before the mesh changes, on the next mesh too: every piece of
     !> the path has both its ends on one mesh.
     type(state_t), allocatable :: twin
     !> What it is on a finer mesh, and its errors: once they were estimated.
@@ -94,7 +94,7 @@ contains
       if (there) then
         state = point%state
         coordinate = point%coordinate
-      else if (mesh == contact .and. allocated(point%twin)) then
+      else if (mesh == point%mesh + 1 .and. allocated(point%twin)) then
         there = .true.
         state = point%twin
         coordinate = log(point%twin%scale)

@@ -229,6 +229,7 @@ contains
     call record%put(frozen%factors%valid)
     call record%put(frozen%served)
     call record%put(frozen%control%kind)
+    call record%put(frozen%control%mesh)
     call record%put(known .or. frozen%renewals == 0)
     if (known .or. frozen%renewals == 0) return
     call record%put([frozen%control%value, frozen%control%scale, frozen%state%h0, &
@@ -246,6 +247,7 @@ contains
     call record%take(frozen%factors%valid)
     call record%take(frozen%served)
     call record%take(frozen%control%kind)
+    call record%take(frozen%control%mesh)
     call record%take(known)
     if (known) return
     call record%take(made_at)

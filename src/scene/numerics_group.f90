@@ -40,7 +40,7 @@ contains
                above=0.0_wp, high=1.0_wp), &
       integer_key('numerics', 'anderson_depth', 'Number of earlier iterations that Anderson ' // &
                   'acceleration uses.', 1, 60, default='5'), &
-      integer_key('numerics', 'panel_order', 'Nodes of one panel.', 4, 24, &
+      integer_key('numerics', 'panel_order', 'Nodes of one panel of grid = ''panels''.', 4, 24, &
                   otherwise='from accuracy')]
   end function numerics_keys
 

@@ -104,12 +104,12 @@ class Program:
                     best[key] = run
         return best
 
-    def reference(self, problem, order=16):
-        """Return a converged run: the path, as accurate as the program goes, on finer panels."""
-        key = problem.name, order
+    def reference(self, problem):
+        """Return a converged run: the path, as accurate as the program goes."""
+        key = problem.name
         if key not in self._references:
             self._references[key] = self.run(problem.path(
-                f"accuracy = 1e-10, panel_order = {order}, residual_tolerance = 1e-12"))
+                "accuracy = 1e-10, residual_tolerance = 1e-12"))
             # A residual at its floor is all that rounding allows: the numbers are what count.
             self._references[key].failure = ""
         return self._references[key]

@@ -1,0 +1,91 @@
+!> Lateral sizes of a contact that meshes and searches have to know beforehand: how wide it gets, how
+!> fine the pressure varies, where it begins.
+module contact_scales
+  use kinds, only: wp, pi
+  use root_finding, only: bracket_t
+  use dimensionless_problem, only: problem_t, neck_width
+  implicit none
+  private
+  public :: largest_radius, beyond_contact, hertz_scale, contact_level, smallest_feature, &
+    lost_in_rounding, largest_floor
+
+  !> Smallest feature over the contact radius that a mesh follows: where adhesion makes smaller
+  !> ones, rounding hides them, and the mesh would grow for nothing.
+  real(wp), parameter :: finest = 1.0e-13_wp
+
+  !> A residual that rounding excuses, in the law's lengths: beyond it the law is not resolved.
+  real(wp), parameter :: largest_floor = 1.0e-3_wp
+
+contains
+
+  !> Contact radius that JKR theory (11) gives at H0, with a margin of a fifth; for a law without
+  !> adhesion that of Hertz, beginning at its level.
+  pure real(wp) function largest_radius(problem, h0, level) result(c)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0, level
+    integer :: step
+
+    if (problem%law%adhesion <= 0) then
+      c = hertz_scale(level, h0)
+      return
+    end if
+    c = 1
+    do step = 1, 200
+      c = sqrt(max(1 - h0, 0.0_wp) + sqrt(4*pi*problem%coupling*problem%law%adhesion*c))
+    end do
+    c = max(1.0_wp, 1.2_wp*c)
+  end function largest_radius
+
+  !> An H0 beyond which no contact reaches: the jump out of contact at fixed displacement of JKR
+  !> theory, the extremum of (11), with a margin of a fifth.
+  pure real(wp) function beyond_contact(problem)
+    type(problem_t), intent(in) :: problem
+
+    beyond_contact = 1.2_wp*(1 + 3*(pi*problem%coupling*problem%law%adhesion/4)**(2.0_wp/3))
+  end function beyond_contact
+
+  !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins
+  !> at the given level, never less than 1.
+  pure real(wp) function hertz_scale(level, h0)
+    real(wp), intent(in) :: level, h0
+
+    hertz_scale = sqrt(1 + max(0.0_wp, level - h0))
+  end function hertz_scale
+
+  !> The gap at which the pressure over a unit radius deforms the bodies by one unit, by bisection
+  !> of a law that decreases with the gap.
+  pure real(wp) function contact_level(problem) result(level)
+    type(problem_t), intent(in) :: problem
+    type(bracket_t) :: bracket
+    real(wp) :: pressure(1)
+
+    bracket = bracket_t(problem%law%smallest_gap, problem%law%range + 500)
+    do while (bracket%is_open())
+      pressure = problem%law%pressure([bracket%middle()])
+      call bracket%narrow(2*problem%coupling*pressure(1) > 1)
+    end do
+    level = bracket%middle()
+  end function contact_level
+
+  !> The smallest lateral feature of the pressure up to the contact radius c: the neck, or where
+  !> that is wide, the half-width of the pressure between spheres near contact and the boundary
+  !> layer of a Hertz contact, whose gap opens as sqrt(c) s^(3/2) with the distance s from the edge
+  !> and changes the repulsion over one repulsion length.
+  pure real(wp) function smallest_feature(problem, c)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: c
+
+    smallest_feature = max(finest*max(c, 1.0_wp), min(neck_width(problem), 0.5_wp, &
+      (problem%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3)))
+  end function smallest_feature
+
+  !> Whether the deformation of a contact of radius c (lateral units) under the law's largest
+  !> tension, about one unit of pressure, is so large that rounding hides the law.
+  pure logical function lost_in_rounding(problem, c)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: c
+
+    lost_in_rounding = 8*epsilon(1.0_wp)*problem%coupling*problem%law%adhesion*c > largest_floor
+  end function lost_in_rounding
+
+end module contact_scales

@@ -1,0 +1,83 @@
+!> Meshes of many equal-order panels whose nodes are not mapped: the paper's grid, and panels that are
+!> fixed in space.
+module linear_mesh
+  use kinds, only: wp
+  use discretisation, only: discretisation_t, axis_row, centre_row, first_node
+  use panel_map, only: linear_panel
+  use product_integration, only: panel_rule_t, new_panel_rule, panel_weights
+  implicit none
+  private
+  public :: new_linear_mesh
+
+contains
+
+  !> The mesh on the panels [end(k), end(k+1)] (offsets from the centre), each with the
+  !> nodes `local_node` of [0, 1]; a node at 1 is shared with the next panel's node at 0.
+  !> elastic = .false. leaves the kernel out.
+  function new_linear_mesh(centre, panel_end, local_node, elastic) result(grid)
+    real(wp), intent(in) :: centre, panel_end(:), local_node(:)
+    logical, intent(in) :: elastic
+    type(discretisation_t) :: grid
+    type(panel_rule_t) :: rule
+    real(wp), allocatable :: x(:), target(:), weights(:)
+    real(wp) :: length
+    integer :: panels, order, stride, panel, first, last, i
+
+    order = size(local_node)
+    panels = size(panel_end) - 1
+    grid%centre = centre
+    grid%end = centre + panel_end(panels + 1)
+    rule = new_panel_rule(local_node)
+    stride = order
+    if (local_node(order) >= 1) stride = order - 1
+    grid%nodes = panels*stride + (order - stride)
+    grid%spacing = minval(panel_end(2:) - panel_end(:panels))/stride
+    allocate (grid%panel(panels), grid%local(1))
+    grid%panel = [(linear_panel(panel_end(panel), panel_end(panel + 1)), panel=1, panels)]
+    grid%first = [(1 + (panel - 1)*stride, panel=1, panels)]
+    allocate (grid%which(panels), source=1)
+    grid%local(1)%node = local_node
+    grid%local(1)%weight = rule%weight
+    grid%local(1)%barycentric = rule%barycentric
+
+    allocate (target(first_node - 1 + grid%nodes), x(grid%nodes), grid%weight(grid%nodes))
+    grid%weight = 0
+    do panel = 1, panels
+      first = grid%first(panel)
+      last = first + order - 1
+      length = panel_end(panel + 1) - panel_end(panel)
+      x(first:last) = panel_end(panel) + length*local_node
+      if (order > 2) then
+        grid%weight(first:last) = length*rule%weight*(centre + x(first:last))
+      else
+        ! The exact integral of hat function times x: end values a, b weigh (2a + b)/6, (a + 2b)/6.
+        grid%weight(first:last) = grid%weight(first:last) + length/6* &
+          (centre + x(first:last) + (2*centre + x(first) + x(last)))
+      end if
+    end do
+    grid%x = centre + x
+    call grid%note_axis()
+    if (.not. elastic) return
+
+    target(axis_row) = -centre
+    target(centre_row) = 0
+    target(first_node:) = x
+    allocate (grid%kernel(size(target), grid%nodes))
+    ! Panels that share a node meet in one column, so each thread owns rows, not panels.
+    !$omp parallel do schedule(dynamic, 8) private(panel, first, last, weights)
+    do i = 1, size(target)
+      allocate (weights(order))
+      grid%kernel(i, :) = 0
+      do panel = 1, panels
+        first = grid%first(panel)
+        last = first + order - 1
+        call panel_weights(rule, centre, target(i), panel_end(panel), panel_end(panel + 1), &
+          weights)
+        grid%kernel(i, first:last) = grid%kernel(i, first:last) + weights
+      end do
+      deallocate (weights)
+    end do
+    !$omp end parallel do
+  end function new_linear_mesh
+
+end module linear_mesh

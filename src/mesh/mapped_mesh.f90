@@ -1,0 +1,117 @@
+!> Meshes mapped to the contact edge or the axis: distance = d sinh(z) from it, Gauss-Legendre panels
+!> in z, and from some position on an algebraic panel to infinity on which pressures are a power
+!> tail. Every scale from d up to the mesh's length has the same number of nodes to a factor.
+module mapped_mesh
+  use kinds, only: wp
+  use discretisation, only: discretisation_t, gauss_nodes, axis_row, centre_row, first_node
+  use panel_map, only: panel_map_t, sinh_panel, algebraic_panel
+  use graded_rule, only: graded_rule_t, new_graded_rule
+  use mapped_kernel, only: add_panel
+  implicit none
+  private
+  public :: mapped_shape_t, new_mapped_mesh
+
+  !> What a mapped mesh is like.
+  type :: mapped_shape_t
+    !> Position of the centre (0: the axis, 1: the contact edge), and d.
+    real(wp) :: centre = 0, d = 1
+    !> Nodes of the sinh panels and their lengths in z, from the innermost outward; the first
+    !> `inner` of them lie inside the centre and reach the axis.
+    integer :: inner = 0
+    integer, allocatable :: order(:)
+    real(wp), allocatable :: z_length(:)
+    !> Nodes of the panel beyond (0: the mesh ends) and the exponent of the pressure's tail there.
+    integer :: tail_order = 0
+    real(wp) :: decay = 0
+    !> Digits of the kernel matrix.
+    real(wp) :: digits = 14
+  end type mapped_shape_t
+
+contains
+
+  !> The mesh of a shape; elastic = .false. leaves the kernel out.
+  function new_mapped_mesh(shape, elastic) result(grid)
+    type(mapped_shape_t), intent(in) :: shape
+    logical, intent(in) :: elastic
+    type(discretisation_t) :: grid
+    type(graded_rule_t) :: rule
+    real(wp), allocatable :: offset(:)
+    real(wp) :: target(first_node - 1 + sum(shape%order) + shape%tail_order)
+    integer :: k
+
+    grid%centre = shape%centre
+    call place_panels(shape, grid)
+    call place_nodes(shape, grid, offset)
+    if (.not. elastic) return
+    target(axis_row) = -grid%centre
+    target(centre_row) = 0
+    target(first_node:) = offset
+    allocate (grid%kernel(size(target), grid%nodes))
+    do k = 1, size(grid%panel)
+      associate (first => grid%first(k), panel => grid%panel(k), local => grid%local(k))
+        rule = new_graded_rule(local%node, local%barycentric, panel%z_length, shape%digits)
+        call add_panel(panel, rule, grid%centre, target, first_node - 1 + first, &
+          grid%kernel(:, first:first + rule%order - 1))
+      end associate
+    end do
+  end function new_mapped_mesh
+
+  !> The panels, and where the mesh ends. Neighbours meet to the last digit, and so do the innermost
+  !> panel and the axis.
+  subroutine place_panels(shape, grid)
+    type(mapped_shape_t), intent(in) :: shape
+    type(discretisation_t), intent(inout) :: grid
+    real(wp) :: z, outermost
+    integer :: panels, k
+
+    panels = size(shape%order)
+    allocate (grid%panel(panels + merge(1, 0, shape%tail_order > 0)))
+    z = -sum(shape%z_length(:shape%inner))
+    do k = 1, panels
+      if (k == shape%inner + 1) z = 0
+      grid%panel(k) = sinh_panel(shape%d, z, shape%z_length(k))
+      if (k > 1) grid%panel(k - 1)%right = grid%panel(k)%left
+      z = z + shape%z_length(k)
+    end do
+    grid%panel(1)%left = -shape%centre
+    outermost = grid%panel(panels)%right
+    grid%end = shape%centre + outermost
+    if (shape%tail_order == 0) return
+    grid%panel(panels + 1) = algebraic_panel(grid%end, outermost, shape%decay)
+    grid%end = huge(1.0_wp)
+  end subroutine place_panels
+
+  !> Nodes and weights, and the nodes' offsets from the centre.
+  subroutine place_nodes(shape, grid, offset)
+    type(mapped_shape_t), intent(in) :: shape
+    type(discretisation_t), intent(inout) :: grid
+    real(wp), allocatable, intent(out) :: offset(:)
+    integer :: panels, k, last
+
+    panels = size(grid%panel)
+    grid%nodes = sum(shape%order) + shape%tail_order
+    allocate (grid%first(panels), grid%local(panels), grid%weight(grid%nodes), offset(grid%nodes))
+    grid%which = [(k, k=1, panels)]
+    last = 0
+    grid%spacing = huge(1.0_wp)
+    do k = 1, panels
+      grid%first(k) = last + 1
+      if (k <= size(shape%order)) then
+        last = last + shape%order(k)
+      else
+        last = last + shape%tail_order
+      end if
+      associate (panel => grid%panel(k), at => offset(grid%first(k):last))
+        grid%local(k) = gauss_nodes(last - grid%first(k) + 1)
+        associate (local => grid%local(k))
+          at = panel%offset(local%node)
+          grid%weight(grid%first(k):last) = local%weight*panel%speed(local%node)*(grid%centre + at)
+          grid%spacing = min(grid%spacing, minval(panel%speed(local%node))/size(local%node))
+        end associate
+      end associate
+    end do
+    grid%x = grid%centre + offset
+    call grid%note_axis()
+  end subroutine place_nodes
+
+end module mapped_mesh

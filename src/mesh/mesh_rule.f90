@@ -1,0 +1,154 @@
+!> How many nodes, and where: the shape of a mapped mesh that gives load and h0 so many digits along its
+!> stretch of the equilibrium path. Fitted to the errors of whole bands of states, at
+!> adhesion strengths from 1e-4 to 1e5 (tools/bench/mesh_study.py).
+module mesh_rule
+  use kinds, only: wp, pi
+  use root_finding, only: bracket_t
+  use dimensionless_problem, only: problem_t, calm_gap
+  use contact_scales, only: smallest_feature
+  use mapped_mesh, only: mapped_shape_t
+  implicit none
+  private
+  public :: approach_shape, contact_shape, digits_for
+
+  !> d over the smallest feature: errors change little from half of it to twice.
+  real(wp), parameter :: finer = 0.5_wp
+  !> Nodes that a panel needs beside those in proportion to its length in z.
+  real(wp), parameter :: more_nodes = 3
+  !> Where the tail begins, as a multiple of sqrt(2 H0): there the poles of the pressure, at
+  !> rho**2 = -2 H0, are as far as the axis; never nearer than the next two, in lateral units and in
+  !> units of the contact radius from the edge.
+  real(wp), parameter :: beyond_poles = 1.3_wp, nearest_tail = 5, tail_of_contact = 3
+  !> A pressure that falls faster than any power ends where this part of the accuracy is left of it;
+  !> up to there it needs so many times the nodes.
+  real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 2.5_wp
+  !> No such pressure goes on beyond the law's range or so many of its lengths.
+  real(wp), parameter :: farthest = 60
+  !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
+  !> which come the nearer to one another the stronger adhesion is.
+  real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_digits = 13
+
+contains
+
+  !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy:
+  !> folds and extrema, and the gap on the axis between nodes, are more sensitive. widest: the
+  !> largest contact radius. No more than rounding leaves of the deformation.
+  pure real(wp) function digits_for(problem, widest, accuracy) result(digits)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: widest, accuracy
+    real(wp) :: left
+
+    digits = max(0.3_wp - 1.25_wp*log10(accuracy), &
+      fewest_digits + more_for_folds*log10(1 + strength(problem)))
+    left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
+    digits = max(fewest_digits, min(digits, left, most_digits))
+  end function digits_for
+
+  !> Before contact, about the axis, for H0 up to h0_high.
+  pure type(mapped_shape_t) function approach_shape(problem, h0_high, digits) result(shape)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0_high, digits
+    real(wp) :: density, reach
+
+    density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
+      (1 + 0.03_wp*log(1 + strength(problem)))
+    reach = max(4.0_wp, beyond_poles*sqrt(2*h0_high))
+    call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
+    shape%d = finer*smallest_feature(problem, 1.0_wp)
+    call add_panel(shape, asinh(reach/shape%d), density)
+    shape%digits = kernel_digits(digits)
+  end function approach_shape
+
+  !> In contact, about the edge, for contact radii from `low` to `high` (lateral units). level: the
+  !> gap at which a law without adhesion begins to deform the bodies.
+  pure type(mapped_shape_t) function contact_shape(problem, low, high, level, digits) result(shape)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: low, high, level, digits
+    real(wp) :: density, outer, reach, inside
+
+    if (problem%law%adhesion > 0) then
+      ! Where the repulsion is strong it begins inside the edge, and where adhesion is, a small
+      ! contact is drawn out far: both need more nodes.
+      density = (0.15_wp + digits*(0.24_wp + 0.0105_wp*digits))* &
+        (1 + 0.25_wp*log(1 + high/(pi*strength(problem))))* &
+        (1 + 0.03_wp*log(1 + strength(problem)/(1 + high)**2))
+    else
+      density = 1.5_wp*(0.15_wp + digits*(0.24_wp + 0.0105_wp*digits))
+    end if
+    reach = max(nearest_tail, beyond_poles*sqrt(calm_gap(problem)))
+    outer = density
+    call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)
+    reach = max(tail_of_contact, reach/low)
+    shape%centre = 1
+    shape%inner = 1
+    shape%d = min(finer*smallest_feature(problem, high)/high, 1.0_wp)
+    call add_panel(shape, asinh(1/shape%d), density)
+    ! The panel of a whole number of nodes is a little longer, and ends on the axis.
+    inside = shape%z_length(1)
+    shape%d = 1/sinh(inside)
+    call add_panel(shape, asinh(reach/shape%d), outer)
+    shape%digits = kernel_digits(digits)
+  end function contact_shape
+
+  !> The tail of the pressure: an algebraic panel where it falls as a power; otherwise the mesh ends
+  !> where nothing is left, which sets `reach` (lateral units), and nodes are denser up to there.
+  !> from: a gap at which the pressure is as large as it matters.
+  pure subroutine give_tail(problem, from, digits, reach, density, shape)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: from, digits
+    real(wp), intent(inout) :: reach, density
+    type(mapped_shape_t), intent(inout) :: shape
+
+    if (problem%law%tail_power < huge(1.0_wp)) then
+      shape%tail_order = ceiling(1 + 0.6_wp*digits)
+      shape%decay = 2*problem%law%tail_power
+    else
+      reach = sqrt(2*max(fading_gap(problem, from, negligible*10.0_wp**(-digits)), 1.0_wp))
+      density = crowding*density
+    end if
+  end subroutine give_tail
+
+  !> The gap beyond `from` at which `part` is left of the pressure there.
+  pure real(wp) function fading_gap(problem, from, part) result(gap)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: from, part
+    type(bracket_t) :: bracket
+    real(wp) :: most, pressure(1)
+
+    pressure = problem%law%pressure([from])
+    most = abs(pressure(1))
+    bracket = bracket_t(from, max(problem%law%range, from + farthest))
+    do while (bracket%is_open())
+      pressure = problem%law%pressure([bracket%middle()])
+      call bracket%narrow(abs(pressure(1)) > part*most)
+    end do
+    gap = bracket%middle()
+  end function fading_gap
+
+  !> Adds a sinh panel of at least z_length at so many nodes a unit of z.
+  pure subroutine add_panel(shape, z_length, density)
+    type(mapped_shape_t), intent(inout) :: shape
+    real(wp), intent(in) :: z_length, density
+    integer :: order
+
+    if (.not. allocated(shape%order)) allocate (shape%order(0), shape%z_length(0))
+    order = ceiling(density*z_length + more_nodes)
+    shape%order = [shape%order, order]
+    shape%z_length = [shape%z_length, (order - more_nodes)/density]
+  end subroutine add_panel
+
+  !> sigma (40): the coupling times the surface energy; 0 without adhesion.
+  pure real(wp) function strength(problem)
+    type(problem_t), intent(in) :: problem
+
+    strength = problem%coupling*problem%law%adhesion
+  end function strength
+
+  !> Digits of the kernel: its errors matter less than those of the pressure's polynomials.
+  pure real(wp) function kernel_digits(digits)
+    real(wp), intent(in) :: digits
+
+    kernel_digits = max(5.0_wp, 0.5_wp + 0.85_wp*digits)
+  end function kernel_digits
+
+end module mesh_rule

@@ -1,0 +1,112 @@
+!> Panels and their maps from the local coordinate s in [0, 1], in which a panel's functions are
+!> polynomials on Gauss-Legendre nodes, to offsets from the mesh's centre:
+!>
+!>     linear     offset = left + (right - left) s
+!>     sinh       offset = d sinh(z), z = z_left + z_length s
+!>     algebraic  position = begin/(1 - s), out to infinity
+!>
+!> The second resolves every scale from d up to the panel's length with the same number of nodes to a
+!> factor in the distance from the centre. On the third a pressure is (1 - s)**decay times a
+!> polynomial, which is a power tail position**(-decay) times one in the inverse position.
+module panel_map
+  use kinds, only: wp
+  implicit none
+  private
+  public :: panel_map_t, linear_panel, sinh_panel, algebraic_panel
+  public :: linear_map, sinh_map, algebraic_map
+
+  integer, parameter :: linear_map = 1, sinh_map = 2, algebraic_map = 3
+
+  type :: panel_map_t
+    integer :: kind = linear_map
+    !> Offsets of its ends; the right one of an algebraic panel is huge.
+    real(wp) :: left = 0, right = 0
+    !> sinh: d, z at the left end, and the length in z.
+    real(wp) :: d = 0, z_left = 0, z_length = 0
+    !> algebraic: position of the left end, and the exponent of the pressure's tail.
+    real(wp) :: begin = 0, decay = 0
+  contains
+    procedure :: offset
+    procedure :: local
+    procedure :: speed
+  end type panel_map_t
+
+contains
+
+  pure type(panel_map_t) function linear_panel(left, right) result(panel)
+    real(wp), intent(in) :: left, right
+
+    panel%kind = linear_map
+    panel%left = left
+    panel%right = right
+  end function linear_panel
+
+  !> From z_left over z_length, in units of d.
+  pure type(panel_map_t) function sinh_panel(d, z_left, z_length) result(panel)
+    real(wp), intent(in) :: d, z_left, z_length
+
+    panel%kind = sinh_map
+    panel%d = d
+    panel%z_left = z_left
+    panel%z_length = z_length
+    panel%left = d*sinh(z_left)
+    panel%right = d*sinh(z_left + z_length)
+  end function sinh_panel
+
+  !> From the position `begin` (offset `left`) to infinity.
+  pure type(panel_map_t) function algebraic_panel(begin, left, decay) result(panel)
+    real(wp), intent(in) :: begin, left, decay
+
+    panel%kind = algebraic_map
+    panel%begin = begin
+    panel%left = left
+    panel%right = huge(1.0_wp)
+    panel%decay = decay
+  end function algebraic_panel
+
+  !> Offset at the local coordinate s.
+  elemental real(wp) function offset(self, s)
+    class(panel_map_t), intent(in) :: self
+    real(wp), intent(in) :: s
+
+    select case (self%kind)
+    case (sinh_map)
+      offset = self%d*sinh(self%z_left + self%z_length*s)
+    case (algebraic_map)
+      offset = self%left + self%begin*s/(1 - s)
+    case default
+      offset = self%left + (self%right - self%left)*s
+    end select
+  end function offset
+
+  !> Inverse of `offset`.
+  elemental real(wp) function local(self, at) result(s)
+    class(panel_map_t), intent(in) :: self
+    real(wp), intent(in) :: at
+
+    select case (self%kind)
+    case (sinh_map)
+      s = (asinh(at/self%d) - self%z_left)/self%z_length
+    case (algebraic_map)
+      s = (at - self%left)/(at - self%left + self%begin)
+    case default
+      s = (at - self%left)/(self%right - self%left)
+    end select
+  end function local
+
+  !> Derivative of the offset by s.
+  elemental real(wp) function speed(self, s)
+    class(panel_map_t), intent(in) :: self
+    real(wp), intent(in) :: s
+
+    select case (self%kind)
+    case (sinh_map)
+      speed = self%z_length*self%d*cosh(self%z_left + self%z_length*s)
+    case (algebraic_map)
+      speed = self%begin/(1 - s)**2
+    case default
+      speed = self%right - self%left
+    end select
+  end function speed
+
+end module panel_map

@@ -1,0 +1,194 @@
+"""Claims about meshes mapped by sinh to the edge or the axis, with a tail to infinity."""
+
+from dataclasses import dataclass, field
+
+import _snapin
+import mpmath
+import numpy as np
+import pytest
+import snapin
+from test_discretisation import gaussian, graded
+
+flat = _snapin.flat_numerics
+DIGITS = 14.0
+
+
+@dataclass
+class Mapped:
+    """A mesh of src/mesh/mapped_mesh.f90: sinh panels by order and length in z, then a tail."""
+
+    centre: float
+    d: float
+    order: list
+    z_length: list
+    tail: int = 0
+    decay: float = 6.0
+    digits: float = DIGITS
+    x: np.ndarray = field(init=False)
+    weight: np.ndarray = field(init=False)
+
+    def __post_init__(self):
+        self.inner = 1 if self.centre > 0 else 0
+        self.x, self.weight = flat.mapped_nodes(*self.shape, self.digits, self.size)
+
+    @property
+    def size(self):
+        return sum(self.order) + self.tail
+
+    @property
+    def shape(self):
+        return self.centre, self.d, self.inner, self.order, self.z_length, self.tail, self.decay
+
+    def matrix(self):
+        return flat.mapped_matrix(*self.shape, self.digits, self.size)
+
+    def columns(self):
+        """Return the matrix for pressures in units of what the tail leaves of them."""
+        begin = self.x[-self.tail - 1]
+        left = np.where(np.arange(self.size) < self.size - self.tail, 1.0, self.x / begin)
+        return self.matrix() * left**-self.decay
+
+    def interpolate(self, values, at):
+        return flat.mapped_interpolation(*self.shape[:-1], values, np.atleast_1d(at))
+
+
+def contact_mesh(d, reach, order, tail, decay, digits=DIGITS):
+    """Return a mesh about the edge at 1: one panel inside, one out to the offset `reach`."""
+    inside = np.arcsinh(1 / d)
+    return Mapped(1.0, 1 / np.sinh(inside), [order, order], [inside, np.arcsinh(reach / d)],
+                  tail, decay, digits)
+
+
+def approach_mesh(d, reach, order, tail, decay):
+    return Mapped(0.0, d, [order, order], [np.arcsinh(reach / d) / 2] * 2, tail, decay)
+
+
+# Pressures with a power tail whose deformation is known: the Hankel transform of
+# (1 + t^2)^(-3/2) is exp(-k), of (1 + t^2)^(-5/2) it is (1 + k) exp(-k)/3.
+TAILS = {
+    3: (lambda t: (1 + t**2) ** -1.5, lambda r: 2 / np.sqrt(1 + r**2), 1.0),
+    5: (
+        lambda t: (1 + t**2) ** -2.5,
+        lambda r: 2 / 3 * ((1 + r**2) ** -0.5 + (1 + r**2) ** -1.5),
+        1 / 3,
+    ),
+}
+
+
+@pytest.mark.parametrize("decay", TAILS)
+@pytest.mark.parametrize("mesh", ["contact", "small contact", "approach"])
+def test_a_power_tail_is_integrated_to_infinity(decay, mesh):
+    pressure, deformation, load = TAILS[decay]
+    grid = {
+        "contact": lambda: contact_mesh(0.05, 3.0, 32, 14, decay),
+        "small contact": lambda: contact_mesh(0.3, 3.0, 32, 14, decay),
+        "approach": lambda: approach_mesh(0.3, 3.0, 24, 14, decay),
+    }[mesh]()
+    p = pressure(grid.x)
+    at = np.concatenate([[0.0, grid.centre], grid.x])
+    # Of the smallest pressures rounding leaves less, and they count for less.
+    np.testing.assert_allclose(grid.matrix() @ p, deformation(at), rtol=3e-11)
+    assert grid.weight @ p == pytest.approx(load, rel=3e-11)
+
+
+def test_without_a_tail_the_mesh_ends():
+    grid = contact_mesh(0.1, 6.0, 56, 0, 0.0)
+    assert grid.x.max() < 7.0
+    p = np.exp(-(grid.x**2))
+    np.testing.assert_allclose(grid.matrix()[2:] @ p, gaussian(grid.x, 1.0), rtol=1e-12)
+    assert grid.weight @ p == pytest.approx(0.5, rel=1e-13)
+
+
+@pytest.mark.parametrize("neck", [1e-1, 1e-3, 1e-5])
+def test_a_sharp_edge_has_the_deformation_that_graded_panels_find(neck):
+    def pressure(x):
+        """A Lorentzian neck of this width at the edge, on a smooth ground, with a tail x^-4."""
+        return (1 / (1 + ((x**2 - 1) / neck) ** 2) + 0.1) / (1 + x**2) ** 2
+
+    # Nodes in proportion to the length in z.
+    order = 30 + int(7 * np.arcsinh(4 / neck))
+    grid = contact_mesh(0.5 * neck, 4.0, order, 24, 4.0)
+    fine = snapin.panel_mesh(graded(1.0, 3e4, 0.1 * neck), 16, centre=1.0)
+    kernel = fine.matrix()
+    raised = grid.matrix() @ pressure(grid.x)
+    exact = kernel.nodes @ pressure(fine.x)
+    there = fine.interpolate(exact, grid.x[grid.x < 100])
+    np.testing.assert_allclose(raised[2:][grid.x < 100], there, rtol=2e-9)
+    assert raised[0] == pytest.approx(kernel.axis @ pressure(fine.x), rel=1e-9)
+    assert raised[1] == pytest.approx(kernel.centre @ pressure(fine.x), rel=1e-9)
+
+
+def reference(grid, row, column):
+    """Return an entry of the kernel matrix by mpmath, from the maps as the module states them."""
+    mp = mpmath.mpf
+    edges = [grid.centre and -grid.z_length[0]]
+    for length in grid.z_length:
+        edges.append(edges[-1] + length)
+    orders = [*grid.order, grid.tail]
+    first = np.concatenate([[0], np.cumsum(orders)])
+    panel = int(np.searchsorted(first, column, side="right")) - 1
+    begin = mp(grid.centre) + mp(grid.d) * mpmath.sinh(mp(edges[-1]))
+    if panel < len(grid.order):
+        z0, length = mp(edges[panel]), mp(grid.z_length[panel])
+        position = lambda s: mp(grid.centre) + mp(grid.d) * mpmath.sinh(z0 + length * s)
+        speed = lambda s: mp(grid.d) * length * mpmath.cosh(z0 + length * s)
+        tail = lambda s: 1
+    else:
+        position = lambda s: begin / (1 - s)
+        speed = lambda s: begin / (1 - s) ** 2
+        tail = lambda s: (1 - s) ** mp(grid.decay)
+    node = [mp(float(x)) for x in snapin.gauss_rule(orders[panel]).x]
+    j = column - int(first[panel])
+    r = mp(0) if row == 0 else mp(grid.centre) if row == 1 else mp(float(grid.x[row - 2]))
+    own = row - 2 - int(first[panel])
+    cuts = {mp(0), mp(1)}
+    if 0 <= own < len(node):
+        r = position(node[own])
+        cuts.add(node[own])
+
+    def integrand(s):
+        if s >= 1:
+            return mp(0)
+        basis = mpmath.fprod((s - x) / (node[j] - x) for x in node if x != node[j])
+        t = position(s)
+        if t <= 0 or t == r:
+            return mp(0)
+        kernel = 2 / mpmath.agm(r + t, abs(r - t))
+        return kernel * basis * tail(s) / tail(node[j]) * t * speed(s)
+
+    # Towards every end, where the logarithm is or is near.
+    steps = [mp(0), *(mp(10) ** -n for n in (6, 3, 1)), mp(1)]
+    total = mp(0)
+    for a, b in zip(sorted(cuts), sorted(cuts)[1:]):
+        total += mpmath.quad(integrand, [a + (b - a) * s / 2 for s in steps])
+        total += mpmath.quad(integrand, [b - (b - a) * s / 2 for s in steps[::-1]])
+    return total
+
+
+@pytest.mark.parametrize("grid", [
+    Mapped(1.0, 1 / np.sinh(5.0), [6, 7], [5.0, 6.2], 5),
+    Mapped(0.0, 0.2, [7], [4.0], 4, 18.0),
+], ids=["contact", "approach"])
+def test_entries_are_those_of_adaptive_quadrature(grid):
+    matrix = grid.matrix()
+    rows = [0, 1, 4, 7, 8, grid.size + 1]
+    with mpmath.workdps(18):
+        for row in rows:
+            for column in {2, grid.order[0] - 1, grid.size - 1}:
+                exact = float(reference(grid, row, column))
+                # The tail's last polynomial is large where its factor is nearly gone.
+                assert abs(matrix[row, column] - exact) < 5e-11 * abs(exact), (row, column)
+
+
+@pytest.mark.parametrize("digits", [4.0, 7.0, 10.0])
+def test_the_kernel_has_the_digits_that_are_asked_for(digits):
+    exact = contact_mesh(1e-4, 4.0, 40, 8, 6.0).columns()
+    rough = contact_mesh(1e-4, 4.0, 40, 8, 6.0, digits).columns()
+    assert np.abs((rough - exact) / np.abs(exact).max(1)[:, None]).max() < 10.0**-digits
+
+
+def test_what_is_bounded_is_interpolated_out_to_infinity():
+    grid = contact_mesh(0.1, 3.0, 28, 12, 6.0)
+    at = np.array([0.0, 0.3, 1.0, 1.02, 3.9, 4.1, 50.0, 1e6])
+    found = grid.interpolate(1 / np.sqrt(1 + grid.x**2), at)
+    np.testing.assert_allclose(found, 1 / np.sqrt(1 + at**2), atol=1e-9)
