@@ -21,7 +21,7 @@ module mesh_rule
   real(wp), parameter :: beyond_poles = 1.3_wp, nearest_tail = 5, tail_of_contact = 3
   !> A pressure that falls faster than any power ends where this part of the accuracy is left of it;
   !> up to there it needs so many times the nodes.
-  real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 2.5_wp
+  real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
@@ -38,7 +38,7 @@ contains
     real(wp), intent(in) :: widest, accuracy
     real(wp) :: left
 
-    digits = max(0.3_wp - 1.25_wp*log10(accuracy), &
+    digits = max(0.8_wp - 1.05_wp*log10(accuracy), -1.2_wp - 1.38_wp*log10(accuracy), &
       fewest_digits + more_for_folds*log10(1 + strength(problem)))
     left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
     digits = max(fewest_digits, min(digits, left, most_digits))
