@@ -58,73 +58,108 @@ contains
     integer, intent(in) :: threads
     type(forecast_t) :: expected
     type(problem_t) :: problem
-    type(choice_t) :: chosen, other
-    type(mesh_pair_t) :: pair
-    real(wp) :: low, high, of_state, square, cases, matrices, n
-    integer :: copies
-    logical :: known
+    type(choice_t) :: chosen
+    real(wp) :: low, high, cases, entries
+    logical :: locked, known
 
-    if (.not. (allocated(scene%path) .or. allocated(scene%loading))) return
+    if (.not. scene%finds_states()) return
     problem = problem_of(scene)
     call range_of(scene, problem, low, high)
     chosen = choose(scene%numerics, problem, low)
+    locked = chosen%grid == 'edge_locked'
+    ! A cycle goes along the path too.
+    known = locked .and. has_path(problem)
     cases = 1
-    copies = 1
     if (allocated(scene%sweep)) then
       cases = size(scene%sweep%values)
-      copies = min(threads, size(scene%sweep%values))
+      expected%copies = min(threads, size(scene%sweep%values))
     end if
     expected%states = cases*states_planned(scene)
-    square = 0
-    n = 0
-    if (allocated(scene%path) .or. chosen%grid == 'edge_locked') then
-      pair = new_mesh_pair(problem, high, low, chosen%digits, shape_only=.true.)
-      expected%nodes = maxval(pair%grid%nodes)
-      n = expected%nodes
-      ! Both kernels, one factorisation and another for a fold, and about half as much
-      ! again on the finer mesh of the error estimate, whose kernels are held beside them.
-      square = sum(real(pair%grid%nodes, wp)**2) + 2*n**2
-      square = square + 1.6_wp*(sum(real(pair%grid%nodes, wp)**2) + n**2)
+    entries = 0
+    if (allocated(scene%path) .or. locked) &
+      call add_path(scene, problem, chosen, low, high, known, entries, expected)
+    if (.not. locked) call add_fixed_grid(scene, chosen, entries, expected)
+    if (allocated(scene%loading)) call add_cycle(scene, problem, chosen, low, known, expected)
+    ! Of a contact that rounding hides nothing is computed.
+    if (known) then
+      if (lost_in_rounding(problem, largest_radius(problem, low, contact_level(problem)))) &
+        expected%seconds = 0
     end if
-    if (has_eigenvalues(scene)) square = square + eigenvalue_matrices*n**2
-    ! A cycle goes along the path too.
-    known = chosen%grid == 'edge_locked' .and. has_path(problem)
+    expected%seconds = expected%seconds*cases/expected%copies
+    if (.not. problem%rigid) expected%bytes = other_bytes + 8*entries*expected%copies
+  end function forecast_of
+
+  !> Adds what the edge-locked meshes take and, where it is known or asked for, the path on them.
+  subroutine add_path(scene, problem, chosen, low, high, known, entries, expected)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(choice_t), intent(in) :: chosen
+    real(wp), intent(in) :: low, high
+    logical, intent(in) :: known
+    real(wp), intent(inout) :: entries
+    type(forecast_t), intent(inout) :: expected
+    type(mesh_pair_t) :: pair
+    real(wp) :: n
+
+    pair = new_mesh_pair(problem, high, low, chosen%digits, shape_only=.true.)
+    expected%nodes = maxval(pair%grid%nodes)
+    n = expected%nodes
+    ! Both kernels, one factorisation and another for a fold, and about half as much
+    ! again on the finer mesh of the error estimate, whose kernels are held beside them.
+    entries = sum(real(pair%grid%nodes, wp)**2) + 2*n**2
+    entries = entries + 1.6_wp*(sum(real(pair%grid%nodes, wp)**2) + n**2)
+    if (scene%has_eigenvalues()) entries = entries + eigenvalue_matrices*n**2
     if (allocated(scene%path) .or. known) &
       expected%seconds = (of_path + of_decade*log10(max(problem%coupling*problem%law%adhesion, &
       1.0_wp)))*seconds_of(n, products, factors)
     if (allocated(scene%path)) &
       expected%seconds = expected%seconds + of_path*eigenvalue_seconds(scene, n)
-    if (chosen%grid /= 'edge_locked') then
-      n = chosen%nodes
-      expected%nodes = max(expected%nodes, chosen%nodes)
-      other = companion(chosen)
-      ! The kernel, the factors in use, and those with which a jump is followed.
-      matrices = 3
-      if (chosen%options%method == 'mixing') matrices = 1
-      if (has_eigenvalues(scene)) matrices = matrices + eigenvalue_matrices
-      square = max(square, matrices*n**2 + 2*real(other%nodes, wp)**2)
-    end if
-    if (allocated(scene%loading)) then
-      of_state = seconds_of(n, products, factors)
-      if (known) of_state = seconds_of(n, known_products, known_factors)
-      if (scene%loading%h0_step/problem%length < fine) &
-        of_state = seconds_of(n, fine_products, fine_factors)
-      if (chosen%options%method == 'newton') of_state = seconds_of(n, 0.0_wp, newton_factors)
-      if (chosen%options%method == 'mixing') of_state = &
-        seconds_of(n, min(mixed, real(chosen%options%most_iterations, wp)), 0.0_wp)
-      expected%seconds = expected%seconds + &
-        states_planned(scene)*(of_state + eigenvalue_seconds(scene, n))
-      if (chosen%grid /= 'edge_locked' .and. chosen%options%method /= 'mixing') &
-        expected%seconds = expected%seconds + node_by_node(scene, problem, chosen, low)* &
-        merge(2, 1, other%nodes > chosen%nodes)*seconds_of(n, node_products, of_node)
-    end if
-    ! Of a contact that rounding hides nothing is computed.
-    if (known .and. lost_in_rounding(problem, largest_radius(problem, low, pair%level))) &
-      expected%seconds = 0
-    expected%seconds = expected%seconds*cases/copies
-    expected%copies = copies
-    if (.not. problem%rigid) expected%bytes = other_bytes + 8*square*copies
-  end function forecast_of
+  end subroutine add_path
+
+  !> Adds the matrices of a mesh fixed in space.
+  subroutine add_fixed_grid(scene, chosen, entries, expected)
+    type(scene_t), intent(in) :: scene
+    type(choice_t), intent(in) :: chosen
+    real(wp), intent(inout) :: entries
+    type(forecast_t), intent(inout) :: expected
+    type(choice_t) :: other
+    real(wp) :: matrices
+
+    expected%nodes = max(expected%nodes, chosen%nodes)
+    other = companion(chosen)
+    ! The kernel, the factors in use, and those with which a jump is followed.
+    matrices = 3
+    if (chosen%options%method == 'mixing') matrices = 1
+    if (scene%has_eigenvalues()) matrices = matrices + eigenvalue_matrices
+    entries = max(entries, matrices*real(chosen%nodes, wp)**2 + 2*real(other%nodes, wp)**2)
+  end subroutine add_fixed_grid
+
+  !> Adds the time of a cycle in steps of h0.
+  subroutine add_cycle(scene, problem, chosen, low, known, expected)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(choice_t), intent(in) :: chosen
+    real(wp), intent(in) :: low
+    logical, intent(in) :: known
+    type(forecast_t), intent(inout) :: expected
+    type(choice_t) :: other
+    real(wp) :: n, of_state
+
+    n = merge(expected%nodes, chosen%nodes, chosen%grid == 'edge_locked')
+    of_state = seconds_of(n, products, factors)
+    if (known) of_state = seconds_of(n, known_products, known_factors)
+    if (scene%loading%h0_step/problem%length < fine) &
+      of_state = seconds_of(n, fine_products, fine_factors)
+    if (chosen%options%method == 'newton') of_state = seconds_of(n, 0.0_wp, newton_factors)
+    if (chosen%options%method == 'mixing') of_state = &
+      seconds_of(n, min(mixed, real(chosen%options%most_iterations, wp)), 0.0_wp)
+    expected%seconds = expected%seconds + &
+      states_planned(scene)*(of_state + eigenvalue_seconds(scene, n))
+    if (chosen%grid == 'edge_locked' .or. chosen%options%method == 'mixing') return
+    other = companion(chosen)
+    expected%seconds = expected%seconds + node_by_node(scene, problem, chosen, low)* &
+      merge(2, 1, other%nodes > chosen%nodes)*seconds_of(n, node_products, of_node)
+  end subroutine add_cycle
 
   !> Seconds for products with a matrix of n nodes and factorisations of it.
   pure real(wp) function seconds_of(n, products, factorisations) result(seconds)
@@ -152,20 +187,13 @@ contains
     times = times*min(hopeless_factor, max(1.0_wp, (sigma/hopeless)**2))
   end function node_by_node
 
-  !> Whether eigenvalues are computed: cases of a sweep leave none.
-  pure logical function has_eigenvalues(scene)
-    type(scene_t), intent(in) :: scene
-
-    has_eigenvalues = allocated(scene%stability) .and. .not. allocated(scene%sweep)
-  end function has_eigenvalues
-
   !> Seconds for the eigenvalue of a state on n nodes.
   pure real(wp) function eigenvalue_seconds(scene, n) result(seconds)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: n
 
     seconds = 0
-    if (has_eigenvalues(scene)) seconds = eigenvalue_work*n**3/factor_rate
+    if (scene%has_eigenvalues()) seconds = eigenvalue_work*n**3/factor_rate
   end function eigenvalue_seconds
 
 end module forecast

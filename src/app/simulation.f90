@@ -7,7 +7,7 @@ module simulation
   use scene_groups, only: scene_t
   use text, only: brief
   use experiment_result, only: experiment_result_t
-  use experiment, only: run_experiment, path_start
+  use experiment, only: run_experiment
   use resumable_stepper, only: resumable_stepper_t
   use scene_problem, only: problem_of
   use h0_schedule, only: states_planned
@@ -15,9 +15,8 @@ module simulation
   use preflight, only: preflight_t, preflight_of
   use blas_threads, only: thread_count
   use linear_algebra, only: claim_buffers
-  use classical_rows, only: rows_of_classical
-  use approximation_tables, only: approximation_rows
-  use records, only: observer_t
+  use equilibrium, only: cost_t
+  use derived_tables, only: write_derived_tables
   use stability_records, only: stability_recorder_t
   use summarise, only: summary_of
   use summary, only: summary_t
@@ -32,166 +31,215 @@ module simulation
   private
   public :: run_scene
 
+  !> Where a run's results go, and what it says on standard error.
+  type :: destination_t
+    character(len=:), allocatable :: folder
+    logical :: quiet = .false.
+  contains
+    procedure :: say
+  end type destination_t
+
 contains
 
   !> Computes a scene and writes its results into the folder `out_dir`. converged: false where a
-  !> calculation failed; what was computed is kept and the summary says what failed. error: there are
-  !> no results, or they could not be written. resume: what an interrupted run has left in the folder
-  !> is gone on with, and finished results are left as they are.
+  !> calculation failed; what was computed is kept and the summary says what failed. error: there
+  !> are no results, or they could not be written. resume: what an interrupted run has left in the
+  !> folder is gone on with, and finished results are left as they are.
   subroutine run_scene(scene, out_dir, quiet, resume, converged, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: out_dir
     logical, intent(in) :: quiet, resume
     logical, intent(out) :: converged
     type(failure_t), allocatable, intent(out) :: error
-    type(results_t), target :: results
-    type(stability_recorder_t), target :: recorder
-    type(resumable_stepper_t), target :: keeper
-    class(observer_t), pointer :: observer
+    type(destination_t) :: destination
+    type(results_t) :: results
     type(problem_t) :: problem
-    type(experiment_result_t) :: outcome
     type(summary_t) :: summary
-    character(len=:), allocatable :: name, resolved
-    type(preflight_t) :: expected
+    type(cost_t) :: cost
     real(wp) :: began
-    integer :: i, failed
-    logical :: curve, left_over, finished, mended
+    logical :: finished
 
     began = seconds()
     converged = .false.
-    name = out_dir(index(out_dir, '/', .true.) + 1:)
-    resolved = scene%deck%resolved()
-    call mend(out_dir, mended, error)
-    if (allocated(error)) return
-    if (mended) call say(out_dir//': put results in place that an interrupted run had completed', &
-      quiet)
-    left_over = file_exists(journal_of(out_dir))
-    if (resume .and. .not. left_over) then
-      call find_finished(out_dir, resolved, version, finished, converged)
-      if (finished) then
-        call say(out_dir//': complete since an earlier run; nothing to do', quiet)
-        if (.not. converged) call say(out_dir//': its summary says what failed then', quiet)
-        return
-      end if
-      call say(out_dir//': no interrupted run to go on with; starting from the beginning', quiet)
-    end if
+    destination = destination_t(out_dir, quiet)
+    call take_up_earlier(scene, destination, resume, finished, converged, error)
+    if (finished .or. allocated(error)) return
     problem = problem_of(scene)
-    ! The cases of a sweep leave their summaries, not their curves.
-    curve = .not. allocated(scene%sweep) .and. (allocated(scene%loading) .or. allocated(scene%path))
-    call results%open(out_dir, scene%title, version, problem, curve, &
-      curve .and. allocated(scene%profiles), curve .and. allocated(scene%stability), &
-      ! Each case of a sweep has one thread, however many there are.
-      identity_of(resolved, merge(0, thread_count(), allocated(scene%sweep))), resume, error)
+    call open_folder(scene, problem, destination, resume, results, error)
     if (allocated(error)) return
-    if (.not. results%lock%is_held()) call say(out_dir//': warning: folders cannot be locked '// &
-      'here; let no other run write into this one', quiet)
-    if (left_over .and. resume) then
-      call say(out_dir//': going on with what was interrupted after '// &
-        duration(results%journal%earlier), quiet)
-    else if (left_over) then
-      call say(out_dir//': starting over; --resume would have gone on with what was interrupted', &
-        quiet)
-    end if
-    observer => results
-    if (allocated(scene%stability)) then
-      recorder%next => results
-      recorder%journal => results%journal
-      recorder%accuracy = scene%numerics%accuracy
-      observer => recorder
-    end if
-    failed = 0
-    expected = preflight_of(scene)
-    if (expected%too_large == '' .and. .not. problem%rigid) call claim_buffers()
-    if (expected%long /= '') call say(out_dir//': '//expected%long, quiet)
-    if (allocated(scene%sweep) .and. expected%too_large == '') then
-      call results%progress%start(size(scene%sweep%values), name, quiet)
-      call run_sweep(scene, results, failed, outcome%cost)
-    else if (expected%too_large == '') then
-      call results%progress%start(states_planned(scene), name, quiet)
-      keeper%journal => results%journal
-      call run_experiment(scene, problem, observer, outcome, keeper)
-    end if
-    call results%progress%finish()
-    outcome%cost%factorisations = outcome%cost%factorisations + recorder%cost%factorisations
-
-    if (allocated(scene%classical)) call results%write_theory('classical.csv', &
-      rows_of_classical(problem, scene%classical, path_start(scene, problem)))
-    if (allocated(scene%approximations)) call results%write_theory('approximations.csv', &
-      approximation_rows(problem, scene%approximations, path_start(scene, problem)))
-    summary = summary_of(scene, problem, outcome)
-    if (expected%too_large /= '') then
-      call summary%set('converged', .false.)
-      call summary%warn(expected%too_large)
-    end if
-    if (failed > 0) then
-      call summary%set('converged', .false.)
-      call summary%warn(number(failed)//' of '//number(size(scene%sweep%values))// &
-        ' cases failed: their rows in sweep.csv say converged = 0')
-    end if
-    if (recorder%uncertain > 0) call summary%warn('the smallest eigenvalue of '// &
-      number(recorder%uncertain)//' states could not be verified: their rows have NaN')
-    if (recorder%contradicted > 0) call summary%warn('the eigenvalue of '// &
-      number(recorder%contradicted)//' states contradicts their column stable')
-    call summary%set('version', version)
-    call summary%set('compiler', compiler)
-    call summary%set('blas', blas)
-    call summary%set('build_options', options)
-    call summary%set('threads', int(thread_count(), long))
+    call compute(scene, problem, destination, results, summary, cost)
+    call write_derived_tables(scene, problem, results)
+    call describe_program(summary)
     call summary%set('wall_seconds', results%journal%earlier + seconds() - began)
-    call results%write_summary(summary, outcome%cost, scene%deck)
+    call results%write_summary(summary, cost, scene%deck)
     call results%finish(error)
     if (allocated(error)) then
       error%message = error%message//'; then go on with --resume'
       return
     end if
-    if (allocated(summary%warnings)) then
-      do i = 1, size(summary%warnings)
-        call say(out_dir//': warning: '//summary%warnings(i)%text, quiet)
-      end do
-    end if
-    if (summary%has('grid')) call say(out_dir//': grid '//summary%text('grid')//', method '// &
-      summary%text('method')//': '//summary%text('chosen_because'), quiet)
-    call say(report(out_dir, summary, outcome), quiet)
+    call tell(destination, summary, cost)
     converged = summary%is_true('converged')
   end subroutine run_scene
 
-  !> A count for a message.
-  pure function number(k) result(text)
-    integer, intent(in) :: k
-    character(len=:), allocatable :: text
+  !> Puts in place what an earlier run had completed; with `resume` a finished run is found, and
+  !> then there is nothing to do. converged: whether that one was.
+  subroutine take_up_earlier(scene, destination, resume, finished, converged, error)
+    type(scene_t), intent(in) :: scene
+    type(destination_t), intent(in) :: destination
+    logical, intent(in) :: resume
+    logical, intent(out) :: finished, converged
+    type(failure_t), allocatable, intent(out) :: error
+    logical :: mended
 
-    text = brief(real(k, wp))
-  end function number
-
-  !> What was found, in a line.
-  function report(out_dir, summary, outcome) result(text)
-    character(len=*), intent(in) :: out_dir
-    type(summary_t), intent(in) :: summary
-    type(experiment_result_t), intent(in) :: outcome
-    character(len=:), allocatable :: text
-    character(len=160) :: buffer
-    real(wp) :: took
-
-    took = summary%number('wall_seconds')
-    write (buffer, '(i0, a, f0.2, a)') outcome%cost%states, ' states in ', took, &
-      ' s'
-    if (took < 1) write (buffer, '(i0, a, f5.3, a)') outcome%cost%states, &
-      ' states in ', took, ' s'
-    text = trim(buffer)
-    if (summary%has('max_tension')) then
-      write (buffer, '(a, es11.4, a, es12.4, a)') ', largest tension', &
-        summary%number('max_tension'), ' N at h0 =', summary%number('max_tension_h0'), ' m'
-      text = text//trim(buffer)
+    finished = .false.
+    converged = .false.
+    call mend(destination%folder, mended, error)
+    if (allocated(error)) return
+    if (mended) call destination%say('put results in place that an interrupted run had completed')
+    if (file_exists(journal_of(destination%folder))) return
+    if (.not. resume) return
+    call find_finished(destination%folder, scene%deck%resolved(), version, finished, converged)
+    if (finished) then
+      call destination%say('complete since an earlier run; nothing to do')
+      if (.not. converged) call destination%say('its summary says what failed then')
+    else
+      call destination%say('no interrupted run to go on with; starting from the beginning')
     end if
-    text = out_dir//': '//text
-  end function report
+  end subroutine take_up_earlier
+
+  !> Takes the folder for this run and begins its tables.
+  subroutine open_folder(scene, problem, destination, resume, results, error)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(destination_t), intent(in) :: destination
+    logical, intent(in) :: resume
+    type(results_t), intent(inout) :: results
+    type(failure_t), allocatable, intent(out) :: error
+    logical :: left_over
+
+    left_over = file_exists(journal_of(destination%folder))
+    call results%open(destination%folder, scene, version, problem, &
+      ! Each case of a sweep has one thread, however many there are.
+      identity_of(scene%deck%resolved(), merge(0, thread_count(), allocated(scene%sweep))), &
+      resume, error)
+    if (allocated(error)) return
+    if (.not. results%lock%is_held()) call destination%say('warning: folders cannot be locked '// &
+      'here; let no other run write into this one')
+    if (left_over .and. resume) then
+      call destination%say('going on with what was interrupted after '// &
+        duration(results%journal%earlier))
+    else if (left_over) then
+      call destination%say('starting over; --resume would have gone on with what was interrupted')
+    end if
+  end subroutine open_folder
+
+  !> Runs the experiments or the sweep, whose records go into the results; a run that does not fit
+  !> into the memory is not begun.
+  subroutine compute(scene, problem, destination, results, summary, cost)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(destination_t), intent(in) :: destination
+    type(results_t), intent(inout), target :: results
+    type(summary_t), intent(out) :: summary
+    type(cost_t), intent(out) :: cost
+    type(experiment_result_t) :: outcome
+    type(preflight_t) :: expected
+    character(len=:), allocatable :: name
+    integer :: failed
+
+    name = destination%folder(index(destination%folder, '/', .true.) + 1:)
+    expected = preflight_of(scene)
+    if (expected%too_large /= '') then
+      summary = summary_of(scene, problem, outcome)
+      call summary%fail_with(expected%too_large)
+      return
+    end if
+    if (.not. problem%rigid) call claim_buffers()
+    if (expected%long /= '') call destination%say(expected%long)
+    if (allocated(scene%sweep)) then
+      call results%progress%start(size(scene%sweep%values), name, destination%quiet)
+      call run_sweep(scene, results, failed, cost)
+      summary = summary_of(scene, problem, outcome)
+      if (failed > 0) call summary%fail_with(brief(real(failed, wp))//' of '// &
+        brief(real(size(scene%sweep%values), wp))// &
+        ' cases failed: their rows in sweep.csv say converged = 0')
+    else
+      call results%progress%start(states_planned(scene), name, destination%quiet)
+      call run_observed(scene, problem, results, summary, cost)
+    end if
+    call results%progress%finish()
+  end subroutine compute
+
+  !> Runs the experiments; each state goes into the results, with its eigenvalue where the scene
+  !> asks for that, and each step into the journal.
+  subroutine run_observed(scene, problem, results, summary, cost)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(results_t), intent(inout), target :: results
+    type(summary_t), intent(out) :: summary
+    type(cost_t), intent(out) :: cost
+    type(experiment_result_t) :: outcome
+    type(stability_recorder_t) :: recorder
+    type(resumable_stepper_t) :: keeper
+
+    keeper%journal => results%journal
+    if (scene%has_eigenvalues()) then
+      recorder%next => results
+      recorder%journal => results%journal
+      recorder%accuracy = scene%numerics%accuracy
+      call run_experiment(scene, problem, recorder, outcome, keeper)
+    else
+      call run_experiment(scene, problem, results, outcome, keeper)
+    end if
+    summary = summary_of(scene, problem, outcome)
+    call recorder%warn(summary)
+    cost = outcome%cost
+    cost%factorisations = cost%factorisations + recorder%cost%factorisations
+  end subroutine run_observed
+
+  !> What made the numbers.
+  subroutine describe_program(summary)
+    type(summary_t), intent(inout) :: summary
+
+    call summary%set('version', version)
+    call summary%set('compiler', compiler)
+    call summary%set('blas', blas)
+    call summary%set('build_options', options)
+    call summary%set('threads', int(thread_count(), long))
+  end subroutine describe_program
+
+  !> Says what was found: warnings, the numerics, and a line of results.
+  subroutine tell(destination, summary, cost)
+    type(destination_t), intent(in) :: destination
+    type(summary_t), intent(in) :: summary
+    type(cost_t), intent(in) :: cost
+    character(len=160) :: found, tension
+    real(wp) :: took
+    integer :: i
+
+    if (allocated(summary%warnings)) then
+      do i = 1, size(summary%warnings)
+        call destination%say('warning: '//summary%warnings(i)%text)
+      end do
+    end if
+    if (summary%has('grid')) call destination%say('grid '//summary%text('grid')//', method '// &
+      summary%text('method')//': '//summary%text('chosen_because'))
+    took = summary%number('wall_seconds')
+    write (found, '(i0, a, f0.2, a)') cost%states, ' states in ', took, ' s'
+    if (took < 1) write (found, '(i0, a, f5.3, a)') cost%states, ' states in ', took, ' s'
+    tension = ''
+    if (summary%has('max_tension')) write (tension, '(a, es11.4, a, es12.4, a)') &
+      ', largest tension', summary%number('max_tension'), ' N at h0 =', &
+      summary%number('max_tension_h0'), ' m'
+    call destination%say(trim(found)//trim(tension))
+  end subroutine tell
 
   !> A line to standard error.
-  subroutine say(text, quiet)
+  subroutine say(self, text)
+    class(destination_t), intent(in) :: self
     character(len=*), intent(in) :: text
-    logical, intent(in) :: quiet
 
-    if (.not. quiet) call write_stderr(text//new_line('a'))
+    if (.not. self%quiet) call write_stderr(self%folder//': '//text//new_line('a'))
   end subroutine say
 
 end module simulation

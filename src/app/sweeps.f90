@@ -13,6 +13,7 @@ module sweeps
   use summarise, only: summary_of
   use summary, only: summary_t
   use case_columns, only: columns_of, numbers_of
+  use journal, only: journal_t
   use byte_record, only: byte_record_t
   use state_records, only: put_cost, take_cost
   use results, only: results_t
@@ -44,70 +45,93 @@ contains
 
     allocate (cases(size(scene%sweep%values)))
     written = 0
-    failed = 0
-    call recall_cases()
+    call recall_cases(scene, cases, written, results)
     ! Each case has a thread of its own: its kernels and its linear algebra use no more.
     !$omp parallel do schedule(dynamic, 1)
     do i = 1, size(cases)
-      if (.not. cases(i)%done) call complete(i)
+      if (.not. cases(i)%done) call complete(scene, i, cases, written, results)
     end do
     !$omp end parallel do
-
-  contains
-
-    !> Enters the cases that an interrupted run has completed.
-    subroutine recall_cases()
-      type(byte_record_t) :: record
-      logical :: found
-      integer :: i
-
-      do
-        call results%journal%next(record, found)
-        if (.not. found) exit
-        call record%take(i)
-        call take_case(record, cases(i))
-        call enter(cases(i))
-        call results%progress%skip('case')
-      end do
-    end subroutine recall_cases
-
-    !> Computes case i and enters it.
-    subroutine complete(i)
-      integer, intent(in) :: i
-      type(case_t) :: fresh
-      type(byte_record_t) :: record
-      logical :: stopped
-
-      !$omp critical (one_at_a_time)
-      stopped = allocated(results%trouble) .or. allocated(results%journal%trouble)
-      !$omp end critical (one_at_a_time)
-      if (stopped) return
-      call run_case(scene, scene%sweep%values(i), fresh)
-      call record%put(i)
-      call put_case(record, fresh)
-      !$omp critical (one_at_a_time)
-      call results%journal%append(record)
-      cases(i) = fresh
-      call results%progress%step('case')
-      call enter(cases(i))
-      !$omp end critical (one_at_a_time)
-    end subroutine complete
-
-    !> Counts a case that is done, and writes the rows whose turn it is.
-    subroutine enter(case)
-      type(case_t), intent(in) :: case
-
-      cost = sum_of(cost, case%cost)
-      if (.not. case%converged) failed = failed + 1
-      do while (written < size(cases))
-        if (.not. cases(written + 1)%done) exit
-        written = written + 1
-        call results%take_case(scene%sweep%key, scene%sweep%values(written), columns_of(scene), &
-          cases(written)%numbers)
-      end do
-    end subroutine enter
-
+    failed = count(cases%done .and. .not. cases%converged)
+    do i = 1, size(cases)
+      cost = sum_of(cost, cases(i)%cost)
+    end do
   end subroutine run_sweep
+
+  !> Computes case i and enters it, unless results can no longer be written.
+  subroutine complete(scene, i, cases, written, results)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: i
+    type(case_t), intent(inout) :: cases(:)
+    integer, intent(inout) :: written
+    type(results_t), intent(inout) :: results
+    type(case_t) :: fresh
+    logical :: stopped
+
+    !$omp critical (one_at_a_time)
+    stopped = allocated(results%trouble) .or. allocated(results%journal%trouble)
+    !$omp end critical (one_at_a_time)
+    if (stopped) return
+    call run_case(scene, scene%sweep%values(i), fresh)
+    !$omp critical (one_at_a_time)
+    call keep_case(results%journal, i, fresh)
+    cases(i) = fresh
+    call results%progress%step('case')
+    call write_rows(scene, cases, written, results)
+    !$omp end critical (one_at_a_time)
+  end subroutine complete
+
+  !> Takes the cases that an interrupted run has completed.
+  subroutine recall_cases(scene, cases, written, results)
+    type(scene_t), intent(in) :: scene
+    type(case_t), intent(inout) :: cases(:)
+    integer, intent(inout) :: written
+    type(results_t), intent(inout) :: results
+    type(byte_record_t) :: record
+    logical :: found
+    integer :: i
+
+    do
+      call results%journal%next(record, found)
+      if (.not. found) exit
+      call record%take(i)
+      cases(i)%done = .true.
+      call record%take(cases(i)%converged)
+      call record%take(cases(i)%numbers)
+      call take_cost(record, cases(i)%cost)
+      call results%progress%skip('case')
+      call write_rows(scene, cases, written, results)
+    end do
+  end subroutine recall_cases
+
+  !> Adds a case to the journal, as `recall_cases` finds it there.
+  subroutine keep_case(journal, i, case)
+    type(journal_t), intent(inout) :: journal
+    integer, intent(in) :: i
+    type(case_t), intent(in) :: case
+    type(byte_record_t) :: record
+
+    call record%put(i)
+    call record%put(case%converged)
+    call record%put(case%numbers)
+    call put_cost(record, case%cost)
+    call journal%append(record)
+  end subroutine keep_case
+
+  !> Writes the rows whose turn it is, after the first `written`.
+  subroutine write_rows(scene, cases, written, results)
+    type(scene_t), intent(in) :: scene
+    type(case_t), intent(in) :: cases(:)
+    integer, intent(inout) :: written
+    type(results_t), intent(inout) :: results
+
+    do while (written < size(cases))
+      if (.not. cases(written + 1)%done) exit
+      written = written + 1
+      call results%take_case(scene%sweep%key, scene%sweep%values(written), columns_of(scene), &
+        cases(written)%numbers)
+    end do
+  end subroutine write_rows
 
   !> The case of the scene with the swept key at a value.
   subroutine run_case(scene, value, case)
@@ -139,27 +163,7 @@ contains
     case%cost = outcome%cost
   end subroutine run_case
 
-  !> Packs a case.
-  subroutine put_case(record, case)
-    type(byte_record_t), intent(inout) :: record
-    type(case_t), intent(in) :: case
-
-    call record%put(case%converged)
-    call record%put(case%numbers)
-    call put_cost(record, case%cost)
-  end subroutine put_case
-
-  !> Unpacks what `put_case` packed.
-  subroutine take_case(record, case)
-    type(byte_record_t), intent(inout) :: record
-    type(case_t), intent(out) :: case
-
-    case%done = .true.
-    call record%take(case%converged)
-    call record%take(case%numbers)
-    call take_cost(record, case%cost)
-  end subroutine take_case
-
+  !> What two cases took together.
   pure function sum_of(a, b) result(total)
     type(cost_t), intent(in) :: a, b
     type(cost_t) :: total

@@ -45,6 +45,17 @@ module experiment_request
     type(path_range_t), allocatable :: path
     type(profiles_t), allocatable :: profiles
     type(numerics_t) :: numerics
+  contains
+    procedure :: finds_states
   end type request_t
+
+contains
+
+  !> Whether equilibria are asked for, and not closed forms alone.
+  pure logical function finds_states(self)
+    class(request_t), intent(in) :: self
+
+    finds_states = allocated(self%loading) .or. allocated(self%path)
+  end function finds_states
 
 end module experiment_request

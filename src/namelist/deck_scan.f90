@@ -35,6 +35,14 @@ module deck_scan
     type(span_t), allocatable :: items(:)
   end type scan_t
 
+  !> Where in a group the scanner is: the group and where its `&` stands, the key whose values are
+  !> being read, and whether the last thing was a comma.
+  type :: place_t
+    character(len=:), allocatable :: group, key
+    integer :: group_at = 0
+    logical :: assigned = .false., after_comma = .false.
+  end type place_t
+
 contains
 
   !> Splits the text into groups and assignments; fails at the first break of the grammar.
@@ -91,121 +99,155 @@ contains
     integer, intent(inout) :: at
     type(scan_t), intent(inout) :: scan
     type(failure_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: group, key
-    type(span_t) :: name
-    logical :: assigned, after_comma
+    type(place_t) :: place
     integer :: start
 
-    name = scan%groups(scan%n_groups)
-    group = lower(source%text(name%first:min(name%last, name%first + 40)))
-    key = ''
-    assigned = .false.
-    after_comma = .false.
+    place%group_at = scan%groups(scan%n_groups)%first - 1
+    place%group = lower(source%text(place%group_at + 1: &
+      min(scan%groups(scan%n_groups)%last, place%group_at + 41)))
+    place%key = ''
     do
       call skip_blank(source%text, at)
       start = at
       if (at > len(source%text)) then
-        call source%complain(name%first - 1, group, '', &
+        call source%complain(place%group_at, place%group, '', &
                              'not closed: no "/" before the end of the file', error)
         return
       end if
       select case (source%text(at:at))
       case ('/')
         at = at + 1
-        call finish(start, .true.)
+        call close_entry(source, start, at, scan, place, .true., error)
         return
       case ('&')
-        at = at + 1
-        call take_word(source, at, group, error)
-        if (allocated(error)) return
-        if (lower(source%text(start:at - 1)) == '&end') then
-          call finish(start, .true.)
-        else
-          call source%complain(name%first - 1, group, '', 'not closed: no "/" before the next "' &
-                               // source%text(start:min(at - 1, start + 40)) // '"', error)
-        end if
+        call end_by_name(source, at, scan, place, error)
         return
       case (',')
         at = at + 1
-        if (.not. assigned .or. after_comma) then
-          call complain('a comma with no value before it', start)
-        else if (scan%entries(scan%n_entries)%n_items == 0) then
-          call complain('no value between "=" and the comma', start)
-        end if
-        after_comma = .true.
+        call take_comma(source, start, scan, place, error)
       case ('=')
-        call complain('"=" without the name of a key before it', start)
+        call source%complain(start, place%group, place%key, &
+                             '"=" without the name of a key before it', error)
       case ('''', '"')
-        call take_string(source, at, group, key, error)
-        if (.not. allocated(error)) call add_value()
+        call take_string(source, at, place%group, place%key, error)
+        if (.not. allocated(error)) call add_value(source, start, at, scan, place, error)
       case default
-        call take_word(source, at, group, error)
+        call take_word(source, at, place%group, error)
         if (allocated(error)) return
         if (next_is_equals(source%text, at)) then
-          call finish(start, .false.)
-          if (.not. allocated(error)) call open_entry()
+          call close_entry(source, start, at, scan, place, .false., error)
+          if (.not. allocated(error)) call open_entry(source, start, at, scan, place, error)
         else
-          call add_value()
+          call add_value(source, start, at, scan, place, error)
         end if
       end select
       if (allocated(error)) return
     end do
-
-  contains
-
-    subroutine complain(what, where)
-      character(len=*), intent(in) :: what
-      integer, intent(in) :: where
-
-      call source%complain(where, group, key, what, error)
-    end subroutine complain
-
-    !> Checks that the assignment which ends at `where` has a value.
-    subroutine finish(where, closing)
-      integer, intent(in) :: where
-      logical, intent(in) :: closing
-
-      if (.not. assigned) return
-      if (scan%entries(scan%n_entries)%n_items > 0) return
-      associate (at_key => scan%entries(scan%n_entries)%name%first)
-        if (closing) then
-          call complain('no value after "="', at_key)
-        else
-          call complain('no value between "=" and the next key "' // &
-                        source%text(where:min(at - 1, where + 40)) // '"', at_key)
-        end if
-      end associate
-    end subroutine finish
-
-    subroutine open_entry()
-      key = lower(source%text(start:min(at - 1, start + 40)))
-      if (index(key, '(') > 0) then
-        key = key(:index(key, '(') - 1)
-        call complain('subscripts are not accepted; give the whole list after "="', start)
-      else if (.not. is_name(source%text(start:at - 1))) then
-        call complain('not the name of a key: letters, digits and "_" only', start)
-      end if
-      if (allocated(error)) return
-      call add_entry(scan, span_t(start, at - 1))
-      call skip_blank(source%text, at)
-      at = at + 1
-      assigned = .true.
-      after_comma = .false.
-    end subroutine open_entry
-
-    subroutine add_value()
-      if (.not. assigned) then
-        call complain('a value without a key; write key = value', start)
-        return
-      end if
-      call push(scan%items, scan%n_items, span_t(start, at - 1))
-      associate (entry => scan%entries(scan%n_entries))
-        entry%n_items = entry%n_items + 1
-      end associate
-      after_comma = .false.
-    end subroutine add_value
-
   end subroutine scan_group
+
+  !> At an `&` inside a group: the old end `&end`, or another group's beginning.
+  subroutine end_by_name(source, at, scan, place, error)
+    type(source_t), intent(in) :: source
+    integer, intent(inout) :: at
+    type(scan_t), intent(in) :: scan
+    type(place_t), intent(in) :: place
+    type(failure_t), allocatable, intent(inout) :: error
+    integer :: start
+
+    start = at
+    at = at + 1
+    call take_word(source, at, place%group, error)
+    if (allocated(error)) return
+    if (lower(source%text(start:at - 1)) == '&end') then
+      call close_entry(source, start, at, scan, place, .true., error)
+    else
+      call source%complain(place%group_at, place%group, '', 'not closed: no "/" before the next "' &
+                           // source%text(start:min(at - 1, start + 40)) // '"', error)
+    end if
+  end subroutine end_by_name
+
+  !> Checks that the comma at `start` follows a value.
+  subroutine take_comma(source, start, scan, place, error)
+    type(source_t), intent(in) :: source
+    integer, intent(in) :: start
+    type(scan_t), intent(in) :: scan
+    type(place_t), intent(inout) :: place
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (.not. place%assigned .or. place%after_comma) then
+      call source%complain(start, place%group, place%key, 'a comma with no value before it', error)
+    else if (scan%entries(scan%n_entries)%n_items == 0) then
+      call source%complain(start, place%group, place%key, 'no value between "=" and the comma', &
+                           error)
+    end if
+    place%after_comma = .true.
+  end subroutine take_comma
+
+  !> Checks that the assignment has a value that ends before text(start:at - 1): another key or, if
+  !> `closing`, the end of the group.
+  subroutine close_entry(source, start, at, scan, place, closing, error)
+    type(source_t), intent(in) :: source
+    integer, intent(in) :: start, at
+    type(scan_t), intent(in) :: scan
+    type(place_t), intent(in) :: place
+    logical, intent(in) :: closing
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: what
+
+    if (.not. place%assigned) return
+    if (scan%entries(scan%n_entries)%n_items > 0) return
+    what = 'no value after "="'
+    if (.not. closing) what = 'no value between "=" and the next key "' // &
+      source%text(start:min(at - 1, start + 40)) // '"'
+    call source%complain(scan%entries(scan%n_entries)%name%first, place%group, place%key, what, &
+                         error)
+  end subroutine close_entry
+
+  !> Begins the assignment to the key text(start:at - 1) and goes beyond its "=".
+  subroutine open_entry(source, start, at, scan, place, error)
+    type(source_t), intent(in) :: source
+    integer, intent(in) :: start
+    integer, intent(inout) :: at
+    type(scan_t), intent(inout) :: scan
+    type(place_t), intent(inout) :: place
+    type(failure_t), allocatable, intent(inout) :: error
+
+    place%key = lower(source%text(start:min(at - 1, start + 40)))
+    if (index(place%key, '(') > 0) then
+      place%key = place%key(:index(place%key, '(') - 1)
+      call source%complain(start, place%group, place%key, &
+                           'subscripts are not accepted; give the whole list after "="', error)
+    else if (.not. is_name(source%text(start:at - 1))) then
+      call source%complain(start, place%group, place%key, &
+                           'not the name of a key: letters, digits and "_" only', error)
+    end if
+    if (allocated(error)) return
+    call add_entry(scan, span_t(start, at - 1))
+    call skip_blank(source%text, at)
+    at = at + 1
+    place%assigned = .true.
+    place%after_comma = .false.
+  end subroutine open_entry
+
+  !> Adds the value text(start:at - 1) to the present assignment.
+  subroutine add_value(source, start, at, scan, place, error)
+    type(source_t), intent(in) :: source
+    integer, intent(in) :: start, at
+    type(scan_t), intent(inout) :: scan
+    type(place_t), intent(inout) :: place
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (.not. place%assigned) then
+      call source%complain(start, place%group, place%key, &
+                           'a value without a key; write key = value', error)
+      return
+    end if
+    call push(scan%items, scan%n_items, span_t(start, at - 1))
+    associate (entry => scan%entries(scan%n_entries))
+      entry%n_items = entry%n_items + 1
+    end associate
+    place%after_comma = .false.
+  end subroutine add_value
 
   !> Appends `span` to the first `n` of `list`, which grows as needed.
   pure subroutine push(list, n, span)

@@ -3,9 +3,9 @@
 !> Files are read by system calls: a Fortran `open` passes over blanks at the end of a name and so
 !> finds another file.
 module deck_source
-  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
+  use, intrinsic :: iso_c_binding, only: c_int, c_long
   use failure, only: failure_t, fail, bad_input, file_trouble
-  use c_library, only: c_open_input, c_read, c_close, sort_of, reason, not_there
+  use c_library, only: c_open, c_read, c_close, explain, as_input, not_there, nul
   use text, only: printable
   implicit none
   private
@@ -34,8 +34,8 @@ contains
     character(len=*), intent(in) :: file
     type(source_t), intent(out) :: source
     type(failure_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: bytes
-    integer(c_int) :: descriptor, status
+    character(len=:), allocatable :: bytes, reason
+    integer(c_int) :: descriptor, status, sort
     integer :: n
 
     source%file = printable(file)
@@ -44,12 +44,13 @@ contains
       call fail(error, file_trouble, 'a deck needs a file name')
       return
     end if
-    descriptor = c_open_input(file // c_null_char)
+    descriptor = c_open(file // nul, as_input)
     if (descriptor < 0) then
-      if (sort_of(descriptor) == not_there) then
+      call explain(descriptor, sort, reason)
+      if (sort == not_there) then
         call fail(error, file_trouble, source%file // ': no such file')
       else
-        call fail(error, file_trouble, source%file // ': cannot be opened: ' // reason(descriptor))
+        call fail(error, file_trouble, source%file // ': cannot be opened: ' // reason)
       end if
       return
     end if
@@ -57,7 +58,8 @@ contains
     n = int(c_read(descriptor, bytes, int(len(bytes), c_long)))
     status = c_close(descriptor)
     if (n < 0) then
-      call fail(error, file_trouble, source%file // ': cannot be read: ' // reason(int(n, c_int)))
+      call explain(int(n, c_int), sort, reason)
+      call fail(error, file_trouble, source%file // ': cannot be read: ' // reason)
     else
       call take_source(file, bytes(:n), source, error)
     end if

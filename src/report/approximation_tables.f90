@@ -9,9 +9,10 @@ module approximation_tables
   use slow_jumps, only: gap_of_h0, criterion_gap, equation_37_gap, fold_gap
   use scene_groups, only: range_t
   use records, only: theory_row_t
+  use summary, only: summary_t
   implicit none
   private
-  public :: approximation_rows, jump_t, jumps_t, jumps_of
+  public :: approximation_rows, summarise_approximations, jump_t, jumps_t, jumps_of
 
   !> A state at which approaching bodies jump, by some criterion [m], [m], [m], [N]; `theory` is the
   !> name of its row in the table.
@@ -123,6 +124,37 @@ contains
     end subroutine set
 
   end function jumps_of
+
+  !> Where approaching bodies jump in the approximation of slow deformation.
+  subroutine summarise_approximations(problem, summary)
+    type(problem_t), intent(in) :: problem
+    type(summary_t), intent(inout) :: summary
+    type(jumps_t) :: jumps
+
+    jumps = jumps_of(problem)
+    call take(jumps%criterion, 'jump_criterion_29')
+    call take(jumps%equation_37, 'jump_equation_37')
+    if (allocated(jumps%equation_37)) &
+      call summary%set('jump_equation_37_gap', jumps%equation_37%gap)
+    call take(jumps%fold_attraction, 'fold_attractive_only')
+    if (allocated(jumps%fold)) then
+      ! That of a law without a closed form has another name, in approximations.csv alone.
+      if (jumps%fold%theory == 'fold_closed_form') &
+        call take(jumps%fold, 'fold_closed_form')
+    end if
+
+  contains
+
+    subroutine take(jump, key)
+      type(jump_t), allocatable, intent(in) :: jump
+      character(len=*), intent(in) :: key
+
+      if (.not. allocated(jump)) return
+      call summary%set(key//'_h0', jump%h0)
+      call summary%set(key//'_load', jump%load)
+    end subroutine take
+
+  end subroutine summarise_approximations
 
   !> The state of a form at a gap on the axis (law's lengths).
   pure function state_at(problem, form, gap, theory) result(jump)

@@ -70,11 +70,9 @@ contains
     integer, allocatable :: single(:)
     integer :: i
 
-    single = pack([(i, i=1, size(rows))], rows%sweep == 'always')
-    if (allocated(scene%classical)) &
-      single = [single, pack([(i, i=1, size(rows))], rows%sweep == 'classical')]
-    if (allocated(scene%approximations)) &
-      single = [single, pack([(i, i=1, size(rows))], rows%sweep == 'approximations')]
+    single = [pack([(i, i=1, size(rows))], rows%sweep == 'always'), &
+      pack([(i, i=1, size(rows))], [(scene%deck%has_group(trim(rows(i)%sweep)) .and. &
+      .not. each_turn(rows(i)), i=1, size(rows))])]
     if (.not. scene%law%of_paper) &
       single = [single, pack([(i, i=1, size(rows))], rows%sweep == '(forces)')]
   end function single_columns

@@ -5,12 +5,13 @@ module classical_rows
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
   use classical, only: hertz_load_at_displacement, hertz_radius_at_displacement, &
     jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
-  use maugis, only: maugis_load, maugis_radius_at_displacement
+  use maugis, only: maugis_load, maugis_radius_at_displacement, maugis_lambda, maugis_pull_off
   use scene_groups, only: range_t
   use records, only: theory_row_t
+  use summary, only: summary_t
   implicit none
   private
-  public :: rows_of_classical
+  public :: rows_of_classical, summarise_classical
 
 contains
 
@@ -66,5 +67,20 @@ contains
     end subroutine add
 
   end function rows_of_classical
+
+  !> Maugis-Dugdale theory with the law's surface energy and largest tension, where both exist.
+  subroutine summarise_classical(problem, summary)
+    type(problem_t), intent(in) :: problem
+    type(summary_t), intent(inout) :: summary
+    real(wp) :: gamma, strength
+
+    gamma = surface_energy(problem)
+    strength = largest_tension(problem)
+    if (problem%rigid .or. .not. (gamma > 0 .and. strength > 0)) return
+    call summary%set('maugis_lambda', &
+      maugis_lambda(problem%radius, problem%stiffness, gamma, strength))
+    call summary%set('maugis_pull_off', &
+      -maugis_pull_off(problem%radius, problem%stiffness, gamma, strength))
+  end subroutine summarise_classical
 
 end module classical_rows

@@ -7,7 +7,7 @@ module quality_warnings
   use summary, only: summary_t
   implicit none
   private
-  public :: judge_resolution, judge_accuracy, short_number
+  public :: judge_resolution, judge_accuracy, judge_stopping, short_number
 
   !> Nodes may lie this many necks apart at the contact edge: beyond it the edge is pinned between
   !> them.
@@ -19,7 +19,7 @@ module quality_warnings
   !> An estimate carries a margin of two and more; only beyond this many times the accuracy is it
   !> clear that the accuracy is missed.
   real(wp), parameter :: clearly = 3
-  !> A residual that nobody need hear of.
+  !> A residual not worth a warning.
   real(wp), parameter :: usual_residual = 1.0e-8_wp
 
 contains
@@ -47,12 +47,9 @@ contains
     type(experiment_result_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
     real(wp) :: enough, estimate
-    logical :: on_change
 
-    on_change = outcome%chosen%options%stop_on_change .and. &
-      outcome%chosen%options%method == 'mixing'
     associate (tolerance => outcome%chosen%options%tolerance)
-      if (summary%is_true('converged') .and. .not. on_change .and. &
+      if (summary%is_true('converged') .and. .not. stops_on_change(outcome) .and. &
         summary%number('worst_residual') > &
         max(tolerance, scene%numerics%accuracy, usual_residual)) &
         call summary%warn('rounding leaves residuals of up to '// &
@@ -71,6 +68,29 @@ contains
         ', above the accuracy of '//short_number(scene%numerics%accuracy)//' asked for')
     end if
   end subroutine judge_accuracy
+
+  !> Whether equations that were not asked to hold hold all the same; `ended`: every branch came to
+  !> its end.
+  subroutine judge_stopping(outcome, ended, summary)
+    type(experiment_result_t), intent(in) :: outcome
+    logical, intent(in) :: ended
+    type(summary_t), intent(inout) :: summary
+
+    if (.not. stops_on_change(outcome)) return
+    call summary%warn('the iteration was stopped on a small change of the displacement, '// &
+      'which is not convergence: the largest residual left is '// &
+      short_number(summary%number('worst_residual'))//' lengths of the force law')
+    call summary%set('converged', ended .and. &
+      summary%number('worst_residual') <= outcome%chosen%options%tolerance)
+  end subroutine judge_stopping
+
+  !> Whether the iteration stops on a small change, whatever the residual.
+  pure logical function stops_on_change(outcome)
+    type(experiment_result_t), intent(in) :: outcome
+
+    stops_on_change = outcome%chosen%options%stop_on_change .and. &
+      outcome%chosen%options%method == 'mixing'
+  end function stops_on_change
 
   !> A number for a message, to three digits.
   pure function short_number(x) result(text)

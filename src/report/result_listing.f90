@@ -3,7 +3,8 @@
 module result_listing
   use publication, only: result_files
   use result_rows, only: row_t, rows, in_summary, in_cost
-  use results, only: curve_columns, stability_columns, theory_columns
+  use curve_rows, only: curve_columns, stability_columns
+  use derived_tables, only: theory_columns
   use profiles, only: profile_columns, unlike_columns
   implicit none
   private

@@ -10,7 +10,8 @@ module results
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t, cost_t
-  use records, only: record_t, observer_t, theory_row_t
+  use records, only: record_t, observer_t
+  use scene_groups, only: scene_t
   use deck, only: deck_t
   use files, only: make_folder, file_exists
   use folder_lock, only: folder_lock_t
@@ -18,13 +19,15 @@ module results
   use journal, only: journal_t
   use run_identity, only: difference_between
   use text_file, only: output_t, partial
+  use namelist_writer, only: line_t
   use tables, only: table_t, cells
+  use curve_rows, only: columns_of_curve, curve_row
   use profiles, only: columns_of_profiles, write_profile
   use summary, only: summary_t, summary_text
   use progress, only: progress_t
   implicit none
   private
-  public :: results_t, journal_of, curve_columns, stability_columns, theory_columns
+  public :: results_t, journal_of
 
   !> Takes what a run has to show, between `open` and `finish`. The first thing that goes wrong is
   !> kept in `trouble`; after it nothing more is written. Not to be copied while files are open.
@@ -47,75 +50,40 @@ module results
     procedure :: take
     procedure :: hear
     procedure :: take_case
-    procedure :: write_theory
+    procedure :: write_table
     procedure :: write_summary
     procedure :: finish
     procedure, private :: claim
     procedure, private :: check_presence
     procedure, private :: path_of
-    procedure, private :: mark
+    procedure, private :: begin
   end type results_t
-
-  !> Columns of curve.csv, each described as 'name [unit] meaning'.
-  character(len=*), parameter :: curve_columns(*) = [character(len=96) :: &
-    'branch [] loading, unloading_1, unloading_2, ..., or path', &
-    'h0 [m] separation that undeformed bodies would have on the axis', &
-    'h_centre [m] separation on the axis', &
-    'displacement [m] h_centre - h0', &
-    'load [N] negative: tension', &
-    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
-    'stable [] 1: stable; 0: unstable, or a fold; -1: not examined', &
-    'residual [] largest error of the equations, in units of the length of the force law', &
-    'iterations [] products with the elastic operator', &
-    'converged [] 1; 0 where the residual is larger than asked for: the row is no equilibrium']
-  !> Added by &stability.
-  character(len=*), parameter :: stability_columns(*) = [character(len=96) :: &
-    'smallest_eigenvalue [] of the operator at fixed h0; negative: unstable', &
-    'criterion_28 [] largest |2 u p''/p| where surfaces attract; above 1: unstable by (28)', &
-    'criterion_29 [] 2 p'' u/p on an axis that attracts; below -1: unstable by (29)']
-  !> Columns of classical.csv and approximations.csv.
-  character(len=*), parameter :: theory_columns(*) = [character(len=96) :: &
-    'theory [] where the row comes from', &
-    'h0 [m] separation that undeformed bodies would have on the axis', &
-    'displacement [m] separation on the axis less h0', &
-    'load [N] negative: tension', &
-    'contact_radius [m] NaN where the theory does not give one']
 
 contains
 
-  !> Makes the folder, which from then on is this run's alone, opens its journal and, as asked,
-  !> begins the curve (with columns for stability or without) and the profiles (`shapes`), so that a
-  !> place where nothing can be written shows before anything is computed. `owner` is the run's
-  !> identity; resume: the journal that an interrupted run has left, if there is one, is gone on
-  !> with.
-  subroutine open_results(self, folder, title, version, problem, curve, shapes, stability, owner, &
-    resume, error)
+  !> Makes the folder, which from then on is this run's alone, opens its journal and begins the
+  !> curve and the profiles where the scene has them, so that a place where nothing can be written
+  !> shows before anything is computed. `owner` is the run's identity; resume: the journal that an
+  !> interrupted run has left, if there is one, is gone on with.
+  subroutine open_results(self, folder, scene, version, problem, owner, resume, error)
     class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: folder, title, version, owner
+    character(len=*), intent(in) :: folder, version, owner
+    type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
-    logical, intent(in) :: curve, shapes, stability, resume
+    logical, intent(in) :: resume
     type(failure_t), allocatable, intent(out) :: error
 
     if (allocated(self%trouble)) deallocate (self%trouble)
     self%folder = folder
     if (len(folder) == 0) self%folder = '.'
-    self%title = title
+    self%title = scene%title
     self%version = version
     self%made = .false.
     call self%claim(owner, resume, error)
-    if (curve .and. .not. allocated(error)) then
-      call self%mark('curve.csv')
-      if (stability) then
-        call self%curve%begin(self%path_of('curve.csv'), title, version, &
-          [curve_columns, stability_columns], error)
-      else
-        call self%curve%begin(self%path_of('curve.csv'), title, version, curve_columns, error)
-      end if
-    end if
-    if (shapes .and. .not. allocated(error)) then
-      call self%mark('profiles.csv')
-      call self%shapes%begin(self%path_of('profiles.csv'), title, version, &
-        columns_of_profiles(problem), error)
+    if (scene%has_curve() .and. .not. allocated(error)) then
+      call self%begin(self%curve, 'curve.csv', columns_of_curve(scene%has_eigenvalues()), error)
+      if (allocated(scene%profiles) .and. .not. allocated(error)) &
+        call self%begin(self%shapes, 'profiles.csv', columns_of_profiles(problem), error)
     end if
     ! What is put on the disk later needs its name there.
     if (.not. allocated(error)) call self%lock%sync(error)
@@ -123,6 +91,17 @@ contains
     self%trouble = error
     call self%lock%release()
   end subroutine open_results
+
+  !> Begins the table `name`, a file of the folder.
+  subroutine begin(self, table, name, columns, error)
+    class(results_t), intent(inout) :: self
+    type(table_t), intent(inout) :: table
+    character(len=*), intent(in) :: name, columns(:)
+    type(failure_t), allocatable, intent(inout) :: error
+
+    where (result_files == name) self%made = .true.
+    call table%begin(self%path_of(name), self%title, self%version, columns, error)
+  end subroutine begin
 
   !> Makes the folder, keeps others out of it and opens the journal.
   subroutine claim(self, owner, resume, error)
@@ -171,7 +150,6 @@ contains
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     logical, intent(in) :: profile
-    character(len=24) :: stable, iterations
 
     if (record%branch == 'path') then
       call self%progress%note(record%branch)
@@ -181,26 +159,11 @@ contains
       call self%progress%step(record%branch)
     end if
     if (allocated(self%trouble)) return
-    write (stable, '(i0)') record%stable
-    write (iterations, '(i0)') record%iterations
-    call self%curve%row(record%branch // ',' // cells([record%h0, record%h_centre, &
-      record%displacement, record%load, record%contact_radius]) // ',' // trim(stable) // ',' // &
-      cells([record%residual]) // ',' // trim(iterations) // &
-      merge(',1', ',0', record%converged) // stability_cells(record), self%trouble)
+    call self%curve%row(curve_row(record), self%trouble)
     if (.not. allocated(self%trouble)) call self%curve%flush(self%trouble)
     if (profile .and. .not. allocated(self%trouble)) call write_profile(self%shapes, &
       record%branch, record%h0, problem, grid, state, self%trouble)
   end subroutine take
-
-  !> The cells of `stability_columns`; empty for a record without them.
-  pure function stability_cells(record) result(text)
-    type(record_t), intent(in) :: record
-    character(len=:), allocatable :: text
-
-    text = ''
-    if (allocated(record%eigenvalue)) text = ',' // cells([record%eigenvalue, &
-      record%local_criterion, record%axis_criterion])
-  end function stability_cells
 
   !> Adds a case of a sweep, the value of its key and its numbers, to `sweep.csv`. `key` is
   !> 'group.key', `columns` are those of the numbers.
@@ -212,35 +175,32 @@ contains
 
     if (allocated(self%trouble)) return
     if (.not. self%cases%has_begun()) then
-      call self%mark('sweep.csv')
       header(1) = key // ' in the unit of the key'
       header(2:) = columns
-      call self%cases%begin(self%path_of('sweep.csv'), self%title, self%version, header, &
-        self%trouble)
+      call self%begin(self%cases, 'sweep.csv', header, self%trouble)
     end if
     if (.not. allocated(self%trouble)) &
       call self%cases%row(cells([value, numbers]), self%trouble)
     if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
   end subroutine take_case
 
-  !> Writes the table `name` ('classical.csv' or 'approximations.csv').
-  subroutine write_theory(self, name, rows)
+  !> Writes the table `name`, one of `result_files`, whole: its columns, each described as
+  !> 'name [unit] what it is', and its rows.
+  subroutine write_table(self, name, columns, rows)
     class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
-    type(theory_row_t), intent(in) :: rows(:)
+    character(len=*), intent(in) :: name, columns(:)
+    type(line_t), intent(in) :: rows(:)
     type(table_t) :: table
     integer :: i
 
     if (allocated(self%trouble)) return
-    call self%mark(name)
-    call table%begin(self%path_of(name), self%title, self%version, theory_columns, self%trouble)
+    call self%begin(table, name, columns, self%trouble)
     do i = 1, size(rows)
       if (allocated(self%trouble)) return
-      call table%row(rows(i)%theory // ',' // cells([rows(i)%h0, rows(i)%displacement, &
-        rows(i)%load, rows(i)%contact_radius]), self%trouble)
+      call table%row(rows(i)%text, self%trouble)
     end do
     if (.not. allocated(self%trouble)) call table%close(self%trouble)
-  end subroutine write_theory
+  end subroutine write_table
 
   !> Writes the summary. Its title and version, where not allocated, are those of `open`.
   subroutine write_summary(self, summary, cost, deck)
@@ -263,7 +223,7 @@ contains
       call move_alloc(missing, self%trouble)
       return
     end if
-    call self%mark('summary.nml')
+    where (result_files == 'summary.nml') self%made = .true.
     call file%open(self%path_of('summary.nml') // partial, self%trouble)
     if (.not. allocated(self%trouble)) &
       call file%put(summary_text(complete) // deck%resolved(), self%trouble)
@@ -327,14 +287,6 @@ contains
     call table%close(another)
     if (allocated(another) .and. .not. allocated(error)) call move_alloc(another, error)
   end subroutine end_table
-
-  !> Notes that this run makes the file `name`.
-  pure subroutine mark(self, name)
-    class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
-
-    where (result_files == name) self%made = .true.
-  end subroutine mark
 
   !> Path of a file of the folder.
   pure function path_of(self, name) result(path)

@@ -8,6 +8,8 @@ module stability_records
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t, cost_t
   use records, only: observer_t, record_t, stable_yes, stable_no, stable_unasked
+  use text, only: brief
+  use summary, only: summary_t
   use journal, only: journal_t
   use byte_record, only: byte_record_t
   use state_records, only: put_cost, take_cost
@@ -30,6 +32,7 @@ module stability_records
   contains
     procedure :: take
     procedure :: hear
+    procedure :: warn
     procedure, private :: find_eigenvalue
   end type stability_recorder_t
 
@@ -80,6 +83,17 @@ contains
     end if
     call self%next%take(completed, problem, grid, state, profile)
   end subroutine take
+
+  !> Enters states whose eigenvalues are in doubt into the warnings.
+  subroutine warn(self, summary)
+    class(stability_recorder_t), intent(in) :: self
+    type(summary_t), intent(inout) :: summary
+
+    if (self%uncertain > 0) call summary%warn('the smallest eigenvalue of '// &
+      brief(real(self%uncertain, wp))//' states could not be verified: their rows have NaN')
+    if (self%contradicted > 0) call summary%warn('the eigenvalue of '// &
+      brief(real(self%contradicted, wp))//' states contradicts their column stable')
+  end subroutine warn
 
   !> The smallest eigenvalue of a state; from the journal, where that has it.
   subroutine find_eigenvalue(self, problem, grid, state, eigenvalue, certain)

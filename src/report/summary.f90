@@ -23,10 +23,13 @@ module summary
   !> What has no value is absent from the file. Where one value of an array does not exist, such as
   !> the jump out of an unloading without one, it is NaN.
   type :: summary_t
-    type(value_t), private :: value(size(rows))
+    !> One a row, once a value has been set. On the heap: several summaries at once would make the
+    !> stack grow, which a limit of memory can forbid.
+    type(value_t), allocatable, private :: value(:)
     type(line_t), allocatable :: warnings(:)
   contains
     procedure :: warn
+    procedure :: fail_with
     generic :: set => set_number, set_numbers, set_count, set_counts, set_truth, set_text
     procedure :: drop
     procedure :: has
@@ -35,10 +38,21 @@ module summary
     procedure :: is_true
     procedure :: text
     procedure :: take_cost
+    procedure, private :: find
     procedure, private :: set_number, set_numbers, set_count, set_counts, set_truth, set_text
   end type summary_t
 
 contains
+
+  !> Where the value of a key is.
+  subroutine find(self, key, i)
+    class(summary_t), intent(inout) :: self
+    character(len=*), intent(in) :: key
+    integer, intent(out) :: i
+
+    if (.not. allocated(self%value)) allocate (self%value(size(rows)))
+    i = row_of(key)
+  end subroutine find
 
   subroutine set_number(self, key, value)
     class(summary_t), intent(inout) :: self
@@ -54,7 +68,7 @@ contains
     real(wp), intent(in) :: values(:)
     integer :: i
 
-    i = row_of(key)
+    call self%find(key, i)
     self%value(i)%number = values
   end subroutine set_numbers
 
@@ -64,7 +78,7 @@ contains
     integer(long), intent(in) :: value
     integer :: i
 
-    i = row_of(key)
+    call self%find(key, i)
     self%value(i)%count = [value]
   end subroutine set_count
 
@@ -74,7 +88,7 @@ contains
     integer, intent(in) :: values(:)
     integer :: i
 
-    i = row_of(key)
+    call self%find(key, i)
     self%value(i)%count = int(values, long)
   end subroutine set_counts
 
@@ -84,7 +98,7 @@ contains
     logical, intent(in) :: value
     integer :: i
 
-    i = row_of(key)
+    call self%find(key, i)
     self%value(i)%truth = value
   end subroutine set_truth
 
@@ -93,7 +107,7 @@ contains
     character(len=*), intent(in) :: key, value
     integer :: i
 
-    i = row_of(key)
+    call self%find(key, i)
     self%value(i)%text = value
   end subroutine set_text
 
@@ -103,7 +117,7 @@ contains
     character(len=*), intent(in) :: key
     integer :: i
 
-    i = row_of(key)
+    call self%find(key, i)
     if (allocated(self%value(i)%number)) deallocate (self%value(i)%number)
     if (allocated(self%value(i)%count)) deallocate (self%value(i)%count)
     if (allocated(self%value(i)%truth)) deallocate (self%value(i)%truth)
@@ -115,6 +129,8 @@ contains
     class(summary_t), intent(in) :: self
     character(len=*), intent(in) :: key
 
+    has = .false.
+    if (.not. allocated(self%value)) return
     associate (value => self%value(row_of(key)))
       has = allocated(value%number) .or. allocated(value%count) .or. allocated(value%truth) .or. &
         allocated(value%text)
@@ -127,6 +143,7 @@ contains
     character(len=*), intent(in) :: key
 
     number = 0
+    if (.not. allocated(self%value)) return
     associate (value => self%value(row_of(key)))
       if (allocated(value%number)) number = value%number(1)
       if (allocated(value%count)) number = real(value%count(1), wp)
@@ -141,6 +158,7 @@ contains
     real(wp), allocatable :: numbers(:)
 
     allocate (numbers(0))
+    if (.not. allocated(self%value)) return
     associate (value => self%value(row_of(key)))
       if (allocated(value%number)) numbers = value%number
     end associate
@@ -152,6 +170,7 @@ contains
     character(len=*), intent(in) :: key
 
     is_true = .false.
+    if (.not. allocated(self%value)) return
     associate (value => self%value(row_of(key)))
       if (allocated(value%truth)) is_true = value%truth
     end associate
@@ -164,6 +183,7 @@ contains
     character(len=:), allocatable :: text
 
     text = ''
+    if (.not. allocated(self%value)) return
     associate (value => self%value(row_of(key)))
       if (allocated(value%text)) text = value%text
     end associate
@@ -187,6 +207,15 @@ contains
     if (size(self%warnings) == most_warnings) &
       self%warnings(most_warnings)%text = 'further warnings are not shown'
   end subroutine warn
+
+  !> Not everything was found: adds the reason as a warning.
+  subroutine fail_with(self, text)
+    class(summary_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+
+    call self%set('converged', .false.)
+    call self%warn(text)
+  end subroutine fail_with
 
   !> What was spent, as rows of &cost.
   subroutine take_cost(self, cost)

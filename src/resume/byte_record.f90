@@ -19,8 +19,8 @@ module byte_record
     generic :: take => take_long, take_integer, take_real, take_reals, take_logical, take_text
     procedure, private :: put_long, put_integer, put_real, put_reals, put_logical, put_text
     procedure, private :: take_long, take_integer, take_real, take_reals, take_logical, take_text
-    procedure, private :: put_words
-    procedure, private :: take_words
+    procedure :: put_words
+    procedure :: take_words
   end type byte_record_t
 
   !> Characters in a word.
@@ -37,6 +37,7 @@ contains
     self%exhausted = .false.
   end subroutine clear
 
+  !> Words as they are: what takes them out knows how many.
   subroutine put_words(self, words)
     class(byte_record_t), intent(inout) :: self
     integer(long), intent(in) :: words(:)
@@ -52,6 +53,7 @@ contains
     self%held = self%held + size(words)
   end subroutine put_words
 
+  !> As many words as there are in `words`.
   subroutine take_words(self, words)
     class(byte_record_t), intent(inout) :: self
     integer(long), intent(out) :: words(:)

@@ -8,7 +8,8 @@ module finished_run
 contains
 
   !> Whether the folder's summary is that of the deck `resolved` (as text) by this `version` of the
-  !> program; the summary is the last thing that a run writes. converged: whether all went well.
+  !> program; the summary is the last thing that a run writes. converged: whether all of that
+  !> went well.
   subroutine find_finished(folder, resolved, version, finished, converged)
     character(len=*), intent(in) :: folder, resolved, version
     logical, intent(out) :: finished, converged

@@ -7,11 +7,11 @@
 !> is put on the disk, so that a power failure costs no more than these. It is written by system
 !> calls for the reason given in `text_file`.
 module journal
-  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
+  use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
   use failure, only: failure_t, fail, file_trouble
-  use c_library, only: c_open_output, c_read, c_write, c_sync, c_close, c_size, c_go_to, &
-    c_truncate, system_failure
+  use c_library, only: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, system_failure, &
+    as_output, as_kept_output, nul
   use byte_record, only: byte_record_t, checksum
   use clock, only: seconds
   implicit none
@@ -60,7 +60,7 @@ contains
     type(failure_t), allocatable, intent(out) :: error
     type(byte_record_t) :: heading
 
-    call start(self, path, 0_c_int, error)
+    call start(self, path, as_output, error)
     if (allocated(error)) return
     call heading%put(owner)
     call self%append(heading)
@@ -80,7 +80,7 @@ contains
     integer(c_int) :: status
     logical :: found
 
-    call start(self, path, 1_c_int, error)
+    call start(self, path, as_kept_output, error)
     if (allocated(error)) return
     whole = 0
     call self%read_frame(record, whole, found)
@@ -102,18 +102,17 @@ contains
       self%inherited = self%inherited + 1
     end do
     self%waiting = self%inherited
-    status = c_truncate(self%descriptor, whole)
-    if (status == 0) status = c_go_to(self%descriptor, first)
+    status = c_cut(self%descriptor, whole, first)
     if (status == 0) return
     call system_failure('cannot write ' // path, status, error)
     call self%close()
   end subroutine go_on
 
-  !> Opens the file, empty or (keep: 1) as it is, and forgets what was before.
-  subroutine start(self, path, keep, error)
+  !> Opens the file, empty or as it is, and forgets what was before.
+  subroutine start(self, path, how, error)
     class(journal_t), intent(inout) :: self
     character(len=*), intent(in) :: path
-    integer(c_int), intent(in) :: keep
+    integer(c_int), intent(in) :: how
     type(failure_t), allocatable, intent(out) :: error
 
     call self%close()
@@ -124,7 +123,7 @@ contains
     self%began = seconds()
     self%synced = self%began
     self%path = path
-    self%descriptor = c_open_output(path // c_null_char, keep)
+    self%descriptor = c_open(path // nul, how)
     if (.not. self%is_open()) then
       call system_failure('cannot write ' // path, self%descriptor, error)
       return

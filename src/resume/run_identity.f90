@@ -1,23 +1,16 @@
 !> What a run's numbers depend on, as a text, and what differs between two of them: an interrupted
 !> run can only be gone on with by one that would have done the same.
 module run_identity
-  use, intrinsic :: iso_c_binding, only: c_associated, c_f_procpointer, c_funptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp, long
   use build_info, only: version, compiler, blas, options
-  use c_library, only: procedure_named, text_at
+  use c_library, only: c_openblas_config
   use text, only: brief
   use deck_number, only: parse_real
   use byte_record, only: checksum
   implicit none
   private
   public :: identity_of, difference_between
-
-  abstract interface
-    function text_of_library() bind(c) result(place)
-      import :: c_ptr
-      type(c_ptr) :: place
-    end function text_of_library
-  end interface
 
   character(len=1), parameter :: nl = new_line('a')
   !> How the lines before the deck begin.
@@ -128,14 +121,11 @@ contains
   !> digits depend.
   function blas_in_use() result(text)
     character(len=:), allocatable :: text
-    procedure(text_of_library), pointer :: ask
-    type(c_funptr) :: address
+    character(len=256) :: config
 
-    text = blas
-    address = procedure_named('openblas_get_config')
-    if (.not. c_associated(address)) return
-    call c_f_procpointer(address, ask)
-    text = text_at(ask())
+    call c_openblas_config(config, len(config, kind=c_int))
+    text = trim(config)
+    if (text == '') text = blas
   end function blas_in_use
 
   !> Tells programs of the same version apart: a checksum of the running program's file, where the

@@ -249,40 +249,22 @@ contains
     if (.not. known) call record%take(frozen%factors%origin)
   end subroutine take_frozen
 
-  !> Packs what was spent.
+  !> Packs what was spent: all its components are numbers of one word.
   subroutine put_cost(record, cost)
     type(byte_record_t), intent(inout) :: record
     type(cost_t), intent(in) :: cost
 
-    call record%put(cost%operator_products)
-    call record%put(cost%operator_columns)
-    call record%put(cost%pressure_evaluations)
-    call record%put(cost%factorisations)
-    call record%put(cost%iterations)
-    call record%put(cost%kernel_entries)
-    call record%put(cost%states)
-    call record%put(cost%rejected_steps)
-    call record%put(cost%kernel_seconds)
-    call record%put(cost%solve_seconds)
-    call record%put(cost%estimate_seconds)
+    call record%put_words(transfer(cost, [0_long]))
   end subroutine put_cost
 
   !> Unpacks what `put_cost` packed.
   subroutine take_cost(record, cost)
     type(byte_record_t), intent(inout) :: record
     type(cost_t), intent(out) :: cost
+    integer(long) :: words(storage_size(cost)/storage_size(0_long))
 
-    call record%take(cost%operator_products)
-    call record%take(cost%operator_columns)
-    call record%take(cost%pressure_evaluations)
-    call record%take(cost%factorisations)
-    call record%take(cost%iterations)
-    call record%take(cost%kernel_entries)
-    call record%take(cost%states)
-    call record%take(cost%rejected_steps)
-    call record%take(cost%kernel_seconds)
-    call record%take(cost%solve_seconds)
-    call record%take(cost%estimate_seconds)
+    call record%take_words(words)
+    cost = transfer(words, cost)
   end subroutine take_cost
 
 end module state_records

@@ -2,23 +2,27 @@
 module scene
   use kinds, only: wp
   use failure, only: failure_t
-  use bodies, only: composite_stiffness, compliance_shares
-  use text, only: brief
+  use text, only: brief, listing
   use deck, only: deck_t, read_deck
   use laws, only: read_laws
   use scene_keys, only: keys_of_scene
-  use scene_groups, only: scene_t, bodies_t, range_t, stability_t, sweep_t
-  use experiment_request, only: loading_t, unloading_t, path_range_t, profiles_t, numerics_t
-  use scene_ranges, only: take_loading, take_unloading, take_path, take_profiles, take_range, &
-                          take_stability
-  use scene_sweep, only: take_sweep
+  use scene_groups, only: scene_t
+  use bodies_group, only: take_bodies
+  use cycle_groups, only: take_loading, take_unloading
+  use path_group, only: take_path
+  use profiles_group, only: take_profiles
+  use theory_groups, only: take_theories
+  use stability_group, only: take_stability
+  use sweep_group, only: take_sweep
+  use numerics_group, only: take_numerics
   use magnitudes, only: check_derived
   implicit none
   private
   public :: scene_t, read_scene, make_scene, swept_scene
 
-  character(len=*), parameter :: one_way = 'give one of: stiffness; young and poisson; ' // &
-    'rigid = .true.'
+  !> The groups that compute something by themselves; a deck needs at least one of them.
+  character(len=*), parameter :: computing(*) = [character(len=17) :: 'loading', &
+    'equilibrium_path', 'approximations', 'classical']
 
 contains
 
@@ -43,6 +47,8 @@ contains
     type(deck_t), intent(in) :: deck
     type(scene_t), intent(out) :: scene
     type(failure_t), allocatable, intent(out) :: error
+    character(len=len(computing)*size(computing)) :: all_names
+    integer :: i
 
     scene%deck = deck
     call deck%get('scene', 'title', scene%title)
@@ -56,15 +62,13 @@ contains
     call take_path(scene, error)
     if (allocated(error)) return
     call take_profiles(scene, error)
-    call take_range(scene, 'approximations', scene%approximations, error)
-    call take_range(scene, 'classical', scene%classical, error)
+    call take_theories(scene, error)
     call take_stability(scene, error)
     call take_sweep(scene, error)
     call take_numerics(scene)
-    if (.not. (allocated(scene%loading) .or. allocated(scene%path) .or. &
-               allocated(scene%approximations) .or. allocated(scene%classical))) &
-      call deck%mistake('', '', 'nothing to compute; a deck needs at least one of &loading, ' // &
-                        '&equilibrium_path, &approximations, &classical', error)
+    if (.not. any([(deck%has_group(trim(computing(i))), i=1, size(computing))])) &
+      call deck%mistake('', '', 'nothing to compute; a deck needs at least one of ' // &
+                        listing(transfer(computing, all_names), '&', ''), error)
     if (.not. allocated(error)) call check_derived(scene, error)
   end subroutine make_scene
 
@@ -82,79 +86,6 @@ contains
     if (allocated(error)) return
     call make_scene(deck, variant, error)
   end subroutine swept_scene
-
-  !> &bodies: exactly one way to say how the bodies deform.
-  subroutine take_bodies(scene, error)
-    type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: young(:), poisson(:)
-    integer :: ways
-    logical :: pair
-
-    associate (deck => scene%deck, bodies => scene%bodies)
-      call deck%get('bodies', 'radius', bodies%radius)
-      call deck%get('bodies', 'rigid', bodies%rigid)
-      call deck%get('bodies', 'young', young)
-      call deck%get('bodies', 'poisson', poisson)
-      pair = size(young) > 0 .or. size(poisson) > 0
-      ways = count([deck%is_set('bodies', 'stiffness'), pair, bodies%rigid])
-      if (ways == 0) then
-        call deck%mistake('bodies', 'stiffness', 'missing; ' // one_way, error)
-      else if (ways > 1) then
-        call deck%mistake('bodies', second_way(), 'one way too many to say how the bodies ' // &
-                          'deform; ' // one_way, error)
-      else if (size(young) > 0 .and. size(poisson) == 0) then
-        call deck%mistake('bodies', 'poisson', 'missing; young and poisson go together', error)
-      else if (size(poisson) > 0 .and. size(young) == 0) then
-        call deck%mistake('bodies', 'young', 'missing; young and poisson go together', error)
-      else if (pair) then
-        bodies%stiffness = composite_stiffness(spread_out(young), spread_out(poisson))
-        bodies%share = compliance_shares(spread_out(young), spread_out(poisson))
-      else
-        call deck%get('bodies', 'stiffness', bodies%stiffness)
-      end if
-    end associate
-
-  contains
-
-    !> The last of the ways in the order of the table, at which the message points.
-    pure function second_way() result(key)
-      character(len=:), allocatable :: key
-
-      key = 'poisson'
-      if (size(young) > 0) key = 'young'
-      if (scene%bodies%rigid) key = 'rigid'
-    end function second_way
-
-    !> One value stands for both bodies.
-    pure function spread_out(list) result(both)
-      real(wp), intent(in) :: list(:)
-      real(wp) :: both(2)
-
-      both = [list(1), list(size(list))]
-    end function spread_out
-
-  end subroutine take_bodies
-
-  !> &numerics.
-  subroutine take_numerics(scene)
-    type(scene_t), intent(inout) :: scene
-
-    associate (deck => scene%deck, numerics => scene%numerics)
-      call deck%get('numerics', 'method', numerics%method)
-      call deck%get('numerics', 'accuracy', numerics%accuracy)
-      call deck%get('numerics', 'grid', numerics%grid)
-      call deck%get('numerics', 'convergence', numerics%convergence)
-      call deck%get('numerics', 'displacement_tolerance', numerics%displacement_tolerance)
-      call deck%get('numerics', 'max_iterations', numerics%max_iterations)
-      call deck%get('numerics', 'mixing_limit', numerics%mixing_limit)
-      call deck%get('numerics', 'anderson_depth', numerics%anderson_depth)
-      call deck%get_optional('numerics', 'r_max', numerics%r_max)
-      call deck%get_optional('numerics', 'residual_tolerance', numerics%residual_tolerance)
-      call deck%get_optional('numerics', 'nodes', numerics%nodes)
-      call deck%get_optional('numerics', 'panel_order', numerics%panel_order)
-    end associate
-  end subroutine take_numerics
 
   !> Tries the sweep: every value against the key's own bounds, smallest and largest in the whole
   !> scene, so that a mistake shows before hours of work and not after.

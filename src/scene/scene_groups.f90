@@ -49,6 +49,25 @@ module scene_groups
     type(range_t), allocatable :: approximations, classical
     type(stability_t), allocatable :: stability
     type(sweep_t), allocatable :: sweep
+  contains
+    procedure :: has_curve
+    procedure :: has_eigenvalues
   end type scene_t
+
+contains
+
+  !> Whether equilibria are shown one by one. The cases of a sweep leave numbers, not their curves.
+  pure logical function has_curve(self)
+    class(scene_t), intent(in) :: self
+
+    has_curve = self%finds_states() .and. .not. allocated(self%sweep)
+  end function has_curve
+
+  !> Whether the smallest eigenvalue of each state is shown.
+  pure logical function has_eigenvalues(self)
+    class(scene_t), intent(in) :: self
+
+    has_eigenvalues = self%has_curve() .and. allocated(self%stability)
+  end function has_eigenvalues
 
 end module scene_groups

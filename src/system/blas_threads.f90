@@ -1,9 +1,9 @@
 !> How many threads the linear algebra uses. Below some size threads cost more than they bring, and
 !> on a busy machine very much more; and with one, results do not depend on their number.
 module blas_threads
-  use, intrinsic :: iso_c_binding, only: c_funptr, c_int, c_associated, c_f_procpointer
+  use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
-  use c_library, only: procedure_named
+  use c_library, only: c_openblas_threads
   !$ use omp_lib, only: omp_get_max_threads, omp_in_parallel
   implicit none
   private
@@ -16,31 +16,18 @@ module blas_threads
   !> is ever touched.
   real(wp), parameter :: of_buffer = 136.0e6_wp, of_thread = 76.0e6_wp
 
-  abstract interface
-    subroutine set_threads(count) bind(c)
-      import :: c_int
-      integer(c_int), value :: count
-    end subroutine set_threads
-  end interface
-
 contains
 
   !> Chooses the threads for matrices of the given order, where the library is OpenBLAS; any other
-  !> keeps to its own rules. Where several cases are computed at once each has one. OpenBLAS is
-  !> asked at run time, so that nothing depends on it.
+  !> keeps to its own rules. Where several cases are computed at once each has one.
   subroutine use_threads_for(order)
     integer, intent(in) :: order
-    procedure(set_threads), pointer :: set
-    type(c_funptr) :: address
-    integer(c_int) :: count
+    integer(c_int) :: count, known
 
-    address = procedure_named('openblas_set_num_threads')
-    if (.not. c_associated(address)) return
-    call c_f_procpointer(address, set)
     count = 1
     !$ if (order >= worthwhile .and. .not. omp_in_parallel()) &
     !$   count = int(omp_get_max_threads(), c_int)
-    call set(count)
+    known = c_openblas_threads(count)
   end subroutine use_threads_for
 
   !> Address space [bytes] that threads and the linear algebra map for themselves, for matrices of
@@ -49,7 +36,7 @@ contains
     integer, intent(in) :: order, cases
 
     bytes = (thread_count() - 1)*of_thread
-    if (.not. c_associated(procedure_named('openblas_set_num_threads'))) return
+    if (c_openblas_threads(0_c_int) == 0) return
     bytes = bytes + merge(max(cases, thread_count()), cases, order >= worthwhile)*of_buffer
   end function blas_buffers
 

@@ -1,11 +1,10 @@
 !> Folders, small files read whole, and standard error.
 module files
-  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
+  use, intrinsic :: iso_c_binding, only: c_int, c_long
   use, intrinsic :: iso_fortran_env, only: error_unit
   use kinds, only: long
   use failure, only: failure_t
-  use c_library, only: c_make_folder, c_open_folder, c_sync, c_close, c_is_terminal, c_write, &
-    system_failure
+  use c_library, only: c_make_folder, c_is_terminal, c_write, system_failure, nul
   implicit none
   private
   public :: make_folder, file_exists, read_file, is_terminal, write_stderr
@@ -28,28 +27,14 @@ contains
       end if
       if (path(i:i) == '/') cycle
       if (file_exists(path(:i) // '/.')) cycle
-      status = c_make_folder(path(:i) // c_null_char)
-      if (status == 0) then
-        call sync_parent(path(:i))
-        cycle
-      end if
+      status = c_make_folder(path(:i) // nul)
+      if (status == 0) cycle
       ! Another process may have made it meanwhile.
       if (file_exists(path(:i) // '/.')) cycle
       call system_failure('cannot make the folder ' // path(:i), status, error)
       return
     end do
   end subroutine make_folder
-
-  !> Sees that the new folder `path` outlives a power failure, where its parent can be opened.
-  subroutine sync_parent(path)
-    character(len=*), intent(in) :: path
-    integer(c_int) :: parent, status
-
-    parent = c_open_folder(path // '/..' // c_null_char)
-    if (parent < 0) return
-    status = c_sync(parent)
-    status = c_close(parent)
-  end subroutine sync_parent
 
   !> The text of the file `path`; not allocated where it cannot be read.
   subroutine read_file(path, text)

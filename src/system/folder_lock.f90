@@ -2,10 +2,10 @@
 !> gone with the process, however that ends, and leaves no file. What is done to its files here is
 !> done in that very folder: another that has taken its name meanwhile is another run's.
 module folder_lock
-  use, intrinsic :: iso_c_binding, only: c_int, c_null_char
+  use, intrinsic :: iso_c_binding, only: c_int
   use failure, only: failure_t, fail, file_trouble
-  use c_library, only: c_open_folder, c_lock, c_kind, c_rename, c_remove, c_sync, c_close, &
-    sort_of, locked_elsewhere, system_failure
+  use c_library, only: c_open, c_lock, c_kind, c_rename, c_remove, c_sync, c_close, explain, &
+    system_failure, as_folder, locked_elsewhere, nul
   implicit none
   private
   public :: folder_lock_t
@@ -37,18 +37,21 @@ contains
     class(folder_lock_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     type(failure_t), allocatable, intent(out) :: error
-    integer(c_int) :: status
+    integer(c_int) :: status, sort
+    character(len=:), allocatable :: reason
 
     call self%release()
     self%path = path
-    self%folder = c_open_folder(path // c_null_char)
+    self%folder = c_open(path // nul, as_folder)
     if (self%folder < 0) then
       call system_failure('cannot open the folder ' // path, self%folder, error)
       return
     end if
     status = c_lock(self%folder)
     self%held = status == 0
-    if (self%held .or. sort_of(status) /= locked_elsewhere) return
+    if (self%held) return
+    call explain(status, sort, reason)
+    if (sort /= locked_elsewhere) return
     call fail(error, file_trouble, 'another run is writing into this folder; wait for it, or ' // &
       'choose another folder with --out')
     call self%release()
@@ -77,7 +80,7 @@ contains
     character(len=*), intent(in) :: name
     integer(c_int) :: kind
 
-    kind = c_kind(self%folder, name // c_null_char)
+    kind = c_kind(self%folder, name // nul)
     found = kind /= 0 .and. kind /= 2
   end function contains_file
 
@@ -86,7 +89,7 @@ contains
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: name
 
-    found = c_kind(self%folder, name // c_null_char) == 2
+    found = c_kind(self%folder, name // nul) == 2
   end function contains_folder
 
   !> Gives the folder's file `from` the name `to`, replacing a file of that name at one stroke.
@@ -96,7 +99,7 @@ contains
     type(failure_t), allocatable, intent(out) :: error
     integer(c_int) :: status
 
-    status = c_rename(self%folder, from // c_null_char, to // c_null_char)
+    status = c_rename(self%folder, from // nul, to // nul)
     if (status < 0) call system_failure('cannot rename ' // self%path_of(from) // ' to ' // &
       self%path_of(to), status, error)
   end subroutine rename_file
@@ -108,7 +111,7 @@ contains
     type(failure_t), allocatable, intent(out) :: error
     integer(c_int) :: status
 
-    status = c_remove(self%folder, name // c_null_char)
+    status = c_remove(self%folder, name // nul)
     if (status < 0) call system_failure('cannot remove ' // self%path_of(name), status, error)
   end subroutine remove_file
 

@@ -2,6 +2,7 @@
    the system's own headers. A call that fails returns minus its errno. `c_library` says what each
    is for. */
 #define _GNU_SOURCE
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -16,13 +17,20 @@ enum { not_regular = 100000 };
 
 enum { too_large = 1, disk_full = 2, in_the_way = 3, not_there = 4, locked = 5 };
 
+enum { as_input = 1, as_output = 2, as_kept_output = 3, as_folder = 4 };
+
 static int status_of(int result) { return result < 0 ? -errno : result; }
 
-int snapin_open_input(const char *path) { return status_of(open(path, O_RDONLY | O_CLOEXEC)); }
+/* `text` on the Fortran side: blanks after its end. */
+static void hand_over(const char *from, char *text, int size) {
+  size_t length = strnlen(from, size);
+  memcpy(text, from, length);
+  memset(text + length, ' ', size - length);
+}
 
 /* A link could lead the output elsewhere, and a pipe could make its opening wait. Nothing is
    emptied before it is known what it is. */
-int snapin_open_output(const char *path, int keep) {
+static int open_output(const char *path, int keep) {
   int flags = O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, status;
   struct stat file;
   int fd = open(path, keep ? flags : flags | O_CREAT, 0666);
@@ -42,6 +50,17 @@ int snapin_open_output(const char *path, int keep) {
     return fd;
   close(fd);
   return status;
+}
+
+int snapin_open(const char *path, int how) {
+  switch (how) {
+  case as_input:
+    return status_of(open(path, O_RDONLY | O_CLOEXEC));
+  case as_folder:
+    return status_of(open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  default:
+    return open_output(path, how == as_kept_output);
+  }
 }
 
 /* Bytes read; fewer than asked for only at the end. */
@@ -87,14 +106,22 @@ long snapin_size(int fd) {
   return fstat(fd, &file) == 0 ? (long)file.st_size : -errno;
 }
 
-int snapin_go_to(int fd, long offset) { return lseek(fd, offset, SEEK_SET) < 0 ? -errno : 0; }
+int snapin_cut(int fd, long length, long place) {
+  return ftruncate(fd, length) < 0 || lseek(fd, place, SEEK_SET) < 0 ? -errno : 0;
+}
 
-int snapin_truncate(int fd, long length) { return status_of(ftruncate(fd, length)); }
-
-int snapin_make_folder(const char *path) { return status_of(mkdir(path, 0777)); }
-
-int snapin_open_folder(const char *path) {
-  return status_of(open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+/* The new name is to outlive a power failure, where its parent can be opened. */
+int snapin_make_folder(const char *path) {
+  int made, parent;
+  if (mkdir(path, 0777) < 0)
+    return -errno;
+  made = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  parent = openat(made, "..", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (parent >= 0)
+    snapin_sync(parent);
+  close(parent);
+  close(made);
+  return 0;
 }
 
 int snapin_lock(int folder) { return status_of(flock(folder, LOCK_EX | LOCK_NB)); }
@@ -117,11 +144,10 @@ int snapin_remove(int folder, const char *name) {
 
 int snapin_is_terminal(int fd) { return isatty(fd) == 1; }
 
-const char *snapin_reason(int status) {
-  return status == -not_regular ? "not a file but a link, a pipe or a device" : strerror(-status);
-}
-
-int snapin_sort(int status) {
+/* The sort of a failure, 0 for others, and the system's words for it. */
+int snapin_explain(int status, char *reason, int size) {
+  hand_over(status == -not_regular ? "not a file but a link, a pipe or a device" : strerror(-status),
+            reason, size);
   switch (-status) {
   case EFBIG:
     return too_large;
@@ -154,4 +180,19 @@ void snapin_prepare(void) {
   while (fd >= 0 && fd <= STDERR_FILENO);
   if (fd > STDERR_FILENO)
     close(fd);
+}
+
+/* The library that does the linear algebra may or may not be OpenBLAS: it is asked at run time, so
+   that nothing depends on it. 1 where it is; count > 0: it gets so many threads. */
+int snapin_openblas_threads(int count) {
+  void (*set)(int) = (void (*)(int))dlsym(RTLD_DEFAULT, "openblas_set_num_threads");
+  if (set != NULL && count > 0)
+    set(count);
+  return set != NULL;
+}
+
+/* How OpenBLAS describes itself; blank where it is another library. */
+void snapin_openblas_config(char *text, int size) {
+  const char *(*get)(void) = (const char *(*)(void))dlsym(RTLD_DEFAULT, "openblas_get_config");
+  hand_over(get != NULL ? get() : "", text, size);
 }

@@ -3,9 +3,9 @@
 !> They are written by system calls because Fortran's units do not tell of a full disk:
 !> compiler note 7.
 module text_file
-  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
+  use, intrinsic :: iso_c_binding, only: c_int, c_long
   use failure, only: failure_t
-  use c_library, only: c_open_output, c_write, c_sync, c_close, system_failure
+  use c_library, only: c_open, c_write, c_sync, c_close, system_failure, as_output, nul
   implicit none
   private
   public :: output_t, partial, plain
@@ -46,7 +46,7 @@ contains
     if (allocated(error)) return
     self%path = path
     self%held = 0
-    self%descriptor = c_open_output(path // c_null_char, 0_c_int)
+    self%descriptor = c_open(path // nul, as_output)
     if (.not. self%is_open()) call system_failure('cannot write ' // path, self%descriptor, error)
   end subroutine open_output
 

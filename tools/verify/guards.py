@@ -24,8 +24,7 @@ ANY_SIGMA = (
     "::test_cycle_at_any_sigma_is_solved_and_agrees_with_the_path"
 )
 NOT_PASSED = "equilibrium/test_iterations.py"
-EXTREMES = "app/test_extremes.py::test_"
-STARVED = "app/test_extremes.py::test_what_does_not_converge_says_so_and_invents_nothing"
+STARVED = "app/test_unconverged.py::test_what_does_not_converge_says_so_and_invents_nothing"
 
 
 class Guard(NamedTuple):
@@ -47,7 +46,7 @@ GUARDS = {
         "equilibrium/equilibrium.f90",
         "if (defined) defined = all(state%gap >= problem%law%smallest_gap)",
         "",
-        ("app/test_extremes.py::test_what_came_before_the_fall_is_kept",),
+        ("app/test_unconverged.py::test_what_came_before_the_fall_is_kept",),
         traps=True,
     ),
     "defined": Guard(
@@ -70,14 +69,16 @@ GUARDS = {
         "equilibrium/equilibrium.f90",
         "residual_floor = min(residual_floor, largest_floor)",
         "",
-        ("app/test_extremes.py::test_no_residual_above_a_thousandth_is_put_down_to_rounding",),
+        ("app/test_ranges.py::test_no_residual_above_a_thousandth_is_put_down_to_rounding",),
     ),
     "lost_in_rounding": Guard(
         "adhesion beyond rounding is refused",
         "equilibrium/equilibrium.f90",
         "c > largest_floor",
         "c > huge(1.0_wp)",
-        (EXTREMES + "sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding",),
+        (
+            "app/test_ranges.py::test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding",
+        ),
     ),
     "anderson_nan": Guard(
         "Anderson's convergence is a comparison that NaN fails",
@@ -92,11 +93,11 @@ GUARDS = {
         "path/hidden_folds.f90",
         "if (arc%held < 4) return",
         "if (arc%held > 0) return",
-        ("app/test_extremes.py::test_folds_however_close_are_found",),
+        ("path/test_close_folds.py::test_folds_however_close_are_found",),
     ),
     "converged_column": Guard(
         "a row that is no equilibrium says so",
-        "report/results.f90",
+        "report/curve_rows.f90",
         "merge(',1', ',0', record%converged)",
         "',1'",
         (STARVED,),
@@ -106,7 +107,9 @@ GUARDS = {
         "report/stability_records.f90",
         "if (record%converged) then",
         "if (.true.) then",
-        (EXTREMES + "a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable",),
+        (
+            "app/test_unconverged.py::test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable",
+        ),
     ),
     "known_stability": Guard(
         "an eigenvalue does not change what is known of stability",
@@ -118,8 +121,8 @@ GUARDS = {
     "failed_case": Guard(
         "a case of a sweep that fails is counted",
         "app/sweeps.f90",
-        "if (.not. case%converged) failed = failed + 1",
-        "",
+        "failed = count(cases%done .and. .not. cases%converged)",
+        "failed = 0",
         ("report/test_sweep_columns.py", "report/test_results.py"),
     ),
     "memory": Guard(
@@ -127,7 +130,9 @@ GUARDS = {
         "app/preflight.f90",
         "if (expected%bytes > available) then",
         "if (.false.) then",
-        (EXTREMES + "matrices_larger_than_the_memory_are_refused_with_the_size_needed",),
+        (
+            "app/test_ranges.py::test_matrices_larger_than_the_memory_are_refused_with_the_size_needed",
+        ),
     ),
     "under_resolved": Guard(
         "under-resolved meshes are warned of",
@@ -139,44 +144,46 @@ GUARDS = {
     "folder_lock": Guard(
         "one run at a time in a folder",
         "system/folder_lock.f90",
-        "if (self%held .or. sort_of(status) /= locked_elsewhere) return",
+        "if (sort /= locked_elsewhere) return",
         "return",
-        ("resume/test_resume.py::test_a_second_run_is_refused_and_touches_nothing",),
+        ("resume/test_resume_whose.py::test_a_second_run_is_refused_and_touches_nothing",),
     ),
     "checksum": Guard(
         "a damaged record of the journal does not count",
         "resume/journal.f90",
         "if (checksum(words) /= head(2)) return",
         "",
-        ("resume/test_resume.py::test_a_damaged_record_is_computed_again",),
+        ("resume/test_resume_sweep.py::test_a_damaged_record_is_computed_again",),
     ),
     "owner": Guard(
         "a journal of another deck or program is not gone on with",
         "resume/journal.f90",
         "if (other /= owner) then",
         "if (.false.) then",
-        ("resume/test_resume.py::test_another_deck_is_refused_and_told_apart",),
+        ("resume/test_resume_whose.py::test_another_deck_is_refused_and_told_apart",),
     ),
     "torn": Guard(
         "what was torn is cut off the journal",
         "resume/journal.f90",
-        "status = c_truncate(self%descriptor, whole)",
-        "status = 0",
-        ("resume/test_resume.py::test_what_was_torn_is_cut_off",),
+        "status = c_cut(self%descriptor, whole, first)",
+        "status = c_cut(self%descriptor, self%room*word, first)",
+        ("resume/test_resume_sweep.py::test_what_was_torn_is_cut_off",),
     ),
     "journal_flush": Guard(
         "a record of the journal that the system could not write stops the run",
         "resume/journal.f90",
         "call system_failure('cannot write ' // self%path, status, self%trouble)",
         "if (status < 0) return",
-        ("resume/test_resume.py::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on",),
+        (
+            "resume/test_unwritable.py::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on",
+        ),
     ),
     "table_flush": Guard(
         "a table that the system could not write is an error",
         "system/text_file.f90",
         "call system_failure('cannot write ' // self%path, status, error)",
         "",
-        ("report/test_results.py", "resume/test_resume.py"),
+        ("report/test_results.py", "resume/test_unwritable.py"),
     ),
     "undo": Guard(
         "a renaming that fails is taken back",
@@ -218,14 +225,14 @@ GUARDS = {
         "scene/magnitudes.f90",
         "if (.not. abs(decades) <= most_derived)",
         "if (.false.)",
-        ("app/test_extremes.py::test_units_that_would_overflow_together_are_refused",),
+        ("app/test_ranges.py::test_units_that_would_overflow_together_are_refused",),
     ),
     "order": Guard(
         "numbers beyond 1e50 are refused",
         "namelist/deck_number.f90",
         "largest_order = 50",
         "largest_order = 300",
-        ("namelist/test_deck.py", "app/test_extremes.py"),
+        ("namelist/test_deck.py", "app/test_ranges.py"),
     ),
 }
 

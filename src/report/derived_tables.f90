@@ -1,0 +1,52 @@
+!> The tables beside the curve, in `write_derived_tables` one statement each.
+module derived_tables
+  use dimensionless_problem, only: problem_t
+  use experiment, only: path_start
+  use scene_groups, only: scene_t
+  use records, only: theory_row_t
+  use namelist_writer, only: line_t
+  use tables, only: cells
+  use results, only: results_t
+  use classical_rows, only: rows_of_classical
+  use approximation_tables, only: approximation_rows
+  implicit none
+  private
+  public :: write_derived_tables, theory_columns
+
+  !> Columns of classical.csv and approximations.csv.
+  character(len=*), parameter :: theory_columns(*) = [character(len=96) :: &
+    'theory [] where the row comes from', &
+    'h0 [m] separation that undeformed bodies would have on the axis', &
+    'displacement [m] separation on the axis less h0', &
+    'load [N] negative: tension', &
+    'contact_radius [m] NaN where the theory does not give one']
+
+contains
+
+  !> Writes those that the scene asks for.
+  subroutine write_derived_tables(scene, problem, results)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(results_t), intent(inout) :: results
+
+    if (allocated(scene%classical)) call results%write_table('classical.csv', theory_columns, &
+      theory_lines(rows_of_classical(problem, scene%classical, path_start(scene, problem))))
+    if (allocated(scene%approximations)) call results%write_table('approximations.csv', &
+      theory_columns, &
+      theory_lines(approximation_rows(problem, scene%approximations, path_start(scene, problem))))
+  end subroutine write_derived_tables
+
+  !> Rows of a theory as lines of its table.
+  pure function theory_lines(rows) result(lines)
+    type(theory_row_t), intent(in) :: rows(:)
+    type(line_t), allocatable :: lines(:)
+    integer :: i
+
+    allocate (lines(size(rows)))
+    do i = 1, size(rows)
+      lines(i)%text = rows(i)%theory // ',' // cells([rows(i)%h0, rows(i)%displacement, &
+        rows(i)%load, rows(i)%contact_radius])
+    end do
+  end function theory_lines
+
+end module derived_tables

@@ -1,0 +1,89 @@
+!> &bodies: the two bodies, and how they deform.
+module bodies_group
+  use kinds, only: wp
+  use failure, only: failure_t
+  use bodies, only: composite_stiffness, compliance_shares
+  use deck_keys, only: key_spec, group, real_key, list_key, logical_key
+  use scene_groups, only: scene_t
+  implicit none
+  private
+  public :: bodies_keys, take_bodies
+
+  character(len=*), parameter :: one_way = 'give one of: stiffness; young and poisson; ' // &
+    'rigid = .true.'
+
+contains
+
+  !> Its rows of the table.
+  pure function bodies_keys() result(specs)
+    type(key_spec), allocatable :: specs(:)
+
+    specs = [ &
+      group('bodies', 'The two bodies. Exactly one of: stiffness; young and poisson; ' // &
+            'rigid = .true.', required=.true.), &
+      real_key('bodies', 'radius', 'm', 'Radius R of the gap h0 + r^2/(2R); a sphere on a ' // &
+               'plane has its own radius.', above=0.0_wp, required=.true.), &
+      real_key('bodies', 'stiffness', 'Pa', 'E/(1-nu^2) of two identical bodies: the compliance ' &
+               // '(1-nu^2)/E is the mean over the two.', above=0.0_wp), &
+      list_key('bodies', 'young', 'Pa', 'Young''s moduli of the two bodies; one value: the same.', &
+               most=2, above=0.0_wp), &
+      list_key('bodies', 'poisson', '', 'Poisson''s ratios of the two bodies; one value: the ' // &
+               'same.', most=2, above=-1.0_wp, high=0.5_wp), &
+      logical_key('bodies', 'rigid', 'Whether the bodies do not deform at all.', &
+                  default='.false.')]
+  end function bodies_keys
+
+  !> &bodies: exactly one way to say how the bodies deform.
+  subroutine take_bodies(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: young(:), poisson(:)
+    integer :: ways
+    logical :: pair
+
+    associate (deck => scene%deck, bodies => scene%bodies)
+      call deck%get('bodies', 'radius', bodies%radius)
+      call deck%get('bodies', 'rigid', bodies%rigid)
+      call deck%get('bodies', 'young', young)
+      call deck%get('bodies', 'poisson', poisson)
+      pair = size(young) > 0 .or. size(poisson) > 0
+      ways = count([deck%is_set('bodies', 'stiffness'), pair, bodies%rigid])
+      if (ways == 0) then
+        call deck%mistake('bodies', 'stiffness', 'missing; ' // one_way, error)
+      else if (ways > 1) then
+        call deck%mistake('bodies', second_way(), 'one way too many to say how the bodies ' // &
+                          'deform; ' // one_way, error)
+      else if (size(young) > 0 .and. size(poisson) == 0) then
+        call deck%mistake('bodies', 'poisson', 'missing; young and poisson go together', error)
+      else if (size(poisson) > 0 .and. size(young) == 0) then
+        call deck%mistake('bodies', 'young', 'missing; young and poisson go together', error)
+      else if (pair) then
+        bodies%stiffness = composite_stiffness(spread_out(young), spread_out(poisson))
+        bodies%share = compliance_shares(spread_out(young), spread_out(poisson))
+      else
+        call deck%get('bodies', 'stiffness', bodies%stiffness)
+      end if
+    end associate
+
+  contains
+
+    !> The last of the ways in the order of the table, at which the message points.
+    pure function second_way() result(key)
+      character(len=:), allocatable :: key
+
+      key = 'poisson'
+      if (size(young) > 0) key = 'young'
+      if (scene%bodies%rigid) key = 'rigid'
+    end function second_way
+
+    !> One value stands for both bodies.
+    pure function spread_out(list) result(both)
+      real(wp), intent(in) :: list(:)
+      real(wp) :: both(2)
+
+      both = [list(1), list(size(list))]
+    end function spread_out
+
+  end subroutine take_bodies
+
+end module bodies_group

@@ -1,0 +1,111 @@
+!> &loading and &unloading: the approach and the retreats of a cycle in steps of h0.
+module cycle_groups
+  use kinds, only: wp
+  use failure, only: failure_t
+  use text, only: brief
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, real_key, list_key
+  use scene_groups, only: scene_t
+  implicit none
+  private
+  public :: cycle_keys, take_loading, take_unloading
+
+  !> A run of more steps than this would not end; such a deck has a wrong unit in it.
+  integer, parameter :: most_steps = 10000000
+
+contains
+
+  !> Their rows of the table.
+  pure function cycle_keys() result(specs)
+    type(key_spec), allocatable :: specs(:)
+
+    specs = [ &
+      group('loading', 'Approach in steps of h0, the separation that undeformed bodies would ' // &
+            'have at the centre.'), &
+      real_key('loading', 'h0_start', 'm', 'Where the approach starts.', required=.true.), &
+      real_key('loading', 'h0_end', 'm', 'Where it ends, below h0_start.', required=.true.), &
+      real_key('loading', 'h0_step', 'm', 'Step, positive.', above=0.0_wp, required=.true.), &
+      !
+      group('unloading', 'Retreat in steps of h0, one cycle for each turning point; needs ' // &
+            '&loading.'), &
+      list_key('unloading', 'from', 'm', 'Turning points, inside the range of &loading.', &
+               most=100, otherwise='h0_end of &loading'), &
+      real_key('unloading', 'h0_end', 'm', 'Where each retreat ends, above every turning point.', &
+               otherwise='h0_start of &loading'), &
+      real_key('unloading', 'h0_step', 'm', 'Step, positive.', above=0.0_wp, &
+               otherwise='h0_step of &loading')]
+  end function cycle_keys
+
+  !> &loading; where it is given, its range must run downwards.
+  subroutine take_loading(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (.not. scene%deck%has_group('loading')) return
+    allocate (scene%loading)
+    associate (deck => scene%deck, loading => scene%loading)
+      call deck%get('loading', 'h0_start', loading%h0_start)
+      call deck%get('loading', 'h0_end', loading%h0_end)
+      call deck%get('loading', 'h0_step', loading%h0_step)
+      if (loading%h0_end >= loading%h0_start) then
+        call deck%mistake('loading', 'h0_end', brief(loading%h0_end) // ' is not below ' // &
+                          'h0_start = ' // brief(loading%h0_start) // ' m', error)
+      else
+        call check_steps(deck, 'loading', loading%h0_start - loading%h0_end, loading%h0_step, &
+                         error)
+      end if
+    end associate
+  end subroutine take_loading
+
+  !> Refuses a step so small that the run would not end.
+  subroutine check_steps(deck, group, range, step, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: group
+    real(wp), intent(in) :: range, step
+    type(failure_t), allocatable, intent(inout) :: error
+
+    ! Written as a product: the quotient may overflow.
+    if (range > step*most_steps) &
+      call deck%mistake(group, 'h0_step', brief(step) // ' makes too many steps; the range of ' // &
+                        brief(range) // ' m allowed: at most 10 million steps', error)
+  end subroutine check_steps
+
+  !> &unloading: turning points inside the range of &loading, each retreat upwards.
+  subroutine take_unloading(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    integer :: i
+
+    if (.not. scene%deck%has_group('unloading')) return
+    if (.not. allocated(scene%loading)) then
+      call scene%deck%mistake('unloading', '', 'needs &loading, from whose states it starts', &
+                              error)
+      return
+    end if
+    allocate (scene%unloading)
+    associate (deck => scene%deck, loading => scene%loading, unloading => scene%unloading)
+      call deck%assume('unloading', 'from', [loading%h0_end])
+      call deck%assume('unloading', 'h0_end', loading%h0_start)
+      call deck%assume('unloading', 'h0_step', loading%h0_step)
+      call deck%get('unloading', 'from', unloading%from)
+      call deck%get('unloading', 'h0_end', unloading%h0_end)
+      call deck%get('unloading', 'h0_step', unloading%h0_step)
+      do i = 1, size(unloading%from)
+        if (unloading%from(i) < loading%h0_end .or. unloading%from(i) > loading%h0_start) then
+          call deck%mistake('unloading', 'from', brief(unloading%from(i)) // &
+                            ' is outside the range of &loading; allowed: from ' // &
+                            brief(loading%h0_end) // ' to ' // brief(loading%h0_start) // ' m', &
+                            error)
+          return
+        else if (unloading%from(i) >= unloading%h0_end) then
+          call deck%mistake('unloading', 'h0_end', brief(unloading%h0_end) // ' is not above ' // &
+                            'the turning point from = ' // brief(unloading%from(i)) // ' m', error)
+          return
+        end if
+      end do
+      call check_steps(deck, 'unloading', unloading%h0_end - minval(unloading%from), &
+                       unloading%h0_step, error)
+    end associate
+  end subroutine take_unloading
+
+end module cycle_groups

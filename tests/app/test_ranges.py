@@ -1,0 +1,131 @@
+"""Claims about numbers out of range, and about what is too large or too long."""
+
+import resource
+
+import numpy as np
+import pytest
+from support.scenes import deck, exponential, lennard_jones, loading, runner
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("extremes"))
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("radius", 1e-200), ("stiffness", 1e200), ("hamaker", 1e-150), ("z0", 1e150)],
+)
+def test_numbers_whose_powers_would_overflow_are_refused(run, key, value):
+    groups = {
+        "bodies": {"radius": 1.0, "stiffness": 1.0},
+        "force": {"law": "lennard_jones", "hamaker": 1.0, "z0": 1.0},
+    }
+    for keys in groups.values():
+        if key in keys:
+            keys[key] = value
+    result = run(deck(**groups, loading=loading(3, 1, 1)), status=2)
+    assert f'key "{key}"' in result.stderr
+    assert not result.folder.exists()
+
+
+def test_units_that_would_overflow_together_are_refused(run):
+    """Each number is moderate; the pressure A/(16 pi z0^3) is not."""
+    scene = deck(
+        bodies={"radius": 1.0, "stiffness": 1.0},
+        force={"law": "lennard_jones", "hamaker": 1.0, "z0": 1e-50},
+        loading={"h0_start": 3e-50, "h0_end": 1e-50, "h0_step": 1e-50},
+    )
+    assert "a pressure of 1e" in run(scene, status=2).stderr
+
+
+def test_h0_of_more_lengths_than_digits_is_refused(run):
+    scene = lennard_jones(1.0, loading=loading(1e16, 1, 1e16))
+    assert "lost in rounding" in run(scene, status=2).stderr
+
+
+@pytest.mark.parametrize("sigma", [1e-12, 1e-9, 1e9, 1e12])
+def test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding(run, sigma):
+    scene = lennard_jones(sigma, equilibrium_path={"h0_end": -2.0})
+    if sigma < 1:
+        result = run(scene)
+        # DMT, which no such bodies can leave.
+        assert result.summary["max_tension"] / sigma == pytest.approx(2 * np.pi, rel=1e-6)
+    else:
+        assert "rounding hides the force law" in run(scene, status=1).warnings[0]
+
+
+@pytest.mark.parametrize("method", ["anderson", "newton"])
+def test_adhesion_beyond_rounding_is_refused_at_once_on_a_fixed_grid_too(run, method):
+    """Before, every step of the approach was tried, a hundred products and more each."""
+    numerics = {"grid": "uniform", "nodes": 120, "method": method}
+    scene = lennard_jones(1e13, loading=loading(1.5, -98, 10), numerics=numerics)
+    result = run(scene, status=1)
+    assert "rounding hides the force law" in result.warnings[0]
+    # It is one state that shows it, of hundreds of steps and halvings.
+    assert result.cost["states"] <= 1
+    assert result.cost["operator_products"] < 1000 and result.cost["factorisations"] < 1000
+
+
+def test_no_residual_above_a_thousandth_is_put_down_to_rounding(run):
+    """At depths of a million million lengths rounding leaves a hundredth, too much for a state."""
+    for scene in (
+        lennard_jones(1, loading=loading(6, -1e12, 1e12)),
+        exponential(1, loading=loading(0, -1e13, 1e13)),
+    ):
+        result = run(scene, status=1)
+        assert (result.curve["residual"][result.curve["converged"] == 1] <= 1e-3).all()
+        assert any("ended early" in text for text in result.warnings)
+
+
+@pytest.mark.parametrize("nodes", [2, 3])
+@pytest.mark.parametrize("method", ["anderson", "newton", "mixing"])
+def test_two_nodes_are_a_grid_and_told_to_be_a_bad_one(run, method, nodes):
+    numerics = {"method": method, "grid": "uniform", "nodes": nodes}
+    text = lennard_jones(0.1, loading=loading(4, 2, 1), numerics=numerics)
+    assert any("error" in warning for warning in run(text).warnings)
+
+
+@pytest.mark.parametrize("rigid_grid", ["auto", "uniform"])
+def test_rigid_bodies_keep_what_came_before_they_touch(run, rigid_grid):
+    text = lennard_jones(1.0, loading=loading(3, -2, 0.5), numerics={"grid": rigid_grid})
+    result = run(text.replace("stiffness = 1.0", "rigid = .true."), status=1)
+    assert list(result.curve["h0"]) == [3.0, 2.5, 2.0, 1.5, 1.0, 0.5]
+    assert (result.curve["converged"] == 1).all()
+    assert "touch" in result.warnings[0]
+
+
+# --- Too large, too long
+
+
+def big(nodes, step):
+    return lennard_jones(
+        0.87, loading=loading(4, 2, step), numerics={"grid": "uniform", "nodes": nodes}
+    )
+
+
+def test_matrices_larger_than_the_memory_are_refused_with_the_size_needed(snapin, tmp_path):
+    (tmp_path / "d.nml").write_text(big(20000, 1.0))
+    limit = 2 * 1024**3
+
+    def lower():
+        resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+    done = snapin("d.nml", cwd=tmp_path, preexec_fn=lower)
+    assert done.returncode == 1
+    assert "20000 nodes need" in done.stderr and "GB of memory" in done.stderr
+    summary = (tmp_path / "results" / "d" / "summary.nml").read_text()
+    assert "20000 nodes need" in summary
+    check = snapin("--check", "d.nml", cwd=tmp_path, preexec_fn=lower)
+    assert check.returncode == 0 and "20000 nodes need" in check.stderr
+
+
+def test_a_long_run_is_announced_and_a_short_one_is_not(snapin, tmp_path):
+    (tmp_path / "long.nml").write_text(
+        lennard_jones(0.87, loading=loading(4, -2, 1e-6), unloading={})
+    )
+    (tmp_path / "short.nml").write_text(big(100, 1.0))
+    done = snapin("--check", "long.nml", "short.nml", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "long.nml: 12000002 states" in done.stderr and "may take" in done.stderr
+    assert "short" not in done.stderr

@@ -1,0 +1,99 @@
+"""Claims about what does not converge."""
+
+import pytest
+from support.scenes import exponential, lennard_jones, loading, runner
+
+CYCLE = {"loading": loading(6, -2, 0.5), "unloading": {}}
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("extremes"))
+
+
+STARVED = {
+    "anderson": {"max_iterations": 1},
+    "newton": {"method": "newton", "max_iterations": 1},
+    "anderson, uniform": {"max_iterations": 1, "grid": "uniform", "nodes": 100},
+    "newton, uniform": {
+        "method": "newton",
+        "max_iterations": 1,
+        "grid": "uniform",
+        "nodes": 100,
+    },
+    "mixing": {"method": "mixing", "max_iterations": 3, "nodes": 100},
+    "mixing, panels": {"method": "mixing", "max_iterations": 3, "grid": "panels"},
+    "mixing limit": {
+        "method": "mixing",
+        "mixing_limit": 1e-9,
+        "max_iterations": 100,
+        "nodes": 100,
+    },
+    "mixing, tolerance": {
+        "method": "mixing",
+        "residual_tolerance": 1e-13,
+        "max_iterations": 50,
+        "nodes": 100,
+    },
+    "paper's rule": {
+        "method": "mixing",
+        "convergence": "displacement_change",
+        "displacement_tolerance": 1e-30,
+        "max_iterations": 5,
+        "nodes": 100,
+    },
+}
+
+
+@pytest.mark.parametrize("numerics", STARVED.values(), ids=STARVED.keys())
+@pytest.mark.parametrize("scene", ["cycle", "path"])
+def test_what_does_not_converge_says_so_and_invents_nothing(run, scene, numerics):
+    if scene == "path":
+        if "max_iterations" not in numerics or numerics.get("method") == "mixing":
+            pytest.skip("the path has no use for mixing")
+        text = lennard_jones(0.87, equilibrium_path={"h0_end": -2.0}, numerics=numerics)
+    else:
+        text = lennard_jones(0.87, **CYCLE, numerics=numerics)
+    result = run(text, status=1)
+    summary, curve = result.summary, result.curve
+    assert not summary["converged"]
+    assert any("converge" in text or "residual" in text for text in result.warnings)
+    assert "jump_in_h0" not in summary and "jump_out_h0" not in summary
+    # The table alone tells which rows are equilibria.
+    assert ((curve["residual"] <= 1e-8) >= (curve["converged"] == 1)).all()
+    equilibria = curve["converged"] == 1
+    if "max_tension" in summary:
+        assert summary["max_tension"] <= 1.01 * max(0, *-curve["load"][equilibria])
+    else:
+        assert not (curve["load"][equilibria] < 0).any()
+
+
+@pytest.mark.parametrize("name", ["anderson, uniform", "mixing"])
+def test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable(run, name):
+    curve = run(
+        lennard_jones(0.87, **CYCLE, stability={}, numerics=STARVED[name]), status=1
+    ).curve
+    assert (curve["converged"] == 0).any()
+    assert (curve["stable"][curve["converged"] == 0] == -1).all()
+
+
+def test_what_came_before_the_fall_is_kept(run):
+    """Nothing keeps bodies apart that only attract."""
+    for numerics in ({}, {"grid": "uniform", "nodes": 60}, {"method": "mixing", "nodes": 60}):
+        result = run(
+            lennard_jones(0.87, part="attractive", **CYCLE, numerics=numerics), status=1
+        )
+        assert "no stable equilibrium exists" in result.warnings[0]
+        assert len(result.curve) >= 5 and (result.curve["converged"] == 1).all()
+        assert result.summary["jump_in_h0"] > 2 and "jump_out_h0" not in result.summary
+
+
+def test_a_path_without_repulsion_says_how_it_ends(run):
+    result = run(lennard_jones(0.87, part="attractive", equilibrium_path={"h0_end": -2.0}))
+    assert "fall onto each other" in result.warnings[0]
+    assert result.curve["h_centre"].min() > 0
+
+
+def test_repulsion_alone_that_does_not_converge_says_so(run):
+    result = run(exponential(10, loading=loading(6, -6, 1), numerics={"max_iterations": 1}), status=1)
+    assert len(result.curve) == 0 and "after 1 iterations" in result.warnings[0]

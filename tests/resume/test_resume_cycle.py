@@ -1,0 +1,118 @@
+"""Claims about cycles and paths that are killed and gone on with."""
+
+import random
+import struct
+import time
+
+import f90nml
+import pytest
+from support.interrupted import Bench, frames, heading, sealed, SHORT, WORD
+from support.scenes import deck, exponential, lennard_jones, loading
+
+UNIFORM = {"grid": "uniform", "nodes": 120, "r_max": 12.0}
+CYCLES = {
+    "first": SHORT,
+    "two turning points, strong adhesion": lennard_jones(
+        8.7, loading=loading(14, -4, 1), unloading={"from_": [2.0, -4.0]},
+        profiles={"h0": [2.0, -2.0]},
+    ),
+    "the paper's grid and rule": lennard_jones(
+        0.87, loading=loading(5, -1, 0.5), unloading={}, profiles={"h0": [1.0]},
+        numerics={**UNIFORM, "method": "mixing", "convergence": "displacement_change",
+                  "displacement_tolerance": 1e-4},
+    ),
+    "uniform grid": lennard_jones(
+        0.87, loading=loading(5, -1, 0.5), unloading={}, numerics=UNIFORM,
+    ),
+    "newton": lennard_jones(
+        0.87, loading=loading(5, -1, 0.5), unloading={}, numerics={"method": "newton"},
+    ),
+    "repulsion": exponential(
+        100, loading=loading(6, -6, 0.5), unloading={}, profiles={"h0": [0.0]},
+    ),
+    "stability beside path and cycle": lennard_jones(
+        0.87, loading=loading(4, -1, 0.5), unloading={}, equilibrium_path={}, stability={},
+        profiles={"h0": [1.0]},
+    ),
+    "no state at the end": lennard_jones(0.87, part="attractive", loading=loading(6, -1, 0.25)),
+    "rigid": deck(
+        bodies={"radius": 1.0, "rigid": True},
+        force={"law": "lennard_jones", "hamaker": 50.0, "z0": 1.0},
+        loading=loading(6, 1, 0.25), unloading={},
+    ),
+}
+FAILS = ("the paper's grid and rule", "no state at the end")
+
+
+@pytest.fixture(scope="module", params=CYCLES)
+def cycle(request, snapin, snapin_path, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("cycle")
+    return Bench(snapin, snapin_path, folder, CYCLES[request.param],
+                 status=int(request.param in FAILS))
+
+
+def test_a_cycle_goes_on_from_anywhere(cycle):
+    parts = frames(cycle.journal)
+    rng = random.Random(3)
+    for count in rng.sample(range(1, len(parts)), 4) + [len(parts)]:
+        cycle.check(b"".join(parts[:count]))
+    # In the middle of a record, or of the heading.
+    for size in [len(parts[0]) // 2] + rng.sample(range(len(cycle.journal)), 2):
+        cycle.check(cycle.journal[:size])
+
+
+@pytest.mark.long
+def test_a_cycle_goes_on_from_any_record(cycle):
+    parts = frames(cycle.journal)
+    for count in range(len(parts) + 1):
+        cycle.check(b"".join(parts[:count]))
+
+
+def test_a_killed_cycle_goes_on_again_and_again(cycle):
+    rng = random.Random(4)
+    assert cycle.resume(b"").returncode == cycle.status
+    target = cycle.folder / "cut/deck"
+    for path in target.iterdir():
+        path.unlink()
+    for _ in range(4):
+        cycle.kill(rng.uniform(0.02, 0.15), "--resume")
+    assert cycle.run("cut", "--resume").returncode == cycle.status
+    assert cycle.files("cut") == cycle.whole
+
+
+def test_a_cycle_adds_only_what_its_journal_lacks(cycle):
+    parts = frames(cycle.journal)
+    begun = b"".join(parts[: 2 * len(parts) // 3])
+    ended = cycle.stop(begun + parts[-1][:-WORD])
+    assert ended.startswith(begun)
+    # The same records but for the times they were made at.
+    assert [len(part) for part in frames(ended)] == [len(part) for part in parts]
+
+
+@pytest.fixture(scope="module")
+def short(snapin, snapin_path, tmp_path_factory):
+    return Bench(snapin, snapin_path, tmp_path_factory.mktemp("short"), SHORT)
+
+
+def test_another_number_of_threads_is_refused_in_a_cycle(snapin, snapin_path, tmp_path):
+    bench = Bench(snapin, snapin_path, tmp_path, lennard_jones(0.2, loading=loading(6, 5, 0.5)))
+    bench.threads = 2
+    done = bench.resume(bench.journal)
+    assert done.returncode == 1
+    assert "set OMP_NUM_THREADS=1" in done.stderr
+    assert (tmp_path / "cut/deck/journal.partial").read_bytes() == bench.journal
+
+
+def test_times_of_a_run_that_was_interrupted_are_those_of_all_its_parts(short):
+    parts = frames(short.journal)
+    late = bytearray(parts[-1])
+    late[2 * WORD : 3 * WORD] = struct.pack("<d", 1000.0)
+    began = time.monotonic()
+    assert short.resume(b"".join(parts[:-1]) + sealed(bytes(late))).returncode == 0
+    taken = time.monotonic() - began
+    cost = f90nml.read(short.folder / "cut/deck/summary.nml")["cost"]
+    assert 1000 < cost["wall_seconds"] <= 1000 + taken
+    assert short.resume(b"".join(parts[:-1])).returncode == 0
+    cost = f90nml.read(short.folder / "cut/deck/summary.nml")["cost"]
+    assert cost["wall_seconds"] >= cost["kernel_seconds"] + cost["solve_seconds"]
+    assert cost["solve_seconds"] > 0

@@ -1,0 +1,148 @@
+"""Claims about runs whose files cannot be written, or whose messages nobody hears."""
+
+import os
+import resource
+import subprocess
+
+import pytest
+from support.interrupted import Bench, environment, frames, rows, SHORT, SWEEP
+
+
+@pytest.fixture(scope="module")
+def sweep(snapin, snapin_path, tmp_path_factory):
+    return Bench(snapin, snapin_path, tmp_path_factory.mktemp("sweep"), SWEEP, threads=2)
+
+
+@pytest.fixture(scope="module")
+def short(snapin, snapin_path, tmp_path_factory):
+    return Bench(snapin, snapin_path, tmp_path_factory.mktemp("short"), SHORT)
+
+
+# --- Where files cannot be written
+
+def empty(folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in folder.iterdir():
+        path.unlink()
+
+
+def check_stopped(bench, done, folder, words):
+    """A run that could not write: told, partial by name, and nothing that looks complete."""
+    assert done.returncode == 1, done.stderr
+    assert words in done.stderr
+    names = [path.name for path in folder.iterdir()]
+    assert names
+    assert [name for name in names if not name.endswith(".partial")] == []
+
+
+@pytest.mark.parametrize("name", ["short", "sweep"])
+def test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on(name, request):
+    bench = request.getfixturevalue(name)
+    folder = bench.folder / "cut/deck"
+    largest = len(bench.journal)
+    for limit in (0, 100, 1500, 2500, largest // 2, largest - 1):
+        empty(folder)
+
+        def limited(limit=limit):
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+        done = bench.run("cut", preexec_fn=limited)
+        check_stopped(bench, done, folder, "File too large; raise the limit")
+        if limit == largest // 2:
+            # What could not be kept is not computed either.
+            (table,) = [*folder.glob("curve.csv.partial"), *folder.glob("sweep.csv.partial")]
+            whole = rows(bench.whole[table.name[: -len(".partial")]])
+            assert len(rows(table.read_bytes().splitlines())) < 0.8 * len(whole)
+        assert bench.run("cut", "--resume").returncode == 0
+        assert bench.files("cut") == bench.whole
+
+
+def test_a_full_disk_stops_a_run_that_then_goes_on(short, tmp_path):
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=32k", "tmpfs", tmp_path],
+                      capture_output=True, check=False).returncode:
+        pytest.skip("this user may not mount a small disk")
+    try:
+        done = short.run(tmp_path)
+        check_stopped(short, done, tmp_path / "deck", "No space left on device; make room")
+        subprocess.run(["mount", "-o", "remount,size=4m", tmp_path], check=True)
+        done = short.run(tmp_path, "--resume")
+        assert done.returncode == 0
+        assert "going on" in done.stderr
+        assert short.files(tmp_path) == short.whole
+    finally:
+        subprocess.run(["umount", tmp_path], check=True)
+
+
+def test_results_of_an_earlier_run_outlive_one_that_cannot_write(short):
+    folder = short.folder / "cut/deck"
+    empty(folder)
+    assert short.run("cut").returncode == 0
+
+    def limited():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (9000, 9000))
+
+    done = short.run("cut", preexec_fn=limited)
+    assert done.returncode == 1
+    found = short.files("cut")
+    assert {name: found[name] for name in short.whole} == short.whole
+    assert "journal.partial" in found
+
+
+@pytest.mark.parametrize("out", ["/proc/none", "deck.nml"])
+def test_a_folder_that_cannot_be_made_is_told_at_once(short, out):
+    done = short.run(out)
+    assert done.returncode == 1
+    assert f"cannot make the folder {out}" in done.stderr
+    assert "--out" in done.stderr
+
+
+def test_a_folder_that_may_not_be_written_is_told_at_once(short, tmp_path):
+    if os.geteuid() == 0:
+        pytest.skip("this user may write everywhere")
+    (tmp_path / "deck").mkdir(mode=0o555)
+    done = short.run(tmp_path)
+    assert done.returncode == 1
+    assert "Permission denied" in done.stderr
+    assert list((tmp_path / "deck").iterdir()) == []
+
+
+# --- Where nobody listens
+
+
+def close(*descriptors):
+    def closing():
+        for descriptor in descriptors:
+            os.close(descriptor)
+
+    return closing
+
+
+@pytest.mark.parametrize("closed", [(2,), (1, 2), (0, 1, 2)], ids=str)
+def test_messages_never_end_up_in_results_when_streams_are_closed(short, closed):
+    folder = short.folder / "cut/deck"
+    empty(folder)
+    # There is something to say while files are open.
+    begun = b"".join(frames(short.journal)[:9])
+    for options in [("--resume",), ()]:
+        (folder / "journal.partial").write_bytes(begun)
+        done = short.run("cut", *options, preexec_fn=close(*closed))
+        assert done.returncode == 0
+        assert short.files("cut") == short.whole
+
+
+def test_a_closed_pipe_or_a_full_terminal_log_does_not_end_a_run(short):
+    reader, writer = os.pipe()
+    os.close(reader)
+    full = os.open("/dev/full", os.O_WRONLY)
+    try:
+        for stream in (writer, full):
+            empty(short.folder / "cut/deck")
+            done = subprocess.run(
+                [short.path, "--out", "cut", "--resume", "deck.nml"], cwd=short.folder,
+                env=environment(1), stderr=stream, check=False,
+            )
+            assert done.returncode == 0
+            assert short.files("cut") == short.whole
+    finally:
+        os.close(writer)
+        os.close(full)

@@ -1,0 +1,140 @@
+"""Runs that are stopped or killed and gone on with, and their journals as bytes."""
+
+import os
+import signal
+import struct
+import subprocess
+import time
+
+from conftest import ROOT
+from support.scenes import lennard_jones, loading
+
+WORD = 8
+
+
+def frames(journal):
+    """The frames of a journal: its heading, then one a record."""
+    found, at = [], 0
+    while at < len(journal):
+        (held,) = struct.unpack_from("<q", journal, at)
+        end = at + (3 + held) * WORD
+        found.append(journal[at:end])
+        at = end
+    assert at == len(journal)
+    return found
+
+
+def checksum(words):
+    """The checksum of 64-bit words, as src/resume/byte_record.f90 has it."""
+    value = len(words)
+    for word in words:
+        for half in (word & 0xFFFFFFFF, word >> 32):
+            value = (value ^ half) * 0x5BD1E995 & 0xFFFFFFFF
+            value ^= value >> 15
+    return value
+
+
+def sealed(frame):
+    """A frame with the checksum that belongs to it."""
+    words = list(struct.unpack(f"<{len(frame) // WORD}Q", frame))
+    words[1] = 0
+    words[1] = checksum(words)
+    return struct.pack(f"<{len(words)}Q", *words)
+
+
+def heading(text):
+    """The frame of a heading."""
+    data = text.encode()
+    data += b" " * (-len(data) % WORD)
+    return sealed(struct.pack("<qqdq", 1 + len(data) // WORD, 0, 0.0, len(text)) + data)
+
+
+def owner(frame):
+    """The text of a heading."""
+    (length,) = struct.unpack_from("<q", frame, 3 * WORD)
+    return frame[4 * WORD : 4 * WORD + length].decode()
+
+
+def rows(lines):
+    """The rows of a table, without what comes before them."""
+    return [line for line in lines if not line.startswith(b"#")][1:]
+
+
+def environment(threads):
+    return dict(os.environ, OMP_NUM_THREADS=str(threads), OPENBLAS_NUM_THREADS=str(threads))
+
+
+class Bench:
+    """One deck, run to the end in one go, and once more with the journal kept."""
+
+    def __init__(self, snapin, path, folder, text, threads=1, status=0):
+        self.snapin, self.path, self.folder, self.threads = snapin, path, folder, threads
+        self.status = status
+        folder.mkdir(exist_ok=True)
+        (folder / "deck.nml").write_text(text)
+        done = self.run("whole")
+        assert done.returncode == status, done.stderr
+        self.whole = self.files("whole")
+        # Where the summary cannot get its name the run stops short of the end.
+        (folder / "cut/deck").mkdir(parents=True, exist_ok=True)
+        self.journal = self.stop(b"")
+
+    def run(self, out, *options, **kwargs):
+        return self.snapin(
+            "--out", out, *options, "deck.nml", cwd=self.folder, env=environment(self.threads),
+            **kwargs
+        )
+
+    def files(self, out):
+        """What results say: tables to the byte, the summary without times."""
+        found = {}
+        for path in sorted((self.folder / out / "deck").iterdir()):
+            lines = path.read_bytes().splitlines()
+            found[path.name] = [line for line in lines if b"_seconds" not in line]
+        return found
+
+    def resume(self, journal, out="cut"):
+        """The run that goes on from a journal."""
+        target = self.folder / out / "deck"
+        target.mkdir(parents=True, exist_ok=True)
+        for path in target.iterdir():
+            path.unlink()
+        (target / "journal.partial").write_bytes(journal)
+        return self.run(out, "--resume")
+
+    def stop(self, journal):
+        """The journal of the run that goes on from a journal and is stopped at its end."""
+        (self.folder / "cut/deck/summary.nml").unlink(missing_ok=True)
+        (self.folder / "cut/deck/summary.nml").mkdir()
+        (self.folder / "cut/deck/journal.partial").write_bytes(journal)
+        try:
+            assert self.run("cut", "--resume").returncode == 1
+        finally:
+            (self.folder / "cut/deck/summary.nml").rmdir()
+        return (self.folder / "cut/deck/journal.partial").read_bytes()
+
+    def check(self, journal):
+        done = self.resume(journal)
+        assert done.returncode == self.status, done.stderr
+        found = self.files("cut")
+        assert list(found) == list(self.whole)
+        for name, lines in self.whole.items():
+            assert found[name] == lines, name
+
+    def kill(self, delay, *options):
+        """Starts the program and kills it after a delay [s]."""
+        with subprocess.Popen(
+            [self.path, "--out", "cut", *options, "deck.nml"], cwd=self.folder,
+            env=environment(self.threads), stderr=subprocess.DEVNULL,
+        ) as process:
+            time.sleep(delay)
+            process.send_signal(signal.SIGKILL)
+
+SWEEP = lennard_jones(
+    0.2, loading=loading(6, 0, 0.5), unloading={},
+    sweep={"key": "force.hamaker", "from_": 1.0, "to": 100.0, "count": 9, "scale": "log"},
+)
+
+
+# The shortest of the decks with a cycle.
+SHORT = (ROOT / "inputs/first.nml").read_text()
