@@ -16,7 +16,7 @@ module equilibrium
   implicit none
   private
   public :: control_t, state_t, cost_t, equations_t, residual, largest_step, state_from, &
-    unknowns_of, holds, residual_floor, gap_at_end, above_parabola, far_gap, radius_of_gap
+    unknowns_of, holds, residual_floor, gap_at_end, gap_at, far_gap, radius_of_gap
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 prescribed at a fixed scale; no further unknown.
@@ -114,7 +114,7 @@ contains
       ! In a stiff contact the equation for the axis, which is no node, is off by many times what the
       ! polynomials lack of the pressure between the nodes; their gaps tell it better.
       state%axis_gap = state%h0 + raised(axis_row)
-      if (grid%centre > 0) state%axis_gap = dot_product(grid%at_axis, above_parabola(grid, state))
+      if (grid%centre > 0) state%axis_gap = dot_product(grid%at_axis, state%gap)
       select case (control%kind)
       case (at_axis_gap)
         g(n + 1) = state%axis_gap - control%value
@@ -196,15 +196,20 @@ contains
     gap = state%gap(grid%nodes) + 0.5_wp*state%scale**2*(grid%end**2 - grid%x(grid%nodes)**2)
   end function gap_at_end
 
-  !> By how much the gaps of a state exceed the parabola: bounded, so that it can be interpolated on
-  !> any mesh.
-  pure function above_parabola(grid, state) result(raised)
+  !> The gap of a state at a position on its mesh. Where that goes on to infinity, what the gap has
+  !> beside the parabola is interpolated, which is bounded there.
+  pure real(wp) function gap_at(grid, state, x) result(gap)
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
-    real(wp) :: raised(grid%nodes)
+    real(wp), intent(in) :: x
 
-    raised = state%gap - 0.5_wp*(state%scale*grid%x)**2
-  end function above_parabola
+    if (grid%in_tail(x)) then
+      gap = 0.5_wp*(state%scale*x)**2 + &
+        grid%interpolate(state%gap - 0.5_wp*(state%scale*grid%x)**2, x)
+    else
+      gap = grid%interpolate(state%gap, x)
+    end if
+  end function gap_at
 
   !> An empty state on so many nodes.
   pure function state_from(nodes) result(state)
@@ -221,7 +226,6 @@ contains
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     type(bracket_t) :: bracket
-    real(wp) :: raised(grid%nodes)
     integer :: j
 
     do j = size(state%gap) - 1, 1, -1
@@ -234,11 +238,8 @@ contains
     else
       bracket = bracket_t(grid%x(j), grid%x(j + 1))
     end if
-    raised = above_parabola(grid, state)
     do while (bracket%is_open())
-      associate (x => bracket%middle())
-        call bracket%narrow(grid%interpolate(raised, x) + 0.5_wp*(state%scale*x)**2 < level)
-      end associate
+      call bracket%narrow(gap_at(grid, state, bracket%middle()) < level)
     end do
     c = state%scale*bracket%low
   end function radius_of_gap

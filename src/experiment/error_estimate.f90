@@ -8,7 +8,7 @@
 module error_estimate
   use kinds, only: wp
   use regridding, only: regrid
-  use equilibrium, only: control_t, state_t, equations_t, above_parabola, far_gap
+  use equilibrium, only: control_t, state_t, equations_t, gap_at, far_gap
   use solver, only: solver_t
   use reported, only: reported_t, error_t
   implicit none
@@ -119,18 +119,17 @@ contains
     type(finer_t), intent(in) :: fine
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state, right
-    real(wp) :: x, gap, strongest, raised(size(right%gap))
+    real(wp) :: x, gap, strongest
     integer :: j
 
     associate (law => own%problem%law, finer => fine%pair%grid(mesh))
-      raised = above_parabola(finer, right)
       strongest = max(maxval(abs(right%pressure)), tiny(1.0_wp))
       largest = max(abs(right%axis_gap - state%axis_gap), &
         maxval(abs(law%pressure([right%axis_gap]) - law%pressure([state%axis_gap])))/strongest)
       do j = 1, size(state%gap)
         x = state%scale*own%pair%grid(mesh)%x(j)/right%scale
         if (x > finer%end) exit
-        gap = finer%interpolate(raised, x) + 0.5_wp*(right%scale*x)**2
+        gap = gap_at(finer, right, x)
         largest = max(largest, abs(gap - state%gap(j)), &
           maxval(abs(law%pressure([gap]) - state%pressure(j)))/strongest)
       end do

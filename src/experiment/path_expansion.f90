@@ -68,8 +68,10 @@ contains
     type(state_t) :: second
     real(wp) :: slopes(2), slopes_there(2), uncertainty
 
+    fine%frozen%factors%valid = .false.
     call solve_fine(fine, mesh, near%s, near%state, found, slopes)
     if (.not. found) return
+    ! So near, the factors that the slopes were found with serve.
     second = near%state
     call solve_fine(fine, mesh, near%s + apart, second, found, slopes_there)
     if (.not. found) return
@@ -89,7 +91,6 @@ contains
     logical, intent(out) :: found
     real(wp), intent(out), optional :: slopes(2)
 
-    fine%frozen%factors%valid = .false.
     associate (control => path_control(fine%problem, mesh, s))
       call fine%find(control, state, found)
       if (.not. (found .and. present(slopes))) return

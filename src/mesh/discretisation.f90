@@ -6,7 +6,7 @@
 !> kernel is homogeneous, the same matrix serves every scale c (see `equilibrium`).
 module discretisation
   use kinds, only: wp, long
-  use panel_map, only: panel_map_t
+  use panel_map, only: panel_map_t, algebraic_map
   use interpolation, only: polynomial_weights
   use quadrature, only: gauss_legendre, barycentric_weights, lagrange_basis
   implicit none
@@ -51,6 +51,8 @@ module discretisation
     procedure :: interpolate
     procedure :: note_axis
     procedure :: is_bounded
+    procedure :: in_tail
+    procedure, private :: panel_at
     procedure :: kernel_entries
   end type discretisation_t
 
@@ -73,25 +75,40 @@ contains
     class(discretisation_t), intent(in) :: self
     real(wp), intent(in) :: values(:), x
     real(wp) :: value
-    real(wp) :: offset
-    integer :: low, high, middle
+    integer :: k
 
-    offset = x - self%centre
+    k = self%panel_at(x)
+    associate (local => self%local(self%which(k)), first => self%first(k))
+      value = dot_product(lagrange_basis(local%node, local%barycentric, &
+        self%panel(k)%local(x - self%centre)), values(first:first + size(local%node) - 1))
+    end associate
+  end function interpolate
+
+  !> The panel of a position; outside the mesh the nearest.
+  pure integer function panel_at(self, x) result(low)
+    class(discretisation_t), intent(in) :: self
+    real(wp), intent(in) :: x
+    integer :: high, middle
+
     low = 1
     high = size(self%panel) + 1
     do while (high - low > 1)
       middle = (low + high)/2
-      if (self%panel(middle)%left <= offset) then
+      if (self%panel(middle)%left <= x - self%centre) then
         low = middle
       else
         high = middle
       end if
     end do
-    associate (local => self%local(self%which(low)), first => self%first(low))
-      value = dot_product(lagrange_basis(local%node, local%barycentric, &
-        self%panel(low)%local(offset)), values(first:first + size(local%node) - 1))
-    end associate
-  end function interpolate
+  end function panel_at
+
+  !> Whether a position is on a panel that goes on to infinity.
+  pure logical function in_tail(self, x)
+    class(discretisation_t), intent(in) :: self
+    real(wp), intent(in) :: x
+
+    in_tail = self%panel(self%panel_at(x))%kind == algebraic_map
+  end function in_tail
 
   !> Fills in at_axis, once the nodes are known: what is even in the distance from the axis is a
   !> polynomial of its square, and through the nearest nodes that converges faster than the panel's.

@@ -13,41 +13,40 @@ module elastic_kernel
 
 contains
 
-  !> k as a function of the sum r + t and the distance |r - t|, both positive, in units of
+  !> k as a function of the sums r + t and the distances |r - t|, both positive, in units of
   !> one over that of the arguments. Integrable (logarithmic) singularity at distance 0.
-  elemental function kernel(total, distance) result(k)
-    real(wp), intent(in) :: total, distance
-    real(wp) :: k
+  pure function kernel(total, distance) result(k)
+    real(wp), intent(in) :: total(:), distance(:)
+    real(wp) :: k(size(total))
 
     k = 2/(total*agm(distance/total))
   end function kernel
 
   !> The coefficient a in k = -a ln(|r - t|) + smooth; a is analytic at t = r.
-  elemental function kernel_log_coefficient(total, distance) result(a)
-    real(wp), intent(in) :: total, distance
-    real(wp) :: a
-    real(wp) :: x
+  pure function kernel_log_coefficient(total, distance) result(a)
+    real(wp), intent(in) :: total(:), distance(:)
+    real(wp), dimension(size(total)) :: a, x
 
     x = distance/total
     a = 4/(pi*total*agm(sqrt((1 - x)*(1 + x))))
   end function kernel_log_coefficient
 
-  !> Arithmetic-geometric mean of 1 and x, 0 < x <= 1, to rounding. The number of steps is fixed so
-  !> that loops over it vectorise: seven reach double precision from x = 1e-14 upward.
-  elemental function agm(x) result(mean)
-    real(wp), intent(in) :: x
-    real(wp) :: mean
-    real(wp) :: a, g, a_next
+  !> Arithmetic-geometric means of 1 and x, 0 < x <= 1, to rounding. The number of steps is fixed, and
+  !> steps are taken for all at once, so that the loops vectorise: seven reach double precision from
+  !> x = 1e-14 upward.
+  pure function agm(x) result(mean)
+    real(wp), intent(in) :: x(:)
+    real(wp), dimension(size(x)) :: mean, g, next
     integer :: step
 
-    a = 1
+    mean = 1
     g = x
     do step = 1, 7
-      a_next = 0.5_wp*(a + g)
-      g = sqrt(a*g)
-      a = a_next
+      next = 0.5_wp*(mean + g)
+      g = sqrt(mean*g)
+      mean = next
     end do
-    mean = 0.5_wp*(a + g)
+    mean = 0.5_wp*(mean + g)
   end function agm
 
 end module elastic_kernel

@@ -21,12 +21,13 @@ module mesh_rule
   real(wp), parameter :: beyond_poles = 1.3_wp, nearest_tail = 5, tail_of_contact = 3
   !> A pressure that falls faster than any power ends where this part of the accuracy is left of it;
   !> up to there it needs so many times the nodes.
-  real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 2.5_wp
+  real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
   !> which come the nearer to one another the stronger adhesion is.
-  real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_digits = 13
+  real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_for_folds = 9, &
+    most_digits = 13
 
 contains
 
@@ -36,12 +37,14 @@ contains
   pure real(wp) function digits_for(problem, widest, accuracy) result(digits)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
-    real(wp) :: left
+    real(wp) :: left, for_folds
 
-    digits = max(0.3_wp - 1.25_wp*log10(accuracy), &
-      fewest_digits + more_for_folds*log10(1 + strength(problem)))
+    for_folds = fewest_digits + more_for_folds*log10(1 + strength(problem))
+    digits = max(0.8_wp - 1.05_wp*log10(accuracy), -1.2_wp - 1.38_wp*log10(accuracy), for_folds)
     left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
     digits = max(fewest_digits, min(digits, left, most_digits))
+    ! Folds have to be told apart as long as there is a contact at all.
+    if (left > fewest_digits) digits = max(digits, min(most_for_folds, for_folds))
   end function digits_for
 
   !> Before contact, about the axis, for H0 up to h0_high.
@@ -148,7 +151,7 @@ contains
   pure real(wp) function kernel_digits(digits)
     real(wp), intent(in) :: digits
 
-    kernel_digits = max(5.0_wp, 0.5_wp + 0.85_wp*digits)
+    kernel_digits = max(5.0_wp, 1.2_wp*digits - 2)
   end function kernel_digits
 
 end module mesh_rule

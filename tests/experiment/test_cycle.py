@@ -294,7 +294,7 @@ def test_profiles_fit_together_and_to_the_curve(profiled, branch):
         far = int(np.searchsorted(r, 8.0))
         load = 2 * np.pi * (integral(r[: far + 1], (p * r)[: far + 1]) + energy[far])
         # The nodes are few, and quintics through them leave this.
-        assert load == pytest.approx(curve["load"][row][0], abs=2e-3 * WEAK)
+        assert load == pytest.approx(curve["load"][row][0], abs=6e-3 * WEAK)
         assert -2 * u[0] == pytest.approx(curve["displacement"][row][0], abs=1e-12)
 
 
