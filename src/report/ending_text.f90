@@ -8,8 +8,7 @@ module ending_text
 
 contains
 
-  !> The reason in words, blank if it ended as planned. (Not of deferred length, which gfortran
-  !> keeps in static storage that the cases of a sweep share.)
+  !> The reason in words, blank if it ended as planned; not of deferred length: compiler note 5.
   pure function text_of(ending) result(text)
     type(ending_t), intent(in) :: ending
     character(len=160) :: text
