@@ -24,6 +24,9 @@ module mesh_rule
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
+  !> Longest panel in z under a law with lengths of its own, and the nodes of such panels: so many,
+  !> and more for each digit.
+  real(wp), parameter :: longest = 0.7_wp, short_order = 4, short_orders = 0.9_wp
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
   !> which come the nearer to one another the stronger adhesion is.
   real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_for_folds = 9, &
@@ -58,7 +61,7 @@ contains
     reach = max(4.0_wp, beyond_poles*sqrt(2*h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
     shape%d = finer*smallest_feature(problem, 1.0_wp)
-    call add_panel(shape, asinh(reach/shape%d), density)
+    call add_panels(problem, shape, asinh(reach/shape%d), density, digits)
     shape%digits = kernel_digits(digits)
   end function approach_shape
 
@@ -67,7 +70,7 @@ contains
   pure type(mapped_shape_t) function contact_shape(problem, low, high, level, digits) result(shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: low, high, level, digits
-    real(wp) :: density, outer, reach, inside
+    real(wp) :: density, outer, reach
 
     if (problem%law%adhesion > 0) then
       ! Where the repulsion is strong it begins inside the edge, and where adhesion is, a small
@@ -83,13 +86,12 @@ contains
     call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)
     reach = max(tail_of_contact, reach/low)
     shape%centre = 1
-    shape%inner = 1
     shape%d = min(finer*smallest_feature(problem, high)/high, 1.0_wp)
-    call add_panel(shape, asinh(1/shape%d), density)
-    ! The panel of a whole number of nodes is a little longer, and ends on the axis.
-    inside = shape%z_length(1)
-    shape%d = 1/sinh(inside)
-    call add_panel(shape, asinh(reach/shape%d), outer)
+    call add_panels(problem, shape, asinh(1/shape%d), density, digits)
+    shape%inner = size(shape%order)
+    ! Panels of a whole number of nodes are a little longer, and end on the axis.
+    shape%d = 1/sinh(sum(shape%z_length))
+    call add_panels(problem, shape, asinh(reach/shape%d), outer, digits)
     shape%digits = kernel_digits(digits)
   end function contact_shape
 
@@ -105,6 +107,7 @@ contains
     if (problem%law%tail_power < huge(1.0_wp)) then
       shape%tail_order = ceiling(1 + 0.6_wp*digits)
       shape%decay = 2*problem%law%tail_power
+      reach = max(reach, sqrt(2*problem%law%power_from))
     else
       reach = sqrt(2*max(fading_gap(problem, from, negligible*10.0_wp**(-digits)), 1.0_wp))
       density = crowding*density
@@ -127,6 +130,26 @@ contains
     end do
     gap = bracket%middle()
   end function fading_gap
+
+  !> Adds sinh panels over z_length: one for the paper's laws, which are powers of the gap or one
+  !> exponential, and to which the density was fitted. Other laws have lengths of their own anywhere
+  !> within their reach: short panels follow them.
+  pure subroutine add_panels(problem, shape, z_length, density, digits)
+    type(problem_t), intent(in) :: problem
+    type(mapped_shape_t), intent(inout) :: shape
+    real(wp), intent(in) :: z_length, density, digits
+    integer :: panels, order
+
+    if (problem%law%of_paper) then
+      call add_panel(shape, z_length, density)
+      return
+    end if
+    panels = ceiling(z_length/longest)
+    order = ceiling(short_order + short_orders*digits)
+    if (.not. allocated(shape%order)) allocate (shape%order(0), shape%z_length(0))
+    shape%order = [shape%order, spread(order, 1, panels)]
+    shape%z_length = [shape%z_length, spread(z_length/panels, 1, panels)]
+  end subroutine add_panels
 
   !> Adds a sinh panel of at least z_length at so many nodes a unit of z.
   pure subroutine add_panel(shape, z_length, density)

@@ -24,6 +24,8 @@ module force_law
     real(wp) :: smallest_gap = -300
     !> Far away the pressure falls as gap^-tail_power; `huge` where it falls faster than any power.
     real(wp) :: tail_power = huge(1.0_wp)
+    !> Gap from which on it does so, but for a series in the inverse of the gap.
+    real(wp) :: power_from = 0
     !> Whether `length` and `pressure_unit` are scales of the force; else those of its well become
     !> the units (`force_sum`).
     logical :: has_units = .true.

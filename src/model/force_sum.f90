@@ -111,6 +111,7 @@ contains
     law%edge_gap = 0
     law%rest_gap = 0
     law%range = 0
+    law%power_from = 0
     law%smallest_gap = -huge(1.0_wp)
     law%repulsion_length = huge(1.0_wp)
     law%tail_power = huge(1.0_wp)

@@ -22,6 +22,8 @@ module law_scan
   !> and the length, in lengths beyond the gap at rest, after which a tail no longer matters: where
   !> a repulsion of the ninth power is below that.
   real(wp), parameter :: ended = 1.0e-16_wp, longest = 59
+  !> A pressure has become a power where its local exponent is that power to this.
+  real(wp), parameter :: settled = 1.0e-2_wp
   !> Pressure over the largest tension below which there is no barrier and no outer well.
   real(wp), parameter :: nothing = 1.0e-12_wp
 
@@ -58,6 +60,11 @@ contains
       ! Without a well there is no depth: the energy at one length stands for it.
       law%adhesion = -energy_at(law, 1.0_wp)
       law%work = law%adhesion
+    end if
+    if (law%tail_power < huge(1.0_wp)) then
+      i = findloc(abs(gap*law%slope(gap) + law%tail_power*pressure) > settled*abs(pressure), .true., &
+        1, back=.true.)
+      if (i > 0) law%power_from = gap(i)
     end if
     law%range = law%rest_gap + longest
     i = findloc(abs(pressure) > ended*largest, .true., 1, back=.true.)
