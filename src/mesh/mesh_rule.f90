@@ -6,6 +6,7 @@ module mesh_rule
   use root_finding, only: bracket_t
   use dimensionless_problem, only: problem_t, calm_gap
   use contact_scales, only: smallest_feature
+  use law_panels, only: fitting_panels
   use mapped_mesh, only: mapped_shape_t
   implicit none
   private
@@ -51,7 +52,7 @@ contains
   end function digits_for
 
   !> Before contact, about the axis, for H0 up to h0_high.
-  pure type(mapped_shape_t) function approach_shape(problem, h0_high, digits) result(shape)
+  type(mapped_shape_t) function approach_shape(problem, h0_high, digits) result(shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, digits
     real(wp) :: density, reach
@@ -61,13 +62,13 @@ contains
     reach = max(4.0_wp, beyond_poles*sqrt(2*h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
     shape%d = finer*smallest_feature(problem, 1.0_wp)
-    call add_panels(problem, shape, asinh(reach/shape%d), density, digits)
+    call add_panels(problem, shape, asinh(reach/shape%d), density, digits, 0.0_wp, 0.0_wp)
     shape%digits = kernel_digits(digits)
   end function approach_shape
 
   !> In contact, about the edge, for contact radii from `low` to `high` (lateral units). level: the
   !> gap at which a law without adhesion begins to deform the bodies.
-  pure type(mapped_shape_t) function contact_shape(problem, low, high, level, digits) result(shape)
+  type(mapped_shape_t) function contact_shape(problem, low, high, level, digits) result(shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: low, high, level, digits
     real(wp) :: density, outer, reach
@@ -91,7 +92,7 @@ contains
     shape%inner = size(shape%order)
     ! Panels of a whole number of nodes are a little longer, and end on the axis.
     shape%d = 1/sinh(sum(shape%z_length))
-    call add_panels(problem, shape, asinh(reach/shape%d), outer, digits)
+    call add_panels(problem, shape, asinh(reach/shape%d), outer, digits, low, high)
     shape%digits = kernel_digits(digits)
   end function contact_shape
 
@@ -133,22 +134,30 @@ contains
 
   !> Adds sinh panels over z_length: one for the paper's laws, which are powers of the gap or one
   !> exponential, and to which the density was fitted. Other laws have lengths of their own anywhere
-  !> within their reach: short panels follow them.
-  pure subroutine add_panels(problem, shape, z_length, density, digits)
+  !> within their reach: short panels follow them, outside the edge those that fit the law. low,
+  !> high: contact radii; absent inside the edge.
+  subroutine add_panels(problem, shape, z_length, density, digits, low, high)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
     real(wp), intent(in) :: z_length, density, digits
+    real(wp), intent(in), optional :: low, high
+    real(wp), allocatable :: lengths(:)
     integer :: panels, order
 
     if (problem%law%of_paper) then
       call add_panel(shape, z_length, density)
       return
     end if
-    panels = ceiling(z_length/longest)
     order = ceiling(short_order + short_orders*digits)
+    if (present(low) .and. problem%law%edge_gap > 0) then
+      lengths = fitting_panels(problem, shape%centre, shape%d, z_length, low, high, order, digits)
+    else
+      panels = ceiling(z_length/longest)
+      lengths = spread(z_length/panels, 1, panels)
+    end if
     if (.not. allocated(shape%order)) allocate (shape%order(0), shape%z_length(0))
-    shape%order = [shape%order, spread(order, 1, panels)]
-    shape%z_length = [shape%z_length, spread(z_length/panels, 1, panels)]
+    shape%order = [shape%order, spread(order, 1, size(lengths))]
+    shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
 
   !> Adds a sinh panel of at least z_length at so many nodes a unit of z.
