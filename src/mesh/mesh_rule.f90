@@ -32,6 +32,8 @@ module mesh_rule
   !> which come the nearer to one another the stronger adhesion is.
   real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_for_folds = 9, &
     most_digits = 13
+  !> sigma at which jumps begin under the Lennard-Jones law, about that of others, and a factor in it.
+  real(wp), parameter :: onset = 0.29_wp, near_onset = 1.15_wp
 
 contains
 
@@ -44,6 +46,9 @@ contains
     real(wp) :: left, for_folds
 
     for_folds = fewest_digits + more_for_folds*log10(1 + strength(problem))
+    ! Where jumps have just begun the two folds are so near each other that a coarse mesh loses them.
+    if (abs(log(max(strength(problem), tiny(1.0_wp))/onset)) < log(near_onset)) &
+      for_folds = max(for_folds, most_for_folds)
     digits = max(0.8_wp - 1.05_wp*log10(accuracy), -1.2_wp - 1.38_wp*log10(accuracy), for_folds)
     left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
     digits = max(fewest_digits, min(digits, left, most_digits))

@@ -74,8 +74,11 @@ contains
     if (.not. allocated(reported%error)) return
     associate (error => reported%error)
       if (error%load > 0) largest = min(error%load/max(abs(reported%load), tiny(1.0_wp)), most)
-      largest = max(largest, error%h0/max(abs(reported%h0), 1.0_wp), &
-        error%displacement/max(abs(reported%displacement), 1.0_wp), error%profile)
+      largest = max(largest, error%h0/max(abs(reported%h0), 1.0_wp), error%profile)
+      ! At an extremum h0 or the load stands still while the displacement runs on: where on the flat
+      ! top it is found does not move the curve, and no displacement is reported of it.
+      if (reported%point == 0) largest = max(largest, &
+        error%displacement/max(abs(reported%displacement), 1.0_wp))
     end associate
   end function relative_error
 

@@ -209,7 +209,7 @@ def test_a_mistake_is_named(keys, named):
 
 
 def test_dlvo_forces_have_a_barrier_that_contact_lies_behind():
-    result = snapin.run(ROOT / "inputs" / "dlvo.nml")
+    result = snapin.run(ROOT / "inputs" / "examples" / "dlvo.nml")
     summary, curve = result.summary, result.curve
     assert "warnings" not in summary and summary["barrier_pressure"] > 0
     approach = curve[curve["branch"] == "loading"]

@@ -156,7 +156,7 @@ def test_summary_tells_what_the_points_leave_open(tmp_path):
 
 
 def test_example_is_the_first_scene():
-    names = "first.nml", "tabulated.nml"
+    names = "first.nml", "examples/tabulated.nml"
     first, found = (snapin.run(ROOT / "inputs" / name).summary for name in names)
     for key in ("max_tension", "jump_in_h0", "jump_out_h0"):
         assert found[key] == pytest.approx(first[key], rel=3e-5)
