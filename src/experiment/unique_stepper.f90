@@ -19,8 +19,9 @@ module unique_stepper
     procedure, private :: step_in_pieces
   end type unique_stepper_t
 
-  !> Smallest step in h0, in the law's lengths, that is tried.
-  real(wp), parameter :: smallest_creep = 1.0e-6_wp
+  !> Smallest step in h0 that is tried, in the law's lengths and as a part of h0: deep in contact
+  !> nothing changes in less, and rounding makes some steps fail and others not.
+  real(wp), parameter :: smallest_creep = 1.0e-6_wp, smallest_part = 1.0e-4_wp
 
 contains
 
@@ -87,7 +88,7 @@ contains
         step = 2*step
       else
         step = 0.3_wp*step
-        if (abs(step) < smallest_creep) then
+        if (abs(step) < max(smallest_creep, smallest_part*abs(position%state%h0))) then
           event%ending%cause = steps_lost
           position%state = state
           return
