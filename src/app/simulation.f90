@@ -16,7 +16,7 @@ module simulation
   use blas_threads, only: thread_count
   use linear_algebra, only: claim_buffers
   use equilibrium, only: cost_t
-  use derived_tables, only: write_derived_tables
+  use derived_tables, only: write_derived_tables, write_path_tables
   use stability_records, only: stability_recorder_t
   use summarise, only: summary_of
   use summary, only: summary_t
@@ -191,6 +191,7 @@ contains
     else
       call run_experiment(scene, problem, results, outcome, keeper)
     end if
+    call write_path_tables(problem, outcome, results)
     summary = summary_of(scene, problem, outcome)
     call recorder%warn(summary)
     cost = outcome%cost
@@ -224,6 +225,7 @@ contains
     end if
     if (summary%has('grid')) call destination%say('grid '//summary%text('grid')//', method '// &
       summary%text('method')//': '//summary%text('chosen_because'))
+    if (summary%has('regime_reason')) call destination%say('regime: '//summary%text('regime_reason'))
     took = summary%number('wall_seconds')
     write (found, '(i0, a, f0.2, a)') cost%states, ' states in ', took, ' s'
     if (took < 1) write (found, '(i0, a, f5.3, a)') cost%states, ' states in ', took, ' s'
