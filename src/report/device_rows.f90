@@ -36,8 +36,8 @@ module device_rows
     'load_after [N] after the jump', &
     'contact_radius_after [m] after the jump', &
     'energy [J] lost in the jump']
-  !> What the two routes to the energy may differ by, relative.
-  real(wp), parameter :: same_energy = 1.0e-6_wp
+  !> An energy is worth having where the two routes to it differ by less than this part.
+  real(wp), parameter :: known_energy = 1.0e-4_wp
 
 contains
 
@@ -199,10 +199,10 @@ contains
       call take_jumps('device_jump_out', .false.)
       call summary%set('device_energy_lost', device%energy_lost*unit)
       call summary%set('device_cycle_energy', device%cycle_energy*unit)
+      call summary%set('device_energy_uncertainty', uncertainty(device)*unit)
       if (.not. all(device%caught)) call summary%warn('device: no stable state is known ' // &
         'that catches the bodies after a jump; see device_jumps.csv')
-      if (any(abs(device%energy_lost - device%cycle_energy) > &
-        same_energy*abs(device%energy_lost) + device%uncertainty)) call summary%warn('device: ' // &
+      if (any(uncertainty(device) > known_energy*abs(device%energy_lost))) call summary%warn('device: ' // &
         'the energy lost in jumps is not the area of the cycle; a smaller accuracy may help')
     end associate
 
@@ -234,5 +234,13 @@ contains
     end subroutine take_jumps
 
   end subroutine summarise_device
+
+  !> How well the energy lost is known: the two routes to it share the states where jumps start and
+  !> end, but one takes the energy of these and the other the load on the way between them.
+  elemental real(wp) function uncertainty(driven)
+    type(driven_t), intent(in) :: driven
+
+    uncertainty = abs(driven%energy_lost - driven%cycle_energy) + driven%uncertainty
+  end function uncertainty
 
 end module device_rows

@@ -101,6 +101,8 @@ module result_rows
       'energy lost in all jumps of each cycle, bodies and spring', list=.true.), &
     row_t('device_cycle_energy', 'J', &
       'the same as the area between approach and retreat', list=.true.), &
+    row_t('device_energy_uncertainty', 'J', 'difference of the two, and rounding', &
+      list=.true.), &
     row_t('fixed_load', 'N', 'loads whose equilibria were looked for', list=.true.), &
     row_t('fixed_load_equilibria', '', 'number of equilibria under each', list=.true.), &
     row_t('fixed_load_stable', '', 'number of them that are stable', list=.true.), &
