@@ -37,6 +37,8 @@ module device
     real(wp) :: energy_lost = 0, cycle_energy = 0, uncertainty = 0
     !> Whether every state was solved, and every jump had an end.
     logical :: solved = .true., caught = .true.
+  contains
+    procedure :: jumps_after
   end type driven_t
 
 contains
@@ -181,6 +183,16 @@ contains
     end subroutine leap
 
   end subroutine drive_bodies
+
+  !> Whether a leg ends where a jump starts.
+  pure logical function jumps_after(self, leg)
+    class(driven_t), intent(in) :: self
+    type(leg_t), intent(in) :: leg
+
+    jumps_after = any((self%jump%inward .eqv. leg%inward) .and. &
+      self%jump%before%interval == leg%to%interval .and. &
+      abs(self%jump%before%x - leg%to%x) <= 0)
+  end function jumps_after
 
   !> The first piece from number k on, counting by `sense`, with a state at a position; 0: none.
   pure integer function piece_with(pieces, drive, position, k, sense) result(found)

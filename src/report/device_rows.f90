@@ -53,7 +53,7 @@ contains
       associate (driven => readings%device(i), curve => readings%curve)
         call add_path(driven)
         do k = 1, size(driven%leg)
-          call add_leg(driven, driven%leg(k), k < size(driven%leg))
+          call add_leg(driven, driven%leg(k))
         end do
       end associate
     end do
@@ -76,14 +76,12 @@ contains
       end do
     end subroutine add_path
 
-    !> One leg; it ends where a jump starts unless the way ends or turns there.
-    subroutine add_leg(driven, leg, goes_on)
+    !> One leg; where a jump starts it is not stable any more.
+    subroutine add_leg(driven, leg)
       type(driven_t), intent(in) :: driven
       type(leg_t), intent(in) :: leg
-      logical, intent(in) :: goes_on
       character(len=:), allocatable :: direction
       type(curve_node_t), allocatable :: nodes(:)
-      logical :: jumps
       integer :: j
 
       direction = direction_of(leg%inward)
@@ -92,10 +90,8 @@ contains
       do j = 1, size(nodes)
         call add(driven, direction, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, .true.)
       end do
-      jumps = any(driven%jump%inward .eqv. leg%inward .and. &
-        abs(driven%jump%before%x - leg%to%x) <= 0 .and. driven%jump%before%interval == &
-        leg%to%interval) .and. (goes_on .or. .not. driven%caught)
-      call add(driven, direction, leg%to%h0, leg%to%load, leg%to%radius, .not. jumps)
+      call add(driven, direction, leg%to%h0, leg%to%load, leg%to%radius, &
+        .not. driven%jumps_after(leg))
     end subroutine add_leg
 
     subroutine add(driven, direction, h0, load, radius, stable)

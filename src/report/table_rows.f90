@@ -35,7 +35,6 @@ contains
     type(line_t), allocatable :: lines(:)
     type(curve_node_t), allocatable :: nodes(:)
     integer :: i, j
-    logical :: starts
 
     allocate (lines(0))
     associate (driven => readings%prescribed)
@@ -47,9 +46,8 @@ contains
             call add(leg%inward, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, &
               [nodes(j)%h0_slope, nodes(j)%load_slope], .false.)
           end do
-          starts = any((driven%jump%inward .eqv. leg%inward) .and. &
-            abs(driven%jump%before%h0 - leg%to%h0) <= 0)
-          call add(leg%inward, leg%to%h0, leg%to%load, leg%to%radius, leg%to%slopes, starts)
+          call add(leg%inward, leg%to%h0, leg%to%load, leg%to%radius, leg%to%slopes, &
+            driven%jumps_after(leg))
         end associate
       end do
     end associate

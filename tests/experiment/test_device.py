@@ -45,7 +45,11 @@ def test_first_scene_jumps_as_an_independent_reading_of_its_path_says(run, stiff
     found = run(FIRST_SCENE + device)
     units = [1e-9, 1e-6, 1e-6] * 2 + [1]
     values = [numbers(found, key)[0] / unit for key, unit in zip(KEYS, units)]
-    np.testing.assert_allclose(values, FIRST[stiffness], rtol=3e-4)
+    # The load before a jump changes with the first power of the place, which splining has to 1e-4
+    # and worse; the position and what lies after it hardly change. That the slope there
+    # is the stiffness is a claim of its own below.
+    tolerance = [1e-4, 5e-4, 1e-4] * 2 + [1e-4]
+    assert (abs(np.divide(values, FIRST[stiffness]) - 1) < tolerance).all()
 
 
 # Wide loops: narrow ones are known less well, and `device_energy_uncertainty` says how well.
@@ -147,7 +151,7 @@ def test_a_barrier_is_jumped_over_under_compression(run):
     found = run(springs(0.5, [1, 0], hydration={"pressure": 0.3, "decay_length": 3.0}))
     assert (numbers(found, "jump_in_load") > 0).all()
     np.testing.assert_allclose(numbers(found, "cycle_energy"), numbers(found, "energy_lost"),
-                               rtol=2e-7)
+                               rtol=1e-6)  # The accuracy: this loop is narrow.
 
 
 def test_device_table_shows_the_path_and_both_ways(run):

@@ -41,7 +41,7 @@ REFUSED = {
         with_extra("&equilibrium_path /\n&device z_start = 1e-9,\n z_end = 2e-9 /"), 5, "device",
         "z_start", "not above z_end"),
     "no load": (with_extra("&equilibrium_path /\n&fixed_load /"), 5, "fixed_load", "load",
-                "required"),
+                "missing"),
     "no stiffness": (with_bodies("radius = 1 /"), 1, "bodies", "stiffness", "give one of"),
     "rigid false alone": (with_bodies("radius = 1, rigid = .false. /"), 1, "bodies", "stiffness",
                           "give one of"),
