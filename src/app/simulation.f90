@@ -225,7 +225,12 @@ contains
     end if
     if (summary%has('grid')) call destination%say('grid '//summary%text('grid')//', method '// &
       summary%text('method')//': '//summary%text('chosen_because'))
-    if (summary%has('regime_reason')) call destination%say('regime: '//summary%text('regime_reason'))
+    if (summary%has('path_traced_h0')) call destination%say( &
+      'read from the path, traced from h0 ='//in_metres('path_traced_h0'))
+    if (summary%has('path_undeformed_h0')) call destination%say( &
+      'undeformed bodies before it, from h0 ='//in_metres('path_undeformed_h0'))
+    if (summary%has('regime_reason')) &
+      call destination%say('regime: '//summary%text('regime_reason'))
     took = summary%number('wall_seconds')
     write (found, '(i0, a, f0.2, a)') cost%states, ' states in ', took, ' s'
     if (took < 1) write (found, '(i0, a, f5.3, a)') cost%states, ' states in ', took, ' s'
@@ -234,6 +239,16 @@ contains
       ', largest tension', summary%number('max_tension'), ' N at h0 =', &
       summary%number('max_tension_h0'), ' m'
     call destination%say(trim(found)//trim(tension))
+
+  contains
+
+    function in_metres(key) result(text)
+      character(len=*), intent(in) :: key
+      character(len=13) :: text
+
+      write (text, '(es11.4, a)') summary%number(key), ' m'
+    end function in_metres
+
   end subroutine tell
 
   !> A line to standard error.

@@ -23,6 +23,8 @@ module path_readings
     !> A drive for each stiffness; and at prescribed h0, for the table.
     type(driven_t), allocatable :: device(:), prescribed
     type(loaded_state_t), allocatable :: loaded(:)
+    !> h0 from which the path was traced, and from which bodies are taken as undeformed until there.
+    real(wp) :: traced_from = 0, undeformed_from = 0
     !> Whether the curve exists and everything on it was solved.
     logical :: solved = .true.
   end type path_readings_t
@@ -59,6 +61,10 @@ contains
       end if
     end if
     readings%curve = solver%curve
+    if (size(solver%curve%node) > 0) then
+      readings%traced_from = steps%known%path%point(1)%state%h0
+      readings%undeformed_from = solver%curve%node(1)%h0
+    end if
     steps%cost%states = steps%cost%states + solver%solved
   end subroutine read_path
 

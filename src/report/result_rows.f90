@@ -87,6 +87,9 @@ module result_rows
     row_t('load_folds_load_error', 'N', 'estimated error of load_folds_load', list=.true.), &
     row_t('energy_lost', 'J', 'energy lost in the jumps of a cycle', always), &
     row_t('energy_lost_uncertainty', 'J', 'estimated error of energy_lost'), &
+    row_t('path_traced_h0', 'm', 'h0 from which the path was traced for what is read from it'), &
+    row_t('path_undeformed_h0', 'm', &
+      'h0 from which bodies were taken as undeformed, as far as path_traced_h0'), &
     row_t('device_stiffness', 'N/m', &
       'stiffness of each spring; 0: dead load; Infinity: h0 is prescribed', list=.true.), &
     row_t('device_jump_in_z', 'm', 'position of the drive at the first jump of each approach', &

@@ -106,6 +106,9 @@ contains
     type(summary_t), intent(inout) :: summary
 
     associate (readings => outcome%readings)
+      call summary%set('path_traced_h0', problem%law%separation_of(readings%traced_from))
+      if (readings%undeformed_from > readings%traced_from) call summary%set( &
+        'path_undeformed_h0', problem%law%separation_of(readings%undeformed_from))
       if (.not. readings%solved) &
         call summary%fail_with('not all that is read from the path was solved')
       if (allocated(readings%device)) call summarise_device(problem, readings, summary)
