@@ -9,7 +9,7 @@ import numpy as np
 
 from .arguments import SnapinError
 
-_TEXT_COLUMNS = ("branch", "theory")
+_TEXT_COLUMNS = ("branch", "direction", "theory")
 
 
 class ResultsError(SnapinError):

@@ -16,7 +16,7 @@ module simulation
   use blas_threads, only: thread_count
   use linear_algebra, only: claim_buffers
   use equilibrium, only: cost_t
-  use derived_tables, only: write_derived_tables
+  use derived_tables, only: write_derived_tables, write_path_tables
   use stability_records, only: stability_recorder_t
   use summarise, only: summary_of
   use summary, only: summary_t
@@ -191,6 +191,7 @@ contains
     else
       call run_experiment(scene, problem, results, outcome, keeper)
     end if
+    call write_path_tables(problem, outcome, results)
     summary = summary_of(scene, problem, outcome)
     call recorder%warn(summary)
     cost = outcome%cost
@@ -224,6 +225,12 @@ contains
     end if
     if (summary%has('grid')) call destination%say('grid '//summary%text('grid')//', method '// &
       summary%text('method')//': '//summary%text('chosen_because'))
+    if (summary%has('path_traced_h0')) call destination%say( &
+      'read from the path, traced from h0 ='//in_metres('path_traced_h0'))
+    if (summary%has('path_undeformed_h0')) call destination%say( &
+      'undeformed bodies before it, from h0 ='//in_metres('path_undeformed_h0'))
+    if (summary%has('regime_reason')) &
+      call destination%say('regime: '//summary%text('regime_reason'))
     took = summary%number('wall_seconds')
     write (found, '(i0, a, f0.2, a)') cost%states, ' states in ', took, ' s'
     if (took < 1) write (found, '(i0, a, f5.3, a)') cost%states, ' states in ', took, ' s'
@@ -232,6 +239,16 @@ contains
       ', largest tension', summary%number('max_tension'), ' N at h0 =', &
       summary%number('max_tension_h0'), ' m'
     call destination%say(trim(found)//trim(tension))
+
+  contains
+
+    function in_metres(key) result(text)
+      character(len=*), intent(in) :: key
+      character(len=13) :: text
+
+      write (text, '(es11.4, a)') summary%number(key), ' m'
+    end function in_metres
+
   end subroutine tell
 
   !> A line to standard error.

@@ -1,10 +1,12 @@
-!> The polynomial through a few scattered values: weights, value, slope, maximum.
+!> The polynomial through a few scattered values: weights, value, slope, maximum; and the one that
+!> has given slopes there too.
 module interpolation
   use kinds, only: wp
   use root_finding, only: bracket_t
   implicit none
   private
   public :: polynomial_weights, polynomial_value, polynomial_slope, interpolated_maximum
+  public :: hermite_value, hermite_slope
 
 contains
 
@@ -63,5 +65,42 @@ contains
     end do
     x = bracket%middle()
   end function interpolated_maximum
+
+  !> The polynomial of least degree with the values and slopes given at `at` (all different), at x:
+  !> the sum of [v (1 - 2 l'(x_j) (x - x_j)) + s (x - x_j)] l(x)^2 over Lagrange's l.
+  pure real(wp) function hermite_value(at, value, slope, x) result(y)
+    real(wp), intent(in) :: at(:), value(:), slope(:), x
+    real(wp), dimension(size(at)) :: basis
+
+    basis = polynomial_weights(at, x)
+    y = sum((value + (slope - 2*own_slopes(at)*value)*(x - at))*basis**2)
+  end function hermite_value
+
+  !> Its derivative at x.
+  pure real(wp) function hermite_slope(at, value, slope, x) result(y)
+    real(wp), intent(in) :: at(:), value(:), slope(:), x
+    real(wp), dimension(size(at)) :: basis, basis_slope, steepness, one
+    integer :: j
+
+    basis = polynomial_weights(at, x)
+    do j = 1, size(at)
+      one = 0
+      one(j) = 1
+      basis_slope(j) = polynomial_slope(at, one, x)
+    end do
+    steepness = slope - 2*own_slopes(at)*value
+    y = sum(steepness*basis**2 + 2*(value + steepness*(x - at))*basis*basis_slope)
+  end function hermite_slope
+
+  !> The slope of each Lagrange polynomial where it is one.
+  pure function own_slopes(at) result(slope)
+    real(wp), intent(in) :: at(:)
+    real(wp) :: slope(size(at))
+    integer :: j
+
+    do j = 1, size(at)
+      slope(j) = sum(1/pack(at(j) - at, abs(at(j) - at) > 0))
+    end do
+  end function own_slopes
 
 end module interpolation

@@ -18,6 +18,8 @@ module experiment
   use experiment_result, only: experiment_result_t
   use result_errors, only: judge_locked, judge_fixed
   use path, only: follow_path
+  use path_demand, only: widen_path
+  use path_readings, only: read_path
   use records, only: observer_t
   use clock, only: seconds
   use blas_threads, only: use_threads_for
@@ -87,6 +89,7 @@ contains
     class is (path_stepper_t)
       call steps%know_path(high, low, allocated(request%path), observer)
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
+      if (request%reads_path()) call read_path(request, steps, observer, outcome%readings)
     class is (unique_stepper_t)
       if (allocated(request%path)) call run_stepped_path(request, steps, observer, outcome)
     end select
@@ -151,14 +154,18 @@ contains
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
     real(wp), allocatable :: profiles(:)
+    real(wp) :: start
 
     associate (law => steps%problem%law)
       allocate (profiles(0))
       if (allocated(request%profiles)) profiles = law%gap_of(request%profiles%h0)
       allocate (outcome%path)
-      if (allocated(request%path%h0_start)) then
+      start = law%gap_of(path_start(request, steps%problem))
+      if (allocated(request%path%h0_start) .or. request%reads_path()) then
+        ! What is read from the path may need more of it than is shown.
+        if (.not. allocated(request%path%h0_start)) start = max(start, steps%far_away())
         call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, &
-          outcome%path, law%gap_of(request%path%h0_start))
+          outcome%path, start)
       else
         call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, outcome%path)
       end if
@@ -281,6 +288,7 @@ contains
     end if
     low = problem%law%gap_of(low)
     high = problem%law%gap_of(high)
+    if (request%reads_path()) call widen_path(request, problem, low, high)
   end subroutine range_of
 
 end module experiment

@@ -6,7 +6,8 @@ module experiment_request
   use kinds, only: wp
   implicit none
   private
-  public :: request_t, loading_t, unloading_t, path_range_t, profiles_t, numerics_t
+  public :: request_t, loading_t, unloading_t, path_range_t, profiles_t, numerics_t, device_t, &
+    fixed_load_t
 
   !> &loading [m]: h0_start > h0_end, h0_step > 0.
   type :: loading_t
@@ -30,6 +31,18 @@ module experiment_request
     real(wp), allocatable :: h0(:)
   end type profiles_t
 
+  !> &device: stiffness of each spring [N/m], 0 for a dead load; none: h0 is prescribed. Where the
+  !> drive starts and turns [m], unallocated: as far as the path is known.
+  type :: device_t
+    real(wp), allocatable :: stiffness(:)
+    real(wp), allocatable :: z_start, z_end
+  end type device_t
+
+  !> &fixed_load: the loads [N].
+  type :: fixed_load_t
+    real(wp), allocatable :: load(:)
+  end type fixed_load_t
+
   !> &numerics; what is unallocated follows from the accuracy.
   type :: numerics_t
     character(len=:), allocatable :: method, grid, convergence
@@ -44,9 +57,14 @@ module experiment_request
     type(unloading_t), allocatable :: unloading
     type(path_range_t), allocatable :: path
     type(profiles_t), allocatable :: profiles
+    type(device_t), allocatable :: device
+    type(fixed_load_t), allocatable :: fixed_load
+    !> &table has no keys.
+    logical :: table = .false.
     type(numerics_t) :: numerics
   contains
     procedure :: finds_states
+    procedure :: reads_path
   end type request_t
 
 contains
@@ -57,5 +75,12 @@ contains
 
     finds_states = allocated(self%loading) .or. allocated(self%path)
   end function finds_states
+
+  !> Whether an experiment is read from the path, beside it.
+  pure logical function reads_path(self)
+    class(request_t), intent(in) :: self
+
+    reads_path = allocated(self%device) .or. allocated(self%fixed_load) .or. self%table
+  end function reads_path
 
 end module experiment_request

@@ -5,6 +5,7 @@ module experiment_result
   use equilibrium, only: cost_t
   use stepped_branch, only: branch_t
   use path, only: path_t
+  use path_readings, only: path_readings_t
   implicit none
   private
   public :: experiment_result_t
@@ -12,6 +13,7 @@ module experiment_result
   type :: experiment_result_t
     type(choice_t) :: chosen
     type(path_t), allocatable :: path
+    type(path_readings_t), allocatable :: readings
     type(branch_t), allocatable :: stepped_path, loading, unloading(:)
     !> Lost in a cycle of approach and separation, and how well that is known.
     real(wp), allocatable :: energy_lost, energy_uncertainty

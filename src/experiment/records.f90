@@ -7,7 +7,7 @@ module records
   use equilibrium, only: state_t, radius_of_gap
   implicit none
   private
-  public :: record_t, observer_t, silent_observer_t, theory_row_t, record_of
+  public :: record_t, observer_t, silent_observer_t, theory_row_t, record_of, contact_level_of
   public :: stable_yes, stable_no, stable_unasked
 
   !> The column `stable`.
@@ -86,8 +86,7 @@ contains
     record%h_centre = problem%law%separation_of(state%axis_gap)
     record%displacement = (state%axis_gap - state%h0)*problem%length
     record%load = state%load*problem%load
-    if (problem%law%rest_gap > 0) record%contact_radius = problem%lateral* &
-      radius_of_gap(contact_gap*problem%law%rest_gap, grid, state)
+    record%contact_radius = problem%lateral*radius_of_gap(contact_level_of(problem), grid, state)
     record%stable = stable
     ! What is not an equilibrium is neither stable nor unstable.
     if (.not. converged) record%stable = stable_unasked
@@ -95,5 +94,13 @@ contains
     record%iterations = state%iterations
     record%converged = converged
   end function record_of
+
+  !> The gap up to which bodies are in contact, law's lengths; below any where nothing says so.
+  pure real(wp) function contact_level_of(problem) result(level)
+    type(problem_t), intent(in) :: problem
+
+    level = -huge(1.0_wp)
+    if (problem%law%rest_gap > 0) level = contact_gap*problem%law%rest_gap
+  end function contact_level_of
 
 end module records

@@ -11,7 +11,7 @@ module dimensionless_problem
   implicit none
   private
   public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
-    surface_energy, largest_tension, calm_gap
+    surface_energy, largest_tension, calm_gap, yielding_gap
 
   type :: problem_t
     class(force_law_t), allocatable :: law
@@ -73,26 +73,36 @@ contains
     tabor_parameter = (4*(problem%coupling*problem%law%adhesion)**2)**(1.0_wp/3)
   end function tabor_parameter
 
-  !> A gap beyond which bodies hardly deform. Over the zone of width sqrt(gap) in which they interact
-  !> the law's slope there makes them yield by coupling*slope*sqrt(gap) of their gap, times some
-  !> number; at (37), the gap of the jump into contact under an r^-3 attraction, that is one. Twice
-  !> that gap for such an attraction; for any that attracts, where about a tenth of it is left.
+  !> A gap beyond which bodies hardly deform: twice that of the jump into contact under an r^-3
+  !> attraction, (37); for any law that attracts, where about a tenth of what a jump takes is left.
   pure real(wp) function calm_gap(problem) result(gap)
     type(problem_t), intent(in) :: problem
-    real(wp), parameter :: at_jump = 27.0_wp/8, left = 1.0_wp/8
+
+    gap = max(5.0_wp, 2*(27*problem%coupling*problem%law%adhesion)**(2.0_wp/7), &
+      yielding_gap(problem, 1.0_wp/8))
+  end function calm_gap
+
+  !> The largest gap at which bodies yield by more than the part `left` of what makes them jump into
+  !> contact; 0 where they never do. Over the zone of width sqrt(gap) in which they interact the
+  !> law's slope makes them yield by coupling*slope*sqrt(gap) of their gap, times some number; at
+  !> (37), the gap of the jump under an r^-3 attraction, that is one.
+  pure real(wp) function yielding_gap(problem, left) result(gap)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: left
+    real(wp), parameter :: at_jump = 27.0_wp/8
     !> Ratio of gaps that are tried, and their number: to 1e6 lengths.
     real(wp), parameter :: ratio = 1.05_wp
     integer, parameter :: tried = 284
     real(wp) :: at(tried)
     integer :: i, last
 
-    gap = max(5.0_wp, 2*(27*problem%coupling*problem%law%adhesion)**(2.0_wp/7))
+    gap = 0
     if (.not. problem%law%adhesion > 0) return
     at = [(ratio**i, i=1, tried)]
     last = findloc(at_jump*problem%coupling*abs(problem%law%slope(at))*sqrt(at) > left, .true., 1, &
       back=.true.)
-    if (last > 0) gap = max(gap, at(last))
-  end function calm_gap
+    if (last > 0) gap = at(last)
+  end function yielding_gap
 
   !> gamma [J/m^2], the work of adhesion; 0 for a law that does not attract, negative where contact
   !> is only metastable.

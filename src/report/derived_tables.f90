@@ -3,15 +3,19 @@ module derived_tables
   use dimensionless_problem, only: problem_t
   use experiment, only: path_start
   use scene_groups, only: scene_t
+  use experiment_result, only: experiment_result_t
   use records, only: theory_row_t
   use namelist_writer, only: line_t
   use tables, only: cells
   use results, only: results_t
   use classical_rows, only: rows_of_classical
   use approximation_tables, only: approximation_rows
+  use device_rows, only: device_columns, jump_columns, device_lines, jump_lines
+  use fixed_load_rows, only: fixed_load_columns, fixed_load_lines
+  use table_rows, only: table_columns, table_lines
   implicit none
   private
-  public :: write_derived_tables, theory_columns
+  public :: write_derived_tables, write_path_tables, theory_columns
 
   !> Columns of classical.csv and approximations.csv.
   character(len=*), parameter :: theory_columns(*) = [character(len=96) :: &
@@ -35,6 +39,25 @@ contains
       theory_columns, &
       theory_lines(approximation_rows(problem, scene%approximations, path_start(scene, problem))))
   end subroutine write_derived_tables
+
+  !> Writes those that are read from the path.
+  subroutine write_path_tables(problem, outcome, results)
+    type(problem_t), intent(in) :: problem
+    type(experiment_result_t), intent(in) :: outcome
+    type(results_t), intent(inout) :: results
+
+    if (.not. allocated(outcome%readings)) return
+    associate (readings => outcome%readings)
+      if (allocated(readings%device)) then
+        call results%write_table('device.csv', device_columns, device_lines(problem, readings))
+        call results%write_table('device_jumps.csv', jump_columns, jump_lines(problem, readings))
+      end if
+      if (allocated(readings%loaded)) call results%write_table('fixed_load.csv', &
+        fixed_load_columns, fixed_load_lines(problem, readings%loaded))
+      if (allocated(readings%prescribed)) call results%write_table('table.csv', table_columns, &
+        table_lines(problem, readings))
+    end associate
+  end subroutine write_path_tables
 
   !> Rows of a theory as lines of its table.
   pure function theory_lines(rows) result(lines)

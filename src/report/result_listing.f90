@@ -5,6 +5,9 @@ module result_listing
   use result_rows, only: row_t, rows, in_summary, in_cost
   use curve_rows, only: curve_columns, stability_columns
   use derived_tables, only: theory_columns
+  use device_rows, only: device_columns, jump_columns
+  use fixed_load_rows, only: fixed_load_columns
+  use table_rows, only: table_columns
   use profiles, only: profile_columns, unlike_columns
   implicit none
   private
@@ -37,6 +40,18 @@ contains
       case ('classical.csv')
         call heading('with &classical', theories)
         call list_columns(unit, theory_columns, '')
+      case ('device.csv')
+        call heading('with &device', 'One row for each equilibrium, for each stiffness.')
+        call list_columns(unit, device_columns, '')
+      case ('device_jumps.csv')
+        call heading('with &device', 'One row for each jump, for each stiffness.')
+        call list_columns(unit, jump_columns, '')
+      case ('fixed_load.csv')
+        call heading('with &fixed_load', 'One row for each equilibrium, for each load.')
+        call list_columns(unit, fixed_load_columns, '')
+      case ('table.csv')
+        call heading('with &table', 'One row for each stable state, in and out.')
+        call list_columns(unit, table_columns, '')
       case ('sweep.csv')
         call heading('with &sweep', 'One row for each value of the key: the value, then the ' // &
           'entries of &summary marked "in sweep.csv".')

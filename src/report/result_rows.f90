@@ -10,7 +10,7 @@ module result_rows
   !> When a row is a column of sweep.csv: never, always, with a group of the deck, with forces that
   !> are not the paper's, or once for each turning point.
   character(len=*), parameter :: never = '', always = 'always', classical = 'classical', &
-    approximations = 'approximations', forces = '(forces)', turning = 'unloading'
+    approximations = 'approximations', regime = 'regime', forces = '(forces)', turning = 'unloading'
 
   !> Key, unit and meaning; a list has one value a turning point, fold, profile or the like.
   type :: row_t
@@ -90,6 +90,41 @@ module result_rows
     row_t('load_folds_load_error', 'N', 'estimated error of load_folds_load', list=.true.), &
     row_t('energy_lost', 'J', 'energy lost in the jumps of a cycle', always), &
     row_t('energy_lost_uncertainty', 'J', 'estimated error of energy_lost'), &
+    row_t('path_traced_h0', 'm', 'h0 from which the path was traced for what is read from it'), &
+    row_t('path_undeformed_h0', 'm', &
+      'h0 from which bodies were taken as undeformed, as far as path_traced_h0'), &
+    row_t('device_stiffness', 'N/m', &
+      'stiffness of each spring; 0: dead load; Infinity: h0 is prescribed', list=.true.), &
+    row_t('device_jump_in_z', 'm', 'position of the drive at the first jump of each approach', &
+      list=.true.), &
+    row_t('device_jump_in_load', 'N', 'load just before it', list=.true.), &
+    row_t('device_jump_in_load_after', 'N', 'load just after it', list=.true.), &
+    row_t('device_jump_out_z', 'm', 'position of the drive at the first jump of each retreat', &
+      list=.true.), &
+    row_t('device_jump_out_load', 'N', 'load just before it', list=.true.), &
+    row_t('device_jump_out_load_after', 'N', 'load just after it', list=.true.), &
+    row_t('device_energy_lost', 'J', &
+      'energy lost in all jumps of each cycle, bodies and spring', list=.true.), &
+    row_t('device_cycle_energy', 'J', &
+      'the same as the area between approach and retreat', list=.true.), &
+    row_t('device_energy_uncertainty', 'J', 'difference of the two, and rounding', &
+      list=.true.), &
+    row_t('fixed_load', 'N', 'loads whose equilibria were looked for', list=.true.), &
+    row_t('fixed_load_equilibria', '', 'number of equilibria under each', list=.true.), &
+    row_t('fixed_load_stable', '', 'number of them that are stable', list=.true.), &
+    row_t('regime_tabor', '', 'Tabor''s parameter with the length of the law', regime), &
+    row_t('regime_tabor_range', '', &
+      'Tabor''s parameter with the range, surface energy over largest tension', regime), &
+    row_t('regime_maugis_lambda', '', 'Maugis'' parameter', regime), &
+    row_t('regime_load_number', '', &
+      'load of the last state over pi times surface energy times radius', regime), &
+    row_t('regime_error_hertz', '', &
+      'relative errors of Hertz theory: pull-off, contact radius, indentation', list=.true.), &
+    row_t('regime_error_jkr', '', 'the same of JKR theory', list=.true.), &
+    row_t('regime_error_dmt', '', 'the same of DMT theory', list=.true.), &
+    row_t('regime_error_maugis', '', 'the same of Maugis-Dugdale theory', list=.true.), &
+    row_t('regime_recommended', '', 'theory with the smallest largest error, or none'), &
+    row_t('regime_reason', '', 'why, in words'), &
     row_t('end_h0', 'm', &
       'h0 of the last equilibrium of the loading; without a loading, of the path', always), &
     row_t('end_displacement', 'm', 'displacement of the last equilibrium', always), &

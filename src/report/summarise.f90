@@ -14,6 +14,9 @@ module summarise
   use path_summary, only: summarise_path
   use classical_rows, only: summarise_classical
   use approximation_tables, only: summarise_approximations
+  use device_rows, only: summarise_device
+  use fixed_load_rows, only: summarise_fixed_loads
+  use regime_rows, only: summarise_regime
   use quality_warnings, only: judge_resolution, judge_accuracy, judge_stopping
   implicit none
   private
@@ -37,6 +40,8 @@ contains
     call describe_numerics(outcome, summary)
     call summarise_branches(scene, problem, outcome, summary)
     if (allocated(outcome%path)) call summarise_path(problem, outcome%path, summary)
+    if (allocated(outcome%readings)) call take_readings(scene, problem, outcome, summary)
+    if (allocated(scene%regime)) call summarise_regime(problem, outcome, summary)
     call take_energy(problem, outcome, summary)
     call take_end(problem, outcome, summary)
     if (.not. problem%rigid) call judge_resolution(summary)
@@ -92,6 +97,25 @@ contains
     end if
     if (.not. problem%law%of_paper) call take_forces(problem, summary)
   end subroutine describe_problem
+
+  !> What was read from the path.
+  subroutine take_readings(scene, problem, outcome, summary)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(experiment_result_t), intent(in) :: outcome
+    type(summary_t), intent(inout) :: summary
+
+    associate (readings => outcome%readings)
+      call summary%set('path_traced_h0', problem%law%separation_of(readings%traced_from))
+      if (readings%undeformed_from > readings%traced_from) call summary%set( &
+        'path_undeformed_h0', problem%law%separation_of(readings%undeformed_from))
+      if (.not. readings%solved) &
+        call summary%fail_with('not all that is read from the path was solved')
+      if (allocated(readings%device)) call summarise_device(problem, readings, summary)
+      if (allocated(readings%loaded)) call summarise_fixed_loads(problem, scene%fixed_load%load, &
+        readings%loaded, summary)
+    end associate
+  end subroutine take_readings
 
   !> The energy lost in the cycle.
   subroutine take_energy(problem, outcome, summary)

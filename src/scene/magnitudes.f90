@@ -37,6 +37,10 @@ contains
       farthest = max(farthest, abs(scene%path%h0_end))
       if (allocated(scene%path%h0_start)) farthest = max(farthest, abs(scene%path%h0_start))
     end if
+    if (allocated(scene%device)) then
+      if (allocated(scene%device%z_start)) farthest = max(farthest, abs(scene%device%z_start))
+      if (allocated(scene%device%z_end)) farthest = max(farthest, abs(scene%device%z_end))
+    end if
     if (allocated(scene%classical)) call include_range(scene%classical%h0_start, &
       scene%classical%h0_end)
     if (allocated(scene%approximations)) call include_range(scene%approximations%h0_start, &

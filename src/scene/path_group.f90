@@ -6,7 +6,7 @@ module path_group
   use scene_groups, only: scene_t
   implicit none
   private
-  public :: path_keys, take_path
+  public :: path_keys, take_path, check_path
 
 contains
 
@@ -45,5 +45,18 @@ contains
                           ' is not above h0_end = ' // brief(path%h0_end) // ' m', error)
     end associate
   end subroutine take_path
+
+  !> Complains where a group that is read from the path has none, or one without jumps.
+  subroutine check_path(scene, group, error)
+    type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: group
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (.not. allocated(scene%path)) then
+      call scene%deck%mistake(group, '', 'needs &equilibrium_path', error)
+    else if (scene%bodies%rigid .or. .not. scene%law%adhesion > 0) then
+      call scene%deck%mistake(group, '', 'needs elastic bodies and a force that attracts', error)
+    end if
+  end subroutine check_path
 
 end module path_group

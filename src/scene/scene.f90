@@ -10,6 +10,10 @@ module scene
   use bodies_group, only: take_bodies
   use cycle_groups, only: take_loading, take_unloading
   use path_group, only: take_path
+  use device_group, only: take_device
+  use fixed_load_group, only: take_fixed_load
+  use table_group, only: take_table
+  use regime_group, only: take_regime
   use profiles_group, only: take_profiles
   use theory_groups, only: take_theories
   use stability_group, only: take_stability
@@ -61,6 +65,10 @@ contains
     call take_unloading(scene, error)
     call take_path(scene, error)
     if (allocated(error)) return
+    call take_device(scene, error)
+    call take_fixed_load(scene, error)
+    call take_table(scene, error)
+    call take_regime(scene, error)
     call take_profiles(scene, error)
     call take_theories(scene, error)
     call take_stability(scene, error)

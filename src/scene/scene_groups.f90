@@ -7,7 +7,7 @@ module scene_groups
   use force_law, only: force_law_t
   implicit none
   private
-  public :: scene_t, bodies_t, range_t, stability_t, sweep_t
+  public :: scene_t, bodies_t, range_t, stability_t, regime_t, sweep_t
 
   !> &bodies
   type :: bodies_t
@@ -32,6 +32,10 @@ module scene_groups
   type :: stability_t
   end type stability_t
 
+  !> &regime has no keys.
+  type :: regime_t
+  end type regime_t
+
   !> &sweep: the key as 'group.key' and every value it takes, however they were given.
   type :: sweep_t
     character(len=:), allocatable :: key
@@ -48,6 +52,7 @@ module scene_groups
     class(force_law_t), allocatable :: law
     type(range_t), allocatable :: approximations, classical
     type(stability_t), allocatable :: stability
+    type(regime_t), allocatable :: regime
     type(sweep_t), allocatable :: sweep
   contains
     procedure :: has_curve

@@ -7,6 +7,10 @@ module scene_keys
   use bodies_group, only: bodies_keys
   use cycle_groups, only: cycle_keys
   use path_group, only: path_keys
+  use device_group, only: device_keys
+  use fixed_load_group, only: fixed_load_keys
+  use table_group, only: table_keys
+  use regime_group, only: regime_keys
   use profiles_group, only: profiles_keys
   use theory_groups, only: theory_keys
   use stability_group, only: stability_keys
@@ -30,6 +34,10 @@ contains
       keys_of_laws(), &
       cycle_keys(), &
       path_keys(), &
+      device_keys(), &
+      fixed_load_keys(), &
+      table_keys(), &
+      regime_keys(), &
       profiles_keys(), &
       theory_keys(), &
       stability_keys(), &

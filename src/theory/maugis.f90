@@ -15,7 +15,14 @@ module maugis
   private
   public :: lennard_jones_strength, maugis_lambda
   public :: maugis_edge_ratio, maugis_radius_at_edge_ratio
+  public :: maugis_units_t, maugis_units
   public :: maugis_load, maugis_displacement, maugis_radius_at_displacement, maugis_pull_off
+  public :: maugis_radius_at_load
+
+  !> Maugis' units [N, m, m], in which JKR theory is one curve.
+  type :: maugis_units_t
+    real(wp) :: load = 1, radius = 1, displacement = 1
+  end type maugis_units_t
 
   !> Of which a least value is looked for.
   integer, parameter :: of_load = 1, of_displacement = 2
@@ -122,6 +129,39 @@ contains
     end do
     contact_radius = unit*bracket%high
   end function maugis_radius_at_displacement
+
+  !> Contact radius [m] at a load [N] > 0, at which there is one state.
+  elemental function maugis_radius_at_load(load, radius, stiffness, surface_energy, strength) &
+    result(contact_radius)
+    real(wp), intent(in) :: load, radius, stiffness, surface_energy, strength
+    real(wp) :: contact_radius, lambda, unit, wanted
+    type(bracket_t) :: bracket
+
+    contact_radius = ieee_value(contact_radius, ieee_quiet_nan)
+    if (.not. load > 0) return
+    lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
+    unit = unit_length(radius, stiffness, surface_energy)
+    wanted = load/(pi*surface_energy*radius)
+    bracket = bracket_t(0.0_wp, 1.0_wp)
+    do while (scaled_load(bracket%high, lambda) < wanted)
+      bracket%low = bracket%high
+      bracket%high = 2*bracket%high
+    end do
+    do while (bracket%is_open())
+      call bracket%narrow(scaled_load(bracket%middle(), lambda) < wanted)
+    end do
+    contact_radius = unit*bracket%high
+  end function maugis_radius_at_load
+
+  !> Maugis' units.
+  elemental function maugis_units(radius, stiffness, surface_energy) result(units)
+    real(wp), intent(in) :: radius, stiffness, surface_energy
+    type(maugis_units_t) :: units
+
+    units%load = pi*surface_energy*radius
+    units%radius = unit_length(radius, stiffness, surface_energy)
+    units%displacement = units%radius**2/radius
+  end function maugis_units
 
   !> The least P (`of_load`) or D (`of_displacement`) over all A, and where.
   pure subroutine find_least(quantity, lambda, a, least)

@@ -26,7 +26,22 @@ REFUSED = {
     "mixing limit zero": (with_extra("&numerics mixing_limit = 0 /"), 4, "numerics",
                           "mixing_limit", "> 0 and <= 1"),
     "negative step": (GOOD.replace("0.05e-9", "-0.05e-9"), 3, "loading", "h0_step", "> 0 m"),
+    "negative spring": (with_extra("&equilibrium_path /\n&device stiffness = 1, -1 /"), 5, "device",
+                        "stiffness", ">= 0 N/m"),
     # keys against each other
+    "device without a path": (with_extra("&device stiffness = 1 /"), 4, "device", "",
+                              "needs &equilibrium_path"),
+    "regime of rigid bodies": (
+        GOOD.replace("stiffness = 1.0e10", "rigid = T") + "&equilibrium_path /\n&regime /", 5,
+        "regime", "", "elastic bodies"),
+    "table of bodies that repel": (
+        GOOD.replace("/\n&load", ", part = 'repulsive' /\n&load") + "&equilibrium_path /\n&table /",
+        5, "table", "", "a force that attracts"),
+    "device upwards": (
+        with_extra("&equilibrium_path /\n&device z_start = 1e-9,\n z_end = 2e-9 /"), 5, "device",
+        "z_start", "not above z_end"),
+    "no load": (with_extra("&equilibrium_path /\n&fixed_load /"), 5, "fixed_load", "load",
+                "missing"),
     "no stiffness": (with_bodies("radius = 1 /"), 1, "bodies", "stiffness", "give one of"),
     "rigid false alone": (with_bodies("radius = 1, rigid = .false. /"), 1, "bodies", "stiffness",
                           "give one of"),

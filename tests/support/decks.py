@@ -14,6 +14,10 @@ FULL = """! every group at once
 &loading   h0_start = 7e-9, h0_end = -2e-9, h0_step = 0.05e-9 /
 &unloading from = 1e-9, -2e-9, h0_end = 7e-9, h0_step = 0.05e-9 /
 &equilibrium_path h0_start = 6e-9, h0_end = -2e-9 /
+&device    stiffness = 1e5, 0, z_start = 8e-9, z_end = -1e-9 /
+&fixed_load load = 0, -1e-4 /
+&table /
+&regime /
 &profiles  h0 = 4.3e-9, 3.6e-9 /
 &approximations count = 50 /
 &classical /
@@ -73,6 +77,7 @@ ACCEPTED = {
     + "&equilibrium_path h0_end = -2e-9 / &classical /\n",
     "classical alone": BODIES + FORCE + "&classical h0_start = 1e-9, h0_end = -1e-9 /\n",
     "approximations alone": BODIES + FORCE + "&approximations h0_start = 2e-9, h0_end = 1e-9 /\n",
+    "a device that prescribes h0": BODIES + FORCE + "&equilibrium_path h0_end = -2e-9 / &device /\n",
     "profiles on a path": BODIES + FORCE
     + "&equilibrium_path h0_end = -2e-9 / &profiles h0 = 1e-9 /\n",
     "sweep by values": GOOD + "&sweep key = 'bodies.radius', values = 1e-3, 2e-3, 1e-2 /\n",

@@ -29,6 +29,7 @@ DECKS = {
     + "&loading h0_start = 4e-9, h0_end = 1e-9, h0_step = 1e-9 /\n&profiles h0 = 1e-9 /\n",
     "sweep": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n"
     "&sweep key = 'force.hamaker', values = 1e-21, 1e-20 /\n",
+    "regime": BODIES + FORCE + "&equilibrium_path h0_end = -1e-9 /\n&regime /\n",
     "theories": BODIES + FORCE + "&classical h0_start = 1e-9, h0_end = -1e-9 /\n",
 }
 
@@ -106,6 +107,12 @@ def test_a_picture_appears_in_the_folder(plot, results, script, deck):
     assert 2e4 < picture.stat().st_size < 3e5
 
 
+def test_the_map_of_theories_shows_the_scene(plot, results):
+    done = plot("regime.py", results / "regime")
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr
+    assert size_of(results / "regime" / "regime.png") == (930, 690)
+
+
 def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):
     done = plot("profiles.py", results / "cycle", "-o", "here.png", "--dpi", 300, "--branch",
                 "unloading_2")
@@ -119,6 +126,7 @@ def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):
         (("force_curve.py", "nowhere"), "no such folder"),
         (("force_curve.py", "theories"), "no curve.csv in .*neither &loading nor"),
         (("force_curve.py", "sweep"), "no curve.csv in .*&sweep"),
+        (("regime.py", "theories"), "deck needs &regime"),
         (("profiles.py", "theories"), "no profiles.csv in .*no &profiles group"),
         (("profiles.py", "cycle", "--branch", "path"), "loading, unloading_1, unloading_2"),
         (("force_curve.py", "cycle", "-o", "no/such/folder.png"), "no/such"),

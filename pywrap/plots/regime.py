@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""The scene as a point on the map of theories of Johnson and Greenwood, from a deck with &regime.
+
+    .venv/bin/python pywrap/plots/regime.py results/regime
+"""
+
+import numpy as np
+from drawing import GREY, VERMILION, run, title_of
+from matplotlib.figure import Figure
+from snapin.results import ResultsError, read_summary
+
+# Limits of K. L. Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 326 (1997): elastic
+# deformation over the length of the law, share of adhesion in the load, and Maugis' parameter.
+_RIGID, _SHARE, _DMT, _JKR = 0.05, 0.05, 0.1, 5.0
+# lambda over Tabor's parameter, for Lennard-Jones.
+_OF_TABOR = 1.157
+# Ends of the axes, unless the scene is farther out.
+_LAMBDA, _LOAD = (1e-3, 1e2), (1e-2, 1e5)
+
+
+def draw_regime(folder):
+    """Return a figure of the map with the scene in `folder` on it."""
+    summary = read_summary(folder)
+    if "regime_recommended" not in summary:
+        raise ResultsError(f"{folder}/summary.nml has no regime; the deck needs &regime")
+    x, load = summary["regime_maugis_lambda"], summary["regime_load_number"]
+    wide = np.array([min(_LAMBDA[0], x / 3), max(_LAMBDA[1], 3 * x)])
+    high = np.array([_LOAD[0], max(_LOAD[1], 3 * load)])
+
+    figure = Figure(figsize=(6.2, 4.6), layout="constrained")
+    axes = figure.subplots()
+    axes.set(xscale="log", yscale="log", xlim=wide, ylim=high,
+             xlabel=r"Maugis' parameter $\lambda$", ylabel=r"load number $F/\pi w R$")
+    axes.spines[["top", "right"]].set_visible(False)
+    line = {"color": GREY, "linewidth": 1.0}
+    hertz = [_hertz_load(_SHARE, jkr=False), _hertz_load(_SHARE, jkr=True)]
+    axes.plot([wide[0], _DMT, _JKR, wide[1]], [hertz[0], *hertz, hertz[1]], **line)
+    axes.vlines([_DMT, _JKR], high[0], hertz, **line)
+    at = np.geomspace(*wide, 200)
+    axes.plot(at, _rigid_load(at / _OF_TABOR), **line)
+    for text, place in (("Hertz", (0.6, 2e4)), ("JKR", (22, 1)), ("Maugis–Dugdale", (0.7, 0.08)),
+                        ("DMT", (0.045, 1)), ("rigid", (4e-3, 1))):
+        axes.annotate(text, place, color=GREY, ha="center", va="center", fontsize=11)
+    # Where the load is a tension the scene lies below the map.
+    shown = max(load, high[0] * 1.2)
+    axes.plot(x, shown, marker="o" if load > high[0] else "v", color=VERMILION, markersize=9)
+    axes.annotate(_advice(summary), (x, shown), (0, 12), textcoords="offset points", color=VERMILION,
+                  ha="center", weight="bold")
+    figure.suptitle(title_of(folder, summary))
+    return figure
+
+
+def _advice(summary):
+    """Return the theory that the program recommends, in words."""
+    name = summary["regime_recommended"]
+    return "here no theory" if name == "none" else "here " + {"maugis": "Maugis"}.get(name, name.upper())
+
+
+def _hertz_load(share, jkr):
+    """Return the load number at which adhesion is this share of the load that presses."""
+    if not jkr:
+        return 2 / share - 2
+    # Of the F + s that presses, s = 3 + sqrt(6 F + 9) is adhesion; with F = s (1/share - 1) that is
+    # s = 6/share.
+    return 6 / share * (1 / share - 1)
+
+
+def _rigid_load(tabor):
+    """Return the load number that deforms bodies by the limit for rigid ones; NaN for none.
+
+    Hertz theory under load and adhesion, F + 2 pi w R: over the length of the law it deforms by
+    1.7707 mu (load number + 2)^(2/3).
+    """
+    load = (_RIGID / (1.7707 * tabor)) ** 1.5 - 2
+    return np.where(load > 0, load, np.nan)
+
+
+if __name__ == "__main__":
+    run(draw_regime, "regime.png", "Draw the scene on the map of theories of contact.")

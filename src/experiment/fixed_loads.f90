@@ -1,0 +1,55 @@
+!> All equilibria under given loads, stable or not, wherever they are on the path.
+module fixed_loads
+  use kinds, only: wp
+  use equilibrium, only: equations_t
+  use known_path, only: known_path_t
+  use curve_states, only: curve_solver_t, curve_state_t
+  use driven_pieces, only: turning_places
+  implicit none
+  private
+  public :: loaded_state_t, find_loaded
+
+  !> An equilibrium under a load (units of `dimensionless_problem`). It is stable at fixed load where
+  !> no mode is unstable at fixed h0 and dF/dh0 < 0.
+  type :: loaded_state_t
+    real(wp) :: wanted = 0
+    type(curve_state_t) :: state
+    logical :: stable = .false.
+  end type loaded_state_t
+
+  real(wp), parameter :: of_load(2) = [0.0_wp, 1.0_wp]
+
+contains
+
+  !> Adds the equilibria under a load in the order of the path, from afar inward. solved = .false.:
+  !> one was not found.
+  subroutine find_loaded(solver, equations, known, load, list, solved)
+    type(curve_solver_t), intent(inout) :: solver
+    type(equations_t), intent(inout) :: equations
+    type(known_path_t), intent(in) :: known
+    real(wp), intent(in) :: load
+    type(loaded_state_t), allocatable, intent(inout) :: list(:)
+    logical, intent(inout) :: solved
+    type(loaded_state_t) :: found
+    real(wp), allocatable :: edges(:), beyond(:)
+    integer :: i, k
+
+    found%wanted = load
+    do i = 1, size(solver%curve%interval)
+      associate (begin => solver%curve%begin_of(i), end => solver%curve%end_of(i))
+        edges = [begin%x, turning_places(solver%curve, i, of_load), end%x]
+      end associate
+      beyond = [(solver%curve%value(i, of_load, edges(k)) - load, k=1, size(edges))]
+      do k = 1, size(edges) - 1
+        if ((beyond(k) < 0) .eqv. (beyond(k + 1) < 0)) cycle
+        call solver%root_of(equations, known, i, of_load, edges(k), edges(k + 1), found%state, load)
+        solved = solved .and. found%state%converged
+        if (.not. found%state%converged) cycle
+        ! Inward h0 falls along what is stable at fixed h0.
+        found%stable = found%state%modes == 0 .and. found%state%slopes(2) > 0
+        list = [list, found]
+      end do
+    end do
+  end subroutine find_loaded
+
+end module fixed_loads

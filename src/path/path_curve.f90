@@ -1,0 +1,225 @@
+!> h0 and load along the whole equilibrium path as one piecewise smooth curve: through the points of
+!> the traced path with their exact slopes, and farther out through undeformed bodies. Between the
+!> points it is a polynomial that fits values and slopes of up to four of them; it says where on the
+!> path something happens, and the state there is then solved (`curve_states`).
+module path_curve
+  use kinds, only: wp
+  use interpolation, only: hermite_value, hermite_slope
+  use equilibrium, only: state_t, equations_t, radius_of_gap
+  use frozen_jacobian, only: frozen_jacobian_t
+  use edge_locked, only: approach
+  use continuation, only: path_control
+  use path_slopes, only: slopes_along_path
+  use known_path, only: known_path_t
+  use undeformed, only: load_undeformed, load_slope_undeformed
+  implicit none
+  private
+  public :: curve_t, curve_node_t, curve_interval_t, new_curve, along_curve, beyond_mesh
+
+  !> A node that no mesh knows: the bodies are undeformed.
+  integer, parameter :: beyond_mesh = 0
+  !> Ratio of h0 between such nodes.
+  real(wp), parameter :: outer_ratio = 1.12_wp
+  !> A neighbour nearer to an interval than this part of its width makes the polynomial worse.
+  real(wp), parameter :: well_apart = 0.1_wp
+
+  !> An equilibrium of the path. x is the path's coordinate (`continuation`) with the sign that
+  !> makes it grow from afar inward, for undeformed bodies -log(h0); slopes are by x.
+  type :: curve_node_t
+    integer :: mesh = beyond_mesh
+    real(wp) :: x = 0, h0 = 0, load = 0, h0_slope = 0, load_slope = 0
+    !> Up to where bodies are in contact, lateral units; gap on the axis.
+    real(wp) :: radius = 0, axis_gap = 0
+    !> The point of the path that it is; 0 beyond.
+    integer :: point = 0
+  end type curve_node_t
+
+  !> From node `left` to the next, on one mesh; modes of the bodies that are unstable at fixed h0.
+  type :: curve_interval_t
+    integer :: left = 0, modes = 0
+  end type curve_interval_t
+
+  !> Nodes run by run: undeformed bodies, the mesh for the approach, the mesh for contact.
+  type :: curve_t
+    !> Up to which gap bodies are in contact.
+    real(wp) :: contact_gap = 0
+    type(curve_node_t), allocatable :: node(:)
+    type(curve_interval_t), allocatable :: interval(:)
+  contains
+    procedure :: value
+    procedure :: slope
+    procedure :: begin_of
+    procedure :: end_of
+    procedure, private :: support
+  end type curve_t
+
+contains
+
+  !> The curve of a path, with undeformed bodies from h0 = `farthest` inward if that is beyond its
+  !> first point. found = .false.: the slopes at some point do not exist.
+  subroutine new_curve(equations, known, farthest, contact_gap, curve, found)
+    type(equations_t), intent(inout) :: equations
+    type(known_path_t), intent(in) :: known
+    real(wp), intent(in) :: farthest, contact_gap
+    type(curve_t), intent(out) :: curve
+    logical, intent(out) :: found
+    type(frozen_jacobian_t) :: frozen
+    type(curve_node_t) :: node
+    integer :: mesh, i, last
+
+    curve%contact_gap = contact_gap
+    allocate (curve%node(0), curve%interval(0))
+    found = known%path%held > 1
+    if (.not. found) return
+    call add_undeformed(equations, known%path%point(1)%state%h0, farthest, curve)
+    ! What is behind the last stable piece was traced only to find its end.
+    last = known%path%held
+    if (size(known%piece) > 0) last = maxval(known%piece%last)
+    do mesh = 1, size(equations%pair%grid)
+      do i = 1, last
+        call node_of_point(equations, known, i, mesh, contact_gap, frozen, node, found)
+        if (.not. found) return
+        if (node%point > 0) curve%node = [curve%node, node]
+      end do
+    end do
+    do i = 1, last - 1
+      curve%interval = [curve%interval, curve_interval_t(findloc(curve%node%point == i .and. &
+        curve%node%mesh == known%path%mesh_between(i), .true., 1), known%path%point(i)%modes)]
+    end do
+  end subroutine new_curve
+
+  !> Nodes and intervals from `farthest` to h0, if that is nearer.
+  subroutine add_undeformed(equations, h0, farthest, curve)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: h0, farthest
+    type(curve_t), intent(inout) :: curve
+    type(curve_node_t) :: node
+    integer :: i, n
+
+    if (.not. farthest > h0) return
+    n = ceiling(log(farthest/h0)/log(outer_ratio))
+    associate (law => equations%problem%law)
+      do i = 0, n
+        node%h0 = h0*(farthest/h0)**(1 - real(i, wp)/n)
+        node%x = -log(node%h0)
+        node%axis_gap = node%h0
+        node%load = load_undeformed(law, node%h0)
+        node%h0_slope = -node%h0
+        node%load_slope = -node%h0*load_slope_undeformed(law, node%h0)
+        curve%node = [curve%node, node]
+      end do
+    end associate
+    curve%interval = [(curve_interval_t(i, 0), i=1, n)]
+  end subroutine add_undeformed
+
+  !> The node of point i of the path on a mesh; its `point` is 0 where the path has none there.
+  subroutine node_of_point(equations, known, i, mesh, contact_gap, frozen, node, found)
+    type(equations_t), intent(inout) :: equations
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: i, mesh
+    real(wp), intent(in) :: contact_gap
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(curve_node_t), intent(out) :: node
+    logical, intent(out) :: found
+    type(state_t) :: state
+    real(wp) :: s, slopes(2)
+    logical :: there
+
+    found = .true.
+    call known%path%seen_on(i, mesh, state, s, there)
+    if (.not. there) return
+    call along_curve(equations, mesh, s, state, frozen, slopes, found)
+    node = curve_node_t(mesh, inward(mesh)*s, state%h0, state%load, slopes(1), slopes(2), &
+      radius_of_gap(contact_gap, equations%pair%grid(mesh), state), state%axis_gap, i)
+  end subroutine node_of_point
+
+  !> Derivatives of h0 and load by x at an equilibrium with the coordinate s on a mesh.
+  subroutine along_curve(equations, mesh, s, state, frozen, slopes, found)
+    type(equations_t), intent(inout) :: equations
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    type(state_t), intent(in) :: state
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    real(wp), intent(out) :: slopes(2)
+    logical, intent(out) :: found
+
+    call slopes_along_path(equations, path_control(equations%problem, mesh, s), state, frozen, &
+      slopes(1), slopes(2), found)
+    ! The control's value is exp(s) and a constant.
+    slopes = inward(mesh)*exp(s)*slopes
+  end subroutine along_curve
+
+  !> The sign that makes the coordinate of a mesh grow inward.
+  elemental integer function inward(mesh)
+    integer, intent(in) :: mesh
+
+    inward = merge(-1, 1, mesh == approach)
+  end function inward
+
+  !> weights(1) h0 + weights(2) load at x in interval i.
+  pure real(wp) function value(self, i, weights, x)
+    class(curve_t), intent(in) :: self
+    integer, intent(in) :: i
+    real(wp), intent(in) :: weights(2), x
+
+    associate (node => self%node(self%support(i)))
+      value = hermite_value(node%x, weights(1)*node%h0 + weights(2)*node%load, &
+        weights(1)*node%h0_slope + weights(2)*node%load_slope, x)
+    end associate
+  end function value
+
+  !> Its derivative by x.
+  pure real(wp) function slope(self, i, weights, x)
+    class(curve_t), intent(in) :: self
+    integer, intent(in) :: i
+    real(wp), intent(in) :: weights(2), x
+
+    associate (node => self%node(self%support(i)))
+      slope = hermite_slope(node%x, weights(1)*node%h0 + weights(2)*node%load, &
+        weights(1)*node%h0_slope + weights(2)*node%load_slope, x)
+    end associate
+  end function slope
+
+  !> The nodes that the polynomial of interval i fits: its ends and, on the same mesh, the nearest
+  !> on either side that is well apart.
+  pure function support(self, i) result(nodes)
+    class(curve_t), intent(in) :: self
+    integer, intent(in) :: i
+    integer, allocatable :: nodes(:)
+    real(wp) :: least
+    integer :: j
+
+    associate (left => self%interval(i)%left)
+      nodes = [left, left + 1]
+      least = well_apart*(self%node(left + 1)%x - self%node(left)%x)
+      do j = left - 1, max(1, left - 3), -1
+        if (self%node(j)%mesh /= self%node(left)%mesh) exit
+        if (self%node(left)%x - self%node(j)%x < least) cycle
+        nodes = [j, nodes]
+        exit
+      end do
+      do j = left + 2, min(size(self%node), left + 4)
+        if (self%node(j)%mesh /= self%node(left)%mesh) exit
+        if (self%node(j)%x - self%node(left + 1)%x < least) cycle
+        nodes = [nodes, j]
+        exit
+      end do
+    end associate
+  end function support
+
+  !> The node at which an interval begins, and the one at which it ends.
+  pure type(curve_node_t) function begin_of(self, i)
+    class(curve_t), intent(in) :: self
+    integer, intent(in) :: i
+
+    begin_of = self%node(self%interval(i)%left)
+  end function begin_of
+
+  pure type(curve_node_t) function end_of(self, i)
+    class(curve_t), intent(in) :: self
+    integer, intent(in) :: i
+
+    end_of = self%node(self%interval(i)%left + 1)
+  end function end_of
+
+end module path_curve

@@ -1,0 +1,242 @@
+!> Bodies driven through springs: the path against the position of the drive, the ways in and out
+!> with their jumps, and what they leave in the summary.
+module device_rows
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use path_curve, only: curve_t, curve_node_t
+  use curve_states, only: curve_state_t
+  use driven_pieces, only: drive_t
+  use device, only: driven_t, leg_t
+  use path_readings, only: path_readings_t
+  use namelist_writer, only: line_t
+  use tables, only: cells
+  use summary, only: summary_t
+  implicit none
+  private
+  public :: device_columns, jump_columns, device_lines, jump_lines, summarise_device, nodes_between
+
+  !> Columns of device.csv and of device_jumps.csv.
+  character(len=*), parameter :: device_columns(*) = [character(len=96) :: &
+    'stiffness [N/m] of the spring; 0: dead load; Infinity: h0 is prescribed', &
+    'direction [] path: all equilibria; approach and retreat: what the drive goes through', &
+    'z [m] position of the drive, h0 - load/stiffness; NaN under a dead load', &
+    'h0 [m] separation that undeformed bodies would have on the axis', &
+    'load [N] negative: tension', &
+    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
+    'stable [] 1: stable at this z; 0: unstable, or where a jump starts']
+  character(len=*), parameter :: jump_columns(*) = [character(len=96) :: &
+    'stiffness [N/m] of the spring; 0: dead load; Infinity: h0 is prescribed', &
+    'direction [] approach or retreat', &
+    'z [m] position of the drive; NaN under a dead load', &
+    'h0 [m] before the jump', &
+    'load [N] before the jump', &
+    'contact_radius [m] before the jump', &
+    'h0_after [m] NaN where no stable state is known, here and below', &
+    'load_after [N] after the jump', &
+    'contact_radius_after [m] after the jump', &
+    'energy [J] lost in the jump']
+  !> An energy is worth having where the two routes to it differ by less than this part.
+  real(wp), parameter :: known_energy = 1.0e-4_wp
+
+contains
+
+  !> Rows of device.csv.
+  function device_lines(problem, readings) result(lines)
+    type(problem_t), intent(in) :: problem
+    type(path_readings_t), intent(in) :: readings
+    type(line_t), allocatable :: lines(:)
+    integer :: i, k
+
+    allocate (lines(0))
+    do i = 1, size(readings%device)
+      associate (driven => readings%device(i), curve => readings%curve)
+        call add_path(driven)
+        do k = 1, size(driven%leg)
+          call add_leg(driven, driven%leg(k))
+        end do
+      end associate
+    end do
+
+  contains
+
+    !> The whole path.
+    subroutine add_path(driven)
+      type(driven_t), intent(in) :: driven
+      type(curve_node_t) :: node
+      integer :: j, n, modes
+
+      n = size(readings%curve%interval)
+      do j = 1, n + 1
+        node = readings%curve%begin_of(min(j, n))
+        if (j > n) node = readings%curve%end_of(n)
+        modes = maxval(readings%curve%interval(max(1, j - 1):min(j, n))%modes)
+        call add(driven, 'path', node%h0, node%load, node%radius, modes == 0 .and. &
+          dot_product(driven%drive%weights, [node%h0_slope, node%load_slope]) < 0)
+      end do
+    end subroutine add_path
+
+    !> One leg; where a jump starts it is not stable any more.
+    subroutine add_leg(driven, leg)
+      type(driven_t), intent(in) :: driven
+      type(leg_t), intent(in) :: leg
+      character(len=:), allocatable :: direction
+      type(curve_node_t), allocatable :: nodes(:)
+      integer :: j
+
+      direction = direction_of(leg%inward)
+      call add(driven, direction, leg%from%h0, leg%from%load, leg%from%radius, .true.)
+      nodes = nodes_between(readings%curve, leg)
+      do j = 1, size(nodes)
+        call add(driven, direction, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, .true.)
+      end do
+      call add(driven, direction, leg%to%h0, leg%to%load, leg%to%radius, &
+        .not. driven%jumps_after(leg))
+    end subroutine add_leg
+
+    subroutine add(driven, direction, h0, load, radius, stable)
+      type(driven_t), intent(in) :: driven
+      character(len=*), intent(in) :: direction
+      real(wp), intent(in) :: h0, load, radius
+      logical, intent(in) :: stable
+      type(line_t) :: line
+
+      line%text = cells([driven%stiffness]) // ',' // direction // ',' // &
+        cells([z_of(problem, driven%drive, h0, load), problem%law%separation_of(h0), &
+        load*problem%load, radius*problem%lateral]) // merge(',1', ',0', stable)
+      lines = [lines, line]
+    end subroutine add
+
+  end function device_lines
+
+  !> Rows of device_jumps.csv.
+  function jump_lines(problem, readings) result(lines)
+    type(problem_t), intent(in) :: problem
+    type(path_readings_t), intent(in) :: readings
+    type(line_t), allocatable :: lines(:)
+    type(line_t) :: line
+    real(wp) :: after(3)
+    integer :: i, k
+
+    allocate (lines(0))
+    do i = 1, size(readings%device)
+      do k = 1, size(readings%device(i)%jump)
+        associate (driven => readings%device(i), jump => readings%device(i)%jump(k))
+          after = ieee_value(1.0_wp, ieee_quiet_nan)
+          if (jump%landed) after = si_of(problem, jump%after)
+          line%text = cells([driven%stiffness]) // ',' // &
+            direction_of(jump%inward) // ',' // &
+            cells([z_of(problem, driven%drive, jump%before%h0, jump%before%load), &
+            si_of(problem, jump%before), after, jump%energy*problem%load*problem%length])
+        end associate
+        lines = [lines, line]
+      end do
+    end do
+  end function jump_lines
+
+  !> The nodes of the curve that a leg passes, in the order of the leg.
+  pure function nodes_between(curve, leg) result(nodes)
+    type(curve_t), intent(in) :: curve
+    type(leg_t), intent(in) :: leg
+    type(curve_node_t), allocatable :: nodes(:)
+    type(curve_node_t) :: node
+    integer :: i, first, last
+
+    first = min(leg%from%interval, leg%to%interval)
+    last = max(leg%from%interval, leg%to%interval)
+    allocate (nodes(0))
+    do i = first + 1, last
+      node = curve%begin_of(i)
+      nodes = [nodes, node]
+    end do
+    if (.not. leg%inward) nodes = nodes(size(nodes):1:-1)
+  end function nodes_between
+
+  pure function direction_of(inward) result(direction)
+    logical, intent(in) :: inward
+    character(len=:), allocatable :: direction
+
+    direction = 'retreat'
+    if (inward) direction = 'approach'
+  end function direction_of
+
+  !> h0, load and contact radius in SI units.
+  pure function si_of(problem, state) result(values)
+    type(problem_t), intent(in) :: problem
+    type(curve_state_t), intent(in) :: state
+    real(wp) :: values(3)
+
+    values = [problem%law%separation_of(state%h0), state%load*problem%load, &
+      state%radius*problem%lateral]
+  end function si_of
+
+  !> Position of the drive [m].
+  pure real(wp) function z_of(problem, drive, h0, load) result(z)
+    type(problem_t), intent(in) :: problem
+    type(drive_t), intent(in) :: drive
+    real(wp), intent(in) :: h0, load
+
+    z = ieee_value(z, ieee_quiet_nan)
+    if (drive%weights(1) > 0) z = problem%law%separation_of(h0 + drive%weights(2)*load)
+  end function z_of
+
+  !> What the drives leave in the summary, an element for each stiffness: the first jump of each
+  !> way, and the energy.
+  subroutine summarise_device(problem, readings, summary)
+    type(problem_t), intent(in) :: problem
+    type(path_readings_t), intent(in) :: readings
+    type(summary_t), intent(inout) :: summary
+    real(wp) :: unit
+
+    unit = problem%load*problem%length
+    associate (device => readings%device)
+      call summary%set('device_stiffness', device%stiffness)
+      call take_jumps('device_jump_in', .true.)
+      call take_jumps('device_jump_out', .false.)
+      call summary%set('device_energy_lost', device%energy_lost*unit)
+      call summary%set('device_cycle_energy', device%cycle_energy*unit)
+      call summary%set('device_energy_uncertainty', uncertainty(device)*unit)
+      if (.not. all(device%caught)) call summary%warn('device: no stable state is known ' // &
+        'that catches the bodies after a jump; see device_jumps.csv')
+      if (any(uncertainty(device) > known_energy*abs(device%energy_lost))) call summary%warn('device: ' // &
+        'the energy lost in jumps is not the area of the cycle; a smaller accuracy may help')
+    end associate
+
+  contains
+
+    subroutine take_jumps(name, inward)
+      character(len=*), intent(in) :: name
+      logical, intent(in) :: inward
+      real(wp), dimension(size(readings%device)) :: z, before, after
+      integer :: k, first
+
+      z = ieee_value(1.0_wp, ieee_quiet_nan)
+      before = z
+      after = z
+      do k = 1, size(readings%device)
+        associate (driven => readings%device(k))
+          first = findloc(driven%jump%inward, inward, 1)
+          if (first == 0) cycle
+          associate (jump => driven%jump(first))
+            z(k) = z_of(problem, driven%drive, jump%before%h0, jump%before%load)
+            before(k) = jump%before%load*problem%load
+            if (jump%landed) after(k) = jump%after%load*problem%load
+          end associate
+        end associate
+      end do
+      call summary%set(name // '_z', z)
+      call summary%set(name // '_load', before)
+      call summary%set(name // '_load_after', after)
+    end subroutine take_jumps
+
+  end subroutine summarise_device
+
+  !> How well the energy lost is known: the two routes to it share the states where jumps start and
+  !> end, but one takes the energy of these and the other the load on the way between them.
+  elemental real(wp) function uncertainty(driven)
+    type(driven_t), intent(in) :: driven
+
+    uncertainty = abs(driven%energy_lost - driven%cycle_energy) + driven%uncertainty
+  end function uncertainty
+
+end module device_rows

@@ -1,0 +1,60 @@
+!> Equilibria under given loads, as rows of a table and numbers of the summary.
+module fixed_load_rows
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use fixed_loads, only: loaded_state_t
+  use namelist_writer, only: line_t
+  use tables, only: cells
+  use summary, only: summary_t
+  implicit none
+  private
+  public :: fixed_load_columns, fixed_load_lines, summarise_fixed_loads
+
+  !> Columns of fixed_load.csv.
+  character(len=*), parameter :: fixed_load_columns(*) = [character(len=96) :: &
+    'load [N] negative: tension', &
+    'h0 [m] separation that undeformed bodies would have on the axis', &
+    'displacement [m] separation on the axis less h0', &
+    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
+    'stable [] 1: stable under this load; 0: unstable']
+
+contains
+
+  !> Rows of fixed_load.csv: load by load, each from afar inward.
+  function fixed_load_lines(problem, loaded) result(lines)
+    type(problem_t), intent(in) :: problem
+    type(loaded_state_t), intent(in) :: loaded(:)
+    type(line_t), allocatable :: lines(:)
+    integer :: i
+
+    allocate (lines(size(loaded)))
+    do i = 1, size(loaded)
+      associate (state => loaded(i)%state)
+        lines(i)%text = cells([loaded(i)%wanted*problem%load, &
+          problem%law%separation_of(state%h0), (state%axis_gap - state%h0)*problem%length, &
+          state%radius*problem%lateral]) // merge(',1', ',0', loaded(i)%stable)
+      end associate
+    end do
+  end function fixed_load_lines
+
+  !> How many equilibria each load has, and how many of them are stable.
+  subroutine summarise_fixed_loads(problem, loads, loaded, summary)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: loads(:)
+    type(loaded_state_t), intent(in) :: loaded(:)
+    type(summary_t), intent(inout) :: summary
+    integer :: held(size(loads)), stable(size(loads))
+    integer :: i
+
+    do i = 1, size(loads)
+      associate (same => abs(loaded%wanted - loads(i)/problem%load) <= 0)
+        held(i) = count(same)
+        stable(i) = count(same .and. loaded%stable)
+      end associate
+    end do
+    call summary%set('fixed_load', loads)
+    call summary%set('fixed_load_equilibria', held)
+    call summary%set('fixed_load_stable', stable)
+  end subroutine summarise_fixed_loads
+
+end module fixed_load_rows

@@ -1,0 +1,146 @@
+!> Which theory of contact describes a scene: the parameters that say so, and the errors of the
+!> theories in pull-off, contact radius and indentation, measured against the solved path.
+module regime_rows
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: wp, pi
+  use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
+  use edge_locked, only: contact
+  use classical, only: hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
+    jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
+  use maugis, only: maugis_lambda, maugis_pull_off, maugis_radius_at_load, maugis_displacement
+  use experiment_result, only: experiment_result_t
+  use summary, only: summary_t
+  implicit none
+  private
+  public :: summarise_regime
+
+  character(len=*), parameter :: theories(*) = [character(len=6) :: 'hertz', 'jkr', 'dmt', 'maugis']
+  character(len=*), parameter :: numbers(3) = [character(len=14) :: 'pull-off', 'contact radius', &
+    'indentation']
+  !> A theory that misses more than this is not recommended.
+  real(wp), parameter :: acceptable = 0.1_wp
+
+  !> Pull-off [N], negative; contact radius and indentation [m] at the largest load.
+  type :: measured_t
+    real(wp) :: pull_off = 0, radius = 0, indentation = 0
+  end type measured_t
+
+contains
+
+  !> The contact radius is where the tension is largest, as the theories have it; errors of
+  !> indentations are relative to a^2/R.
+  subroutine summarise_regime(problem, outcome, summary)
+    type(problem_t), intent(in) :: problem
+    type(experiment_result_t), intent(in) :: outcome
+    type(summary_t), intent(inout) :: summary
+    type(measured_t) :: solved
+    real(wp) :: load, errors(3, size(theories)), gamma, strength
+    integer :: i
+    logical :: there
+
+    gamma = surface_energy(problem)
+    strength = largest_tension(problem)
+    call summary%set('regime_tabor', tabor_parameter(problem))
+    call measure(problem, outcome, load, solved, there)
+    if (.not. (there .and. gamma > 0 .and. strength > 0)) then
+      call summary%warn('regime: the path does not end in a contact that theories can be ' // &
+        'compared with')
+      return
+    end if
+    associate (r => problem%radius, y => problem%stiffness)
+      ! With E* = y/2 and the range gamma/strength.
+      call summary%set('regime_tabor_range', (4*r*strength**3/(y**2*gamma))**(1.0_wp/3))
+      call summary%set('regime_maugis_lambda', maugis_lambda(r, y, gamma, strength))
+      call summary%set('regime_load_number', load/(pi*gamma*r))
+      do i = 1, size(theories)
+        errors(:, i) = errors_of(of_theory(trim(theories(i)), load, r, y, gamma, strength), &
+          solved, r)
+        call summary%set('regime_error_' // trim(theories(i)), errors(:, i))
+      end do
+    end associate
+    call recommend(errors, summary)
+  end subroutine summarise_regime
+
+  !> What the path says; there = .false.: it has no pull-off, or no contact at its end.
+  subroutine measure(problem, outcome, load, solved, there)
+    type(problem_t), intent(in) :: problem
+    type(experiment_result_t), intent(in) :: outcome
+    real(wp), intent(out) :: load
+    type(measured_t), intent(out) :: solved
+    logical, intent(out) :: there
+
+    load = 0
+    there = .false.
+    if (.not. allocated(outcome%path)) return
+    associate (path => outcome%path)
+      there = allocated(path%lowest) .and. allocated(path%finish)
+      if (there) there = path%finish%witness%mesh == contact .and. path%lowest%load < 0
+      if (.not. there) return
+      load = path%finish%load*problem%load
+      solved = measured_t(path%lowest%load*problem%load, &
+        path%finish%witness%state%scale*problem%lateral, -path%finish%h0*problem%length)
+    end associate
+  end subroutine measure
+
+  !> What a theory says at a load [N]; NaN where it does not.
+  type(measured_t) function of_theory(name, load, r, y, gamma, strength) result(says)
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: load, r, y, gamma, strength
+
+    select case (name)
+    case ('hertz')
+      says%radius = hertz_radius_at_load(load, r, y)
+      says%indentation = hertz_displacement(says%radius, r)
+    case ('jkr')
+      says%pull_off = jkr_pull_off(r, gamma)
+      says%radius = jkr_radius_at_load(load, r, y, gamma)
+      says%indentation = jkr_displacement(says%radius, r, y, gamma)
+    case ('dmt')
+      says%pull_off = dmt_pull_off(r, gamma)
+      says%radius = dmt_radius_at_load(load, r, y, gamma)
+      says%indentation = hertz_displacement(says%radius, r)
+    case ('maugis')
+      says%pull_off = maugis_pull_off(r, y, gamma, strength)
+      says%radius = maugis_radius_at_load(load, r, y, gamma, strength)
+      says%indentation = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (says%radius > 0) &
+        says%indentation = maugis_displacement(says%radius, r, y, gamma, strength)
+    end select
+  end function of_theory
+
+  pure function errors_of(theory, solved, radius) result(errors)
+    type(measured_t), intent(in) :: theory, solved
+    real(wp), intent(in) :: radius
+    real(wp) :: errors(3)
+
+    errors = [theory%pull_off/solved%pull_off, theory%radius/solved%radius, &
+      1 + (theory%indentation - solved%indentation)*radius/solved%radius**2] - 1
+  end function errors_of
+
+  !> Recommends the theory whose largest error is the smallest, and says why.
+  subroutine recommend(errors, summary)
+    real(wp), intent(in) :: errors(:, :)
+    type(summary_t), intent(inout) :: summary
+    real(wp) :: worst(size(theories))
+    character(len=200) :: reason
+    integer :: i, best, where_worst
+
+    do i = 1, size(theories)
+      worst(i) = maxval(abs(errors(:, i)))
+      ! maxval passes over NaN.
+      if (.not. all(abs(errors(:, i)) < huge(1.0_wp))) worst(i) = huge(1.0_wp)
+    end do
+    best = minloc(worst, 1)
+    where_worst = maxloc(abs(errors(:, best)), 1)
+    write (reason, '(3a, f0.1, 3a)') 'nearest is ', trim(theories(best)), ', off by at most ', &
+      100*min(worst(best), 1.0e6_wp), ' % (', trim(numbers(where_worst)), ')'
+    if (worst(best) <= acceptable) then
+      call summary%set('regime_recommended', trim(theories(best)))
+    else
+      call summary%set('regime_recommended', 'none')
+      reason = 'no theory is within 10 %; ' // reason
+    end if
+    call summary%set('regime_reason', trim(reason))
+  end subroutine recommend
+
+end module regime_rows

@@ -1,0 +1,77 @@
+!> Stable states on the ways in and out at prescribed h0, as the table that discrete-element and
+!> finite-element programs take: load, contact radius and stiffness against indentation.
+module table_rows
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t, surface_energy
+  use maugis, only: maugis_units_t, maugis_units
+  use path_curve, only: curve_node_t
+  use path_readings, only: path_readings_t
+  use device_rows, only: nodes_between
+  use namelist_writer, only: line_t
+  use tables, only: cells
+  implicit none
+  private
+  public :: table_columns, table_lines
+
+  !> Columns of table.csv.
+  character(len=*), parameter :: table_columns(*) = [character(len=96) :: &
+    'branch [] approach or retreat; where h0 stays and the load changes the bodies jump', &
+    'indentation [m] of undeformed bodies, minus h0', &
+    'load [N] negative: tension', &
+    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
+    'stiffness [N/m] derivative of load by indentation; NaN where a jump starts', &
+    'indentation_jkr [] over (pi^2 w^2 R/K^2)^(1/3), w surface energy, K = 4/3 E*', &
+    'load_jkr [] over pi w R', &
+    'contact_radius_jkr [] over (pi w R^2/K)^(1/3)', &
+    'stiffness_jkr [] derivative of load_jkr by indentation_jkr']
+
+contains
+
+  !> Rows of table.csv.
+  function table_lines(problem, readings) result(lines)
+    type(problem_t), intent(in) :: problem
+    type(path_readings_t), intent(in) :: readings
+    type(line_t), allocatable :: lines(:)
+    type(curve_node_t), allocatable :: nodes(:)
+    integer :: i, j
+
+    allocate (lines(0))
+    associate (driven => readings%prescribed)
+      do i = 1, size(driven%leg)
+        associate (leg => driven%leg(i))
+          call add(leg%inward, leg%from%h0, leg%from%load, leg%from%radius, leg%from%slopes, .false.)
+          nodes = nodes_between(readings%curve, leg)
+          do j = 1, size(nodes)
+            call add(leg%inward, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, &
+              [nodes(j)%h0_slope, nodes(j)%load_slope], .false.)
+          end do
+          call add(leg%inward, leg%to%h0, leg%to%load, leg%to%radius, leg%to%slopes, &
+            driven%jumps_after(leg))
+        end associate
+      end do
+    end associate
+
+  contains
+
+    !> A state, with the derivatives of h0 and load along the path.
+    subroutine add(inward, h0, load, radius, slopes, at_jump)
+      logical, intent(in) :: inward, at_jump
+      real(wp), intent(in) :: h0, load, radius, slopes(2)
+      type(maugis_units_t) :: unit
+      type(line_t) :: line
+      real(wp) :: si(4)
+
+      si = [-h0*problem%length, load*problem%load, radius*problem%lateral, &
+        ieee_value(1.0_wp, ieee_quiet_nan)]
+      if (.not. at_jump) si(4) = -slopes(2)/slopes(1)*problem%load/problem%length
+      unit = maugis_units(problem%radius, problem%stiffness, surface_energy(problem))
+      line%text = merge('approach', 'retreat ', inward)
+      line%text = trim(line%text) // ',' // cells([si, si(1)/unit%displacement, &
+        si(2)/unit%load, si(3)/unit%radius, si(4)*unit%displacement/unit%load])
+      lines = [lines, line]
+    end subroutine add
+
+  end function table_lines
+
+end module table_rows

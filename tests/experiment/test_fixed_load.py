@@ -1,0 +1,54 @@
+"""Claims about the equilibria under given loads."""
+
+import numpy as np
+import pytest
+from support.scenes import lennard_jones, loading, runner, several
+
+SIGMA = 0.87
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("loads"))
+
+
+def under(*loads, sigma=SIGMA, **groups):
+    """A deck that asks for the equilibria under some loads."""
+    return lennard_jones(sigma, equilibrium_path={"h0_end": -2.0},
+                         fixed_load={"load": [float(load) for load in loads]}, **groups)
+
+
+def test_two_equilibria_under_tension_one_under_pressure_none_beyond_the_pull_off(run):
+    found = run(under(-1.0, -4.0, 5.0, -4.6))
+    assert several(found.summary["fixed_load_equilibria"]) == [2, 2, 1, 0]
+    # Of two the nearer is stable: farther out the tension falls with the distance.
+    assert several(found.summary["fixed_load_stable"]) == [1, 1, 1, 0]
+    table = found.table("fixed_load.csv")
+    assert list(table["stable"]) == [0, 1, 0, 1, 1]
+    assert (table["contact_radius"][table["stable"] == 1] > 0).all()
+
+
+def test_equilibria_have_the_load_that_stepping_h0_finds(run):
+    table = run(under(-1.0, 5.0)).table("fixed_load.csv")
+    for h0, displacement, load in zip(table["h0"], table["displacement"], table["load"]):
+        # The outer one is stable at fixed h0, so both ways of stepping come to it.
+        curve = run(lennard_jones(SIGMA, loading=loading(h0 + 1, h0, 0.5))).curve
+        assert curve["load"][-1] == pytest.approx(load, rel=1e-6)
+        assert curve["displacement"][-1] == pytest.approx(displacement, rel=1e-6)
+
+
+def test_every_state_of_a_path_with_several_folds_is_found(run):
+    # At large sigma the load falls, rises and falls again before contact.
+    found = run(under(-4.0, sigma=8.7))
+    path = run(lennard_jones(8.7, equilibrium_path={"h0_end": -2.0})).curve
+    crossings = np.count_nonzero(np.diff(path["load"] < -4.0))
+    # And one that lies behind the end of the path that is shown.
+    h0 = found.table("fixed_load.csv")["h0"]
+    assert crossings == np.count_nonzero(h0 > -2.0)
+    assert several(found.summary["fixed_load_stable"]) == [1]
+
+
+def test_a_faint_tension_is_met_by_undeformed_bodies(run):
+    load = -1e-9
+    table = run(under(load)).table("fixed_load.csv")
+    assert table["h0"][0] == pytest.approx((16 * np.pi * SIGMA / (6 * -load)) ** 0.5, rel=1e-8)

@@ -1,0 +1,50 @@
+"""Claims about which theory is recommended, and by how much theories err."""
+
+import math
+
+import pytest
+from support.scenes import JKR, lennard_jones, runner, several
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("regime"))
+
+
+def regime(sigma, h0_end):
+    return lennard_jones(sigma, equilibrium_path={"h0_end": h0_end}, regime={})
+
+
+def test_large_sigma_is_a_case_for_jkr_theory(run):
+    summary = run(regime(1000.0, -300.0)).summary
+    assert summary["regime_recommended"] in ("jkr", "maugis")
+    assert max(map(abs, summary["regime_error_jkr"])) < 0.01
+    assert max(map(abs, summary["regime_error_dmt"])) > 0.3
+
+
+def test_small_sigma_is_no_case_for_jkr_theory(run):
+    summary = run(regime(0.01, -60.0)).summary
+    # Rigid spheres part at 2 pi gamma R.
+    assert abs(summary["regime_error_dmt"][0]) < 0.02
+    assert summary["regime_error_jkr"][0] == pytest.approx(-0.25, abs=0.02)
+    assert summary["regime_recommended"] in ("dmt", "maugis")
+
+
+def test_errors_of_pull_off_are_those_against_the_largest_tension(run):
+    found = run(regime(0.87, -2.0))
+    summary = found.summary
+    error = JKR * 0.87 / summary["max_tension"] - 1
+    assert summary["regime_error_jkr"][0] == pytest.approx(error, rel=1e-9)
+    assert several(summary["regime_error_hertz"])[0] == -1
+    assert summary["regime_load_number"] == pytest.approx(
+        summary["end_load"] / (math.pi * 0.87), rel=1e-12)
+    assert "regime: " in found.stderr
+
+
+def test_parameters_are_those_of_lennard_jones(run):
+    summary = run(regime(0.87, -2.0)).summary
+    # The range is gamma over the largest tension, 9 sqrt(3)/16 z0.
+    longer = 9 * math.sqrt(3) / 16
+    assert summary["regime_tabor"] == summary["tabor"]
+    assert summary["regime_tabor_range"] == pytest.approx(summary["tabor"] / longer, rel=1e-12)
+    assert summary["regime_maugis_lambda"] == pytest.approx(1.157 * summary["tabor"], rel=1e-3)

@@ -1,0 +1,44 @@
+"""Claims about the table for discrete-element and finite-element programs."""
+
+import numpy as np
+import pytest
+from support.scenes import lennard_jones, loading, runner
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("table"))
+
+
+def table_of(run, sigma, h0_end):
+    deck = lennard_jones(sigma, equilibrium_path={"h0_end": h0_end}, table={})
+    return run(deck).table("table.csv")
+
+
+def test_stiffness_is_the_slope_of_loads_that_stepping_h0_finds(run):
+    retreat = table_of(run, 0.87, -2.0).rows("retreat")
+    row, step = np.argmin(abs(retreat["indentation"] - 1)), 1e-3
+    h0, stiffness = -retreat["indentation"][row], retreat["stiffness"][row]
+    load = run(lennard_jones(0.87, loading=loading(h0 + step, h0 - step, step))).curve["load"]
+    assert (load[2] - load[0]) / (2 * step) == pytest.approx(stiffness, rel=1e-5)
+
+
+def test_branches_fall_and_rise_and_jump_where_the_path_folds(run):
+    table = table_of(run, 0.87, -2.0)
+    approach, retreat = table.rows("approach"), table.rows("retreat")
+    assert (np.diff(approach["indentation"]) >= -1e-9).all()
+    assert (np.diff(retreat["indentation"]) <= 1e-9).all()
+    for branch, h0 in ((approach, 3.0886872), (retreat, 3.4834324)):
+        jump = np.isnan(branch["stiffness"])
+        assert jump.sum() == 1
+        assert branch["indentation"][jump][0] == pytest.approx(-h0, rel=1e-7)
+
+
+def test_at_large_sigma_the_dimensionless_columns_are_the_one_curve_of_jkr_theory(run):
+    retreat = table_of(run, 1000.0, -200.0).rows("retreat")
+    # The radius of the table is where the gap is 1.1 z0, a little inside JKR's edge.
+    inside = retreat["contact_radius_jkr"] > 1
+    a, load, delta = (
+        retreat[f"{name}_jkr"][inside] for name in ("contact_radius", "load", "indentation"))
+    np.testing.assert_allclose(load, a**3 - a * np.sqrt(6 * a), rtol=0.02, atol=0.02)
+    np.testing.assert_allclose(delta, a**2 - 2 / 3 * np.sqrt(6 * a), rtol=0.02, atol=0.02)
