@@ -14,6 +14,8 @@ from snapin.results import ResultsError, read_summary
 _RIGID, _SHARE, _DMT, _JKR = 0.05, 0.05, 0.1, 5.0
 # lambda over Tabor's parameter, for Lennard-Jones.
 _OF_TABOR = 1.157
+_NAMES = {"Hertz": (0.6, 2e4), "JKR": (22, 1), "Maugis\N{EN DASH}Dugdale": (0.7, 0.08),
+          "DMT": (0.045, 1), "rigid": (4e-3, 1)}
 # Ends of the axes, unless the scene is farther out.
 _LAMBDA, _LOAD = (1e-3, 1e2), (1e-2, 1e5)
 
@@ -38,14 +40,13 @@ def draw_regime(folder):
     axes.vlines([_DMT, _JKR], high[0], hertz, **line)
     at = np.geomspace(*wide, 200)
     axes.plot(at, _rigid_load(at / _OF_TABOR), **line)
-    for text, place in (("Hertz", (0.6, 2e4)), ("JKR", (22, 1)), ("Maugis–Dugdale", (0.7, 0.08)),
-                        ("DMT", (0.045, 1)), ("rigid", (4e-3, 1))):
+    for text, place in _NAMES.items():
         axes.annotate(text, place, color=GREY, ha="center", va="center", fontsize=11)
     # Where the load is a tension the scene lies below the map.
     shown = max(load, high[0] * 1.2)
     axes.plot(x, shown, marker="o" if load > high[0] else "v", color=VERMILION, markersize=9)
-    axes.annotate(_advice(summary), (x, shown), (0, 12), textcoords="offset points", color=VERMILION,
-                  ha="center", weight="bold")
+    axes.annotate(_advice(summary), (x, shown), (0, 12), textcoords="offset points", ha="center",
+                  color=VERMILION, weight="bold")
     figure.suptitle(title_of(folder, summary))
     return figure
 
@@ -53,7 +54,8 @@ def draw_regime(folder):
 def _advice(summary):
     """Return the theory that the program recommends, in words."""
     name = summary["regime_recommended"]
-    return "here no theory" if name == "none" else "here " + {"maugis": "Maugis"}.get(name, name.upper())
+    names = {"none": "no theory", "maugis": "Maugis", "hertz": "Hertz"}
+    return "here " + names.get(name, name.upper())
 
 
 def _hertz_load(share, jkr):

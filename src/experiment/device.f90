@@ -59,7 +59,8 @@ contains
 
     allocate (driven%leg(0), driven%jump(0))
     driven%drive = drive
-    driven%cycle_energy = ieee_value(1.0_wp, ieee_quiet_nan)
+    driven%energy_lost = ieee_value(1.0_wp, ieee_quiet_nan)
+    driven%cycle_energy = driven%energy_lost
     call find_pieces(solver, equations, known, drive, pieces, driven%solved)
     if (size(pieces) == 0) return
     piece = 1
@@ -134,29 +135,34 @@ contains
         stops = at >= drive%position(pieces(piece)%last)
       else
         stops = piece == size(pieces)
-        if (stops) at = innermost()
+        if (stops) call find_innermost(at, stops)
       end if
       ! What lies behind already is here.
       if (stops) at = min(at, drive%position(state))
     end function limit
 
-    !> The position at h0_end on the innermost piece, or its end.
-    real(wp) function innermost() result(at)
+    !> The position at h0_end on the innermost piece, or at the end of what is known of it;
+    !> there_is = .false.: it ends in a jump before.
+    subroutine find_innermost(at, there_is)
+      real(wp), intent(out) :: at
+      logical, intent(out) :: there_is
       type(curve_state_t) :: there
       real(wp) :: ends(2)
       integer :: i
 
       at = drive%position(pieces(piece)%last)
+      there_is = .not. pieces(piece)%last_turns
       do i = pieces(piece)%last%interval, pieces(piece)%first%interval, -1
         associate (begin => solver%curve%begin_of(i), end => solver%curve%end_of(i))
           if (.not. (begin%h0 >= h0_end .and. end%h0 <= h0_end)) cycle
           ends = [begin%x, end%x]
         end associate
         call solver%root_of(equations, known, i, [1.0_wp, 0.0_wp], ends(1), ends(2), there, h0_end)
+        there_is = there_is .or. there%converged
         if (there%converged) at = max(at, drive%position(there))
         exit
       end do
-    end function innermost
+    end subroutine find_innermost
 
     !> Jumps from the present state to the nearest stable piece with the same position.
     subroutine leap(inward, jump)

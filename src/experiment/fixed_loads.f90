@@ -9,8 +9,8 @@ module fixed_loads
   private
   public :: loaded_state_t, find_loaded
 
-  !> An equilibrium under a load (units of `dimensionless_problem`). It is stable at fixed load where
-  !> no mode is unstable at fixed h0 and dF/dh0 < 0.
+  !> An equilibrium under a load (units of `dimensionless_problem`). It is stable at fixed load
+  !> where no mode is unstable at fixed h0 and dF/dh0 < 0.
   type :: loaded_state_t
     real(wp) :: wanted = 0
     type(curve_state_t) :: state

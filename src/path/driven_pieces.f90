@@ -1,7 +1,7 @@
 !> The pieces of the path that are stable when the bodies are driven through a spring.
 !>
-!> What is driven is D = a h0 - b F: the drive's position Z = h0 - F/k behind a spring of stiffness k
-!> (a = 1, b = 1/k), h0 itself (a = 1, b = 0), or under a dead load -F (a = 0, b = 1). A state is
+!> What is driven is D = a h0 - b F: the drive's position Z = h0 - F/k behind a spring of stiffness
+!> k (a = 1, b = 1/k), h0 itself (a = 1, b = 0), or under a dead load -F (a = 0, b = 1). A state is
 !> stable at fixed D where no mode of the bodies is unstable at fixed h0 and k - dF/dh0 > 0, the
 !> Schur complement of bodies and spring: where D falls as the path is followed inward.
 module driven_pieces
@@ -13,7 +13,7 @@ module driven_pieces
   use curve_states, only: curve_solver_t, curve_state_t, place_t
   implicit none
   private
-  public :: drive_t, driven_piece_t, find_pieces, state_driven, through_spring, turning_places, clip
+  public :: drive_t, driven_piece_t, find_pieces, state_driven, through_spring, turning_places
 
   !> Weights of h0 and load in D.
   type :: drive_t

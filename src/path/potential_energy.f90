@@ -4,12 +4,11 @@
 !> integral along the path is needed.
 module potential_energy
   use kinds, only: wp, pi
-  use force_law, only: force_law_t
   use equilibrium, only: state_t, equations_t, gap_at_end
   use quadrature, only: gauss_legendre
   implicit none
   private
-  public :: energy_of, energy_beyond
+  public :: energy_of
 
   !> Points for the surface energy beyond the mesh, where it is a power of the gap or nothing.
   integer, parameter :: points = 8
@@ -24,9 +23,10 @@ contains
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: energy, uncertainty
-    real(wp) :: last
+    real(wp) :: node(points), weight(points), last
     real(wp), dimension(size(state%gap)) :: of_surface, of_bodies
 
+    call gauss_legendre(node, weight)
     associate (n => size(state%gap), c => state%scale, grid => equations%pair%grid(mesh), &
       law => equations%problem%law)
       of_surface = c**2*grid%weight(:n)*law%energy(state%gap)
@@ -35,20 +35,11 @@ contains
       uncertainty = 2*pi*(epsilon(1.0_wp)*sum(abs(of_surface) + abs(of_bodies)) + &
         0.5_wp*state%residual*c**2*sum(abs(grid%weight(:n)*state%pressure)))
       energy = 2*pi*(sum(of_surface) + sum(of_bodies))
-      if (grid%is_bounded()) energy = energy + 2*pi*energy_beyond(law, gap_at_end(grid, state))
+      if (.not. grid%is_bounded()) return
+      ! Beyond the mesh rho drho = dH. With H = last/x the interval is finite.
+      last = gap_at_end(grid, state)
+      energy = energy + 2*pi*last*sum(weight*law%energy(last/node)/node**2)
     end associate
   end subroutine energy_of
-
-  !> Energy of the surface force over 2 pi where the gap is larger than `last` and grows as between
-  !> undeformed bodies: Int e(H) dH, since rho drho = dH there.
-  pure real(wp) function energy_beyond(law, last)
-    class(force_law_t), intent(in) :: law
-    real(wp), intent(in) :: last
-    real(wp) :: node(points), weight(points)
-
-    ! With H = last/x the interval is finite.
-    call gauss_legendre(node, weight)
-    energy_beyond = last*sum(weight*law%energy(last/node)/node**2)
-  end function energy_beyond
 
 end module potential_energy

@@ -3,15 +3,15 @@
 module undeformed
   use kinds, only: wp, pi
   use force_law, only: force_law_t
-  use potential_energy, only: energy_beyond
   use quadrature, only: gauss_legendre
   implicit none
   private
   public :: load_undeformed, load_slope_undeformed, energy_undeformed
 
   !> The energy is integrated over the logarithm of the gap: panels, their ratio, nodes of each.
-  integer, parameter :: panels = 40, nodes = 8
-  real(wp), parameter :: ratio = 1.5_wp
+  !> Beyond 1e18 gaps nothing is left of any law.
+  integer, parameter :: panels = 60, nodes = 8
+  real(wp), parameter :: ratio = 2
 
 contains
 
@@ -39,7 +39,7 @@ contains
     integer :: panel
 
     call gauss_legendre(node, weight)
-    energy = energy_beyond(law, h0*ratio**panels)
+    energy = 0
     do panel = 1, panels
       gap = h0*ratio**(panel - 1 + node)
       energy = energy + log(ratio)*sum(weight*gap*law%energy(gap))

@@ -198,8 +198,9 @@ contains
       call summary%set('device_energy_uncertainty', uncertainty(device)*unit)
       if (.not. all(device%caught)) call summary%warn('device: no stable state is known ' // &
         'that catches the bodies after a jump; see device_jumps.csv')
-      if (any(uncertainty(device) > known_energy*abs(device%energy_lost))) call summary%warn('device: ' // &
-        'the energy lost in jumps is not the area of the cycle; a smaller accuracy may help')
+      if (any(uncertainty(device) > known_energy*abs(device%energy_lost))) &
+        call summary%warn('device: the energy lost in jumps is not the area of the cycle; ' // &
+        'a smaller accuracy may help')
     end associate
 
   contains

@@ -27,8 +27,9 @@ module regime_rows
 
 contains
 
-  !> The contact radius is where the tension is largest, as the theories have it; errors of
-  !> indentations are relative to a^2/R.
+  !> The contact radius is where the tension is largest. In the theories bodies touch at no
+  !> separation, here at the gap at rest: indentations count from there, their errors are relative
+  !> to a^2/R.
   subroutine summarise_regime(problem, outcome, summary)
     type(problem_t), intent(in) :: problem
     type(experiment_result_t), intent(in) :: outcome
@@ -78,7 +79,8 @@ contains
       if (.not. there) return
       load = path%finish%load*problem%load
       solved = measured_t(path%lowest%load*problem%load, &
-        path%finish%witness%state%scale*problem%lateral, -path%finish%h0*problem%length)
+        path%finish%witness%state%scale*problem%lateral, &
+        (problem%law%rest_gap - path%finish%h0)*problem%length)
     end associate
   end subroutine measure
 
@@ -123,6 +125,7 @@ contains
     type(summary_t), intent(inout) :: summary
     real(wp) :: worst(size(theories))
     character(len=200) :: reason
+    character(len=16) :: percent
     integer :: i, best, where_worst
 
     do i = 1, size(theories)
@@ -132,8 +135,9 @@ contains
     end do
     best = minloc(worst, 1)
     where_worst = maxloc(abs(errors(:, best)), 1)
-    write (reason, '(3a, f0.1, 3a)') 'nearest is ', trim(theories(best)), ', off by at most ', &
-      100*min(worst(best), 1.0e6_wp), ' % (', trim(numbers(where_worst)), ')'
+    write (percent, '(f16.1)') 100*min(worst(best), 1.0e6_wp)
+    reason = 'nearest is '//trim(theories(best))//', off by at most '//trim(adjustl(percent))// &
+      ' % ('//trim(numbers(where_worst))//')'
     if (worst(best) <= acceptable) then
       call summary%set('regime_recommended', trim(theories(best)))
     else

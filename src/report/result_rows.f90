@@ -119,7 +119,7 @@ module result_rows
     row_t('regime_load_number', '', &
       'load of the last state over pi times surface energy times radius', regime), &
     row_t('regime_error_hertz', '', &
-      'relative errors of Hertz theory: pull-off, contact radius, indentation', list=.true.), &
+      'errors of Hertz theory: pull-off, contact radius, indentation over a^2/R', list=.true.), &
     row_t('regime_error_jkr', '', 'the same of JKR theory', list=.true.), &
     row_t('regime_error_dmt', '', 'the same of DMT theory', list=.true.), &
     row_t('regime_error_maugis', '', 'the same of Maugis-Dugdale theory', list=.true.), &

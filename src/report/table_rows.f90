@@ -40,7 +40,8 @@ contains
     associate (driven => readings%prescribed)
       do i = 1, size(driven%leg)
         associate (leg => driven%leg(i))
-          call add(leg%inward, leg%from%h0, leg%from%load, leg%from%radius, leg%from%slopes, .false.)
+          call add(leg%inward, leg%from%h0, leg%from%load, leg%from%radius, leg%from%slopes, &
+            .false.)
           nodes = nodes_between(readings%curve, leg)
           do j = 1, size(nodes)
             call add(leg%inward, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, &

@@ -110,48 +110,45 @@ contains
   elemental function maugis_radius_at_displacement(displacement, radius, stiffness, &
     surface_energy, strength) result(contact_radius)
     real(wp), intent(in) :: displacement, radius, stiffness, surface_energy, strength
-    real(wp) :: contact_radius, lambda, unit, wanted, a, least
-    type(bracket_t) :: bracket
+    real(wp) :: contact_radius, unit
 
-    contact_radius = ieee_value(contact_radius, ieee_quiet_nan)
-    lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
     unit = unit_length(radius, stiffness, surface_energy)
-    wanted = displacement*radius/unit**2
-    call find_least(of_displacement, lambda, a, least)
-    if (.not. wanted >= least) return
-    bracket = bracket_t(a, max(1.0_wp, 2*a))
-    do while (scaled_displacement(bracket%high, lambda) < wanted)
-      bracket%high = 2*bracket%high
-    end do
-    ! The displacement grows with the contact from its least value on.
-    do while (bracket%is_open())
-      call bracket%narrow(scaled_displacement(bracket%middle(), lambda) < wanted)
-    end do
-    contact_radius = unit*bracket%high
+    contact_radius = unit*stable_radius(of_displacement, displacement*radius/unit**2, &
+      maugis_lambda(radius, stiffness, surface_energy, strength))
   end function maugis_radius_at_displacement
 
-  !> Contact radius [m] at a load [N] > 0, at which there is one state.
+  !> Contact radius [m] at a load [N]: that of the state which is stable under it. NaN beyond the
+  !> pull-off.
   elemental function maugis_radius_at_load(load, radius, stiffness, surface_energy, strength) &
     result(contact_radius)
     real(wp), intent(in) :: load, radius, stiffness, surface_energy, strength
-    real(wp) :: contact_radius, lambda, unit, wanted
+    real(wp) :: contact_radius
+
+    contact_radius = unit_length(radius, stiffness, surface_energy)* &
+      stable_radius(of_load, load/(pi*surface_energy*radius), &
+      maugis_lambda(radius, stiffness, surface_energy, strength))
+  end function maugis_radius_at_load
+
+  !> The largest A at a given P or D; NaN below the least of these.
+  pure function stable_radius(quantity, wanted, lambda) result(radius)
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: wanted, lambda
+    real(wp) :: radius, a, least
     type(bracket_t) :: bracket
 
-    contact_radius = ieee_value(contact_radius, ieee_quiet_nan)
-    if (.not. load > 0) return
-    lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
-    unit = unit_length(radius, stiffness, surface_energy)
-    wanted = load/(pi*surface_energy*radius)
-    bracket = bracket_t(0.0_wp, 1.0_wp)
-    do while (scaled_load(bracket%high, lambda) < wanted)
-      bracket%low = bracket%high
+    radius = ieee_value(radius, ieee_quiet_nan)
+    call find_least(quantity, lambda, a, least)
+    if (.not. wanted >= least) return
+    bracket = bracket_t(a, max(1.0_wp, 2*a))
+    do while (scaled(quantity, bracket%high, lambda) < wanted)
       bracket%high = 2*bracket%high
     end do
+    ! Both grow with the contact from their least value on.
     do while (bracket%is_open())
-      call bracket%narrow(scaled_load(bracket%middle(), lambda) < wanted)
+      call bracket%narrow(scaled(quantity, bracket%middle(), lambda) < wanted)
     end do
-    contact_radius = unit*bracket%high
-  end function maugis_radius_at_load
+    radius = bracket%high
+  end function stable_radius
 
   !> Maugis' units.
   elemental function maugis_units(radius, stiffness, surface_energy) result(units)

@@ -77,7 +77,8 @@ ACCEPTED = {
     + "&equilibrium_path h0_end = -2e-9 / &classical /\n",
     "classical alone": BODIES + FORCE + "&classical h0_start = 1e-9, h0_end = -1e-9 /\n",
     "approximations alone": BODIES + FORCE + "&approximations h0_start = 2e-9, h0_end = 1e-9 /\n",
-    "a device that prescribes h0": BODIES + FORCE + "&equilibrium_path h0_end = -2e-9 / &device /\n",
+    "a device that prescribes h0": BODIES + FORCE
+    + "&equilibrium_path h0_end = -2e-9 / &device /\n",
     "profiles on a path": BODIES + FORCE
     + "&equilibrium_path h0_end = -2e-9 / &profiles h0 = 1e-9 /\n",
     "sweep by values": GOOD + "&sweep key = 'bodies.radius', values = 1e-3, 2e-3, 1e-2 /\n",
