@@ -75,7 +75,7 @@ contains
     if (.not. allocated(outcome%path)) return
     associate (path => outcome%path)
       there = allocated(path%lowest) .and. allocated(path%finish)
-      if (there) there = path%finish%witness%mesh == contact .and. path%lowest%load < 0
+      if (there) there = path%finish%witness%mesh >= contact .and. path%lowest%load < 0
       if (.not. there) return
       load = path%finish%load*problem%load
       solved = measured_t(path%lowest%load*problem%load, &
