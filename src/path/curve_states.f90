@@ -7,7 +7,7 @@ module curve_states
   use equilibrium, only: state_t, equations_t, radius_of_gap
   use solver_options, only: solver_options_t, tightened
   use anderson, only: frozen_jacobian_t
-  use edge_locked, only: contact
+  use edge_locked, only: approach
   use continuation, only: state_at
   use solve_at_h0, only: neighbours_t, neighbours_of
   use known_path, only: known_path_t
@@ -77,7 +77,7 @@ contains
         found%converged = .true.
         return
       end if
-      s = merge(place%x, -place%x, node%mesh == contact)
+      s = merge(-place%x, place%x, node%mesh == approach)
       near = neighbours_of(known%path, node%point)
       call state_at(equations, tightened(self%options), self%frozen, near%arc_t, s, state, &
         found%converged)

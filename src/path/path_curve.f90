@@ -7,7 +7,7 @@ module path_curve
   use interpolation, only: hermite_value, hermite_slope
   use equilibrium, only: state_t, equations_t, radius_of_gap
   use anderson, only: frozen_jacobian_t
-  use edge_locked, only: approach, contact
+  use edge_locked, only: approach
   use continuation, only: path_control
   use path_slopes, only: slopes_along_path
   use known_path, only: known_path_t
@@ -39,7 +39,7 @@ module path_curve
     integer :: left = 0, modes = 0
   end type curve_interval_t
 
-  !> Nodes run by run: undeformed bodies, the mesh for the approach, the mesh for contact.
+  !> Nodes run by run: undeformed bodies, then mesh by mesh.
   type :: curve_t
     !> Up to which gap bodies are in contact.
     real(wp) :: contact_gap = 0
@@ -75,7 +75,7 @@ contains
     ! What is behind the last stable piece was traced only to find its end.
     last = known%path%held
     if (size(known%piece) > 0) last = maxval(known%piece%last)
-    do mesh = approach, contact
+    do mesh = approach, size(equations%pair%grid)
       do i = 1, last
         call node_of_point(equations, known, i, mesh, contact_gap, frozen, node, found)
         if (.not. found) return
@@ -153,7 +153,7 @@ contains
   elemental integer function inward(mesh)
     integer, intent(in) :: mesh
 
-    inward = merge(1, -1, mesh == contact)
+    inward = merge(-1, 1, mesh == approach)
   end function inward
 
   !> weights(1) h0 + weights(2) load at x in interval i.
