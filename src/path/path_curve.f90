@@ -6,7 +6,11 @@ module path_curve
   use kinds, only: wp
   use interpolation, only: hermite_value, hermite_slope
   use equilibrium, only: state_t, equations_t, radius_of_gap
+<<<<<<< HEAD
   use frozen_jacobian, only: frozen_jacobian_t
+=======
+  use anderson, only: frozen_jacobian_t
+>>>>>>> device
   use edge_locked, only: approach
   use continuation, only: path_control
   use path_slopes, only: slopes_along_path
@@ -39,7 +43,7 @@ module path_curve
     integer :: left = 0, modes = 0
   end type curve_interval_t
 
-  !> Nodes run by run: undeformed bodies, the mesh for the approach, the mesh for contact.
+  !> Nodes run by run: undeformed bodies, then mesh by mesh.
   type :: curve_t
     !> Up to which gap bodies are in contact.
     real(wp) :: contact_gap = 0
@@ -75,7 +79,11 @@ contains
     ! What is behind the last stable piece was traced only to find its end.
     last = known%path%held
     if (size(known%piece) > 0) last = maxval(known%piece%last)
+<<<<<<< HEAD
     do mesh = 1, size(equations%pair%grid)
+=======
+    do mesh = approach, size(equations%pair%grid)
+>>>>>>> device
       do i = 1, last
         call node_of_point(equations, known, i, mesh, contact_gap, frozen, node, found)
         if (.not. found) return
