@@ -6,11 +6,7 @@ module curve_states
   use root_finding, only: bracket_t
   use equilibrium, only: state_t, equations_t, radius_of_gap
   use solver_options, only: solver_options_t, tightened
-<<<<<<< HEAD
   use frozen_jacobian, only: frozen_jacobian_t
-=======
-  use anderson, only: frozen_jacobian_t
->>>>>>> device
   use edge_locked, only: approach
   use continuation, only: state_at
   use solve_at_h0, only: neighbours_t, neighbours_of

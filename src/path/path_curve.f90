@@ -6,11 +6,7 @@ module path_curve
   use kinds, only: wp
   use interpolation, only: hermite_value, hermite_slope
   use equilibrium, only: state_t, equations_t, radius_of_gap
-<<<<<<< HEAD
   use frozen_jacobian, only: frozen_jacobian_t
-=======
-  use anderson, only: frozen_jacobian_t
->>>>>>> device
   use edge_locked, only: approach
   use continuation, only: path_control
   use path_slopes, only: slopes_along_path
@@ -79,11 +75,7 @@ contains
     ! What is behind the last stable piece was traced only to find its end.
     last = known%path%held
     if (size(known%piece) > 0) last = maxval(known%piece%last)
-<<<<<<< HEAD
     do mesh = 1, size(equations%pair%grid)
-=======
-    do mesh = approach, size(equations%pair%grid)
->>>>>>> device
       do i = 1, last
         call node_of_point(equations, known, i, mesh, contact_gap, frozen, node, found)
         if (.not. found) return
