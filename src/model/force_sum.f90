@@ -31,32 +31,52 @@ contains
     class(force_law_t), allocatable, intent(inout) :: law, term
     type(force_sum_t) :: sum_of
     type(term_t), allocatable :: terms(:)
-    integer :: n, i
+    integer :: n
 
     if (.not. allocated(term)) return
     if (.not. allocated(law)) then
       call move_alloc(term, law)
       return
     end if
-    n = 1
-    select type (law)
-    type is (force_sum_t)
-      n = size(law%term)
-    end select
-    allocate (terms(n + 1))
-    select type (law)
-    type is (force_sum_t)
-      do i = 1, n
-        call move_alloc(law%term(i)%law, terms(i)%law)
-      end do
-    class default
-      allocate (terms(1)%law, source=law)
-    end select
-    call move_alloc(term, terms(n + 1)%law)
+    allocate (terms(terms_in(law) + terms_in(term)))
+    n = 0
+    call take(law)
+    call take(term)
     call move_alloc(terms, sum_of%term)
-    deallocate (law)
     allocate (law, source=sum_of)
+
+  contains
+
+    !> Moves what a law consists of into the terms.
+    subroutine take(from)
+      class(force_law_t), allocatable, intent(inout) :: from
+      integer :: i
+
+      select type (from)
+      type is (force_sum_t)
+        do i = 1, size(from%term)
+          call move_alloc(from%term(i)%law, terms(n + i)%law)
+        end do
+        n = n + size(from%term)
+      class default
+        n = n + 1
+        allocate (terms(n)%law, source=from)
+      end select
+      deallocate (from)
+    end subroutine take
+
   end subroutine add_term
+
+  !> How many forces a law consists of: a group of the deck may be several.
+  pure integer function terms_in(law)
+    class(force_law_t), intent(in) :: law
+
+    terms_in = 1
+    select type (law)
+    type is (force_sum_t)
+      terms_in = size(law%term)
+    end select
+  end function terms_in
 
   !> Units and scales of a law whose terms are complete. A sum is looked at in units of its shortest
   !> term first. If it has a well its units are then those of the well: z0 of the first term that

@@ -106,7 +106,8 @@ def test_a_profile_off_the_steps_costs_one_state(run):
     plain = run(lennard_jones(1.0, **PLAIN))
     more = run(lennard_jones(1.0, **PLAIN, profiles={"h0": [1.1]}))
     assert more.cost["states"] == plain.cost["states"] + 1
-    assert more.cost["operator_products"] <= plain.cost["operator_products"] + 20
+    # One state; by rounding the iterations of others may end a product sooner or later.
+    assert more.cost["operator_products"] <= 1.05 * plain.cost["operator_products"] + 20
 
 
 def test_unloading_does_not_change_the_loading(run):
