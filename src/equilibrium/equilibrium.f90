@@ -1,13 +1,15 @@
 !> The equations of equilibrium on a discretisation, in the units of `dimensionless_problem`:
 !>
-!>     G_i = H_i - H0 - c^2 x_i^2/2 - 2 coupling c (W P(H))_i = 0
+!>     G_i = H_i - H0 - f(c x_i) - 2 coupling c (W P(H))_i = 0
 !>
-!> for the gaps H at the nodes rho = c x. The kernel is homogeneous, so one matrix W serves every
+!> for the gaps H at the nodes rho = c x of bodies of the shape f. The kernel is homogeneous, so one matrix W serves every
 !> scale c. A control says what is prescribed; where that is not H0 at a fixed scale, one more
 !> unknown (H0 or c) and one more equation (the gap on the axis or at the contact edge) join.
 module equilibrium
   use kinds, only: wp, pi, long
+  use shape, only: shape_t
   use dimensionless_problem, only: problem_t
+  use beyond_mesh, only: load_beyond
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use edge_locked, only: mesh_pair_t, approach, contact
   use linear_algebra, only: multiply
@@ -15,7 +17,7 @@ module equilibrium
   implicit none
   private
   public :: control_t, state_t, cost_t, equations_t, residual, largest_step, state_from, &
-    unknowns_of, holds, residual_floor, load_reach, radius_of_gap, lost_in_rounding
+    unknowns_of, holds, residual_floor, load_reach, gap_at_end, radius_of_gap, lost_in_rounding
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 prescribed at a fixed scale; no further unknown.
@@ -94,7 +96,7 @@ contains
     real(wp), intent(out) :: g(:)
     type(state_t), intent(inout) :: state
     real(wp) :: raised(first_node - 1 + node_count(control, size(z)))
-    real(wp) :: axis_gap, edge_gap, reach
+    real(wp) :: axis_gap, edge_gap
     integer :: n, columns
 
     associate (problem => equations%problem, cost => equations%cost, &
@@ -120,20 +122,19 @@ contains
         cost%operator_products = cost%operator_products + 1
         cost%operator_columns = cost%operator_columns + columns
       end if
-      g(:n) = state%gap - state%h0 - 0.5_wp*(state%scale*grid%x(:n))**2 - raised(first_node:)
+      g(:n) = state%gap - state%h0 - problem%shape%height(state%scale*grid%x(:n)) - &
+        raised(first_node:)
       axis_gap = state%h0 + raised(axis_row)
       select case (control%kind)
       case (at_axis_gap)
         g(n + 1) = axis_gap - control%value
       case (at_edge_radius, at_h0_with_edge)
-        edge_gap = state%h0 + 0.5_wp*state%scale**2 + raised(centre_row)
+        edge_gap = state%h0 + problem%shape%height(state%scale) + raised(centre_row)
         g(n + 1) = edge_gap - problem%law%edge_gap
       end select
       state%axis_gap = axis_gap
-      ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
-      reach = load_reach(grid, state)
       state%load = 2*pi*(state%scale**2*dot_product(grid%weight(:n), state%pressure) + &
-        sum(problem%law%energy([state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)])))
+        load_beyond(problem, gap_at_end(problem%shape, grid, state), load_reach(grid, state)))
       state%residual = maxval(abs(g))
       ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
       if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
@@ -202,6 +203,18 @@ contains
 
     load_reach = state%scale*grid%end_of(size(state%gap))
   end function load_reach
+
+  !> The gap there: beyond the last node the deformation hardly varies.
+  pure real(wp) function gap_at_end(shape, grid, state) result(gap)
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+
+    associate (n => size(state%gap))
+      gap = state%gap(n) + (shape%height(load_reach(grid, state)) - &
+        shape%height(state%scale*grid%x(n)))
+    end associate
+  end function gap_at_end
 
   !> An empty state on the leading `nodes` nodes of a mesh.
   pure function state_from(nodes) result(state)

@@ -83,8 +83,8 @@ contains
     associate (witness => reported%witness, error => reported%error)
       ! What did not converge has no counterpart.
       if (.not. witness%state%residual < 1) return
-      state = regrid(witness%state, own%pair%grid(witness%mesh), fine%pair%grid(witness%mesh), &
-        witness%state%scale, nodes)
+      state = regrid(own%problem%shape, witness%state, own%pair%grid(witness%mesh), &
+        fine%pair%grid(witness%mesh), witness%state%scale, nodes)
       fine%frozen%factors%valid = .false.
       call fine%find(witness%control, state, found)
       if (.not. found) return

@@ -53,11 +53,11 @@ contains
       end if
     end if
     associate (grid => self%pair%grid(mesh))
-      state = state_from(node_count(self%pair, mesh, scale_at(self%pair, far)))
+      state = state_from(node_count(self%pair, mesh, scale_at(self%problem%shape, self%pair, far)))
       state%h0 = far
       state%axis_gap = far
-      state%scale = scale_at(self%pair, far)
-      state%gap = far + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2
+      state%scale = scale_at(self%problem%shape, self%pair, far)
+      state%gap = far + self%problem%shape%height(state%scale*grid%x(:size(state%gap)))
     end associate
     call self%attempt(far, state, mesh, event)
     if (.not. event%converged) &
@@ -80,7 +80,7 @@ contains
     integer, intent(in) :: mesh
     type(step_result_t), intent(inout) :: event
 
-    call self%solve(h0_control(self%pair, mesh, h0), state, event%converged)
+    call self%solve(h0_control(self%problem%shape, self%pair, mesh, h0), state, event%converged)
   end subroutine attempt
 
 end module locked_stepper

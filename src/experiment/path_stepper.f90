@@ -186,10 +186,10 @@ contains
       nodes = nodes_to_use(self%pair, near%mesh, merge(exp(s), 1.0_wp, near%mesh == contact), &
         present)
       if (near%mesh == position%mesh .and. goes_on(position, h0)) then
-        state = between(self%pair%grid(near%mesh), position%h0(:position%held), &
-          position%past(:position%held), h0, nodes)
+        state = between(self%problem%shape, self%pair%grid(near%mesh), &
+          position%h0(:position%held), position%past(:position%held), h0, nodes)
       else
-        state = guess_at_h0(self%pair, near, s, nodes)
+        state = guess_at_h0(self%equations_t, near, s, nodes)
       end if
       call self%attempt(h0, state, near%mesh, event)
       if (event%converged) then

@@ -6,7 +6,9 @@
 module edge_locked
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
+  use shape, only: shape_t
   use dimensionless_problem, only: problem_t, neck_width
+  use convex_contact, only: jkr_like_detachment
   use discretisation, only: discretisation_t
   use panels, only: new_panel_grid, graded_ends
   implicit none
@@ -66,13 +68,9 @@ contains
     pair%passage = min(0.6_wp*neck_width(problem), 0.4_wp)
     ! Until then the axis of rigid bodies has come half the way from most tension to rest.
     if (problem%law%edge_gap > 0) &
-      pair%passage = min(pair%passage, sqrt(problem%law%edge_gap - problem%law%rest_gap))
-    ! The neglected pressure of order rho^-6 lowers the gap by about 17 coupling/reach^5, and so for
-    ! other powers.
-    pair%reach = max(sqrt(2*max(problem%law%range - min(h0_low, 0.0_wp), 1.0_wp)), &
-      (17*problem%law%adhesion*problem%coupling**(1.0_wp/3)/resolution%accuracy)**(1/(2*problem%law%tail_power - 1)), &
-      4*problem%law%adhesion*widest, sqrt(100*problem%law%adhesion*max(h0_high, 1.0_wp)))
-    pair%reach = resolution%farther*pair%reach
+      pair%passage = min(pair%passage, problem%shape%position_of( &
+      0.5_wp*(problem%law%edge_gap - problem%law%rest_gap)))
+    pair%reach = resolution%farther*reach_of(problem, h0_high, h0_low, widest, resolution%accuracy)
     associate (fineness => resolution%fineness, order => resolution%order)
       if (pair%traceable) pair%grid(approach) = new_panel_grid(0.0_wp, &
         graded_ends(0.0_wp, pair%reach, fineness*feature, 1.0_wp, pair%reach), order, elastic)
@@ -81,6 +79,21 @@ contains
         fineness*smallest_feature(problem, widest)/widest, order, elastic)
     end associate
   end function new_mesh_pair
+
+  !> Lateral position up to which states are resolved, for this relative error and largest contact.
+  pure real(wp) function reach_of(problem, h0_high, h0_low, widest, accuracy) result(reach)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0_high, h0_low, widest, accuracy
+
+    associate (law => problem%law, shape => problem%shape)
+      ! The neglected pressure, of parabolas of order rho^-6, lowers the gap by about
+      ! 17 coupling/reach^5, and so for other powers of gap and shape.
+      reach = max(shape%position_of(max(law%range - min(h0_low, 0.0_wp), 1.0_wp)), &
+        (17*(2/shape%growth)*law%adhesion*problem%coupling**(1.0_wp/3)/accuracy)** &
+        (1/(shape%growth*law%tail_power - 1)), &
+        4*law%adhesion*widest, shape%position_of(50*law%adhesion*max(h0_high, 1.0_wp)))
+    end associate
+  end function reach_of
 
   !> A mesh locked to the edge at 1, out to `extent`, with smallest panels of size `finest`.
   function new_locked_grid(extent, finest, order, elastic) result(grid)
@@ -93,38 +106,44 @@ contains
       graded_ends(1.0_wp, extent, min(finest, 0.25_wp), 1.0_wp, extent), order, elastic)
   end function new_locked_grid
 
-  !> Contact radius that JKR theory (11) gives at H0, with a margin of a fifth; for a law without
+  !> Contact radius that JKR theory, (11), gives at H0, with a margin of a fifth; for a law without
   !> adhesion that of Hertz, beginning at its level.
   pure real(wp) function largest_radius(problem, h0, level) result(c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0, level
+    real(wp) :: before
     integer :: step
 
     if (problem%law%adhesion <= 0) then
-      c = hertz_scale(level, h0)
+      c = hertz_scale(problem%shape, level, h0)
       return
     end if
     c = 1
     do step = 1, 200
-      c = sqrt(max(1 - h0, 0.0_wp) + sqrt(4*pi*problem%coupling*problem%law%adhesion*c))
+      before = c
+      c = problem%shape%contact_radius(max(1 - h0, 0.0_wp) + &
+        sqrt(4*pi*problem%coupling*problem%law%adhesion*c))
+      if (.not. abs(c - before) > 0) exit
     end do
     c = max(1.0_wp, 1.2_wp*c)
   end function largest_radius
 
   !> An H0 beyond which no contact reaches: the jump out of contact at fixed displacement of JKR
-  !> theory, the extremum of (11), with a margin of a fifth.
+  !> theory, with a margin of a fifth.
   pure real(wp) function beyond_contact(problem)
     type(problem_t), intent(in) :: problem
 
-    beyond_contact = 1.2_wp*(1 + 3*(pi*problem%coupling*problem%law%adhesion/4)**(2.0_wp/3))
+    beyond_contact = 1.2_wp*(1 + jkr_like_detachment(problem%shape, &
+      problem%coupling*problem%law%adhesion))
   end function beyond_contact
 
   !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins
   !> at the given level, never less than 1.
-  pure real(wp) function hertz_scale(level, h0)
+  pure real(wp) function hertz_scale(shape, level, h0)
+    class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: level, h0
 
-    hertz_scale = sqrt(1 + max(0.0_wp, level - h0))
+    hertz_scale = shape%contact_radius(1 + max(0.0_wp, level - h0))
   end function hertz_scale
 
   !> The gap at which the pressure over a unit radius deforms the bodies by one unit, by bisection
@@ -143,15 +162,15 @@ contains
   end function contact_level
 
   !> The smallest lateral feature of the pressure up to the contact radius c: the neck, or where
-  !> that is wide, the half-width of the pressure between spheres near contact and the boundary
-  !> layer of a Hertz contact, whose gap opens as sqrt(c) s^(3/2) with the distance s from the edge
-  !> and changes the repulsion over one repulsion length.
+  !> that is wide, the half-width of the pressure between bodies near contact and the boundary layer
+  !> of a Hertz contact, whose gap opens as the power 3/2 of the distance from the edge and changes
+  !> the repulsion over one repulsion length.
   pure real(wp) function smallest_feature(problem, c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
 
     smallest_feature = max(finest*max(c, 1.0_wp), min(neck_width(problem), 0.5_wp, &
-      (problem%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3)))
+      (problem%law%repulsion_length**2/problem%shape%opening(max(c, 1.0_wp)))**(1.0_wp/3)))
   end function smallest_feature
 
 end module edge_locked

@@ -4,6 +4,7 @@
 !> extrapolated from the last states and corrected by the accelerated iteration.
 module continuation
   use kinds, only: wp
+  use shape, only: shape_t
   use dimensionless_problem, only: problem_t
   use interpolation, only: polynomial_weights
   use discretisation, only: discretisation_t
@@ -137,7 +138,8 @@ contains
       if (to == contact) c = radius_of_gap(problem%law%edge_gap, pair%grid(from), state)
       done = c > 0
       if (.not. done) return
-      state = regrid(state, pair%grid(from), pair%grid(to), c, node_count(pair, to, c))
+      state = regrid(problem%shape, state, pair%grid(from), pair%grid(to), c, &
+        node_count(pair, to, c))
       call solve_anderson(equations, options, frozen, &
         path_control(problem, to, coordinate_of(problem, to, state)), state, done)
     end associate
@@ -170,13 +172,14 @@ contains
     control = path_control(equations%problem, arc%mesh, s)
     used = node_count(equations%pair, arc%mesh, merge(control%value, 1.0_wp, arc%mesh == contact))
     if (present(nodes)) used = nodes
-    state = between(equations%pair%grid(arc%mesh), arc%coordinate(:arc%held), &
-      arc%state(:arc%held), s, used)
+    state = between(equations%problem%shape, equations%pair%grid(arc%mesh), &
+      arc%coordinate(:arc%held), arc%state(:arc%held), s, used)
     call solve_anderson(equations, options, frozen, control, state, converged)
   end subroutine state_at
 
   !> The polynomial through states at the given coordinates, evaluated at s, on `nodes` nodes.
-  pure function between(grid, coordinate, states, s, nodes) result(guess)
+  pure function between(shape, grid, coordinate, states, s, nodes) result(guess)
+    class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: coordinate(:), s
     type(state_t), intent(in) :: states(:)
@@ -192,7 +195,8 @@ contains
     weight = polynomial_weights(coordinate, s)
     do j = 1, size(states)
       term = states(j)
-      if (size(term%gap) /= nodes) term = regrid(states(j), grid, grid, states(j)%scale, nodes)
+      if (size(term%gap) /= nodes) &
+        term = regrid(shape, states(j), grid, grid, states(j)%scale, nodes)
       gap = gap + weight(j)*term%gap
       h0 = h0 + weight(j)*term%h0
       scale = scale + weight(j)*term%scale
@@ -200,7 +204,7 @@ contains
     ! An extrapolation that leaves the law's domain is worth less than the nearest state.
     nearest = minloc(abs(coordinate - s), 1)
     term = states(nearest)
-    if (size(term%gap) /= nodes) term = regrid(term, grid, grid, term%scale, nodes)
+    if (size(term%gap) /= nodes) term = regrid(shape, term, grid, grid, term%scale, nodes)
     guess = term
     guess%pressure = 0*gap
     if (minval(gap) < 0.5_wp*minval(term%gap) .and. minval(term%gap) > 0) return

@@ -1,7 +1,9 @@
 !> Derivatives of H0 and load along the equilibrium path, exact to the solver's tolerance.
 module path_slopes
   use kinds, only: wp, pi
-  use equilibrium, only: control_t, state_t, equations_t, at_edge_radius, load_reach
+  use beyond_mesh, only: load_slope_beyond
+  use equilibrium, only: control_t, state_t, equations_t, at_edge_radius, load_reach, &
+    gap_at_end
   use jacobian, only: factorise_jacobian, control_derivative
   use linear_algebra, only: solve
   use anderson, only: frozen_jacobian_t
@@ -22,7 +24,7 @@ contains
     real(wp), intent(out) :: h0_slope, load_slope
     logical, intent(out) :: found
     real(wp), allocatable :: dz(:)
-    real(wp) :: reach, c_slope, gap(1)
+    real(wp) :: reach, last, c_slope, of_end(2)
     integer :: n
 
     n = size(state%gap)
@@ -37,15 +39,16 @@ contains
     h0_slope = dz(n + 1)
     c_slope = merge(1.0_wp, 0.0_wp, control%kind == at_edge_radius)
     associate (grid => equations%pair%grid(equations%mesh_of(control)), &
-      law => equations%problem%law)
-      ! The load is 2 pi (c^2 sum(w P) + E(gap at the end of the mesh)), whose last gap moves with
-      ! the last node's and with the end itself.
+      law => equations%problem%law, shape => equations%problem%shape)
+      ! The load is 2 pi (c^2 sum(w P) + that beyond the mesh), which depends on the position of the
+      ! mesh's end and on the gap there; this moves with the last node's and with the end itself.
       reach = load_reach(grid, state)
-      gap = state%gap(n) + 0.5_wp*(reach**2 - (state%scale*grid%x(n))**2)
+      last = state%scale*grid%x(n)
+      of_end = load_slope_beyond(equations%problem, gap_at_end(shape, grid, state), reach)
       load_slope = 2*pi*(2*state%scale*c_slope*dot_product(grid%weight(:n), state%pressure) + &
-        state%scale**2*sum(grid%weight(:n)*law%slope(state%gap)*dz(:n)) - &
-        sum(law%pressure(gap))*(dz(n) + c_slope/state%scale*(reach**2 - &
-        (state%scale*grid%x(n))**2)))
+        state%scale**2*sum(grid%weight(:n)*law%slope(state%gap)*dz(:n)) + &
+        of_end(1)*(dz(n) + c_slope/state%scale*(reach*shape%slope(reach) - &
+        last*shape%slope(last))) + of_end(2)*reach*c_slope/state%scale)
     end associate
   end subroutine slopes_along_path
 

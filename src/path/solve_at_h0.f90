@@ -7,7 +7,7 @@ module solve_at_h0
   use equilibrium, only: control_t, state_t, equations_t, holds, residual_floor, at_h0_with_edge
   use solver_options, only: solver_options_t, tightened
   use anderson, only: frozen_jacobian_t, solve_anderson
-  use edge_locked, only: mesh_pair_t, contact
+  use edge_locked, only: contact
   use continuation, only: arc_t, state_at, between, coordinate_of, most_states
   use traced_path, only: traced_path_t
   implicit none
@@ -68,15 +68,15 @@ contains
   end function coordinate_at_h0
 
   !> The state that the neighbours let expect at the coordinate s, on `nodes` nodes of their mesh.
-  pure function guess_at_h0(pair, near, s, nodes) result(guess)
-    type(mesh_pair_t), intent(in) :: pair
+  pure function guess_at_h0(equations, near, s, nodes) result(guess)
+    type(equations_t), intent(in) :: equations
     type(neighbours_t), intent(in) :: near
     real(wp), intent(in) :: s
     integer, intent(in) :: nodes
     type(state_t) :: guess
 
-    guess = between(pair%grid(near%mesh), near%coordinate(:near%held), near%state(:near%held), s, &
-      nodes)
+    guess = between(equations%problem%shape, equations%pair%grid(near%mesh), &
+      near%coordinate(:near%held), near%state(:near%held), s, nodes)
   end function guess_at_h0
 
   !> The state at h0 on the piece, on which h0 goes one way: the polynomial through the neighbours

@@ -5,6 +5,7 @@ module scene
   use text, only: brief, listing
   use deck, only: deck_t, read_deck
   use laws, only: read_laws
+  use shapes, only: read_shapes
   use scene_keys, only: keys_of_scene
   use scene_groups, only: scene_t
   use bodies_group, only: take_bodies
@@ -55,6 +56,8 @@ contains
     if (allocated(error)) return
     call take_bodies(scene, error)
     call read_laws(scene%deck, scene%law, error)
+    if (allocated(scene%law)) &
+      call read_shapes(scene%deck, scene%law%length, scene%shape, error)
     call take_loading(scene, error)
     ! The groups below take their defaults from &loading and are checked against it.
     if (allocated(error)) return
