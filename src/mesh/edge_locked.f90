@@ -76,7 +76,8 @@ contains
         graded_ends(0.0_wp, pair%reach, fineness*feature, 1.0_wp, pair%reach), order, elastic)
       if (problem%law%edge_gap > 0 .and. .not. problem%rigid .or. .not. pair%traceable) &
         pair%grid(contact) = new_locked_grid(pair%reach/min(pair%passage, 1.0_wp), &
-        fineness*smallest_feature(problem, widest)/widest, order, elastic)
+        fineness*smallest_feature(problem, widest)/widest, &
+        tip_panel(problem%shape, resolution%accuracy), order, elastic)
     end associate
   end function new_mesh_pair
 
@@ -95,15 +96,33 @@ contains
     end associate
   end function reach_of
 
-  !> A mesh locked to the edge at 1, out to `extent`, with smallest panels of size `finest`.
-  function new_locked_grid(extent, finest, order, elastic) result(grid)
-    real(wp), intent(in) :: extent, finest
+  !> Size of the panel on the axis, where the pressure of a contact goes as r^(n-1), with a logarithm
+  !> if n is odd: what one panel cannot resolve of it is left out of the load as r^(n+1). Bodies of
+  !> even n are smooth, and any panel does.
+  pure real(wp) function tip_panel(shape, accuracy) result(size)
+    class(shape_t), intent(in) :: shape
+    real(wp), intent(in) :: accuracy
+
+    size = 1
+    associate (n => shape%exponent)
+      if (abs(n - 2*nint(0.5_wp*n)) > 0) size = accuracy**(1/(n + 1))
+    end associate
+  end function tip_panel
+
+  !> A mesh locked to the edge at 1, out to `extent`, with smallest panels of size `finest`, and of
+  !> size `tip` on the axis, where that is smaller than follows from it.
+  function new_locked_grid(extent, finest, tip, order, elastic) result(grid)
+    real(wp), intent(in) :: extent, finest, tip
     integer, intent(in) :: order
     logical, intent(in) :: elastic
     type(discretisation_t) :: grid
+    real(wp), allocatable :: ends(:)
 
-    grid = new_panel_grid(1.0_wp, &
-      graded_ends(1.0_wp, extent, min(finest, 0.25_wp), 1.0_wp, extent), order, elastic)
+    ends = graded_ends(1.0_wp, extent, min(finest, 0.25_wp), 1.0_wp, extent)
+    do while (1 + ends(2) > tip)
+      ends = [ends(1), 0.5_wp*(ends(2) - 1), ends(2:)]
+    end do
+    grid = new_panel_grid(1.0_wp, ends, order, elastic)
   end function new_locked_grid
 
   !> Contact radius that JKR theory, (11), gives at H0, with a margin of a fifth; for a law without
