@@ -4,7 +4,8 @@ module linear_algebra
   implicit none
   private
   public :: multiply, factorisation_t, factorise, solve, determinant_sign, &
-    log_determinant, claim_buffers, eigenvalues, positive_definite, positive_eigenvalues
+    log_determinant, claim_buffers, eigenvalues, positive_definite, positive_eigenvalues, &
+    solve_tridiagonal
 
   !> LU factors of a square matrix, from `factorise`.
   type :: factorisation_t
@@ -39,6 +40,12 @@ module linear_algebra
       real(wp), intent(inout) :: b(ldb, *)
       integer, intent(out) :: info
     end subroutine dgetrs
+    subroutine dgtsv(n, nrhs, dl, d, du, b, ldb, info)
+      import :: wp
+      integer, intent(in) :: n, nrhs, ldb
+      real(wp), intent(inout) :: dl(*), d(*), du(*), b(ldb, *)
+      integer, intent(out) :: info
+    end subroutine dgtsv
     subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, info)
       import :: wp
       character, intent(in) :: jobvl, jobvr
@@ -112,6 +119,14 @@ contains
     n = size(b)
     call dgetrs('n', n, 1, factors%lu, n, factors%pivot, b, n, info)
   end subroutine solve
+
+  !> Overwrites b with the solution of a regular tridiagonal system, and the three diagonals.
+  subroutine solve_tridiagonal(below, middle, above, b)
+    real(wp), intent(inout) :: below(:), middle(:), above(:), b(:)
+    integer :: info
+
+    call dgtsv(size(b), 1, below, middle, above, b, size(b), info)
+  end subroutine solve_tridiagonal
 
   !> Sign of the determinant, +1 or -1.
   pure integer function determinant_sign(factors)

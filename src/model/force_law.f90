@@ -24,6 +24,9 @@ module force_law
     real(wp) :: smallest_gap = -300
     !> Far away the pressure falls as gap^-tail_power; `huge` where it falls faster than any power.
     real(wp) :: tail_power = huge(1.0_wp)
+    !> Whether `length` and `pressure_unit` are scales of the force; else those of its well become
+    !> the units (`force_sum`).
+    logical :: has_units = .true.
     !> Whether `length` is the z0 of a law of powers, in which the field gives sigma and Tabor's
     !> parameter; else it is the range, surface energy over largest tension.
     logical :: has_z0 = .false.
@@ -58,6 +61,7 @@ module force_law
     procedure(gap_function), deferred :: slope
     procedure(gap_function), deferred :: energy
     procedure :: closure
+    procedure :: table_error
     procedure :: gap_of
     procedure :: separation_of
   end type force_law_t
@@ -81,6 +85,15 @@ contains
 
     most = self%closure_fraction*gap + self%closure_length
   end function closure
+
+  !> Estimated error of the energy where the law is interpolated; 0 for a formula.
+  pure function table_error(self, gap) result(value)
+    class(force_law_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = 0
+  end function table_error
 
   !> A separation or an h0 [m] in the law's units.
   elemental real(wp) function gap_of(self, separation) result(gap)

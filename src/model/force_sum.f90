@@ -21,6 +21,7 @@ module force_sum
     procedure :: slope
     procedure :: energy
     procedure :: closure
+    procedure :: table_error
   end type force_sum_t
 
 contains
@@ -60,12 +61,18 @@ contains
   !> Units and scales of a law whose terms are complete. A sum is looked at in units of its shortest
   !> term first. If it has a well its units are then those of the well: z0 of the first term that
   !> has one, else the range, which is the depth over the largest tension; and the largest tension.
-  !> The contact is at gap 1.
+  !> The contact is at gap 1. So are those of a law without units of its own, a sum of one.
   subroutine settle(law)
-    class(force_law_t), intent(inout) :: law
+    class(force_law_t), allocatable, intent(inout) :: law
+    type(force_sum_t) :: alone
     real(wp) :: most(1), length, unit, origin
     integer :: i
 
+    if (.not. law%has_units) then
+      allocate (alone%term(1))
+      call move_alloc(law, alone%term(1)%law)
+      allocate (law, source=alone)
+    end if
     select type (law)
     type is (force_sum_t)
       call take_units(law, minval(lengths(law)), maxval(units(law)), 0.0_wp)
@@ -193,6 +200,21 @@ contains
       end associate
     end do
   end function energy
+
+  pure function table_error(self, gap) result(value)
+    class(force_sum_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+    integer :: i
+
+    value = 0
+    do i = 1, size(self%term)
+      associate (term => self%term(i), part => self%term(i)%law)
+        value = value + part%pressure_unit/self%pressure_unit/term%stretch* &
+          part%table_error(term%stretch*gap + term%shift)
+      end associate
+    end do
+  end function table_error
 
   !> The least that any of the forces allows.
   pure function closure(self, gap) result(most)

@@ -20,6 +20,8 @@ module deck_source
     !> Name of the file, fit for a message.
     character(len=:), allocatable :: file
     character(len=:), allocatable :: text
+    !> The folder that the file is in, up to the last slash: what a deck names is looked for there.
+    character(len=:), allocatable :: folder
   contains
     procedure :: part
     procedure :: line_at
@@ -75,6 +77,7 @@ contains
 
     source%file = printable(name)
     source%text = ''
+    source%folder = name(:index(name, '/', back=.true.))
     if (len(bytes) > largest_deck) then
       call fail(error, bad_input, source%file // ': larger than 1 MiB, so not a deck')
       return

@@ -2,6 +2,7 @@
 module force_entries
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
+  use text, only: brief
   use law_scan, only: surroundings_t, surroundings_of
   use summary, only: summary_t
   implicit none
@@ -21,6 +22,7 @@ contains
       if (.not. law%rest_gap > 0) return
       energy = problem%pressure*problem%length
       call summary%set('work_of_adhesion', surface_energy(problem))
+      call take_table_error(problem, summary)
       call summary%set('rest_gap', law%separation_of(law%rest_gap))
       if (.not. surface_energy(problem) > 0) call summary%warn('contact is only metastable: the '// &
         'bodies have less energy apart, and no classical theory applies')
@@ -40,5 +42,23 @@ contains
       end if
     end associate
   end subroutine take_forces
+
+  !> How well the points of a table tell the depth of the well, on which the pull-off depends: it is
+  !> in proportion to that for hard bodies and for soft ones.
+  subroutine take_table_error(problem, summary)
+    type(problem_t), intent(in) :: problem
+    type(summary_t), intent(inout) :: summary
+    real(wp) :: error(1), depth(1)
+    !> Beyond this the table and not the mesh decides what is found.
+    real(wp), parameter :: coarse = 1.0e-3_wp
+
+    error = problem%law%table_error([problem%law%rest_gap])
+    if (.not. error(1) > 0) return
+    depth = abs(problem%law%energy([problem%law%rest_gap]))
+    error = error/max(depth, tiny(1.0_wp))
+    call summary%set('table_error', error(1))
+    if (error(1) > coarse) call summary%warn('the points of the table are far apart: work of ' // &
+      'adhesion and pull-off are uncertain by about ' // brief(error(1)) // ' of themselves')
+  end subroutine take_table_error
 
 end module force_entries

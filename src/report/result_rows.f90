@@ -35,7 +35,10 @@ module result_rows
     row_t('surface_energy', 'J/m^2', &
       'surface energy of the force law, the depth of its minimum', always), &
     row_t('work_of_adhesion', 'J/m^2', &
-      'energy needed to separate unit area from contact; negative: contact is metastable', forces), &
+      'energy needed to separate unit area from contact; negative: contact is metastable', &
+      forces), &
+    row_t('table_error', '', &
+      'estimated relative error of work_of_adhesion and pull-off from the points of a table'), &
     row_t('rest_gap', 'm', 'innermost separation of no force', forces), &
     row_t('edge_gap', 'm', 'separation of largest tension', forces), &
     row_t('cohesive_stress', 'Pa', 'largest tension', forces), &

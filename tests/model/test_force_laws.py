@@ -21,6 +21,15 @@ LAWS = {
     "depletion": {"depletion": {"osmotic_pressure": 1e5, "diameter": 5e-9, "smoothing": 2e-9}},
     "capillary": {"capillary": {"humidity": 0.5, "smoothing": 0.5e-9}},
     "dugdale": {"dugdale": {"stress": 1e7, "range": 1e-9, "smoothing": 0.4e-9}},
+    "double_layer": {
+        "double_layer": {
+            "potential": [0.1, 0.06],
+            "regulation": [0.8, 0.3],
+            "debye_length": 2e-9,
+            "model": "nonlinear",
+        }
+    },
+    "tabulated": {"tabulated": {"file": str(ROOT / "inputs" / "tabulated.txt"), "tail_exponent": 3}},
 }
 # Separations at which a law is not smooth.
 KINKS = {"steric": [10e-9]}
@@ -30,6 +39,9 @@ ENDING = {"depletion", "capillary", "dugdale"}
 PARTS = {"lennard_jones": ("full", "repulsive", "attractive")}
 ALL = [(law, part) for law in LAWS for part in PARTS.get(law, ("full",))]
 every_law = pytest.mark.parametrize(("law", "part"), ALL, ids=map("-".join, ALL))
+# A table is smooth between its points only (test_tabulated.py).
+FORMULAS = [pair for pair in ALL if pair[0] != "tabulated"]
+every_formula = pytest.mark.parametrize(("law", "part"), FORMULAS, ids=map("-".join, FORMULAS))
 
 Z0, HAMAKER = 0.5e-9, 1e-19
 
@@ -60,7 +72,7 @@ def test_every_law_is_tested():
     assert set(LAWS) == {path.stem for path in (ROOT / "src" / "model" / "laws").glob("*.f90")}
 
 
-@every_law
+@every_formula
 def test_slope_is_the_derivative_of_the_pressure(law, part):
     of, gap, unit = functions(law, part), gaps(law), scales(law)
     # Central differences, extrapolated twice: the error is that of the sixth order in a step of
@@ -82,7 +94,7 @@ def test_slope_is_the_derivative_of_the_pressure(law, part):
     assert (abs(of(gap).slope - derivative) <= 1e-8 * size).all()
 
 
-@every_law
+@every_formula
 def test_energy_is_the_integral_of_the_pressure(law, part):
     of, gap = functions(law, part), np.union1d(gaps(law), KINKS.get(law, []))
     x, w = np.polynomial.legendre.leggauss(30)

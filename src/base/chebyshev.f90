@@ -1,0 +1,85 @@
+!> Chebyshev series on [-1, 1]: through values, its value and slope, its integral.
+module chebyshev
+  use kinds, only: wp, pi
+  implicit none
+  private
+  public :: chebyshev_points, chebyshev_series, series_value, series_slope, series_integral
+
+contains
+
+  !> The n + 1 extrema of the polynomial of degree n, from -1 to 1.
+  pure function chebyshev_points(n) result(point)
+    integer, intent(in) :: n
+    real(wp) :: point(0:n)
+    integer :: j
+
+    point = [(-cos(pi*j/n), j=0, n)]
+  end function chebyshev_points
+
+  !> Coefficients of the polynomial through `value` at `chebyshev_points`.
+  pure function chebyshev_series(value) result(coefficient)
+    real(wp), intent(in) :: value(0:)
+    real(wp) :: coefficient(0:ubound(value, 1))
+    real(wp) :: weighted(0:ubound(value, 1))
+    integer :: n, j, k
+
+    n = ubound(value, 1)
+    weighted = value
+    weighted([0, n]) = value([0, n])/2
+    do k = 0, n
+      coefficient(k) = (-1)**k*2.0_wp/n*sum(weighted*[(cos(pi*mod(j*k, 2*n)/n), j=0, n)])
+    end do
+    coefficient([0, n]) = coefficient([0, n])/2
+  end function chebyshev_series
+
+  !> The series at x, by Clenshaw's recurrence.
+  pure real(wp) function series_value(coefficient, x) result(value)
+    real(wp), intent(in) :: coefficient(0:), x
+    real(wp) :: before, last
+    integer :: k
+
+    value = 0
+    before = 0
+    do k = ubound(coefficient, 1), 1, -1
+      last = before
+      before = value
+      value = 2*x*before - last + coefficient(k)
+    end do
+    value = x*value - before + coefficient(0)
+  end function series_value
+
+  !> The derivative of the series, as a series.
+  pure function series_slope(coefficient) result(slope)
+    real(wp), intent(in) :: coefficient(0:)
+    real(wp) :: slope(0:ubound(coefficient, 1))
+    integer :: n, k
+
+    n = ubound(coefficient, 1)
+    slope = 0
+    do k = n - 1, 0, -1
+      slope(k) = 2*(k + 1)*coefficient(k + 1)
+      if (k + 2 <= n) slope(k) = slope(k) + slope(k + 2)
+    end do
+    slope(0) = slope(0)/2
+  end function series_slope
+
+  !> The integral of the series from -1 to x, as a series of one degree more.
+  pure function series_integral(coefficient) result(integral)
+    real(wp), intent(in) :: coefficient(0:)
+    real(wp) :: integral(0:ubound(coefficient, 1) + 1)
+    real(wp) :: padded(0:ubound(coefficient, 1) + 2)
+    integer :: k
+
+    padded = 0
+    padded(:ubound(coefficient, 1)) = coefficient
+    padded(0) = 2*padded(0)
+    integral(0) = 0
+    do k = 1, ubound(integral, 1)
+      integral(k) = (padded(k - 1) - padded(k + 1))/(2*k)
+    end do
+    do k = 1, ubound(integral, 1)
+      integral(0) = integral(0) - (-1)**k*integral(k)
+    end do
+  end function series_integral
+
+end module chebyshev

@@ -1,0 +1,165 @@
+!> A force that is known at points only. Interpolated is the pressure, or the energy, over its tail:
+!> q = p g^m as a function of u = ln g where the pressure ends as a power, q = p exp(u) of u = g/l
+!> where it ends as an exponential, the gap g being in units of the first. The energy is that of the
+!> interpolant, or the pressure its derivative. Beyond the last point q is constant; before
+!> the first the pressure is the power of the gap that goes on with value and slope there.
+module force_table
+  use kinds, only: wp
+  use cubic, only: spline, monotone
+  use quadrature, only: gauss_legendre
+  implicit none
+  private
+  public :: force_table_t, new_force_table, largest_step
+
+  !> The quadrature is exact to rounding for pieces over which the tail falls by exp(-largest_step).
+  integer, parameter :: order = 16
+  real(wp), parameter :: largest_step = 10
+
+  type :: force_table_t
+    logical :: of_energy = .false.
+    !> m, or 1 for an exponential, of what is interpolated; and of the energy.
+    real(wp) :: rate = 1, energy_rate = 1
+    !> l; 0 for a power.
+    real(wp) :: decay_length = 0
+    !> The repulsion goes on as gap^-power; pressure and energy at the first point.
+    real(wp) :: power = 0, pressure = 0, energy = 0
+    real(wp), allocatable :: u(:), cubic(:, :), energy_from(:)
+    real(wp) :: x(order) = 0, w(order) = 0
+  contains
+    procedure :: values
+    procedure, private :: u_of, integral
+  end type force_table_t
+
+contains
+
+  !> The table of `value`, pressures or energies, at the gaps g, of which the first is 1 and which
+  !> ascend. The pressure ends as g^-tail_exponent, or as exp(-g/decay_length) where that is not 0.
+  function new_force_table(g, value, of_energy, tail_exponent, decay_length, by_spline) &
+    result(table)
+    real(wp), intent(in) :: g(:), value(:), tail_exponent, decay_length
+    logical, intent(in) :: of_energy, by_spline
+    type(force_table_t) :: table
+    real(wp) :: at_first(3)
+    integer :: n, i
+
+    n = size(g)
+    table%of_energy = of_energy
+    table%decay_length = decay_length
+    if (.not. decay_length > 0) then
+      table%energy_rate = tail_exponent - 1
+      table%rate = merge(table%energy_rate, tail_exponent, of_energy)
+    end if
+    call gauss_legendre(table%x, table%w)
+    table%u = table%u_of(g)
+    if (by_spline) then
+      table%cubic = spline(table%u, value*exp(table%rate*table%u))
+    else
+      table%cubic = monotone(table%u, value*exp(table%rate*table%u))
+    end if
+    allocate (table%energy_from(n))
+    table%energy_from(n) = value(n)
+    if (.not. of_energy) then
+      table%energy_from(n) = value(n)*merge(decay_length, g(n), decay_length > 0)/table%energy_rate
+      do i = n - 1, 1, -1
+        table%energy_from(i) = table%energy_from(i + 1) + table%integral(i, table%u(i))
+      end do
+    end if
+    at_first = table%values(1.0_wp)
+    table%pressure = at_first(1)
+    table%energy = at_first(3)
+    ! Where there is no pressure there is no power.
+    table%power = -at_first(2)/sign(max(abs(at_first(1)), tiny(1.0_wp)), at_first(1))
+  end function new_force_table
+
+  !> u at a gap.
+  elemental real(wp) function u_of(self, gap) result(u)
+    class(force_table_t), intent(in) :: self
+    real(wp), intent(in) :: gap
+
+    if (self%decay_length > 0) then
+      u = gap/self%decay_length
+    else
+      u = log(gap)
+    end if
+  end function u_of
+
+  !> The integral of the pressure from u, in piece i, to the end of the piece.
+  pure real(wp) function integral(self, i, u)
+    class(force_table_t), intent(in) :: self
+    integer, intent(in) :: i
+    real(wp), intent(in) :: u
+    real(wp) :: v(order), t(order)
+
+    v = u + (self%u(i + 1) - u)*self%x
+    t = v - self%u(i)
+    associate (c => self%cubic(:, i))
+      integral = (self%u(i + 1) - u)* &
+        sum(self%w*(c(1) + t*(c(2) + t*(c(3) + t*c(4))))*exp(-self%energy_rate*v))
+    end associate
+    if (self%decay_length > 0) integral = integral*self%decay_length
+  end function integral
+
+  !> Pressure, slope and energy at a gap.
+  pure function values(self, gap) result(value)
+    class(force_table_t), intent(in) :: self
+    real(wp), intent(in) :: gap
+    real(wp) :: value(3)
+    real(wp) :: u, t, q(0:2), fall, du, ddu, z
+    integer :: i, n
+
+    if (gap < 1) then
+      value(1) = self%pressure*gap**(-self%power)
+      value(2) = -self%power*value(1)/gap
+      ! The integral (g^(1 - n) - 1)/(n - 1), whose limit at n = 1 is -ln g.
+      z = (1 - self%power)*log(gap)/2
+      z = sign(max(abs(z), epsilon(z)), z)
+      value(3) = self%energy - self%pressure*log(gap)*exp(z)*sinh(z)/z
+      return
+    end if
+    n = size(self%u)
+    u = self%u_of(gap)
+    du = 1/gap
+    ddu = -1/gap**2
+    if (self%decay_length > 0) then
+      du = 1/self%decay_length
+      ddu = 0
+    end if
+    i = piece_of(self%u, u)
+    t = min(u, self%u(n)) - self%u(i)
+    associate (c => self%cubic(:, i))
+      q = [c(1) + t*(c(2) + t*(c(3) + t*c(4))), c(2) + t*(2*c(3) + 3*t*c(4)), &
+        2*c(3) + 6*t*c(4)]
+    end associate
+    if (u >= self%u(n)) q(1:) = 0
+    fall = exp(-self%rate*u)
+    ! By u, and with its fall.
+    q(2) = fall*(q(2) - 2*self%rate*q(1) + self%rate**2*q(0))
+    q(1) = fall*(q(1) - self%rate*q(0))
+    q(0) = fall*q(0)
+    if (self%of_energy) then
+      value = [-du*q(1), -ddu*q(1) - du**2*q(2), q(0)]
+    else if (u >= self%u(n)) then
+      value = [q(0), du*q(1), q(0)/(du*self%energy_rate)]
+    else
+      value = [q(0), du*q(1), self%energy_from(i + 1) + self%integral(i, u)]
+    end if
+  end function values
+
+  !> The piece between neighbours of the ascending x that holds `at`; the last for what is beyond.
+  pure integer function piece_of(x, at) result(low)
+    real(wp), intent(in) :: x(:), at
+    integer :: high, middle
+
+    low = 1
+    high = size(x)
+    do while (high - low > 1)
+      middle = (low + high)/2
+      if (x(middle) <= at) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
+  end function piece_of
+
+end module force_table

@@ -1,0 +1,232 @@
+!> Electric double layers of two surfaces in a symmetric electrolyte, in Debye lengths 1/kappa and
+!> with reduced potentials y = z e psi/(kT):
+!>
+!> linear          the linear Poisson-Boltzmann equation with charge regulation (Carnie and Chan,
+!>                 J. Colloid Interface Sci. 161, 260, 1993); constant potential and constant charge
+!>                 are those of Hogg, Healy and Fuerstenau
+!> superposition   p = 64 n kT tanh(y1/4) tanh(y2/4) exp(-kappa h)
+!> nonlinear       the Poisson-Boltzmann equation itself (`poisson_boltzmann`)
+!>
+!> The pressure unit is 64 n kT tanh^2(y1/4), y1 the larger potential.
+module double_layer
+  use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, real_key, integer_key, list_key, word_key
+  use force_law, only: force_law_t
+  use law_reading, only: check_decades
+  use poisson_boltzmann, only: surface_t
+  use linear_layers, only: linear_values
+  use layer_table, only: layer_table_t, new_layer_table, nearest_gap
+  implicit none
+  private
+  public :: keys, read_law
+
+  integer, parameter :: linear = 1, superposition = 2, nonlinear = 3
+  character(len=*), parameter :: models = 'linear superposition nonlinear'
+
+  type, extends(force_law_t) :: double_layer_t
+    integer :: model = linear
+    type(surface_t) :: surface(2)
+    !> 2 n kT over the pressure unit.
+    real(wp) :: scale = 1
+    type(layer_table_t) :: table
+  contains
+    procedure :: pressure
+    procedure :: slope
+    procedure :: energy
+    procedure, private :: values
+  end type double_layer_t
+
+  !> CODATA 2018: elementary charge [C], Boltzmann's constant [J/K], vacuum permittivity [F/m],
+  !> Avogadro's constant [1/mol].
+  real(wp), parameter :: elementary_charge = 1.602176634e-19_wp, boltzmann = 1.380649e-23_wp, &
+    vacuum_permittivity = 8.8541878128e-12_wp, avogadro = 6.02214076e23_wp
+  !> Gap in Debye lengths beyond which exponentials would underflow.
+  real(wp), parameter :: largest_gap = 300
+  !> Largest reduced potential: 0.5 V for single charges. Beyond, ions would not be points.
+  real(wp), parameter :: largest_potential = 20
+
+contains
+
+  !> &double_layer.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      group('double_layer', 'Electric double layers in an electrolyte with ions of one valence. ' &
+            // 'Either salt or debye_length.'), &
+      list_key('double_layer', 'potential', 'V', 'Potentials of the two surfaces, each alone; ' // &
+               'one value: the same.', most=2, required=.true.), &
+      list_key('double_layer', 'regulation', '', 'How the surfaces meet: 0 at constant ' // &
+               'potential, 1 at constant charge, between them by regulation; one value: the ' // &
+               'same.', most=2, low=zero, high=1.0_wp, otherwise='1'), &
+      real_key('double_layer', 'salt', 'mol/m^3', 'Concentration of the salt.', above=zero, &
+               otherwise='from debye_length'), &
+      integer_key('double_layer', 'valence', 'Charge number of its ions.', 1, 6, default='1'), &
+      real_key('double_layer', 'debye_length', 'm', 'Debye length 1/kappa.', above=zero, &
+               otherwise='from salt'), &
+      real_key('double_layer', 'permittivity', '', 'Relative permittivity of the liquid.', &
+               above=zero, default='78.4'), &
+      real_key('double_layer', 'temperature', 'K', 'Temperature.', above=zero, &
+               default='298.15'), &
+      word_key('double_layer', 'model', models, 'Small potentials; large gaps; or the whole ' // &
+               'Poisson-Boltzmann equation.', default='linear')]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    type(double_layer_t) :: this
+    character(len=:), allocatable :: model
+    real(wp) :: osmotic
+    logical :: solved
+
+    if (.not. deck%has_group('double_layer')) return
+    call deck%get('double_layer', 'model', model)
+    this%model = linear
+    if (model == 'superposition') this%model = superposition
+    if (model == 'nonlinear') this%model = nonlinear
+    call take_electrolyte(deck, this, osmotic, error)
+    if (allocated(error)) return
+    this%scale = 1/(32*tanh(this%surface(1)%potential/4)**2)
+    this%pressure_unit = osmotic/this%scale
+    this%group = 'double_layer'
+    this%strength_key = 'potential'
+    this%length_key = merge('debye_length', 'salt        ', &
+      deck%is_set('double_layer', 'debye_length'))
+    if (this%model == superposition) then
+      this%closure_length = 2
+    else
+      ! A third of the gap; where gaps are small the repulsion may be as their second power.
+      this%smallest_gap = nearest_gap
+      this%closure_fraction = 0.3_wp
+      this%repulsion_length = 0.5_wp
+    end if
+    if (this%model == nonlinear) then
+      call new_layer_table(this%surface, this%table, solved)
+      if (.not. solved) then
+        call deck%mistake('double_layer', 'model', 'the Poisson-Boltzmann equation could not be ' &
+          // 'solved at every gap for these potentials and this regulation', error)
+        return
+      end if
+    end if
+    allocate (law, source=this)
+  end subroutine read_law
+
+  !> Debye length, surfaces and osmotic: 2 n kT [Pa].
+  subroutine take_electrolyte(deck, this, osmotic, error)
+    type(deck_t), intent(inout) :: deck
+    type(double_layer_t), intent(inout) :: this
+    real(wp), intent(out) :: osmotic
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: potential(:), regulation(:)
+    real(wp) :: salt, permittivity, temperature, thermal, decades
+    integer :: valence
+
+    osmotic = 0
+    if (deck%is_set('double_layer', 'salt') .eqv. deck%is_set('double_layer', 'debye_length')) then
+      if (deck%is_set('double_layer', 'salt')) then
+        call deck%mistake('double_layer', 'debye_length', 'salt gives it already; give ' // &
+          'debye_length or salt', error)
+      else
+        call deck%mistake('double_layer', 'salt', 'missing; give salt or debye_length', error)
+      end if
+      return
+    end if
+    call deck%assume('double_layer', 'regulation', 1.0_wp)
+    call deck%get('double_layer', 'potential', potential)
+    call deck%get('double_layer', 'regulation', regulation)
+    call deck%get('double_layer', 'permittivity', permittivity)
+    call deck%get('double_layer', 'temperature', temperature)
+    call deck%get('double_layer', 'valence', valence)
+    thermal = boltzmann*temperature/(valence*elementary_charge)
+    permittivity = permittivity*vacuum_permittivity
+    if (deck%is_set('double_layer', 'salt')) then
+      call deck%get('double_layer', 'salt', salt)
+      this%length = sqrt(permittivity)*sqrt(thermal/(2*avogadro*salt*valence*elementary_charge))
+    else
+      call deck%get('double_layer', 'debye_length', this%length)
+    end if
+    call take_surfaces(deck, potential/thermal, regulation, this, error)
+    if (allocated(error)) return
+    decades = log10(permittivity) + 2*(log10(thermal) - log10(this%length)) + &
+      2*log10(abs(this%surface(1)%potential))
+    call check_decades(deck, 'double_layer', 'potential', decades, 'a pressure', ' Pa', error)
+    osmotic = permittivity*(thermal/this%length)**2
+  end subroutine take_electrolyte
+
+  !> The surface of larger potential first, and that positive: pressures are the same.
+  subroutine take_surfaces(deck, potential, regulation, this, error)
+    type(deck_t), intent(in) :: deck
+    real(wp), intent(in) :: potential(:), regulation(:)
+    type(double_layer_t), intent(inout) :: this
+    type(failure_t), allocatable, intent(inout) :: error
+
+    this%surface%potential = [potential(1), potential(size(potential))]
+    this%surface%regulation = [regulation(1), regulation(size(regulation))]
+    if (abs(this%surface(2)%potential) > abs(this%surface(1)%potential)) &
+      this%surface = this%surface([2, 1])
+    if (this%surface(1)%potential < 0) this%surface%potential = -this%surface%potential
+    if (.not. this%surface(1)%potential > 0) then
+      call deck%mistake('double_layer', 'potential', 'without a potential there is no double ' // &
+        'layer; leave the group out', error)
+    else if (this%surface(1)%potential > largest_potential) then
+      call deck%mistake('double_layer', 'potential', 'more than 20 kT for each ion: ions would ' &
+        // 'not be points', error)
+    end if
+  end subroutine take_surfaces
+
+  !> Pressure, slope and energy, by rows, in the law's units.
+  pure function values(self, gap) result(value)
+    class(double_layer_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(3, size(gap))
+    real(wp) :: h
+    integer :: i
+
+    do i = 1, size(gap)
+      h = max(self%smallest_gap, min(gap(i), largest_gap))
+      select case (self%model)
+      case (linear)
+        value(:, i) = self%scale*linear_values(self%surface, h)
+      case (superposition)
+        value(:, i) = product(tanh(self%surface%potential/4))/ &
+          tanh(self%surface(1)%potential/4)**2*exp(-h)*[1, -1, 1]
+      case default
+        value(:, i) = self%scale*self%table%values(h)
+      end select
+    end do
+  end function values
+
+  pure function pressure(self, gap) result(value)
+    class(double_layer_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap)), all_values(3, size(gap))
+
+    all_values = self%values(gap)
+    value = all_values(1, :)
+  end function pressure
+
+  pure function slope(self, gap) result(value)
+    class(double_layer_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap)), all_values(3, size(gap))
+
+    all_values = self%values(gap)
+    value = all_values(2, :)
+  end function slope
+
+  pure function energy(self, gap) result(value)
+    class(double_layer_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap)), all_values(3, size(gap))
+
+    all_values = self%values(gap)
+    value = all_values(3, :)
+  end function energy
+
+end module double_layer

@@ -1,0 +1,241 @@
+!> A force law from a file: gaps and pressures or energies per area, measured or computed elsewhere.
+module tabulated
+  use kinds, only: wp
+  use failure, only: failure_t
+  use text, only: quoted
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, real_key, text_key, word_key
+  use number_columns, only: columns_t, read_columns
+  use force_law, only: force_law_t
+  use force_table, only: force_table_t, new_force_table, largest_step
+  use law_reading, only: check_decades
+  implicit none
+  private
+  public :: keys, read_law
+
+  type, extends(force_law_t) :: tabulated_t
+    !> The table, that of every second point, and what the difference of the two is to that between
+    !> the table and the law it is of.
+    type(force_table_t) :: fine, coarse
+    real(wp) :: share = 1
+  contains
+    procedure :: pressure
+    procedure :: slope
+    procedure :: energy
+    procedure :: table_error
+  end type tabulated_t
+
+  integer, parameter :: fewest = 8
+  !> A cubic between points converges as the fourth power of their distance, slopes that are
+  !> monotone as the second at an extremum.
+  real(wp), parameter :: share_of_spline = 1.0_wp/15, share_of_monotone = 1.0_wp/3
+
+contains
+
+  !> &tabulated.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      group('tabulated', 'A law from a file. Either tail_exponent or tail_decay_length.'), &
+      text_key('tabulated', 'file', 1000, 'File of two columns, gap and quantity in SI, # before ' &
+               // 'comments; in the folder of the deck unless a path.', required=.true.), &
+      word_key('tabulated', 'quantity', 'pressure energy', 'The second column: pressure [Pa] or ' &
+               // 'energy per area [J/m^2].', default='pressure'), &
+      word_key('tabulated', 'interpolation', 'spline monotone', 'Smooth curvature, or no ' // &
+               'extremum between points.', default='spline'), &
+      real_key('tabulated', 'tail_exponent', '', 'Beyond the last point the pressure falls as ' // &
+               'this power of the gap: 3 for van der Waals attraction.', above=1.0_wp, &
+               high=30.0_wp, otherwise='none'), &
+      real_key('tabulated', 'tail_decay_length', 'm', 'Beyond the last point the pressure falls ' &
+               // 'by a factor of e over this length.', above=zero, otherwise='none')]
+  end function keys
+
+  !> The law, if the deck asks for it.
+  subroutine read_law(deck, law, error)
+    type(deck_t), intent(inout) :: deck
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    type(tabulated_t) :: this
+    type(failure_t), allocatable :: trouble
+    type(columns_t) :: columns
+    character(len=:), allocatable :: file
+
+    if (.not. deck%has_group('tabulated')) return
+    if (deck%is_set('tabulated', 'tail_exponent') .eqv. &
+        deck%is_set('tabulated', 'tail_decay_length')) then
+      call deck%mistake('tabulated', 'tail_exponent', 'give tail_exponent or ' // &
+        'tail_decay_length, one of the two: how the force goes on beyond the table', error)
+      return
+    end if
+    call deck%get('tabulated', 'file', file)
+    if (index(file, '/') /= 1) file = deck%source%folder // file
+    call read_columns(file, columns, trouble)
+    if (.not. allocated(trouble)) call put_in_order(columns, trouble)
+    if (allocated(trouble)) then
+      call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, &
+        error)
+      return
+    end if
+    call take_table(deck, columns, this, error)
+    if (.not. allocated(error)) allocate (law, source=this)
+  end subroutine read_law
+
+  !> Gaps that ascend; fails where they do neither that nor descend, are not positive, or too few.
+  subroutine put_in_order(columns, error)
+    type(columns_t), intent(inout) :: columns
+    type(failure_t), allocatable, intent(inout) :: error
+    integer :: n, i
+
+    n = size(columns%first)
+    if (n < fewest) then
+      call columns%source%complain(len(columns%source%text) + 1, '', '', &
+        'fewer than 8 points', error)
+      return
+    end if
+    do i = 1, n
+      if (.not. columns%first(i) > 0) then
+        call columns%source%complain(columns%place(i), '', '', 'a gap that is not positive', error)
+        return
+      end if
+      if (i == 1) cycle
+      if ((columns%first(i) - columns%first(i - 1))*(columns%first(2) - columns%first(1)) > 0) cycle
+      call columns%source%complain(columns%place(i), '', '', &
+        'gaps neither increase all the way nor decrease', error)
+      return
+    end do
+    if (columns%first(1) < columns%first(n)) return
+    columns%first = columns%first(n:1:-1)
+    columns%second = columns%second(n:1:-1)
+    columns%place = columns%place(n:1:-1)
+  end subroutine put_in_order
+
+  !> The law of a table in order, in units of its first gap and its largest number.
+  subroutine take_table(deck, columns, this, error)
+    type(deck_t), intent(in) :: deck
+    type(columns_t), intent(inout) :: columns
+    type(tabulated_t), intent(inout) :: this
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: quantity, interpolation
+    real(wp), allocatable :: g(:), value(:)
+    real(wp) :: exponent, decay_length
+    integer :: n, i
+
+    n = size(columns%first)
+    exponent = 2
+    decay_length = 0
+    call deck%get('tabulated', 'quantity', quantity)
+    call deck%get('tabulated', 'interpolation', interpolation)
+    call deck%get('tabulated', 'tail_exponent', exponent)
+    call deck%get('tabulated', 'tail_decay_length', decay_length)
+    this%length = columns%first(1)
+    g = columns%first/this%length
+    this%pressure_unit = maxval(abs(columns%second))
+    value = columns%second/max(this%pressure_unit, tiny(1.0_wp))
+    if (quantity == 'energy') this%pressure_unit = this%pressure_unit/this%length
+    call check_decades(deck, 'tabulated', 'file', &
+      log10(max(this%pressure_unit, tiny(1.0_wp))), 'a pressure', ' Pa', error)
+    if (allocated(error)) return
+    decay_length = decay_length/this%length
+    do i = 1, n - 1
+      if (.not. fall(g(i), g(i + 1)) > largest_step) cycle
+      call deck%mistake('tabulated', 'file', 'from one point of the table to the next the ' // &
+        'tail falls by more than exp(-10)', error)
+      return
+    end do
+    this%fine = new_force_table(g, value, quantity == 'energy', exponent, decay_length, &
+      interpolation == 'spline')
+    ! The first and the last point stay.
+    i = 2 + mod(n, 2)
+    this%coarse = new_force_table([g(1), g(i:n:2)], [value(1), value(i:n:2)], &
+      quantity == 'energy', exponent, decay_length, interpolation == 'spline')
+    this%share = merge(share_of_spline, share_of_monotone, interpolation == 'spline')
+    call take_scales(deck, this, error)
+    if (.not. decay_length > 0) this%tail_power = exponent
+
+  contains
+
+    !> By how much, in logarithms, the tail falls between two gaps.
+    pure real(wp) function fall(from, to)
+      real(wp), intent(in) :: from, to
+
+      if (decay_length > 0) then
+        fall = (to - from)/decay_length
+      else
+        fall = exponent*log(to/from)
+      end if
+    end function fall
+
+  end subroutine take_table
+
+  !> What solvers must know of the repulsion, that of the power before the first point.
+  subroutine take_scales(deck, this, error)
+    type(deck_t), intent(in) :: deck
+    type(tabulated_t), intent(inout) :: this
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (.not. this%fine%power > 0) then
+      call deck%mistake('tabulated', 'file', 'the force does not grow towards the first gap, ' // &
+        'so that it cannot be continued to smaller ones', error)
+      return
+    end if
+    ! For the ninth power these are the numbers of the Lennard-Jones law.
+    this%smallest_gap = 10.0_wp**(-min(12.0_wp, 110/(this%fine%power + 1)))
+    this%repulsion_length = 0.9_wp/max(this%fine%power, 1.0_wp)
+    this%closure_fraction = 2.7_wp/max(this%fine%power, 9.0_wp)
+    this%group = 'tabulated'
+    this%strength_key = 'file'
+    this%length_key = 'file'
+    this%has_units = .false.
+  end subroutine take_scales
+
+  pure function pressure(self, gap) result(value)
+    class(tabulated_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = column_of(self%fine, gap, self%smallest_gap, 1)
+  end function pressure
+
+  pure function slope(self, gap) result(value)
+    class(tabulated_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = column_of(self%fine, gap, self%smallest_gap, 2)
+  end function slope
+
+  pure function energy(self, gap) result(value)
+    class(tabulated_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = column_of(self%fine, gap, self%smallest_gap, 3)
+  end function energy
+
+  !> From the law of every second point: what it adds to the error, if that is smooth, is a known
+  !> multiple of the error of all points.
+  pure function table_error(self, gap) result(value)
+    class(tabulated_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    value = self%share*abs(column_of(self%coarse, gap, self%smallest_gap, 3) - self%energy(gap))
+  end function table_error
+
+  !> Pressure (1), slope (2) or energy (3) of a table at gaps.
+  pure function column_of(table, gap, smallest, column) result(value)
+    type(force_table_t), intent(in) :: table
+    real(wp), intent(in) :: gap(:), smallest
+    integer, intent(in) :: column
+    real(wp) :: value(size(gap)), at(3)
+    integer :: i
+
+    do i = 1, size(gap)
+      at = table%values(max(gap(i), smallest))
+      value(i) = at(column)
+    end do
+  end function column_of
+
+end module tabulated

@@ -1,0 +1,176 @@
+!> The pressure of the nonlinear double layer as a table, made once. With u = -ln tanh(h/2), which
+!> is -ln(h/2) at small gaps h and 2 exp(-h) at large ones, q = p sinh h varies slowly over the
+!> decades of u and is constant far away, but for terms like u ln u. On panels of u it is a
+!> Chebyshev series. Since du = -dh/sinh h, the energy is the integral of q over u: that of the
+!> series, exactly, as the slope is its derivative.
+module layer_table
+  use kinds, only: wp
+  use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
+    series_integral
+  use poisson_boltzmann, only: surface_t, gap_state_t, far_amplitude, far_state, solve_gap
+  implicit none
+  private
+  public :: layer_table_t, new_layer_table, nearest_gap
+
+  !> Smallest gap of the table, in Debye lengths. Even the 1 um of pure water makes that smaller
+  !> than an atom by a factor of a hundred.
+  real(wp), parameter :: nearest_gap = 1.0e-6_wp
+  !> Gap beyond which q is its limit to rounding: u ln u is 1e-16 there.
+  real(wp), parameter :: farthest_gap = 40
+  !> Degree of a series, and the most that its last two coefficients may be of the pressure; so much
+  !> is left to the rounding of the quadratures.
+  integer, parameter :: degree = 18
+  real(wp), parameter :: resolved = 1.0e-13_wp, tolerated = 1.0e-11_wp
+  !> The ratio of u over a panel, in logarithms: at first and at most, and at least.
+  real(wp), parameter :: longest = 8, shortest = 0.02_wp
+
+  !> Panels from the smallest u on, which begin at `first` and end at `last`; columns are series in
+  !> the panel's [-1, 1]. Energies are those from the panel's first u to infinity.
+  type :: layer_table_t
+    private
+    real(wp), allocatable :: first(:), last(:)
+    real(wp), allocatable :: q(:, :), slope(:, :), energy(:, :)
+  contains
+    procedure :: values
+  end type layer_table_t
+
+  !> The last two gaps that were solved, from which the next is extrapolated; their number, and the
+  !> largest pressure met, without its sign.
+  type :: trail_t
+    integer :: length = 0
+    real(wp) :: largest = 0
+    real(wp) :: u(2) = 0
+    type(gap_state_t) :: state(2)
+  end type trail_t
+
+contains
+
+  !> Tabulates the pressure between two surfaces, the first of which has the higher potential; it is
+  !> positive. `solved` is false where an equation was not solved: then there is no table.
+  pure subroutine new_layer_table(surface, table, solved)
+    type(surface_t), intent(in) :: surface(2)
+    type(layer_table_t), intent(out) :: table
+    logical, intent(out) :: solved
+    type(trail_t) :: trail, trial
+    real(wp) :: first, last, span, series(0:degree), rest
+
+    allocate (table%first(0), table%last(0))
+    allocate (table%q(0:degree, 0), table%slope(0:degree, 0), table%energy(0:degree + 1, 0))
+    first = u_at(farthest_gap)
+    span = longest
+    do while (first < u_at(nearest_gap))
+      last = min(first*exp(span), u_at(nearest_gap))
+      trial = trail
+      call solve_panel(surface, first, last, trial, series, solved)
+      rest = huge(rest)
+      ! Where the pressure vanishes, so much of the largest counts.
+      if (solved) rest = maxval(abs(series(degree - 1:)))/ &
+        max(maxval(abs(series)), trial%largest*sinh(u_at(last)))
+      if (.not. rest <= resolved .and. span > shortest) then
+        span = span/2
+        cycle
+      end if
+      solved = rest <= tolerated
+      if (.not. solved) return
+      trail = trial
+      call append(table, first, last, series, far_amplitude(surface)/2)
+      first = last
+      span = min(1.5_wp*span, longest)
+    end do
+  end subroutine new_layer_table
+
+  !> Solves at the points of one panel, from large gaps to small ones, and makes the series of q.
+  pure subroutine solve_panel(surface, first, last, trail, series, solved)
+    type(surface_t), intent(in) :: surface(2)
+    real(wp), intent(in) :: first, last
+    type(trail_t), intent(inout) :: trail
+    real(wp), intent(out) :: series(0:degree)
+    logical, intent(out) :: solved
+    type(gap_state_t) :: state
+    real(wp) :: u(0:degree), q(0:degree)
+    integer :: i
+
+    u = first + (last - first)*(1 + chebyshev_points(degree))/2
+    solved = .true.
+    do i = 0, degree
+      ! The point that a panel shares with the one before.
+      if (i > 0 .or. trail%length == 0) then
+        state = next_state(surface, u(i), trail)
+        call solve_gap(surface, u_at(u(i)), state, solved)
+        if (.not. solved) return
+        trail = trail_t(min(trail%length + 1, 2), max(trail%largest, abs(state%pressure)), &
+          [u(i), trail%u(1)], [state, trail%state(1)])
+      end if
+      q(i) = trail%state(1)%pressure*sinh(u_at(u(i)))
+    end do
+    series = chebyshev_series(q)
+  end subroutine solve_panel
+
+  !> Where to begin at u: extrapolated from what was solved, to first order.
+  pure type(gap_state_t) function next_state(surface, u, trail) result(state)
+    type(surface_t), intent(in) :: surface(2)
+    real(wp), intent(in) :: u
+    type(trail_t), intent(in) :: trail
+
+    associate (known => trail%state)
+      select case (trail%length)
+      case (0)
+        state = far_state(surface, u_at(u))
+      case (1)
+        state%t = known(1)%t*u/trail%u(1)
+      case default
+        state%t = known(1)%t + (known(1)%t - known(2)%t)*(u - trail%u(1))/(trail%u(1) - trail%u(2))
+      end select
+    end associate
+  end function next_state
+
+  !> Adds a panel after those there are; before the first q is `limit`.
+  pure subroutine append(table, first, last, series, limit)
+    type(layer_table_t), intent(inout) :: table
+    real(wp), intent(in) :: first, last, series(0:degree), limit
+    real(wp) :: integral(0:degree + 1)
+    integer :: n
+
+    n = size(table%first)
+    integral = series_integral(series)*(last - first)/2
+    if (n == 0) integral(0) = integral(0) + limit*first
+    if (n > 0) integral(0) = integral(0) + series_value(table%energy(:, n), 1.0_wp)
+    table%first = [table%first, first]
+    table%last = [table%last, last]
+    table%q = reshape([table%q, series], [degree + 1, n + 1])
+    table%slope = reshape([table%slope, series_slope(series)*2/(last - first)], [degree + 1, n + 1])
+    table%energy = reshape([table%energy, integral], [degree + 2, n + 1])
+  end subroutine append
+
+  !> Pressure, slope and energy at a gap in Debye lengths, from `nearest_gap` on.
+  pure function values(self, gap) result(value)
+    class(layer_table_t), intent(in) :: self
+    real(wp), intent(in) :: gap
+    real(wp) :: value(3)
+    real(wp) :: u, x, q, slope
+    integer :: i
+
+    u = u_at(gap)
+    i = max(count(self%first <= u), 1)
+    ! Beyond the table q is its limit, that of the first point.
+    x = max(-1.0_wp, 2*(u - self%first(i))/(self%last(i) - self%first(i)) - 1)
+    q = series_value(self%q(:, i), x)
+    slope = 0
+    if (u >= self%first(i)) slope = series_value(self%slope(:, i), x)
+    value(1) = q/sinh(gap)
+    value(2) = -(slope/sinh(gap) + q*cosh(gap)/sinh(gap))/sinh(gap)
+    value(3) = series_value(self%energy(:, i), x) - q*max(0.0_wp, self%first(i) - u)
+  end function values
+
+  !> u = -ln tanh(gap/2), to all digits near and far. The function is its own inverse.
+  pure real(wp) function u_at(gap) result(u)
+    real(wp), intent(in) :: gap
+
+    if (gap < 1) then
+      u = -log(tanh(gap/2))
+    else
+      u = 2*atanh(exp(-gap))
+    end if
+  end function u_at
+
+end module layer_table

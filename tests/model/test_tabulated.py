@@ -1,0 +1,216 @@
+"""Claims about force laws from files, whose tables are those of laws with a formula."""
+
+import math
+
+import numpy as np
+import pytest
+import snapin
+from conftest import ROOT
+
+HAMAKER, Z0 = 1e-20, 0.5e-9
+LAW = snapin.lennard_jones(hamaker=HAMAKER, z0=Z0)
+FIRST, LAST = 0.3e-9, 50e-9
+
+
+def points(a_decade):
+    """Return gaps [m] that are so many a decade."""
+    return np.geomspace(FIRST, LAST, round(a_decade * math.log10(LAST / FIRST)) + 1)
+
+
+def table(folder, gap, value, **keys):
+    """Return the group of a law from a file that is written into the folder."""
+    np.savetxt(folder / "law.txt", np.column_stack([gap, value]), fmt="%.17e")
+    return {"tabulated": {"file": str(folder / "law.txt"), "tail_exponent": 3, **keys}}
+
+
+def lennard_jones(folder, a_decade=40, **keys):
+    """Return a table of the Lennard-Jones law."""
+    gap = points(a_decade)
+    values = snapin.force_law(LAW, gap)
+    energy = keys.get("quantity") == "energy"
+    return table(folder, gap, values.energy if energy else values.pressure, **keys)
+
+
+KINDS = [
+    {"interpolation": interpolation, "quantity": quantity, **tail}
+    for interpolation in ("spline", "monotone")
+    for quantity in ("pressure", "energy")
+    for tail in ({}, {"tail_exponent": None, "tail_decay_length": 9e-9})
+]
+
+
+@pytest.mark.parametrize("keys", KINDS, ids=lambda keys: "-".join(map(str, keys.values())))
+def test_slope_is_the_derivative_and_energy_the_integral(tmp_path, keys):
+    groups = lennard_jones(tmp_path, 20, **keys)
+    # Between points, before the first and after the last.
+    ends = np.r_[0.1e-9, points(20), 2 * LAST, 4 * LAST]
+    low, high = ends[:-1], ends[1:]
+    x, w = np.polynomial.legendre.leggauss(30)
+    at = low[:, None] + (high - low)[:, None] * (x + 1) / 2
+    pressure = snapin.force_law(groups, at.ravel()).pressure.reshape(at.shape)
+    energy = snapin.force_law(groups, ends).energy
+    integral = pressure @ (w / 2) * (high - low)
+    size = abs(pressure) @ (w / 2) * (high - low) + abs(energy[:-1])
+    assert (abs(energy[:-1] - energy[1:] - integral) <= 1e-12 * size).all()
+    middle = (low + high) / 2
+    step = 1e-3 * (high - low)
+    around = [snapin.force_law(groups, middle + k * step).pressure for k in (-2, -1, 1, 2)]
+    differences = (around[0] - 8 * around[1] + 8 * around[2] - around[3]) / (12 * step)
+    size = np.max(np.abs(around), axis=0) / (high - low)
+    # The fourth power of the step: 2 % of the repulsion's length before the first point.
+    assert (abs(snapin.force_law(groups, middle).slope - differences) <= 2e-8 * size).all()
+
+
+@pytest.mark.parametrize("quantity", ["pressure", "energy"])
+@pytest.mark.parametrize("interpolation", ["spline", "monotone"])
+def test_points_are_met_and_nothing_jumps(tmp_path, interpolation, quantity):
+    groups = lennard_jones(tmp_path, quantity=quantity, interpolation=interpolation)
+    gap = points(40)
+    exact = getattr(snapin.force_law(LAW, gap), quantity)
+    np.testing.assert_allclose(getattr(snapin.force_law(groups, gap), quantity), exact, rtol=1e-11)
+    before, after = (snapin.force_law(groups, gap * (1 + e)) for e in (-1e-12, 1e-12))
+    size = snapin.force_law(snapin.lennard_jones(hamaker=HAMAKER, z0=Z0, part="repulsive"), gap)
+    for one, two, scale in zip(before, after, size, strict=True):
+        # The curvature of a monotone interpolant jumps, which is in the slope where that of the
+        # energy is interpolated.
+        if scale is size.slope and (interpolation, quantity) == ("monotone", "energy"):
+            continue
+        assert (abs(one - two) <= 1e-9 * (abs(scale) + abs(one))).all()
+
+
+@pytest.mark.parametrize(
+    ("interpolation", "order", "best"), [("spline", 3.7, 5e-7), ("monotone", 3.5, 2e-6)]
+)
+def test_table_converges_to_its_law(tmp_path, interpolation, order, best):
+    exact = snapin.law_numbers(LAW).surface_energy
+    errors = []
+    for a_decade in (20, 40, 80):
+        groups = lennard_jones(tmp_path, a_decade, interpolation=interpolation)
+        errors.append(abs(snapin.law_numbers(groups).surface_energy / exact - 1))
+    assert errors[2] <= best
+    assert math.log2(errors[0] / errors[2]) / 2 >= order
+
+
+def test_what_is_beyond_the_table_is_its_tail(tmp_path):
+    far = np.array([2, 10, 1e3]) * LAST
+    values = snapin.force_law(lennard_jones(tmp_path), far)
+    np.testing.assert_allclose(values.pressure, -HAMAKER / (6 * math.pi * far**3), rtol=1e-11)
+    np.testing.assert_allclose(values.energy, -HAMAKER / (12 * math.pi * far**2), rtol=1e-11)
+
+
+def test_an_exponential_law_is_met_with_its_tail_by_any_table(tmp_path):
+    gap = np.linspace(0.2e-9, 4e-9, 9)
+    exponential = snapin.exponential(p0=1e7, decay_length=0.7e-9)
+    keys = {"tail_exponent": None, "tail_decay_length": 0.7e-9}
+    groups = table(tmp_path, gap, snapin.force_law(exponential, gap).pressure, **keys)
+    at = np.linspace(0.2e-9, 20e-9, 40)
+    for found, exact in zip(snapin.force_law(groups, at), snapin.force_law(exponential, at)):
+        np.testing.assert_allclose(found, exact, rtol=1e-12)
+
+
+def test_before_the_table_repulsion_is_a_power(tmp_path):
+    gap = np.geomspace(1e-9, 1e-8, 9)
+    groups = table(tmp_path, gap, 1e-20 * gap**-3.0, tail_exponent=3)
+    near = np.array([1e-11, 1e-10, 9e-10])
+    values = snapin.force_law(groups, near)
+    np.testing.assert_allclose(values.pressure, 1e-20 * near**-3.0, rtol=1e-11)
+    np.testing.assert_allclose(values.energy, 1e-20 * near**-2.0 / 2, rtol=1e-11)
+
+
+def test_order_commas_and_comments_are_as_one_likes(tmp_path):
+    plain = lennard_jones(tmp_path)
+    lines = (tmp_path / "law.txt").read_text().splitlines()
+    freely = ["# law", "", *(line.replace(" ", " ,\t") + "  # point" for line in lines[::-1])]
+    (tmp_path / "freely.txt").write_text("\r\n".join(freely))
+    other = {"tabulated": {"file": str(tmp_path / "freely.txt"), "tail_exponent": 3}}
+    gap = np.geomspace(0.2e-9, 1e-7, 50)
+    for one, two in zip(snapin.force_law(plain, gap), snapin.force_law(other, gap)):
+        assert (one == two).all()
+
+
+def test_the_file_is_in_the_folder_of_the_deck(tmp_path, monkeypatch):
+    groups = lennard_jones(tmp_path)
+    groups["tabulated"]["file"] = "law.txt"
+    bodies = {"radius": 1e-2, "rigid": True}
+    deck = {"bodies": bodies, **groups, "classical": {"h0_start": 1e-9, "h0_end": 0.0}}
+    (tmp_path / "deck.nml").write_text(snapin.deck_text(deck))
+    monkeypatch.chdir(tmp_path.parent)
+    assert snapin.run(tmp_path / "deck.nml").summary["surface_energy"] > 0
+    with pytest.raises(snapin.DeckError, match=r"law\.txt: no such file"):
+        snapin.law_numbers(groups)
+
+
+@pytest.mark.filterwarnings("ignore::snapin.SnapinWarning")
+def test_summary_tells_what_the_points_leave_open(tmp_path):
+    bodies = {"radius": 1e-2, "stiffness": 1e10}
+    path = {"bodies": bodies, "equilibrium_path": {"h0_end": 0.0}}
+    exact = snapin.run({**path, **LAW}).summary
+    # Of too few points the estimate is that of the worse table.
+    for a_decade, most in ((10, 10), (40, 2)):
+        found = snapin.run({**path, **lennard_jones(tmp_path, a_decade)}).summary
+        error = abs(found["max_tension"] / exact["max_tension"] - 1)
+        assert error / 2 <= found["table_error"] <= most * error
+        warned = any("points of the table" in line for line in found.get("warnings", []))
+        assert warned == (found["table_error"] > 1e-3) == (a_decade == 10)
+    assert "table_error" not in exact
+
+
+def test_example_is_the_first_scene():
+    names = "first.nml", "tabulated.nml"
+    first, found = (snapin.run(ROOT / "inputs" / name).summary for name in names)
+    for key in ("max_tension", "jump_in_h0", "jump_out_h0"):
+        assert found[key] == pytest.approx(first[key], rel=3e-5)
+    assert 1e-6 < found["table_error"] < 1e-5
+
+
+# --- Mistakes
+
+GOOD = [f"{gap:.6e} {(Z0 / gap) ** 9 - (Z0 / gap) ** 3:.6e}" for gap in points(8)]
+
+
+@pytest.mark.parametrize(
+    ("lines", "line", "what"),
+    [
+        ([*GOOD[:3], "nan 1", *GOOD[3:]], 4, "not a finite number"),
+        ([*GOOD[:3], "1e-9 inf", *GOOD[3:]], 4, "not a finite number"),
+        ([*GOOD[:3], "1e-9", *GOOD[3:]], 4, "one number"),
+        ([*GOOD[:3], "1e-9 2 3", *GOOD[3:]], 4, "more than two"),
+        ([*GOOD[:3], "1e-9 two", *GOOD[3:]], 4, "not a number"),
+        ([*GOOD[:3], GOOD[2], *GOOD[3:]], 4, "neither increase"),
+        ([*GOOD[:3], GOOD[0], *GOOD[3:]], 4, "neither increase"),
+        (["0.0 1", *GOOD], 1, "not positive"),
+        (GOOD[:7], 7, "fewer than 8"),
+        ([], 1, "fewer than 8"),
+    ],
+)
+def test_a_mistake_in_the_file_is_shown_with_its_line(tmp_path, lines, line, what):
+    (tmp_path / "law.txt").write_text("\n".join(lines))
+    with pytest.raises(snapin.DeckError) as told:
+        snapin.law_numbers({"tabulated": {"file": str(tmp_path / "law.txt"), "tail_exponent": 3}})
+    assert "&tabulated" in str(told.value) and "file" in str(told.value)
+    assert f"law.txt:{line}: " in str(told.value) and what in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("keys", "named"),
+    [
+        ({"tail_exponent": None}, ("tail_exponent", "tail_decay_length")),
+        ({"tail_decay_length": 1e-9}, ("tail_exponent", "tail_decay_length")),
+        ({"tail_exponent": 1.0}, ("tail_exponent",)),
+        ({"file": None}, ("file",)),
+        ({"file": "/nowhere/law.txt"}, ("file", "no such file")),
+        ({"interpolation": "linear"}, ("interpolation", "monotone")),
+        ({"quantity": "force"}, ("quantity", "energy")),
+        ({"tail_exponent": None, "tail_decay_length": 1e-11}, ("file", "exp(-10)")),
+    ],
+)
+def test_a_mistake_in_the_deck_is_named(tmp_path, keys, named):
+    with pytest.raises(snapin.DeckError) as told:
+        snapin.law_numbers(lennard_jones(tmp_path, **keys))
+    assert all(name in str(told.value) for name in ("&tabulated", *named))
+
+
+def test_a_force_that_ends_before_its_first_gap_cannot_be_continued(tmp_path):
+    gap = np.linspace(0.5e-9, 5e-9, 12)
+    with pytest.raises(snapin.DeckError, match="does not grow towards the first gap"):
+        snapin.law_numbers(table(tmp_path, gap, 1e6 * (gap / 1e-9) * np.exp(-gap / 1e-9)))
