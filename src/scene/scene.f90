@@ -17,6 +17,7 @@ module scene
   use sweep_group, only: take_sweep
   use numerics_group, only: take_numerics
   use magnitudes, only: check_derived
+  use shape_checks, only: check_end
   implicit none
   private
   public :: scene_t, read_scene, make_scene, swept_scene
@@ -73,6 +74,7 @@ contains
       call deck%mistake('', '', 'nothing to compute; a deck needs at least one of ' // &
                         listing(transfer(computing, all_names), '&', ''), error)
     if (.not. allocated(error)) call check_derived(scene, error)
+    if (.not. allocated(error)) call check_end(scene, error)
   end subroutine make_scene
 
   !> The scene, which has a sweep, with the sweep's key set to `value` and without the sweep.
