@@ -2,7 +2,6 @@
 module shape_checks
   use kinds, only: wp, pi
   use failure, only: failure_t
-  use text, only: brief
   use dimensionless_problem, only: problem_t
   use edge_locked, only: largest_radius, contact_level
   use experiment, only: range_of
@@ -22,6 +21,7 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     type(problem_t) :: problem
     real(wp) :: low, high, gap, part, widest
+    character(len=7) :: share
 
     if (.not. scene%finds_states() .or. scene%shape%ends >= huge(1.0_wp)) return
     problem = problem_of(scene)
@@ -31,16 +31,18 @@ contains
       if (.not. problem%rigid) widest = largest_radius(problem, low, contact_level(problem))
       gap = shape%height(shape%ends) + min(low, 0.0_wp)
       if (.not. widest < shape%ends .or. .not. gap > max(law%rest_gap, law%edge_gap)) then
+        write (share, '(es7.1)') shape%ends*problem%lateral
         call scene%deck%mistake('shape', 'kind', 'the contact would reach the end of the ' // &
-          'body, ' // brief(shape%ends*problem%lateral) // ' m from the axis', error)
+          'body, ' // share // ' m from the axis', error)
         return
       end if
       part = abs(sum(law%pressure([gap])))*shape%ends**2/ &
         (2*pi*max(law%adhesion, abs(sum(law%energy([max(low, 1.0_wp)])))))
     end associate
+    write (share, '(es7.1)') min(part, 1.0_wp)
     if (.not. part <= scene%numerics%accuracy) call scene%deck%mistake('shape', 'kind', &
-      'the body ends where the force still acts: at its end it makes ' // brief(part) // &
-      ' of the load, which is above the accuracy; give &numerics a larger accuracy', error)
+      'the body ends where the force still acts: at its end it makes ' // share // &
+      ' of the load, above the accuracy; give &numerics a larger accuracy', error)
   end subroutine check_end
 
 end module shape_checks

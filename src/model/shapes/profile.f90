@@ -97,7 +97,7 @@ contains
     real(wp), intent(in) :: length
     type(profile_t), intent(inout) :: this
     type(failure_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: mirrored(:, :)
+    real(wp) :: mirrored(0:3, size(columns%first) - 1)
     real(wp) :: unit, last
     integer :: n, i
 
