@@ -92,7 +92,8 @@ contains
       reach = max(shape%position_of(max(law%range - min(h0_low, 0.0_wp), 1.0_wp)), &
         (17*(2/shape%growth)*law%adhesion*problem%coupling**(1.0_wp/3)/accuracy)** &
         (1/(shape%growth*law%tail_power - 1)), &
-        4*law%adhesion*widest, shape%position_of(50*law%adhesion*max(h0_high, 1.0_wp)))
+        4**(2/max(shape%growth, 2.0_wp))*law%adhesion*widest, &
+        shape%position_of(50*law%adhesion*max(h0_high, 1.0_wp)))
     end associate
   end function reach_of
 
