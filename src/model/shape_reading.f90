@@ -51,7 +51,7 @@ contains
     else if (deck%is_set('bodies', 'radius')) then
       call deck%get('bodies', 'radius', radius)
     else
-      call deck%mistake('bodies', 'radius', 'missing; give it a number > 0', error)
+      call deck%mistake('bodies', 'radius', 'missing; give it a number > 0 m', error)
     end if
   end subroutine read_radius
 

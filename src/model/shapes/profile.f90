@@ -25,8 +25,9 @@ module profile
   end type profile_t
 
   integer, parameter :: fewest = 5
-  !> Curvature, over the largest, that digits of a table may have of the wrong sign.
-  real(wp), parameter :: straight = 1.0e-3_wp
+  !> Curvature of the wrong sign, over the largest, that digits of a table may have, and a spline
+  !> through a body that is flat at its tip.
+  real(wp), parameter :: straight = 0.02_wp
 
 contains
 
