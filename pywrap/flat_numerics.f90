@@ -144,9 +144,9 @@ contains
   end subroutine equilibrium_state
 
   !> The state of a deck's problem with the contact radius c (lateral units) on panels locked to the
-  !> edge, from the gaps of bodies that do not deform. numbers: H0 and load, and their derivatives by
-  !> c; lateral: the lateral unit [m]. stat is not 0 where the deck is wrong or nothing converged.
-  subroutine edge_state(deck, panel_end, order, c, numbers, lateral, stat, message, m)
+  !> edge, from the gaps of bodies that do not deform. numbers: H0 and load, and their derivatives
+  !> by c. stat is not 0 where the deck is wrong or nothing converged.
+  subroutine edge_state(deck, panel_end, order, c, numbers, stat, message, m)
     use deck_problem, only: pose
     use edge_locked, only: contact
     use equilibrium, only: control_t, state_t, at_edge_radius, state_from
@@ -156,7 +156,7 @@ contains
     character(len=*), intent(in) :: deck
     integer(c_int), intent(in) :: order, m
     real(c_double), intent(in) :: panel_end(m), c
-    real(c_double), intent(out) :: numbers(4), lateral
+    real(c_double), intent(out) :: numbers(4)
     integer(c_int), intent(out) :: stat
     character(len=16000), intent(out) :: message
     type(solver_t) :: this
@@ -165,10 +165,8 @@ contains
     logical :: met, found
 
     numbers = 0
-    lateral = 0
     call pose(deck, this%problem, stat, message)
     if (stat /= 0) return
-    lateral = this%problem%lateral
     call make_mesh('panels', 1.0_c_double, panel_end, order, .true., this%pair%grid(contact))
     this%options = solver_options_t(method='newton', tolerance=1.0e-12_c_double)
     control = control_t(kind=at_edge_radius, value=c)

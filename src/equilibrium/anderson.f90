@@ -176,8 +176,8 @@ contains
     now%z = now%z + step
     now%since_renewal = now%since_renewal + 1
     if (control%kind /= at_h0_with_edge) return
-    ! The shape of the bodies is not linear in the scale: what a linear step leaves out is known, and
-    ! far out it is large.
+    ! The shape of the bodies is not linear in the scale: what a linear step leaves out is known,
+    ! and far out it is large.
     associate (n => size(step) - 1, grid => equations%pair%grid(equations%mesh_of(control)))
       now%z(:n) = now%z(:n) + equations%problem%shape%bend( &
         (now%z(n + 1) - step(n + 1))*grid%x(:n), step(n + 1)*grid%x(:n))

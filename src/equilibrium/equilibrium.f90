@@ -2,9 +2,10 @@
 !>
 !>     G_i = H_i - H0 - f(c x_i) - 2 coupling c (W P(H))_i = 0
 !>
-!> for the gaps H at the nodes rho = c x of bodies of the shape f. The kernel is homogeneous, so one matrix W serves every
-!> scale c. A control says what is prescribed; where that is not H0 at a fixed scale, one more
-!> unknown (H0 or c) and one more equation (the gap on the axis or at the contact edge) join.
+!> for the gaps H at the nodes rho = c x of bodies of the shape f. The kernel is homogeneous, so one
+!> matrix W serves every scale c. A control says what is prescribed; where that is not H0 at a fixed
+!> scale, one more unknown (H0 or c) and one more equation (the gap on the axis or at the contact
+!> edge) join.
 module equilibrium
   use kinds, only: wp, pi, long
   use shape, only: shape_t

@@ -107,7 +107,7 @@ contains
     end if
   end subroutine border
 
-  !> Derivative of `residual` by the scale c: -x f'(c x) - 2 coupling W P at the nodes, and the opposite
+  !> Derivative of `residual` by the scale c: -x f'(c x) - 2 coupling W P at the nodes, the opposite
   !> sign, with x = 1, in the equation for the edge. The deformation is read off the gaps, which is
   !> exact where the residual vanishes and costs no operator product.
   pure function scale_derivative(problem, grid, state) result(column)

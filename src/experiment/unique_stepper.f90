@@ -64,8 +64,9 @@ contains
     type(state_t) :: guess
 
     guess = between(self%problem%shape, self%pair%grid(position%mesh), &
-      position%h0(:position%held), position%past(:position%held), h0, nodes_to_use(self%pair, position%mesh, &
-      scale_at(self%problem%shape, self%pair, h0), size(position%state%gap)))
+      position%h0(:position%held), position%past(:position%held), h0, &
+      nodes_to_use(self%pair, position%mesh, scale_at(self%problem%shape, self%pair, h0), &
+      size(position%state%gap)))
   end function guess
 
   !> Reaches h0 in shorter steps: a step is only ever too long.

@@ -97,8 +97,8 @@ contains
     end associate
   end function reach_of
 
-  !> Size of the panel on the axis, where the pressure of a contact goes as r^(n-1), with a logarithm
-  !> if n is odd: what one panel cannot resolve of it is left out of the load as r^(n+1). Bodies of
+  !> Size of the panel on the axis, where the pressure of a contact goes as r^(n-1), with a
+  !> logarithm if n is odd: what the panel cannot resolve is a part r^(n+1) of the load. Bodies of
   !> even n are smooth, and any panel does.
   pure real(wp) function tip_panel(shape, accuracy) result(size)
     class(shape_t), intent(in) :: shape

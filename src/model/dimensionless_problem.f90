@@ -87,8 +87,9 @@ contains
   end function tabor_parameter
 
   !> A gap beyond which bodies hardly deform. Over the zone in which they interact, for a parabola
-  !> sqrt(gap) wide, the law's slope there makes them yield by coupling*slope*width of their gap, times
-  !> some number; at (37), the gap of the jump into contact under an r^-3 attraction, that is one.
+  !> sqrt(gap) wide, the law's slope there makes them yield by coupling*slope*width of their gap,
+  !> times some number; at (37), the gap of the jump into contact under an r^-3 attraction, that is
+  !> one.
   !> Twice that gap for such an attraction of parabolas; for any that attracts, where about a tenth
   !> of it is left.
   pure real(wp) function calm_gap(problem) result(gap)

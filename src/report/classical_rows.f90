@@ -20,8 +20,8 @@ contains
   !> tension has a largest value, Maugis-Dugdale with that value as its strength and with the law's
   !> surface energy. The theories put touching bodies at no separation, so the displacement is -h0;
   !> the state is the one that is stable there, and where a theory has none there is no row. `from`
-  !> [m] stands in for a range without a start. None for rigid bodies, which have no displacement. Of
-  !> other shapes than the parabola Hertz and JKR in the form for any convex body.
+  !> [m] stands in for a range without a start. None for rigid bodies, which have no displacement.
+  !> Of other shapes than the parabola Hertz and JKR in the form for any convex body.
   function rows_of_classical(problem, range, from) result(rows)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range

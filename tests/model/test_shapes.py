@@ -91,7 +91,7 @@ def edge_state(text, c):
     """H0 and load at a contact radius, and their derivatives by it, on panels out to 30 radii."""
     inward = 2.0 ** -np.arange(8)
     ends = np.r_[-inward, 0.0, inward[::-1], 2.0, 4.0, 8.0, 16.0, 30.0]
-    numbers, _, stat, message = _snapin.flat_numerics.edge_state(text, ends, 12, c)
+    numbers, stat, message = _snapin.flat_numerics.edge_state(text, ends, 12, c)
     assert stat == 0, bytes(message)
     return numbers
 

@@ -27,7 +27,8 @@ def test_every_module_is_in_a_room_that_meson_knows():
     for path in MODULES.values():
         if path.stem != "snapin":
             # Laws and shapes are listed by the names of their modules.
-            listed = f"'{path.stem}'" if path.parent.name in ("laws", "shapes") else f"'{path.name}'"
+            by_name = path.parent.name in ("laws", "shapes")
+            listed = f"'{path.stem}'" if by_name else f"'{path.name}'"
             assert listed in (path.parent / "meson.build").read_text(), path
 
 

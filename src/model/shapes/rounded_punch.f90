@@ -26,8 +26,8 @@ contains
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
-    rows = [real_key('shape', 'flat_radius', 'm', 'Radius b of the flat face of a punch, whose ' // &
-      'rim has the radius R.', above=0.0_wp)]
+    rows = [real_key('shape', 'flat_radius', 'm', 'Radius b of the flat face of a punch, ' // &
+      'whose rim has the radius R.', above=0.0_wp)]
   end function keys
 
   !> kind = 'rounded_punch'. length: the law's [m].
