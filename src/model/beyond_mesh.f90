@@ -11,6 +11,8 @@ module beyond_mesh
 
   !> Points; and those for the energy of the parabola, where it is a power of the gap or nothing.
   integer, parameter :: points = 24, few = 8
+  !> Gaps beyond which no force acts, and whose powers are numbers.
+  real(wp), parameter :: farthest = 1.0e30_wp
 
   !> Where the points are: gap, position, and weight of g in Int g(H) r dr.
   type :: rule_t
@@ -74,7 +76,7 @@ contains
     real(wp), dimension(points) :: x
 
     call gauss_legendre(x, rule%weight)
-    rule%gap = gap + (problem%shape%height(from/x) - problem%shape%height(from))
+    rule%gap = min(gap + (problem%shape%height(from/x) - problem%shape%height(from)), farthest)
     rule%weight = rule%weight*(from/x)**2/x
   end function rule_beyond
 
