@@ -83,7 +83,7 @@ contains
       folder = options%out // '/' // stem_of(options%decks(i)%name)
       call run_scene(scenes(i), folder, options%quiet, options%resume, converged, trouble)
       if (allocated(trouble)) call print_line(error_unit, folder // ': ' // trouble%message)
-      if (.not. converged) status = 1
+      if (allocated(trouble) .or. .not. converged) status = 1
     end do
   end function run_decks
 

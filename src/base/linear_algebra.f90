@@ -13,9 +13,6 @@ module linear_algebra
     integer, allocatable :: pivot(:)
     !> .false. where no factors are held or the matrix was singular.
     logical :: valid = .false.
-    !> What the matrix was made from, for whoever has to make it again, and how many there were.
-    real(wp), allocatable :: origin(:)
-    integer :: made = 0
   end type factorisation_t
 
   interface
@@ -107,7 +104,6 @@ contains
     if (.not. allocated(factors%pivot)) allocate (factors%pivot(n))
     call dgetrf(n, n, factors%lu, n, factors%pivot, info)
     factors%valid = info == 0
-    factors%made = factors%made + 1
   end subroutine factorise
 
   !> Overwrites b with the solution; factors must be valid.

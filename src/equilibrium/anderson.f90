@@ -9,20 +9,12 @@ module anderson
   use kinds, only: wp
   use equilibrium, only: control_t, state_t, equations_t, residual, largest_step, state_from, &
     unknowns_of, holds, at_h0, at_h0_with_edge
-  use jacobian, only: factorise_jacobian
-  use linear_algebra, only: factorisation_t, solve
+  use frozen_jacobian, only: frozen_jacobian_t, freeze
+  use linear_algebra, only: solve
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: frozen_jacobian_t, solve_anderson
-
-  !> A factorisation kept from state to state, and the kind of control that it belongs to.
-  type :: frozen_jacobian_t
-    type(factorisation_t) :: factors
-    integer :: control_kind = 0
-    !> States solved with it.
-    integer :: served = 0
-  end type frozen_jacobian_t
+  public :: solve_anderson
 
   !> Differences of unknowns and of steps, newest last.
   type :: history_t
@@ -70,7 +62,7 @@ contains
     now%z = unknowns_of(control, state)
     now%z_best = now%z
     allocate (now%g(size(now%z)))
-    if (frozen%control_kind /= control%kind) frozen%factors%valid = .false.
+    if (frozen%control%kind /= control%kind) frozen%factors%valid = .false.
     if (frozen%factors%valid) frozen%factors%valid = size(frozen%factors%lu, 1) == size(now%z)
     best = state_from(size(state%gap))
     converged = .false.
@@ -119,8 +111,7 @@ contains
     type(frozen_jacobian_t), intent(inout) :: frozen
     type(iterate_t), intent(inout) :: now
 
-    call factorise_jacobian(equations, control, state, frozen%factors)
-    frozen%control_kind = control%kind
+    call freeze(equations, control, state, frozen)
     frozen%served = 0
     now%history%held = 0
     if (allocated(now%history%f_before)) deallocate (now%history%f_before)

@@ -10,7 +10,7 @@ module jacobian
     at_edge_radius, at_h0_with_edge
   implicit none
   private
-  public :: factorise_jacobian, factorise_on, factorise_again, control_derivative
+  public :: factorise_jacobian, factorise_on, control_derivative
 
 contains
 
@@ -65,31 +65,7 @@ contains
     if (m > n) call border(problem, grid, control, state, factors%lu(:, m))
     call factorise(factors)
     cost%factorisations = cost%factorisations + 1
-    factors%origin = [real(control%kind, wp), control%value, control%scale, diagonal - 1, &
-      state%h0, state%scale, state%gap]
   end subroutine factorise_on
-
-  !> Factors of the Jacobian that factors%origin tells of, bit by bit what `factorise_jacobian` made
-  !> on the same mesh.
-  subroutine factorise_again(equations, factors)
-    type(equations_t), intent(in) :: equations
-    type(factorisation_t), intent(inout) :: factors
-    type(control_t) :: control
-    type(state_t) :: state
-    type(cost_t) :: not_counted
-    real(wp) :: shift
-
-    associate (origin => factors%origin)
-      control = control_t(nint(origin(1)), origin(2), origin(3))
-      shift = origin(4)
-      state%h0 = origin(5)
-      state%scale = origin(6)
-      state%gap = origin(7:)
-    end associate
-    associate (grid => equations%pair%grid(equations%mesh_of(control)))
-      call factorise_on(equations%problem, grid, control, state, factors, not_counted, shift)
-    end associate
-  end subroutine factorise_again
 
   !> The column of derivatives of `residual` by the control's unknown.
   pure subroutine border(problem, grid, control, state, column)

@@ -3,7 +3,8 @@ module solver
   use equilibrium, only: control_t, state_t, equations_t
   use solver_options, only: solver_options_t, newton_of
   use mixing, only: solve_mixing
-  use anderson, only: frozen_jacobian_t, solve_anderson
+  use anderson, only: solve_anderson
+  use frozen_jacobian, only: frozen_jacobian_t
   implicit none
   private
   public :: solver_t

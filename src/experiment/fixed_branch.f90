@@ -3,7 +3,8 @@ module fixed_branch
   use kinds, only: wp
   use dimensionless_problem, only: over_neck => spacing_over_neck
   use equilibrium, only: control_t, state_t
-  use jacobian, only: factorise_jacobian, control_derivative
+  use jacobian, only: control_derivative
+  use frozen_jacobian, only: freeze
   use linear_algebra, only: solve, determinant_sign, log_determinant
   use prediction, only: extrapolated, moved_with_edge, towards_fold
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember
@@ -217,8 +218,7 @@ contains
     ahead%regular = .false.
     if (self%options%method == 'mixing') return
     control%value = state%h0
-    call factorise_jacobian(self%equations_t, control, state, self%frozen%factors)
-    self%frozen%control_kind = control%kind
+    call freeze(self%equations_t, control, state, self%frozen)
     self%frozen%served = 0
     ahead%regular = self%frozen%factors%valid
     if (.not. ahead%regular) return

@@ -11,7 +11,8 @@ module continuation
   use equilibrium, only: control_t, state_t, equations_t, at_axis_gap, at_edge_radius, &
     radius_of_gap
   use solver_options, only: solver_options_t
-  use anderson, only: frozen_jacobian_t, solve_anderson
+  use anderson, only: solve_anderson
+  use frozen_jacobian, only: frozen_jacobian_t
   use edge_locked, only: mesh_pair_t, approach, contact
   use regridding, only: regrid
   implicit none

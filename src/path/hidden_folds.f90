@@ -5,7 +5,7 @@ module hidden_folds
   use kinds, only: wp
   use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
-  use anderson, only: frozen_jacobian_t
+  use frozen_jacobian, only: frozen_jacobian_t
   use interpolation, only: polynomial_slope
   use root_finding, only: false_position_t
   use path_extremum, only: extremum_t

@@ -3,7 +3,7 @@ module path_extremum
   use kinds, only: wp
   use equilibrium, only: state_t, equations_t
   use solver_options, only: solver_options_t
-  use anderson, only: frozen_jacobian_t
+  use frozen_jacobian, only: frozen_jacobian_t
   use path_slopes, only: slopes_along_path
   use interpolation, only: interpolated_maximum
   use root_finding, only: bracket_t, secant_root

@@ -4,9 +4,9 @@ module path_slopes
   use beyond_mesh, only: load_slope_beyond
   use equilibrium, only: control_t, state_t, equations_t, at_edge_radius, load_reach, &
     gap_at_end
-  use jacobian, only: factorise_jacobian, control_derivative
+  use jacobian, only: control_derivative
   use linear_algebra, only: solve
-  use anderson, only: frozen_jacobian_t
+  use frozen_jacobian, only: frozen_jacobian_t, freeze
   implicit none
   private
   public :: slopes_along_path
@@ -28,8 +28,7 @@ contains
     integer :: n
 
     n = size(state%gap)
-    call factorise_jacobian(equations, control, state, frozen%factors)
-    frozen%control_kind = control%kind
+    call freeze(equations, control, state, frozen)
     h0_slope = 0
     load_slope = 0
     found = frozen%factors%valid

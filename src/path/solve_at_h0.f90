@@ -6,7 +6,8 @@ module solve_at_h0
   use root_finding, only: bracket_t
   use equilibrium, only: control_t, state_t, equations_t, holds, residual_floor, at_h0_with_edge
   use solver_options, only: solver_options_t, tightened
-  use anderson, only: frozen_jacobian_t, solve_anderson
+  use anderson, only: solve_anderson
+  use frozen_jacobian, only: frozen_jacobian_t
   use edge_locked, only: contact
   use continuation, only: arc_t, state_at, between, coordinate_of, most_states
   use traced_path, only: traced_path_t

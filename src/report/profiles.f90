@@ -59,7 +59,7 @@ contains
     character(len=:), allocatable :: row
     integer :: j
 
-    if (.not. table%has_begun()) return
+    if (.not. table%is_open()) return
     associate (n => size(state%gap), law => problem%law)
       r = [0.0_wp, state%scale*grid%x(:n)]
       gap = [state%axis_gap, state%gap]
@@ -76,7 +76,7 @@ contains
         energy(j)*problem%pressure*problem%length])
       if (.not. alike(problem)) &
         row = row // ',' // cells(problem%share*deformation(j)*problem%length)
-      call table%row(row, error)
+      call table%line(row, error)
       if (allocated(error)) return
     end do
     call table%flush(error)

@@ -159,7 +159,7 @@ contains
       call self%progress%step(record%branch)
     end if
     if (allocated(self%trouble)) return
-    call self%curve%row(curve_row(record), self%trouble)
+    call self%curve%line(curve_row(record), self%trouble)
     if (.not. allocated(self%trouble)) call self%curve%flush(self%trouble)
     if (profile .and. .not. allocated(self%trouble)) call write_profile(self%shapes, &
       record%branch, record%h0, problem, grid, state, self%trouble)
@@ -174,13 +174,13 @@ contains
     character(len=max(len(columns), len(key) + 24)) :: header(1 + size(columns))
 
     if (allocated(self%trouble)) return
-    if (.not. self%cases%has_begun()) then
+    if (.not. self%cases%is_open()) then
       header(1) = key // ' in the unit of the key'
       header(2:) = columns
       call self%begin(self%cases, 'sweep.csv', header, self%trouble)
     end if
     if (.not. allocated(self%trouble)) &
-      call self%cases%row(cells([value, numbers]), self%trouble)
+      call self%cases%line(cells([value, numbers]), self%trouble)
     if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
   end subroutine take_case
 
@@ -197,7 +197,7 @@ contains
     call self%begin(table, name, columns, self%trouble)
     do i = 1, size(rows)
       if (allocated(self%trouble)) return
-      call table%row(rows(i)%text, self%trouble)
+      call table%line(rows(i)%text, self%trouble)
     end do
     if (.not. allocated(self%trouble)) call table%close(self%trouble)
   end subroutine write_table

@@ -9,16 +9,10 @@ module tables
   private
   public :: table_t, cells
 
-  !> A table being written. Procedures do nothing while it has not begun.
-  type :: table_t
-    private
-    type(output_t) :: file
+  !> A table being written, a row a line, made with `cells`.
+  type, extends(output_t) :: table_t
   contains
     procedure :: begin
-    procedure :: has_begun
-    procedure :: row
-    procedure :: flush => flush_table
-    procedure :: close => close_table
   end type table_t
 
 contains
@@ -41,42 +35,10 @@ contains
       if (i > 1) names = names // ','
       names = names // columns(i)(:scan(columns(i) // ' ', ' ') - 1)
     end do
-    call self%file%open(path // partial, error)
-    if (.not. allocated(error)) call self%file%line(text // names, error)
-    if (.not. allocated(error)) call self%file%flush(error)
+    call self%open(path // partial, error)
+    if (.not. allocated(error)) call self%line(text // names, error)
+    if (.not. allocated(error)) call self%flush(error)
   end subroutine begin
-
-  !> Whether rows can be written.
-  pure logical function has_begun(self)
-    class(table_t), intent(in) :: self
-
-    has_begun = self%file%is_open()
-  end function has_begun
-
-  !> Writes one row, made with `cells`.
-  subroutine row(self, text, error)
-    class(table_t), intent(inout) :: self
-    character(len=*), intent(in) :: text
-    type(failure_t), allocatable, intent(out) :: error
-
-    call self%file%line(text, error)
-  end subroutine row
-
-  !> Makes the rows so far survive whatever happens to this process.
-  subroutine flush_table(self, error)
-    class(table_t), intent(inout) :: self
-    type(failure_t), allocatable, intent(out) :: error
-
-    call self%file%flush(error)
-  end subroutine flush_table
-
-  !> Ends the table, or what there is of it.
-  subroutine close_table(self, error)
-    class(table_t), intent(inout) :: self
-    type(failure_t), allocatable, intent(out) :: error
-
-    call self%file%close(error)
-  end subroutine close_table
 
   !> Numbers as cells that read back as the same numbers; a NaN is `NaN`.
   pure function cells(values) result(text)

@@ -4,8 +4,8 @@
 module resumable_stepper
   use kinds, only: wp
   use discretisation, only: discretisation_t
-  use equilibrium, only: cost_t
-  use jacobian, only: factorise_again
+  use frozen_jacobian, only: freeze
+  use equilibrium, only: control_t, state_t, cost_t
   use ending, only: ending_t, not_kept
   use stepper, only: keeping_stepper_t, branch_point_t, step_result_t
   use reported, only: error_probe_t
@@ -112,13 +112,21 @@ contains
   !> Gives the solver the factorisation that it had at the end of the last record.
   subroutine catch_up(self)
     class(resumable_stepper_t), intent(inout) :: self
+    type(control_t) :: control
+    type(state_t) :: state
+    type(cost_t) :: spent
 
     if (.not. self%behind) return
     self%behind = .false.
-    associate (factors => self%steps%frozen%factors)
-      if (factors%valid) call factorise_again(self%steps%equations_t, factors)
-      self%known = factors%made
-    end associate
+    if (self%steps%frozen%factors%valid) then
+      ! Copies, for `freeze` notes where it is; and the cost is in the record already.
+      control = self%steps%frozen%control
+      state = self%steps%frozen%state
+      spent = self%steps%cost
+      call freeze(self%steps%equations_t, control, state, self%steps%frozen)
+      self%steps%cost = spent
+    end if
+    self%known = self%steps%frozen%renewals
   end subroutine catch_up
 
   !> Adds a step to the journal; it was begun at the time `began`.
@@ -134,8 +142,8 @@ contains
     call record%put(h0)
     call put_position(record, self%problem%law, before, position)
     call put_event(record, event)
-    call put_frozen(record, self%steps%frozen, self%known == self%steps%frozen%factors%made)
-    self%known = self%steps%frozen%factors%made
+    call put_frozen(record, self%steps%frozen, self%known == self%steps%frozen%renewals)
+    self%known = self%steps%frozen%renewals
     self%own_seconds = self%own_seconds + seconds() - began
     cost = self%steps%cost
     cost%solve_seconds = self%earlier_seconds + self%own_seconds

@@ -73,7 +73,7 @@ contains
     a = index(old, ' = ')
     b = index(new, ' = ')
     if (a > 0 .and. b > 0 .and. old(:max(a, 1)) == new(:max(b, 1))) then
-      text = group // ' ' // adjusted(old(:a)) // ' = ' // value(old(a + 3:)) // ' instead of ' // &
+      text = group // ' ' // trim(adjustl(old(:a))) // ' = ' // value(old(a + 3:)) // ' instead of ' // &
         value(new(b + 3:))
     else if (index(old, '&') == 1 .and. index(now, nl // old // nl) == 0) then
       text = 'one with ' // old
@@ -95,13 +95,6 @@ contains
     short = text
     if (.not. allocated(what)) short = brief(number)
   end function value
-
-  pure function adjusted(text) result(bare)
-    character(len=*), intent(in) :: text
-    character(len=:), allocatable :: bare
-
-    bare = trim(adjustl(text))
-  end function adjusted
 
   !> The line of a text that begins at i, which moves on to the next; empty at the end.
   subroutine next_line(text, i, line)

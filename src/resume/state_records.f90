@@ -8,7 +8,7 @@ module state_records
   use force_law, only: force_law_t
   use equilibrium, only: state_t, cost_t
   use stepper, only: branch_point_t, step_result_t
-  use anderson, only: frozen_jacobian_t
+  use frozen_jacobian, only: frozen_jacobian_t
   use byte_record, only: byte_record_t
   implicit none
   private
@@ -220,17 +220,19 @@ contains
     call record%take(event%lowest%landing)
   end subroutine take_event
 
-  !> Packs a factorisation as what it was made from; known: the records before have that.
+  !> Packs a frozen Jacobian as where it was made; known: the records before have that.
   subroutine put_frozen(record, frozen, known)
     type(byte_record_t), intent(inout) :: record
     type(frozen_jacobian_t), intent(in) :: frozen
     logical, intent(in) :: known
 
     call record%put(frozen%factors%valid)
-    call record%put(frozen%control_kind)
     call record%put(frozen%served)
-    call record%put(known .or. .not. allocated(frozen%factors%origin))
-    if (.not. known .and. allocated(frozen%factors%origin)) call record%put(frozen%factors%origin)
+    call record%put(frozen%control%kind)
+    call record%put(known .or. frozen%renewals == 0)
+    if (known .or. frozen%renewals == 0) return
+    call record%put([frozen%control%value, frozen%control%scale, frozen%state%h0, &
+      frozen%state%scale, frozen%state%gap])
   end subroutine put_frozen
 
   !> Unpacks what `put_frozen` packed, all but the factors: frozen%factors%valid says whether there
@@ -238,13 +240,22 @@ contains
   subroutine take_frozen(record, frozen)
     type(byte_record_t), intent(inout) :: record
     type(frozen_jacobian_t), intent(inout) :: frozen
+    real(wp), allocatable :: made_at(:)
     logical :: known
 
     call record%take(frozen%factors%valid)
-    call record%take(frozen%control_kind)
     call record%take(frozen%served)
+    call record%take(frozen%control%kind)
     call record%take(known)
-    if (.not. known) call record%take(frozen%factors%origin)
+    if (known) return
+    call record%take(made_at)
+    ! A record that is too short is refused by whoever reads it.
+    if (size(made_at) < 4) return
+    frozen%control%value = made_at(1)
+    frozen%control%scale = made_at(2)
+    frozen%state%h0 = made_at(3)
+    frozen%state%scale = made_at(4)
+    frozen%state%gap = made_at(5:)
   end subroutine take_frozen
 
   !> Packs what was spent: all its components are numbers of one word.

@@ -222,8 +222,8 @@ GUARDS = {
     ),
     "magnitudes": Guard(
         "units that would overflow are refused",
-        "scene/magnitudes.f90",
-        "if (.not. abs(decades) <= most_derived)",
+        "model/law_reading.f90",
+        "if (.not. abs(decades) <= most_decades)",
         "if (.false.)",
         ("app/test_ranges.py::test_units_that_would_overflow_together_are_refused",),
     ),

@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""The forces of a deck: pressure and energy against separation, with what the program found in them.
+
+    .venv/bin/python pywrap/plots/force_law.py inputs/examples/hydration.nml
+"""
+
+import argparse
+import math
+import pathlib
+import sys
+
+import f90nml
+import numpy as np
+import snapin
+from drawing import BLACK, BLUE, GREEN, ORANGE, PURPLE, dress, scale
+from matplotlib.figure import Figure
+
+SAMPLES = 1500
+# Groups of a deck that are no forces.
+OTHERS = {
+    "scene", "bodies", "shape", "loading", "unloading", "equilibrium_path", "profiles", "classical",
+    "approximations", "stability", "sweep", "numerics", "summary", "cost", "device", "fixed_load",
+    "regime", "table", "sensitivity", "measurement", "fit",
+}
+
+
+def forces_of(file):
+    """Return the groups of forces in a deck's file."""
+    deck = f90nml.read(file).todict()
+    return {group: dict(keys) for group, keys in deck.items() if group not in OTHERS}
+
+
+def draw_force_law(deck, title=""):
+    """Return a figure of the law that the groups `deck` make."""
+    numbers = snapin.law_numbers(deck)
+    gap = _separations(deck, numbers)
+    values = snapin.force_law(deck, gap)
+    marks = _marks(numbers, gap, values)
+    figure = Figure(figsize=(9, 4.2), layout="constrained")
+    lengths = scale(gap, "m")
+    for panel, (name, quantity, unit) in zip(
+        figure.subplots(1, 2),
+        (("pressure", values.pressure, "Pa"), ("energy", values.energy, "J/m²")),
+        strict=True,
+    ):
+        deepest = abs(quantity.min()) or abs(quantity).max()
+        highest = max(deepest, max((abs(getattr(mark, name)) for mark in marks), default=0.0))
+        factor, short = scale([highest], unit)
+        dress(panel, f"separation $h$ [{lengths[1]}]", f"{name} [{short}]")
+        panel.plot(gap / lengths[0], quantity / factor, color=BLUE, linewidth=1.6)
+        panel.set_ylim(-1.15 * deepest / factor if quantity.min() < 0 else None, 1.3 * highest / factor)
+        for mark in marks:
+            panel.plot(mark.gap / lengths[0], getattr(mark, name) / factor, "o", color=mark.colour,
+                       markersize=6, label=mark.name, zorder=5)
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    if handles:
+        figure.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False)
+    figure.suptitle(title)
+    return figure
+
+
+def _separations(deck, numbers):
+    """Return separations from the repulsion of contact to where a thousandth of the tension is left."""
+    low = numbers.origin + numbers.length * np.linspace(0.01, 1, 400)
+    pressure = snapin.force_law(deck, low).pressure
+    unit = np.max(abs(snapin.force_law(deck, numbers.origin + numbers.length * np.linspace(1, 3, 200)).pressure))
+    near = low[np.argmax(pressure < 20 * unit)]
+    far = numbers.origin + numbers.length * np.geomspace(1, 1e4, 400)
+    left = np.flatnonzero(abs(snapin.force_law(deck, far).pressure) > 3e-3 * unit)
+    end = far[left[-1]] if left.size else far[0]
+    return np.linspace(near, max(end, near + 2 * numbers.length), SAMPLES)
+
+
+class _Mark:
+    def __init__(self, name, colour, gap, values, i):
+        self.name, self.colour, self.gap = name, colour, gap
+        self.pressure, self.energy = values.pressure[i], values.energy[i]
+
+
+def _marks(numbers, gap, values):
+    """Return what the scan found: rest, edge, and outside them the barrier and the outer well."""
+    marks = []
+    for name, colour, at in (
+        ("rest", BLACK, numbers.rest_gap), ("largest tension", ORANGE, numbers.edge_gap),
+    ):
+        if math.isfinite(at):
+            marks.append(_Mark(name, colour, at, values, int(np.argmin(abs(gap - at)))))
+    if not marks:
+        return marks
+    outside = np.flatnonzero(gap > marks[-1].gap)
+    tops = [i for i in outside[1:-1]
+            if values.energy[i] > values.energy[i - 1] and values.energy[i] >= values.energy[i + 1]]
+    wells = [i for i in outside[1:-1]
+             if values.energy[i] < values.energy[i - 1] and values.energy[i] <= values.energy[i + 1]]
+    if tops:
+        top = max(tops, key=lambda i: values.energy[i])
+        marks.append(_Mark("barrier", PURPLE, gap[top], values, top))
+    if wells:
+        well = min(wells, key=lambda i: values.energy[i])
+        marks.append(_Mark("outer well", GREEN, gap[well], values, well))
+    return marks
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("deck", nargs="+", type=pathlib.Path)
+    parser.add_argument("--out", type=pathlib.Path, help="folder for the pictures; the deck's if left out")
+    options = parser.parse_args()
+    for deck in options.deck:
+        try:
+            figure = draw_force_law(forces_of(deck), deck.stem)
+        except (snapin.SnapinError, OSError) as trouble:
+            sys.exit(str(trouble))
+        file = (options.out or deck.parent) / f"{deck.stem}_law.png"
+        figure.savefig(file, dpi=150)
+        print(file)
+
+
+if __name__ == "__main__":
+    main()
