@@ -39,7 +39,7 @@ module path_curve
     integer :: left = 0, modes = 0
   end type curve_interval_t
 
-  !> Nodes run by run: undeformed bodies, the mesh for the approach, the mesh for contact.
+  !> Nodes run by run: undeformed bodies, then mesh by mesh.
   type :: curve_t
     !> Up to which gap bodies are in contact.
     real(wp) :: contact_gap = 0

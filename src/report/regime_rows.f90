@@ -4,7 +4,7 @@ module regime_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
-  use edge_locked, only: contact
+  use edge_locked, only: approach
   use classical, only: hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
   use maugis, only: maugis_lambda, maugis_pull_off, maugis_radius_at_load, maugis_displacement
@@ -75,7 +75,7 @@ contains
     if (.not. allocated(outcome%path)) return
     associate (path => outcome%path)
       there = allocated(path%lowest) .and. allocated(path%finish)
-      if (there) there = path%finish%witness%mesh == contact .and. path%lowest%load < 0
+      if (there) there = path%finish%witness%mesh /= approach .and. path%lowest%load < 0
       if (.not. there) return
       load = path%finish%load*problem%load
       solved = measured_t(path%lowest%load*problem%load, &

@@ -6,6 +6,7 @@ As in test_deck.py, every mistake is named by line, group and key.
 import re
 
 import pytest
+from conftest import ROOT
 from support.decks import BODIES, FORCE, GOOD, LOADING, with_bodies, with_extra
 
 # --- Refused
@@ -175,6 +176,13 @@ def resolved(snapin, folder, name, text):
         elif match := re.match(r"  (\w+) = (.*)", line):
             group[match[1]] = match[2]
     return summary, "\n".join(lines[start:]), values
+
+
+@pytest.mark.parametrize("deck", sorted((ROOT / "inputs/examples").glob("*.nml")),
+                         ids=lambda path: path.stem)
+def test_examples_are_accepted(check, deck):
+    status, _, err = check(deck.read_text(encoding="utf-8"))
+    assert status == 0, err
 
 
 def test_resolved_deck_holds_every_value_and_default(snapin, tmp_path):
