@@ -198,7 +198,6 @@ contains
   !> by c. stat is not 0 where the deck is wrong or nothing converged.
   subroutine edge_state(deck, panel_end, order, c, numbers, stat, message, m)
     use deck_problem, only: pose
-    use edge_locked, only: contact
     use equilibrium, only: control_t, state_t, at_edge_radius, state_from
     use path_slopes, only: slopes_along_path
     use solver, only: solver_t
@@ -217,10 +216,11 @@ contains
     numbers = 0
     call pose(deck, this%problem, stat, message)
     if (stat /= 0) return
-    call make_mesh('panels', 1.0_c_double, panel_end, order, .true., this%pair%grid(contact))
+    allocate (this%pair%grid(1))
+    call make_mesh('panels', 1.0_c_double, panel_end, order, .true., this%pair%grid(1))
     this%options = solver_options_t(method='newton', tolerance=1.0e-12_c_double)
     control = control_t(kind=at_edge_radius, value=c)
-    associate (problem => this%problem, grid => this%pair%grid(contact))
+    associate (problem => this%problem, grid => this%pair%grid(1))
       state = state_from(grid%nodes)
       state%h0 = problem%law%edge_gap - problem%shape%height(c)
       state%gap = state%h0 + problem%shape%height(c*grid%x(:grid%nodes))

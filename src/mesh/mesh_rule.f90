@@ -29,6 +29,8 @@ module mesh_rule
   !> Longest panel in z under a law with lengths of its own, and the nodes of such panels: so many,
   !> and more for each digit.
   real(wp), parameter :: longest = 0.7_wp, short_order = 4, short_orders = 0.9_wp
+  !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
+  real(wp), parameter :: near_end = 10
   !> Digits that a shape with kinks allows.
   real(wp), parameter :: digits_of_broken = 4
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
@@ -125,6 +127,7 @@ contains
         shape%tail_order = 2*shape%tail_order
       reach = max(reach, problem%shape%position_of(problem%law%power_from), &
         beyond_poles*problem%shape%smooth_from())
+      if (problem%shape%ends < near_end*reach) reach = max(reach, beyond_poles*problem%shape%ends)
     else
       reach = problem%shape%position_of( &
         max(fading_gap(problem, from, negligible*10.0_wp**(-digits)), 1.0_wp))
@@ -163,6 +166,9 @@ contains
     logical :: broken
 
     broken = problem%shape%smooth_from() > 0
+    if (present(low)) broken = broken .or. &
+      (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0) > &
+      problem%shape%ends
     if (problem%law%of_paper .and. is_even(problem%shape) .and. .not. broken) then
       call add_panel(shape, z_length, density)
       return
