@@ -153,9 +153,10 @@ contains
   end function fading_gap
 
   !> Adds sinh panels over z_length: one for the paper's laws, which are powers of the gap or one
-  !> exponential, and to which the density was fitted. Other laws have lengths of their own anywhere
-  !> within their reach: short panels follow them, outside the edge those that fit the law. So they
-  !> do shapes that are not smooth. low, high: contact radii; absent inside the edge.
+  !> exponential, and bodies that are parabolas near the axis; to these the density was fitted. Other
+  !> laws have lengths of their own anywhere within their reach: short panels follow them, outside
+  !> the edge those that fit the law. So they do other shapes. low, high: contact radii; absent
+  !> inside the edge.
   subroutine add_panels(problem, shape, z_length, density, digits, low, high)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -169,7 +170,7 @@ contains
     if (present(low)) broken = broken .or. &
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0) > &
       problem%shape%ends
-    if (problem%law%of_paper .and. is_even(problem%shape) .and. .not. broken) then
+    if (problem%law%of_paper .and. .not. (abs(problem%shape%exponent - 2) > 0 .or. broken)) then
       call add_panel(shape, z_length, density)
       return
     end if

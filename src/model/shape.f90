@@ -156,16 +156,29 @@ contains
   end function opening
 
   !> The gap outside a contact of radius a without adhesion, at x >= 1 radii from the axis,
-  !> 2/pi Int_a^r [q(t) - q(a)]/sqrt(r^2 - t^2) dt; from a rule that serves estimates.
+  !> 2/pi Int_a^r [q(t) - q(a)]/sqrt(r^2 - t^2) dt; both integrals by one rule, for estimates.
   elemental real(wp) function hertz_gap(self, a, x) result(gap)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: a, x
     integer, parameter :: nodes = 12
     real(wp) :: node(nodes), weight(nodes), angle
+    integer :: k
 
     call gauss_legendre(node, weight)
     angle = acos(min(1/x, 1.0_wp))
-    gap = 2/pi*angle*sum(weight*(self%indentation(a*x*cos(angle*node)) - self%indentation(a)))
+    gap = 0
+    do k = 1, nodes
+      gap = gap + 2/pi*angle*weight(k)*(depth(a*x*cos(angle*node(k))) - depth(a))
+    end do
+
+  contains
+
+    pure real(wp) function depth(r)
+      real(wp), intent(in) :: r
+
+      depth = 0.5_wp*pi*r*sum(weight*self%slope(r*sin(0.5_wp*pi*node)))
+    end function depth
+
   end function hertz_gap
 
   !> Position beyond which, up to its end, the body is smooth; 0 where it is so but on the axis.
