@@ -115,7 +115,8 @@ def test_rigid_bodies_give_the_program_s_curve(run):
     )
     curve = snapin.force_curve(np.linspace(6, 0.5, 23), radius=1.0, rigid=True, law=law_of(1.0))
     assert_same(curve, run(scene).curve)
-    assert curve.max_tension == pytest.approx(2 * math.pi, rel=1e-8)
+    # As near the largest as the accuracy: the step at which it is met is searched.
+    assert curve.max_tension == pytest.approx(2 * math.pi, rel=1e-6)
 
 
 def test_path_is_that_of_the_program(run):

@@ -180,12 +180,12 @@ def test_the_wrapper_keeps_python_s_lock():
             pauses[0] = max(pauses[0], now - last)
             last = now
 
-    h0 = np.linspace(40.0, -2.0, 400)
+    h0 = np.linspace(40.0, -2.0, 4001)
     watcher = threading.Thread(target=watch)
     watcher.start()
     try:
         began = time.monotonic()
-        snapin.force_curve(h0, **UNIT, law=law_of(3.0), accuracy=1e-8)
+        snapin.force_curve(h0, **UNIT, law=law_of(3000.0), accuracy=1e-9)
         taken = time.monotonic() - began
         # Lets the watcher see the end of its pause.
         time.sleep(0.05)
