@@ -146,7 +146,8 @@ contains
     pure real(wp) function h0_at(radius)
       real(wp), intent(in) :: radius
 
-      h0_at = 1 - problem%shape%indentation(radius) + sqrt(4*pi*problem%coupling*problem%law%adhesion*radius)
+      h0_at = 1 - problem%shape%indentation(radius) + &
+        sqrt(4*pi*problem%coupling*problem%law%adhesion*radius)
     end function h0_at
 
     pure real(wp) function position(radius)

@@ -18,8 +18,8 @@ module mesh_rule
   !> Nodes that a panel needs beside those in proportion to its length in z.
   real(wp), parameter :: more_nodes = 3
   !> Where the tail begins, as a multiple of the position at which the bodies are H0 high, sqrt(2 H0)
-  !> for a parabola: there the poles of its pressure, at rho**2 = -2 H0, are as far as the axis; never nearer than the next two, in lateral units and in
-  !> units of the contact radius from the edge.
+  !> for a parabola: there the poles of its pressure, at rho**2 = -2 H0, are as far as the axis; never
+  !> nearer than the next two, in lateral units and in units of the contact radius from the edge.
   real(wp), parameter :: beyond_poles = 1.3_wp, nearest_tail = 5, tail_of_contact = 3
   !> A pressure that falls faster than any power ends where this part of the accuracy is left of it;
   !> up to there it needs so many times the nodes.

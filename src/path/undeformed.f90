@@ -9,7 +9,8 @@ module undeformed
   private
   public :: load_undeformed, load_slope_undeformed, energy_undeformed
 
-  !> The energy of parabolas is integrated over the logarithm of the gap: panels, their ratio, nodes of each.
+  !> The energy of parabolas is integrated over the logarithm of the gap: panels, their ratio, nodes
+  !> of each.
   !> Beyond 1e18 gaps nothing is left of any law.
   integer, parameter :: panels = 60, nodes = 8
   real(wp), parameter :: ratio = 2

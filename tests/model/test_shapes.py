@@ -170,6 +170,45 @@ def test_what_a_cycle_loses_is_the_area_between_its_branches(run, shape):
     assert summary["energy_lost"] == pytest.approx(area, rel=0.03)
 
 
+# --- The mesh
+
+
+@pytest.mark.parametrize("shape", [
+    {"kind": "power", "exponent": 1.5, "coefficient": 0.5},
+    {"kind": "power", "exponent": 3.0, "coefficient": 0.5},
+    {"kind": "power", "exponent": 4.0, "coefficient": 0.5},
+    {"kind": "cone", "half_angle": math.atan(2.0)},
+], ids=["1.5", "3", "4", "cone"])
+def test_the_path_has_the_accuracy_that_was_asked_for(run, shape):
+    path = {"h0_end": -5.0}
+    rough, fine = (
+        run(scene(shape, 5.0, equilibrium_path=path, numerics={"accuracy": accuracy})).summary
+        for accuracy in (1e-4, 1e-7)
+    )
+    for key in ("max_tension", "jump_in_h0", "jump_in_load", "jump_out_h0", "jump_out_load",
+                "end_load"):
+        assert rough[key] == pytest.approx(fine[key], rel=1e-5), key
+
+
+# --- Read from the path
+
+
+@pytest.mark.parametrize("shape, height", [
+    ({"kind": "cone", "half_angle": math.atan(2.0)}, lambda r: r / 2),
+    ({"kind": "power", "exponent": 3.0, "coefficient": 0.5}, lambda r: r**3 / 2),
+    ({"kind": "rounded_punch", "radius": 1.0, "flat_radius": 0.5},
+     lambda r: np.maximum(r - 0.5, 0) ** 2 / 2),
+], ids=["cone", "cube", "punch"])
+def test_far_away_a_device_finds_the_load_of_rigid_bodies(run, shape, height):
+    far = 2e3
+    done = run(scene(shape, 1.0, equilibrium_path={"h0_end": -1.0}, numerics={"accuracy": 1e-5},
+                     device={"z_start": far}))
+    curve = done.table("device.csv")
+    outermost = curve["h0"].argmax()
+    assert curve["h0"][outermost] == pytest.approx(far)
+    assert curve["load"][outermost] == pytest.approx(rigid_load(height, far), rel=1e-4)
+
+
 # --- Refusals
 
 
@@ -221,6 +260,10 @@ def test_the_approximations_are_refused(run):
     ends = {"h0_start": 5.0, "h0_end": 3.0}
     stderr = refused(run, {"kind": "cone", "half_angle": 1.0}, approximations=ends)
     assert "those of the parabola" in stderr
+
+
+def test_the_regime_of_another_shape_is_refused(run):
+    assert "those of the parabola" in refused(run, {"kind": "cone", "half_angle": 1.0}, regime={})
 
 
 R = np.linspace(0, 5, 21)
