@@ -8,7 +8,7 @@ module beyond_mesh
   use quadrature, only: gauss_legendre
   implicit none
   private
-  public :: load_beyond, load_slope_beyond, energy_beyond
+  public :: load_beyond, load_slope_beyond, energy_beyond, energy_density
 
   !> Points; and those for the energy of the parabola, where it is a power of the gap or nothing.
   integer, parameter :: points = 24, few = 8
@@ -18,9 +18,9 @@ module beyond_mesh
   !> Gaps beyond which no force acts, and whose powers are numbers.
   real(wp), parameter :: farthest = 1.0e30_wp
 
-  !> Where the points are: gap, position, and weight of g in Int g(H) r dr.
+  !> Where the points are: gap, position, and the weight of g in Int g(H) r dr.
   type :: rule_t
-    real(wp), allocatable :: gap(:), weight(:)
+    real(wp), allocatable :: gap(:), at(:), weight(:)
   end type rule_t
 
 contains
@@ -55,7 +55,7 @@ contains
     slope(2) = slope(2) - problem%shape%slope(from)*slope(1)
   end function load_slope_beyond
 
-  !> Int e(H) r dr, e being the energy per area.
+  !> Int e(H) r dr, e being the `energy_density`.
   pure real(wp) function energy_beyond(problem, gap, from) result(energy)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap, from
@@ -68,9 +68,26 @@ contains
       energy = gap*sum(weight*problem%law%energy(gap/node)/node**2)
     else
       rule = rule_beyond(problem, gap, from)
-      energy = sum(rule%weight*problem%law%energy(rule%gap))
+      energy = sum(rule%weight*energy_density(problem, rule%gap, rule%at))
     end if
   end function energy_beyond
+
+  !> The energy of the surface force per area, at gaps and positions. Between blunt bodies it falls so
+  !> slowly, under r^-3 between cones as r^-2, that its integral has little or no limit. Only
+  !> differences of energies count: then that of undeformed bodies at H0 = 1 is taken off.
+  elemental real(wp) function energy_density(problem, gap, r) result(energy)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: gap, r
+    real(wp), parameter :: falls_well = 4
+    real(wp) :: of_gaps(1)
+
+    of_gaps = problem%law%energy([gap])
+    energy = of_gaps(1)
+    if (problem%shape%parabolic .or. &
+      problem%shape%growth*(problem%law%tail_power - 1) >= falls_well) return
+    of_gaps = problem%law%energy([min(1 + problem%shape%height(r), farthest)])
+    energy = energy - of_gaps(1)
+  end function energy_density
 
   !> With r = from/x, or in panels from the axis.
   pure function rule_beyond(problem, gap, from) result(rule)
@@ -85,6 +102,7 @@ contains
     end if
     call gauss_legendre(x, weight)
     rule%gap = min(gap + (problem%shape%height(from/x) - problem%shape%height(from)), farthest)
+    rule%at = from/x
     rule%weight = weight*(from/x)**2/x
   end function rule_beyond
 
@@ -98,13 +116,14 @@ contains
     integer :: k
 
     call gauss_legendre(x, weight)
-    allocate (rule%gap(nodes*panels), rule%weight(nodes*panels))
+    allocate (rule%gap(nodes*panels), rule%at(nodes*panels), rule%weight(nodes*panels))
     right = 0
     do k = 1, panels
       left = right
       right = problem%shape%position_of(gap)*2.0_wp**(k - near_panels)
       r = left + (right - left)*x
       rule%gap(nodes*(k - 1) + 1:nodes*k) = min(gap + problem%shape%height(r), farthest)
+      rule%at(nodes*(k - 1) + 1:nodes*k) = r
       rule%weight(nodes*(k - 1) + 1:nodes*k) = (right - left)*weight*r
     end do
   end function rule_from_axis

@@ -4,7 +4,7 @@
 !> integral along the path is needed.
 module potential_energy
   use kinds, only: wp, pi
-  use beyond_mesh, only: energy_beyond
+  use beyond_mesh, only: energy_beyond, energy_density
   use equilibrium, only: state_t, equations_t, load_reach, gap_at_end
   implicit none
   private
@@ -13,7 +13,7 @@ module potential_energy
 contains
 
   !> 2 pi Int [e(H) + P (H - H0 - f)/2] rho drho in units of load times length: e is the
-  !> energy of the surface force per area, and the bodies have yielded by H - H0 - f.
+  !> `energy_density` of the surface force, and the bodies have yielded by H - H0 - f.
   !> uncertainty: what rounding, and a residual of the equations, leave of it.
   subroutine energy_of(equations, mesh, state, energy, uncertainty)
     type(equations_t), intent(in) :: equations
@@ -23,8 +23,9 @@ contains
     real(wp), dimension(size(state%gap)) :: of_surface, of_bodies
 
     associate (n => size(state%gap), c => state%scale, grid => equations%pair%grid(mesh), &
-      law => equations%problem%law, shape => equations%problem%shape)
-      of_surface = c**2*grid%weight(:n)*law%energy(state%gap)
+      shape => equations%problem%shape)
+      of_surface = c**2*grid%weight(:n)*energy_density(equations%problem, state%gap, &
+        c*grid%x(:n))
       of_bodies = c**2*grid%weight(:n)*0.5_wp*state%pressure* &
         (state%gap - state%h0 - shape%height(c*grid%x(:n)))
       uncertainty = 2*pi*(epsilon(1.0_wp)*sum(abs(of_surface) + abs(of_bodies)) + &

@@ -48,13 +48,13 @@ def test_the_largest_tension_of_rigid_bodies_is_known(run, shape, h0, load):
     assert summary["end_load"] == pytest.approx(load, rel=3e-6)
 
 
-def rigid_load(height, h0):
-    """Load of rigid bodies by quadrature over r = x/(1 - x)."""
+def rigid_load(height, h0, scale=4):
+    """Load of rigid bodies by quadrature over r = scale x/(1 - x)."""
     x, w = np.polynomial.legendre.leggauss(400)
     x, w = (x + 1) / 2, w / 2
-    r = 4 * x / (1 - x)
+    r = scale * x / (1 - x)
     h = h0 + height(r)
-    return 2 * math.pi * np.sum(w * 8 / 3 * (h**-9.0 - h**-3.0) * r * 4 / (1 - x) ** 2)
+    return 2 * math.pi * np.sum(w * 8 / 3 * (h**-9.0 - h**-3.0) * r * scale / (1 - x) ** 2)
 
 
 @pytest.mark.parametrize(
@@ -193,20 +193,33 @@ def test_the_path_has_the_accuracy_that_was_asked_for(run, shape):
 # --- Read from the path
 
 
-@pytest.mark.parametrize("shape, height", [
-    ({"kind": "cone", "half_angle": math.atan(2.0)}, lambda r: r / 2),
-    ({"kind": "power", "exponent": 3.0, "coefficient": 0.5}, lambda r: r**3 / 2),
+@pytest.mark.parametrize("shape, height, scale", [
+    ({"kind": "cone", "half_angle": math.atan(2.0)}, lambda r: r / 2, 2e5),
+    ({"kind": "power", "exponent": 3.0, "coefficient": 0.5}, lambda r: r**3 / 2, 58.0),
     ({"kind": "rounded_punch", "radius": 1.0, "flat_radius": 0.5},
-     lambda r: np.maximum(r - 0.5, 0) ** 2 / 2),
+     lambda r: np.maximum(r - 0.5, 0) ** 2 / 2, 450.0),
 ], ids=["cone", "cube", "punch"])
-def test_far_away_a_device_finds_the_load_of_rigid_bodies(run, shape, height):
-    far = 2e3
+def test_far_away_a_device_finds_the_load_of_rigid_bodies(run, shape, height, scale):
+    far = 1e5
     done = run(scene(shape, 1.0, equilibrium_path={"h0_end": -1.0}, numerics={"accuracy": 1e-5},
                      device={"z_start": far}))
     curve = done.table("device.csv")
     outermost = curve["h0"].argmax()
     assert curve["h0"][outermost] == pytest.approx(far)
-    assert curve["load"][outermost] == pytest.approx(rigid_load(height, far), rel=1e-4)
+    assert curve["load"][outermost] == pytest.approx(
+        rigid_load(height, far, scale), rel=1e-6
+    )
+
+
+@pytest.mark.parametrize("shape", [
+    {"kind": "cone", "half_angle": math.atan(2.0)},
+    {"kind": "power", "exponent": 1.3, "coefficient": 0.5},
+    {"kind": "power", "exponent": 3.0, "coefficient": 0.5},
+], ids=["cone", "1.3", "cube"])
+def test_what_jumps_of_a_device_lose_is_the_area_of_its_cycle(run, shape):
+    summary = run(scene(shape, 1.0, equilibrium_path={"h0_end": -1.0},
+                        device={"stiffness": [5.0, 0.5]})).summary
+    assert summary["device_energy_lost"] == pytest.approx(summary["device_cycle_energy"], rel=1e-5)
 
 
 # --- Refusals
