@@ -27,9 +27,6 @@ module experiment
   private
   public :: run_experiment, path_start, prepare, range_of
 
-  !> Digits that a mesh needs beyond those for what is integrated over the surface where the pressure
-  !> is shown point by point, which at the contact edge feels every error of its place.
-  real(wp), parameter :: more_for_profiles = 1.5_wp
   !> States of a stepped path.
   integer, parameter :: path_states = 100
 
@@ -49,8 +46,6 @@ contains
     if (.not. (allocated(request%path) .or. allocated(request%loading))) return
     call range_of(request, problem, low, high)
     outcome%chosen = choose(request%numerics, problem, low)
-    if (allocated(request%profiles)) &
-      outcome%chosen%digits = outcome%chosen%digits + more_for_profiles
     fixed = outcome%chosen%grid /= 'edge_locked'
     if (allocated(request%path) .or. .not. fixed) &
       call run_locked(request, problem, high, low, .not. fixed, observer, outcome, keeper)

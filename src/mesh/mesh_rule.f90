@@ -1,5 +1,5 @@
-!> How many nodes, and where: the shape of a mapped mesh that gives load and h0 so many digits along its
-!> stretch of the equilibrium path. Fitted to the errors of whole bands of states, at
+!> How many nodes, and where: the shape of a mapped mesh that gives load and h0 so many digits along
+!> its stretch of the equilibrium path. Fitted to the errors of whole bands of states, at
 !> adhesion strengths from 1e-4 to 1e5 (tools/bench/mesh_study.py).
 module mesh_rule
   use kinds, only: wp, pi
@@ -37,24 +37,25 @@ module mesh_rule
   !> which come the nearer to one another the stronger adhesion is.
   real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_for_folds = 9, &
     most_digits = 13
-  !> sigma at which jumps begin under the Lennard-Jones law, about that of others, and a factor in it.
+  !> sigma at which jumps begin under the Lennard-Jones law, about that of others; a factor in it.
   real(wp), parameter :: onset = 0.29_wp, near_onset = 1.15_wp
 
 contains
 
   !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy:
-  !> folds and extrema, and the gap on the axis between nodes, are more sensitive. widest: the
-  !> largest contact radius. No more than rounding leaves of the deformation.
+  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, which feel every
+  !> error of the edge's place, are more sensitive. widest: the largest contact radius. No more than
+  !> rounding leaves of the deformation.
   pure real(wp) function digits_for(problem, widest, accuracy) result(digits)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
     real(wp) :: left, for_folds
 
     for_folds = fewest_digits + more_for_folds*log10(1 + strength(problem))
-    ! Where jumps have just begun the two folds are so near each other that a coarse mesh loses them.
+    ! Where jumps have just begun the two folds are so near each other that coarse meshes lose them.
     if (abs(log(max(strength(problem), tiny(1.0_wp))/onset)) < log(near_onset)) &
       for_folds = max(for_folds, most_for_folds)
-    digits = max(0.8_wp - 1.05_wp*log10(accuracy), -1.2_wp - 1.38_wp*log10(accuracy), for_folds)
+    digits = max(2.2_wp - 1.05_wp*log10(accuracy), 0.2_wp - 1.38_wp*log10(accuracy), for_folds)
     left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
     digits = max(fewest_digits, min(digits, left, most_digits))
     ! Folds have to be told apart as long as there is a contact at all.
