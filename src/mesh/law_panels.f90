@@ -1,7 +1,7 @@
 !> Panels short enough for a force law with lengths of its own: barriers, oscillations and steps lie
 !> somewhere between the edge and infinity, where no general rule can know of them.
 !>
-!> The pressure is tried over gaps as bodies have them: undeformed before contact, and in contact the
+!> The pressure is tried over gaps as bodies have them: undeformed before contact, in contact the
 !> gap outside a JKR contact. Panels in z on which the last Legendre coefficients of that pressure are
 !> not small are halved.
 module law_panels

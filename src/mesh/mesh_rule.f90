@@ -17,9 +17,9 @@ module mesh_rule
   real(wp), parameter :: finer = 0.5_wp
   !> Nodes that a panel needs beside those in proportion to its length in z.
   real(wp), parameter :: more_nodes = 3
-  !> Where the tail begins, as a multiple of the position at which the bodies are H0 high, sqrt(2 H0)
-  !> for a parabola: there the poles of its pressure, at rho**2 = -2 H0, are as far as the axis; never
-  !> nearer than the next two, in lateral units and in units of the contact radius from the edge.
+  !> Where the tail begins, as a multiple of where the bodies are H0 high: for a parabola the poles
+  !> of the pressure, at rho**2 = -2 H0, are as far from there as the axis; never nearer than the
+  !> next two, in lateral units and in units of the contact radius from the edge.
   real(wp), parameter :: beyond_poles = 1.3_wp, nearest_tail = 5, tail_of_contact = 3
   !> A pressure that falls faster than any power ends where this part of the accuracy is left of it;
   !> up to there it needs so many times the nodes.
@@ -154,7 +154,7 @@ contains
   end function fading_gap
 
   !> Adds sinh panels over z_length: one for the paper's laws, which are powers of the gap or one
-  !> exponential, and bodies that are parabolas near the axis; to these the density was fitted. Other
+  !> exponential, and bodies that are parabolas near the axis: the density was fitted to these. Other
   !> laws have lengths of their own anywhere within their reach: short panels follow them, outside
   !> the edge those that fit the law. So they do other shapes. low, high: contact radii; absent
   !> inside the edge.
@@ -188,9 +188,9 @@ contains
     shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
 
-  !> Halves the panel on the axis of shapes that are not smooth there. The pressure of a contact goes
-  !> as r^(n-1), with a logarithm if n is odd, and what the panel cannot resolve is a part r^(n+1) of
-  !> the load: `beyond` n is 1. Before contact it is two powers more.
+  !> Halves the panel on the axis of shapes that are not smooth there. The pressure of a contact is
+  !> there r^(n-1), with a logarithm if n is odd, and what the panel cannot resolve is a part r^(n+1)
+  !> of the load: `beyond` n is 1. Before contact it is two powers more.
   pure subroutine refine_axis(problem, digits, beyond, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, beyond

@@ -87,7 +87,7 @@ contains
   end function tabor_parameter
 
   !> A gap beyond which bodies hardly deform: twice that of the jump of parabolas into contact under
-  !> an r^-3 attraction, (37); for any shape and any law that attracts, where about a tenth of what a
+  !> an r^-3 attraction, (37); for any shape and law that attracts, where about a tenth of what a
   !> jump takes is left.
   pure real(wp) function calm_gap(problem) result(gap)
     type(problem_t), intent(in) :: problem

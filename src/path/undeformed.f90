@@ -1,5 +1,5 @@
-!> Bodies so far apart that they do not deform: Derjaguin's load (23) and the energy, in the units of
-!> `dimensionless_problem`.
+!> Bodies so far apart that they do not deform: Derjaguin's load (23) and the energy, in the units
+!> of `dimensionless_problem`.
 module undeformed
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t
