@@ -30,7 +30,7 @@ module mesh_rule
   !> and more for each digit.
   real(wp), parameter :: longest = 0.7_wp, short_order = 4, short_orders = 0.9_wp
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
-  real(wp), parameter :: near_end = 10
+  real(wp), parameter :: near_end = 100
   !> Digits that a shape with kinks allows.
   real(wp), parameter :: digits_of_broken = 4
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
