@@ -11,7 +11,7 @@ module flat_numerics
   public :: kernel_values, gauss_rule, panel_integrals
   public :: mesh_nodes, mesh_matrix, mesh_interpolation
   public :: mapped_nodes, mapped_matrix, mapped_interpolation
-  public :: equilibrium_state
+  public :: equilibrium_state, edge_state
 
 contains
 
@@ -192,6 +192,47 @@ contains
     counts = int([merge(1, 0, met), int(this%cost%operator_products), &
       int(this%cost%factorisations), int(this%cost%rejected_steps)], c_int)
   end subroutine equilibrium_state
+
+  !> The state of a deck's problem with the contact radius c (lateral units) on panels locked to the
+  !> edge, from the gaps of bodies that do not deform. numbers: H0 and load, and their derivatives
+  !> by c. stat is not 0 where the deck is wrong or nothing converged.
+  subroutine edge_state(deck, panel_end, order, c, numbers, stat, message, m)
+    use deck_problem, only: pose
+    use equilibrium, only: control_t, state_t, at_edge_radius, state_from
+    use path_slopes, only: slopes_along_path
+    use solver, only: solver_t
+    use solver_options, only: solver_options_t
+    character(len=*), intent(in) :: deck
+    integer(c_int), intent(in) :: order, m
+    real(c_double), intent(in) :: panel_end(m), c
+    real(c_double), intent(out) :: numbers(4)
+    integer(c_int), intent(out) :: stat
+    character(len=16000), intent(out) :: message
+    type(solver_t) :: this
+    type(control_t) :: control
+    type(state_t) :: state
+    logical :: met, found
+
+    numbers = 0
+    call pose(deck, this%problem, stat, message)
+    if (stat /= 0) return
+    allocate (this%pair%grid(1))
+    call make_mesh('panels', 1.0_c_double, panel_end, order, .true., this%pair%grid(1))
+    this%options = solver_options_t(method='newton', tolerance=1.0e-12_c_double)
+    control = control_t(kind=at_edge_radius, value=c)
+    associate (problem => this%problem, grid => this%pair%grid(1))
+      state = state_from(grid%nodes)
+      state%h0 = problem%law%edge_gap - problem%shape%height(c)
+      state%gap = state%h0 + problem%shape%height(c*grid%x(:grid%nodes))
+      state%scale = c
+    end associate
+    call this%solve(control, state, met)
+    call slopes_along_path(this%equations_t, control, state, this%frozen, numbers(3), numbers(4), &
+      found)
+    numbers(:2) = [state%h0, state%load]
+    stat = merge(0, 1, met .and. found)
+    if (stat /= 0) message = 'no state was found'
+  end subroutine edge_state
 
   !> The mesh of this description.
   subroutine make_mesh(kind, centre, panel_end, order, elastic, mesh)

@@ -98,7 +98,7 @@ contains
     real(wp), dimension(size(state%gap)) :: z, g
 
     associate (grid => equations%pair%grid(control%mesh))
-      z = control%value + 0.5_wp*(control%scale*grid%x(:size(z)))**2
+      z = control%value + equations%problem%shape%height(control%scale*grid%x(:size(z)))
     end associate
     call residual(equations, control, z, g, state)
     state%iterations = 0
@@ -168,10 +168,11 @@ contains
     now%z = now%z + step
     now%since_renewal = now%since_renewal + 1
     if (control%kind /= at_h0_with_edge) return
-    ! The parabola between the bodies is quadratic in the scale: its second-order part is known, and
-    ! far out it is large.
+    ! The shape of the bodies is not linear in the scale: what a linear step leaves out is known,
+    ! and far out it is large.
     associate (n => size(step) - 1, grid => equations%pair%grid(control%mesh))
-      now%z(:n) = now%z(:n) + 0.5_wp*(step(n + 1)*grid%x(:n))**2
+      now%z(:n) = now%z(:n) + equations%problem%shape%bend( &
+        (now%z(n + 1) - step(n + 1))*grid%x(:n), step(n + 1)*grid%x(:n))
     end associate
   end subroutine advance
 

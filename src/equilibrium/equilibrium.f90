@@ -1,13 +1,16 @@
 !> The equations of equilibrium on a discretisation, in the units of `dimensionless_problem`:
 !>
-!>     G_i = H_i - H0 - c^2 x_i^2/2 - 2 coupling c (W P(H))_i = 0
+!>     G_i = H_i - H0 - f(c x_i) - 2 coupling c (W P(H))_i = 0
 !>
-!> for the gaps H at the nodes rho = c x. The kernel is homogeneous, so one matrix W serves every
-!> scale c. A control says what is prescribed; where that is not H0 at a fixed scale, one more
-!> unknown (H0 or c) and one more equation (the gap on the axis or at the contact edge) join.
+!> for the gaps H at the nodes rho = c x of bodies of the shape f. The kernel is homogeneous, so one
+!> matrix W serves every scale c. A control says what is prescribed; where that is not H0 at a fixed
+!> scale, one more unknown (H0 or c) and one more equation (the gap on the axis or at the contact
+!> edge) join.
 module equilibrium
   use kinds, only: wp, pi, long
+  use shape, only: shape_t
   use dimensionless_problem, only: problem_t
+  use beyond_mesh, only: load_beyond
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use contact_scales, only: largest_floor
   use edge_locked, only: mesh_pair_t
@@ -16,7 +19,7 @@ module equilibrium
   implicit none
   private
   public :: control_t, state_t, cost_t, equations_t, residual, largest_step, state_from, &
-    unknowns_of, holds, residual_floor, gap_at_end, gap_at, far_gap, radius_of_gap
+    unknowns_of, holds, residual_floor, load_reach, gap_at_end, gap_at, far_gap, radius_of_gap
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 prescribed at a fixed scale; no further unknown.
@@ -110,7 +113,8 @@ contains
         cost%operator_products = cost%operator_products + 1
         cost%operator_columns = cost%operator_columns + columns
       end if
-      g(:n) = state%gap - state%h0 - 0.5_wp*(state%scale*grid%x(:n))**2 - raised(first_node:)
+      g(:n) = state%gap - state%h0 - problem%shape%height(state%scale*grid%x(:n)) - &
+        raised(first_node:)
       ! In a stiff contact the equation for the axis, which is no node, is off by many times what the
       ! polynomials lack of the pressure between the nodes; their gaps tell it better.
       state%axis_gap = state%h0 + raised(axis_row)
@@ -119,13 +123,12 @@ contains
       case (at_axis_gap)
         g(n + 1) = state%axis_gap - control%value
       case (at_edge_radius, at_h0_with_edge)
-        edge_gap = state%h0 + 0.5_wp*state%scale**2 + raised(centre_row)
+        edge_gap = state%h0 + problem%shape%height(state%scale) + raised(centre_row)
         g(n + 1) = edge_gap - problem%law%edge_gap
       end select
       state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
-      ! Beyond the mesh the deformation hardly varies, and the load there is Derjaguin's (23).
-      if (grid%is_bounded()) &
-        state%load = state%load + 2*pi*sum(problem%law%energy([gap_at_end(grid, state)]))
+      if (grid%is_bounded()) state%load = state%load + 2*pi*load_beyond(problem, &
+        gap_at_end(problem%shape, grid, state), load_reach(grid, state))
       state%residual = maxval(abs(g(n + 1:)))
       state%residual = max(state%residual, maxval(abs(g(:n))/max(1.0_wp, state%gap/far_gap)))
       ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
@@ -188,24 +191,35 @@ contains
     end select
   end function unknowns_of
 
-  !> The gap where a bounded mesh ends, the deformation there being that of the last node.
-  pure real(wp) function gap_at_end(grid, state) result(gap)
+  !> Where a bounded mesh ends, lateral units.
+  pure real(wp) function load_reach(grid, state)
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
 
-    gap = state%gap(grid%nodes) + 0.5_wp*state%scale**2*(grid%end**2 - grid%x(grid%nodes)**2)
+    load_reach = state%scale*grid%end
+  end function load_reach
+
+  !> The gap there, the deformation being that of the last node.
+  pure real(wp) function gap_at_end(shape, grid, state) result(gap)
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+
+    gap = state%gap(grid%nodes) + (shape%height(load_reach(grid, state)) - &
+      shape%height(state%scale*grid%x(grid%nodes)))
   end function gap_at_end
 
   !> The gap of a state at a position on its mesh. Where that goes on to infinity, what the gap has
-  !> beside the parabola is interpolated, which is bounded there.
-  pure real(wp) function gap_at(grid, state, x) result(gap)
+  !> beside the shape is interpolated, which is bounded there.
+  pure real(wp) function gap_at(shape, grid, state, x) result(gap)
+    class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: x
 
     if (grid%in_tail(x)) then
-      gap = 0.5_wp*(state%scale*x)**2 + &
-        grid%interpolate(state%gap - 0.5_wp*(state%scale*grid%x)**2, x)
+      gap = shape%height(state%scale*x) + &
+        grid%interpolate(state%gap - shape%height(state%scale*grid%x), x)
     else
       gap = grid%interpolate(state%gap, x)
     end if
@@ -221,7 +235,8 @@ contains
 
   !> Position, in lateral units, of the outermost point with the given gap; 0 if all gaps are
   !> larger.
-  pure real(wp) function radius_of_gap(level, grid, state) result(c)
+  pure real(wp) function radius_of_gap(shape, level, grid, state) result(c)
+    class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: level
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
@@ -239,7 +254,7 @@ contains
       bracket = bracket_t(grid%x(j), grid%x(j + 1))
     end if
     do while (bracket%is_open())
-      call bracket%narrow(gap_at(grid, state, bracket%middle()) < level)
+      call bracket%narrow(gap_at(shape, grid, state, bracket%middle()) < level)
     end do
     c = state%scale*bracket%low
   end function radius_of_gap

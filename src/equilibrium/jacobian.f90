@@ -82,7 +82,7 @@ contains
     end if
   end subroutine border
 
-  !> Derivative of `residual` by the scale c: -c x^2 - 2 coupling W P at the nodes, and the opposite
+  !> Derivative of `residual` by the scale c: -x f'(c x) - 2 coupling W P at the nodes, the opposite
   !> sign, with x = 1, in the equation for the edge. The deformation is read off the gaps, which is
   !> exact where the residual vanishes and costs no operator product.
   pure function scale_derivative(problem, grid, state) result(column)
@@ -92,8 +92,9 @@ contains
     real(wp) :: column(size(state%gap) + 1)
 
     associate (c => state%scale, n => size(state%gap))
-      column(:n) = -0.5_wp*c*grid%x(:n)**2 - (state%gap - state%h0)/c
-      column(n + 1) = 0.5_wp*c + (problem%law%edge_gap - state%h0)/c
+      column(:n) = -problem%shape%unlike_scaling(c, grid%x(:n)) - (state%gap - state%h0)/c
+      column(n + 1) = problem%shape%unlike_scaling(c, 1.0_wp) + &
+        (problem%law%edge_gap - state%h0)/c
     end associate
   end function scale_derivative
 

@@ -1,6 +1,7 @@
 !> The passage of a state from one mesh to another.
 module regridding
   use kinds, only: wp
+  use shape, only: shape_t
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t, gap_at
   implicit none
@@ -11,7 +12,8 @@ contains
 
   !> The state on another mesh, at the scale given: gaps interpolated, and beyond the old mesh those
   !> of a deformation that decays as 1/r.
-  pure function regrid(state, from, to, scale) result(new)
+  pure function regrid(shape, state, from, to, scale) result(new)
+    class(shape_t), intent(in) :: shape
     type(state_t), intent(in) :: state
     type(discretisation_t), intent(in) :: from, to
     real(wp), intent(in) :: scale
@@ -25,14 +27,14 @@ contains
     new%pressure = 0
     new%scale = scale
     raised = 0
-    if (from%is_bounded()) raised = gap_at(from, state, from%end) - state%h0 - &
-      0.5_wp*(state%scale*from%end)**2
+    if (from%is_bounded()) raised = gap_at(shape, from, state, from%end) - state%h0 - &
+      shape%height(state%scale*from%end)
     do j = 1, to%nodes
       r = scale*to%x(j)
       if (r/state%scale <= from%end) then
-        new%gap(j) = gap_at(from, state, r/state%scale)
+        new%gap(j) = gap_at(shape, from, state, r/state%scale)
       else
-        new%gap(j) = state%h0 + raised*state%scale*from%end/r + 0.5_wp*r**2
+        new%gap(j) = state%h0 + raised*state%scale*from%end/r + shape%height(r)
       end if
     end do
   end function regrid

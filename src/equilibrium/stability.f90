@@ -142,7 +142,8 @@ contains
     logical :: attracted(size(state%gap))
 
     value = unknown()
-    associate (two_u => state%h0 + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2 - state%gap, &
+    associate (two_u => state%h0 + &
+      problem%shape%height(state%scale*grid%x(:size(state%gap))) - state%gap, &
       slope => problem%law%slope(state%gap))
       attracted = attracts(state%pressure, slope)
       ! Slopes are below 1e121 and lengths below 1e80.

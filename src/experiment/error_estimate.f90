@@ -81,8 +81,8 @@ contains
     associate (witness => reported%witness, error => reported%error)
       ! What did not converge has no counterpart.
       if (.not. witness%state%residual < 1) return
-      state = regrid(witness%state, own%pair%grid(witness%mesh), fine%pair%grid(witness%mesh), &
-        witness%state%scale)
+      state = regrid(own%problem%shape, witness%state, own%pair%grid(witness%mesh), &
+        fine%pair%grid(witness%mesh), witness%state%scale)
       fine%frozen%factors%valid = .false.
       call fine%find(witness%control, state, found)
       if (.not. found) return
@@ -129,7 +129,7 @@ contains
       do j = 1, size(state%gap)
         x = state%scale*own%pair%grid(mesh)%x(j)/right%scale
         if (x > finer%end) exit
-        gap = gap_at(finer, right, x)
+        gap = gap_at(own%problem%shape, finer, right, x)
         largest = max(largest, abs(gap - state%gap(j)), &
           maxval(abs(law%pressure([gap]) - state%pressure(j)))/strongest)
       end do

@@ -88,7 +88,7 @@ contains
       expected = extrapolated(position, h0)
       return
     end if
-    expected = moved_with_edge(self%problem%law, self%pair%grid(1), position, h0)
+    expected = moved_with_edge(self%problem, self%pair%grid(1), position, h0)
     ! A factorisation from before the edge moved across a good part of the neck does not serve.
     if (change(position%state, expected) > large_change) self%frozen%factors%valid = .false.
   end function expected_at

@@ -175,8 +175,8 @@ contains
 
     stays = .false.
     if (.not. event%converged .or. .not. self%problem%law%edge_gap > 0) return
-    from = radius_of_gap(self%problem%law%edge_gap, self%pair%grid(1), before)
-    to = radius_of_gap(self%problem%law%edge_gap, self%pair%grid(1), after)
+    from = radius_of_gap(self%problem%shape, self%problem%law%edge_gap, self%pair%grid(1), before)
+    to = radius_of_gap(self%problem%shape, self%problem%law%edge_gap, self%pair%grid(1), after)
     stays = min(from, to) > 0.5_wp*max(from, to)
   end function stays
 

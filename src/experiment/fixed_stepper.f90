@@ -57,7 +57,7 @@ contains
     state = state_from(self%pair%grid(1)%nodes)
     state%h0 = far
     state%axis_gap = far
-    state%gap = far + 0.5_wp*self%pair%grid(1)%x**2
+    state%gap = far + self%problem%shape%height(self%pair%grid(1)%x)
     call self%solve_at(far, state, event)
     call remember(position, state, 1, .false.)
     steps = ceiling(min((far - h0)/approach_step, real(most_approach, wp)))

@@ -1,6 +1,7 @@
 !> How h0 is prescribed in edge-locked coordinates.
 module locked_meshes
   use kinds, only: wp
+  use shape, only: shape_t
   use equilibrium, only: control_t, at_h0_with_edge
   use edge_locked, only: mesh_pair_t, contact
   use contact_scales, only: hertz_scale
@@ -11,7 +12,8 @@ module locked_meshes
 contains
 
   !> The control that prescribes h0 on a mesh.
-  pure function h0_control(pair, mesh, h0) result(control)
+  pure function h0_control(shape, pair, mesh, h0) result(control)
+    class(shape_t), intent(in) :: shape
     type(mesh_pair_t), intent(in) :: pair
     integer, intent(in) :: mesh
     real(wp), intent(in) :: h0
@@ -19,17 +21,18 @@ contains
 
     control%value = h0
     control%mesh = mesh
-    control%scale = scale_at(pair, h0)
+    control%scale = scale_at(shape, pair, h0)
     if (mesh >= contact .and. pair%traceable) control%kind = at_h0_with_edge
   end function h0_control
 
   !> The scale of the mesh at h0 where it is not an unknown.
-  pure real(wp) function scale_at(pair, h0)
+  pure real(wp) function scale_at(shape, pair, h0)
+    class(shape_t), intent(in) :: shape
     type(mesh_pair_t), intent(in) :: pair
     real(wp), intent(in) :: h0
 
     scale_at = 1
-    if (.not. pair%traceable) scale_at = hertz_scale(pair%level, h0)
+    if (.not. pair%traceable) scale_at = hertz_scale(shape, pair%level, h0)
   end function scale_at
 
 end module locked_meshes

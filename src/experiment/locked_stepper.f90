@@ -55,8 +55,8 @@ contains
       state = state_from(grid%nodes)
       state%h0 = far
       state%axis_gap = far
-      state%scale = scale_at(self%pair, far)
-      state%gap = far + 0.5_wp*(state%scale*grid%x(:size(state%gap)))**2
+      state%scale = scale_at(self%problem%shape, self%pair, far)
+      state%gap = far + self%problem%shape%height(state%scale*grid%x(:size(state%gap)))
     end associate
     call self%attempt(far, state, mesh, event)
     if (.not. event%converged) &
@@ -79,7 +79,7 @@ contains
     integer, intent(in) :: mesh
     type(step_result_t), intent(inout) :: event
 
-    call self%solve(h0_control(self%pair, mesh, h0), state, event%converged)
+    call self%solve(h0_control(self%problem%shape, self%pair, mesh, h0), state, event%converged)
   end subroutine attempt
 
 end module locked_stepper

@@ -176,7 +176,7 @@ contains
     type(error_probe_t) :: witness
 
     witness%mesh = row%mesh
-    witness%control = h0_control(steps%pair, row%mesh, row%state%h0)
+    witness%control = h0_control(steps%problem%shape, steps%pair, row%mesh, row%state%h0)
     witness%state = row%state
     reported = reported_state(witness)
     if (row%point == 0) return

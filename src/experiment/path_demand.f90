@@ -4,6 +4,8 @@ module path_demand
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, yielding_gap
   use contact_scales, only: beyond_contact
+  use convex_contact, only: hertz_like_load, jkr_like_pull_off
+  use undeformed, only: load_undeformed
   use experiment_request, only: request_t
   implicit none
   private
@@ -14,6 +16,8 @@ module path_demand
   real(wp), parameter :: no_yielding = 1.0e-9_wp
   !> A contact radius is tried in steps of this ratio; and what JKR theory may miss of an h0.
   real(wp), parameter :: ratio = 1.1_wp, margin = 0.1_wp
+  !> h0 that are tried for the tension of rigid bodies.
+  integer, parameter :: tried = 100
 
 contains
 
@@ -63,9 +67,8 @@ contains
       if (allocated(request%device%z_start)) farthest = problem%law%gap_of(request%device%z_start)
       do i = 1, size(request%device%stiffness)
         associate (k => request%device%stiffness(i))
-          ! No pull-off is larger than that of rigid bodies.
           if (k > 0) farthest = max(farthest, beyond_contact(problem) + &
-            ratio*2*pi*problem%law%adhesion*problem%load/(k*problem%length))
+            ratio*largest_pull(problem)*problem%load/(k*problem%length))
         end associate
       end do
     end if
@@ -84,7 +87,8 @@ contains
 
     gap = 1
     do step = 1, 400
-      if (all(2*pi*abs(problem%law%energy([gap, ratio*gap, ratio**2*gap])) < abs(load))) exit
+      if (max(abs(load_undeformed(problem, gap)), abs(load_undeformed(problem, ratio*gap)), &
+        abs(load_undeformed(problem, ratio**2*gap))) < abs(load)) exit
       gap = ratio*gap
     end do
   end function gap_of_load
@@ -93,15 +97,33 @@ contains
   pure real(wp) function barrier_load(problem) result(load)
     type(problem_t), intent(in) :: problem
     integer :: step
-    real(wp) :: gap(1)
+    real(wp) :: gap
 
     load = 0
     gap = max(problem%law%edge_gap, problem%law%rest_gap)
     do step = 1, 200
-      load = max(load, 2*pi*sum(problem%law%energy(gap)))
+      load = max(load, load_undeformed(problem, gap))
       gap = ratio*gap
     end do
   end function barrier_load
+
+  !> A tension that no pull-off exceeds: of parabolas that of rigid bodies; of others the larger one
+  !> of rigid bodies and of JKR theory.
+  pure real(wp) function largest_pull(problem) result(tension)
+    type(problem_t), intent(in) :: problem
+    integer :: step
+
+    if (problem%shape%parabolic) then
+      tension = 2*pi*problem%law%adhesion
+      return
+    end if
+    tension = 0
+    if (problem%law%work > 0) tension = -jkr_like_pull_off(problem)
+    do step = -tried/2, tried/2
+      tension = max(tension, -load_undeformed(problem, &
+        max(problem%law%edge_gap, problem%law%rest_gap)*ratio**step))
+    end do
+  end function largest_pull
 
   !> An h0 below that at which a h0 - b load in contact is `wanted`, by JKR theory (10), (11).
   pure real(wp) function h0_in_contact(problem, a, b, wanted) result(h0)
@@ -124,13 +146,14 @@ contains
     pure real(wp) function h0_at(radius)
       real(wp), intent(in) :: radius
 
-      h0_at = 1 - radius**2 + sqrt(4*pi*problem%coupling*problem%law%adhesion*radius)
+      h0_at = 1 - problem%shape%indentation(radius) + &
+        sqrt(4*pi*problem%coupling*problem%law%adhesion*radius)
     end function h0_at
 
     pure real(wp) function position(radius)
       real(wp), intent(in) :: radius
 
-      position = a*h0_at(radius) - b*(2*radius**3/(3*problem%coupling) - &
+      position = a*h0_at(radius) - b*(hertz_like_load(problem, radius) - &
         sqrt(4*pi*problem%law%adhesion*radius**3/problem%coupling))
     end function position
 

@@ -1,7 +1,7 @@
 !> What the next state on a mesh fixed in space is expected to be.
 module prediction
   use kinds, only: wp
-  use force_law, only: force_law_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use interpolation, only: polynomial_weights
   use equilibrium, only: state_t, radius_of_gap
@@ -26,29 +26,29 @@ contains
 
   !> The same with the deformation extrapolated at equal distances over the contact radius, itself
   !> extrapolated: what is sharp at the edge moves with it. Without contact, node by node.
-  function moved_with_edge(law, mesh, position, h0) result(expected)
-    class(force_law_t), intent(in) :: law
+  function moved_with_edge(problem, mesh, position, h0) result(expected)
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: mesh
     type(branch_point_t), intent(in) :: position
     real(wp), intent(in) :: h0
     type(state_t) :: expected
     real(wp) :: weight(position%held), radius(position%held), c
-    real(wp), allocatable :: deformation(:), parabola(:)
+    real(wp), allocatable :: deformation(:), height(:)
     integer :: i, k
 
     expected = extrapolated(position, h0)
     do k = 1, position%held
-      radius(k) = radius_of_gap(law%edge_gap, mesh, position%past(k))
+      radius(k) = radius_of_gap(problem%shape, problem%law%edge_gap, mesh, position%past(k))
     end do
     if (position%held < 2 .or. .not. minval(radius) > 0) return
     weight = polynomial_weights(position%h0(:position%held), h0)
     c = dot_product(weight, radius)
     ! An edge that is extrapolated to half or twice where it was is worth nothing.
     if (.not. (c > 0.5_wp*minval(radius) .and. c < 2*maxval(radius))) return
-    parabola = 0.5_wp*mesh%x(:mesh%nodes)**2
-    expected%gap = h0 + parabola
+    height = problem%shape%height(mesh%x(:mesh%nodes))
+    expected%gap = h0 + height
     do k = 1, position%held
-      deformation = position%past(k)%gap - position%h0(k) - parabola
+      deformation = position%past(k)%gap - position%h0(k) - height
       do i = 1, mesh%nodes
         expected%gap(i) = expected%gap(i) + weight(k)*mesh%interpolate(deformation, &
           min(mesh%x(i)*radius(k)/c, mesh%x(mesh%nodes)))

@@ -86,7 +86,8 @@ contains
     record%h_centre = problem%law%separation_of(state%axis_gap)
     record%displacement = (state%axis_gap - state%h0)*problem%length
     record%load = state%load*problem%load
-    record%contact_radius = problem%lateral*radius_of_gap(contact_level_of(problem), grid, state)
+    record%contact_radius = problem%lateral*radius_of_gap(problem%shape, &
+      contact_level_of(problem), grid, state)
     record%stable = stable
     ! What is not an equilibrium is neither stable nor unstable.
     if (.not. converged) record%stable = stable_unasked

@@ -130,7 +130,7 @@ contains
     type(error_probe_t) :: witness
 
     witness%mesh = position%mesh
-    witness%control = h0_control(self%pair, position%mesh, position%state%h0)
+    witness%control = h0_control(self%problem%shape, self%pair, position%mesh, position%state%h0)
     witness%state = position%state
   end function witness
 

@@ -3,7 +3,9 @@
 module contact_scales
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
+  use shape, only: shape_t
   use dimensionless_problem, only: problem_t, neck_width
+  use convex_contact, only: jkr_like_detachment
   implicit none
   private
   public :: largest_radius, beyond_contact, hertz_scale, contact_level, smallest_feature, &
@@ -18,38 +20,44 @@ module contact_scales
 
 contains
 
-  !> Contact radius that JKR theory (11) gives at H0, with a margin of a fifth; for a law without
+  !> Contact radius that JKR theory, (11), gives at H0, with a margin of a fifth; for a law without
   !> adhesion that of Hertz, beginning at its level.
   pure real(wp) function largest_radius(problem, h0, level) result(c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0, level
+    real(wp) :: before
     integer :: step
 
     if (problem%law%adhesion <= 0) then
-      c = hertz_scale(level, h0)
+      c = hertz_scale(problem%shape, level, h0)
       return
     end if
     c = 1
     do step = 1, 200
-      c = sqrt(max(1 - h0, 0.0_wp) + sqrt(4*pi*problem%coupling*problem%law%adhesion*c))
+      before = c
+      c = problem%shape%contact_radius(max(1 - h0, 0.0_wp) + &
+        sqrt(4*pi*problem%coupling*problem%law%adhesion*c))
+      if (.not. abs(c - before) > 0) exit
     end do
     c = max(1.0_wp, 1.2_wp*c)
   end function largest_radius
 
   !> An H0 beyond which no contact reaches: the jump out of contact at fixed displacement of JKR
-  !> theory, the extremum of (11), with a margin of a fifth.
+  !> theory, with a margin of a fifth.
   pure real(wp) function beyond_contact(problem)
     type(problem_t), intent(in) :: problem
 
-    beyond_contact = 1.2_wp*(1 + 3*(pi*problem%coupling*problem%law%adhesion/4)**(2.0_wp/3))
+    beyond_contact = 1.2_wp*(1 + jkr_like_detachment(problem%shape, &
+      problem%coupling*problem%law%adhesion))
   end function beyond_contact
 
   !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins
   !> at the given level, never less than 1.
-  pure real(wp) function hertz_scale(level, h0)
+  pure real(wp) function hertz_scale(shape, level, h0)
+    class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: level, h0
 
-    hertz_scale = sqrt(1 + max(0.0_wp, level - h0))
+    hertz_scale = shape%contact_radius(1 + max(0.0_wp, level - h0))
   end function hertz_scale
 
   !> The gap at which the pressure over a unit radius deforms the bodies by one unit, by bisection
@@ -68,15 +76,15 @@ contains
   end function contact_level
 
   !> The smallest lateral feature of the pressure up to the contact radius c: the neck, or where
-  !> that is wide, the half-width of the pressure between spheres near contact and the boundary
-  !> layer of a Hertz contact, whose gap opens as sqrt(c) s^(3/2) with the distance s from the edge
-  !> and changes the repulsion over one repulsion length.
+  !> that is wide, the half-width of the pressure between bodies near contact and the boundary
+  !> layer of a Hertz contact, whose gap opens as the power 3/2 of the distance from the edge and
+  !> changes the repulsion over one repulsion length.
   pure real(wp) function smallest_feature(problem, c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
 
     smallest_feature = max(finest*max(c, 1.0_wp), min(neck_width(problem), 0.5_wp, &
-      (problem%law%repulsion_length**2/max(c, 1.0_wp))**(1.0_wp/3)))
+      (problem%law%repulsion_length**2/problem%shape%opening(max(c, 1.0_wp)))**(1.0_wp/3)))
   end function smallest_feature
 
   !> Whether the deformation of a contact of radius c (lateral units) under the law's largest

@@ -112,12 +112,13 @@ contains
 
   !> Fills in at_axis, once the nodes are known: what is even in the distance from the axis is a
   !> polynomial of its square, and through the nearest nodes that converges faster than the panel's.
-  pure subroutine note_axis(self)
+  pure subroutine note_axis(self, even)
     class(discretisation_t), intent(inout) :: self
+    logical, intent(in) :: even
 
     allocate (self%at_axis(self%nodes), source=0.0_wp)
     associate (n => min(nodes_at_axis, self%nodes))
-      self%at_axis(:n) = polynomial_weights(self%x(:n)**2, 0.0_wp)
+      self%at_axis(:n) = polynomial_weights(self%x(:n)**merge(2, 1, even), 0.0_wp)
     end associate
   end subroutine note_axis
 

@@ -81,7 +81,8 @@ contains
 
     c = 0.25_wp*neck_width(problem)
     if (problem%law%edge_gap > 0) &
-      c = min(c, 0.25_wp*sqrt(problem%law%edge_gap - problem%law%rest_gap))
+      c = min(c, 0.25_wp*problem%shape%position_of( &
+      0.5_wp*(problem%law%edge_gap - problem%law%rest_gap)))
   end function passage_to_contact
 
 end module edge_locked

@@ -1,7 +1,7 @@
 !> Panels short enough for a force law with lengths of its own: barriers, oscillations and steps lie
 !> somewhere between the edge and infinity, where no general rule can know of them.
 !>
-!> The pressure is tried over gaps as bodies have them: parabolas before contact, and in contact the
+!> The pressure is tried over gaps as bodies have them: undeformed before contact, in contact the
 !> gap outside a JKR contact. Panels in z on which the last Legendre coefficients of that pressure are
 !> not small are halved.
 module law_panels
@@ -85,11 +85,11 @@ contains
     real(wp) :: angle
 
     if (.not. centre > 0) then
-      gap = h + 0.5_wp*x**2
+      gap = h + problem%shape%height(x)
       return
     end if
     angle = acos(min(1/x, 1.0_wp))
-    gap = problem%law%edge_gap + h**2/pi*(sqrt(max(x**2 - 1, 0.0_wp)) + (x**2 - 2)*angle) + &
+    gap = problem%law%edge_gap + problem%shape%hertz_gap(h, x) + &
       2/pi*sqrt(4*pi*problem%coupling*problem%law%adhesion*h)*angle
   end function gap_at
 

@@ -56,7 +56,7 @@ contains
       end if
     end do
     grid%x = centre + x
-    call grid%note_axis()
+    call grid%note_axis(.true.)
     if (.not. elastic) return
 
     target(axis_row) = -centre

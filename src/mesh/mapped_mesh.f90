@@ -25,6 +25,8 @@ module mapped_mesh
     real(wp) :: decay = 0
     !> Digits of the kernel matrix.
     real(wp) :: digits = 14
+    !> Whether functions are even in the distance from the axis.
+    logical :: even = .true.
   end type mapped_shape_t
 
 contains
@@ -111,7 +113,7 @@ contains
       end associate
     end do
     grid%x = grid%centre + offset
-    call grid%note_axis()
+    call grid%note_axis(shape%even)
   end subroutine place_nodes
 
 end module mapped_mesh

@@ -4,6 +4,7 @@
 module mesh_rule
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
+  use shape, only: shape_t
   use dimensionless_problem, only: problem_t, calm_gap
   use contact_scales, only: smallest_feature
   use law_panels, only: fitting_panels
@@ -16,9 +17,9 @@ module mesh_rule
   real(wp), parameter :: finer = 0.5_wp
   !> Nodes that a panel needs beside those in proportion to its length in z.
   real(wp), parameter :: more_nodes = 3
-  !> Where the tail begins, as a multiple of sqrt(2 H0): there the poles of the pressure, at
-  !> rho**2 = -2 H0, are as far as the axis; never nearer than the next two, in lateral units and in
-  !> units of the contact radius from the edge.
+  !> Where the tail begins, as a multiple of where the bodies are H0 high: for a parabola the poles
+  !> of the pressure, at rho**2 = -2 H0, are as far from there as the axis; never nearer than the
+  !> next two, in lateral units and in units of the contact radius from the edge.
   real(wp), parameter :: beyond_poles = 1.3_wp, nearest_tail = 5, tail_of_contact = 3
   !> A pressure that falls faster than any power ends where this part of the accuracy is left of it;
   !> up to there it needs so many times the nodes.
@@ -28,6 +29,10 @@ module mesh_rule
   !> Longest panel in z under a law with lengths of its own, and the nodes of such panels: so many,
   !> and more for each digit.
   real(wp), parameter :: longest = 0.7_wp, short_order = 4, short_orders = 0.9_wp
+  !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
+  real(wp), parameter :: near_end = 100
+  !> Digits that a shape with kinks allows.
+  real(wp), parameter :: digits_of_broken = 4
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
   !> which come the nearer to one another the stronger adhesion is.
   real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_for_folds = 9, &
@@ -65,10 +70,12 @@ contains
 
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
       (1 + 0.03_wp*log(1 + strength(problem)))
-    reach = max(4.0_wp, beyond_poles*sqrt(2*h0_high))
+    reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
     shape%d = finer*smallest_feature(problem, 1.0_wp)
+    shape%even = is_even(problem%shape)
     call add_panels(problem, shape, asinh(reach/shape%d), density, digits, 0.0_wp, 0.0_wp)
+    call refine_axis(problem, digits, 3.0_wp, shape)
     shape%digits = kernel_digits(digits)
   end function approach_shape
 
@@ -88,13 +95,15 @@ contains
     else
       density = 1.5_wp*(0.15_wp + digits*(0.24_wp + 0.0105_wp*digits))
     end if
-    reach = max(nearest_tail, beyond_poles*sqrt(calm_gap(problem)))
+    reach = max(nearest_tail, beyond_poles*problem%shape%position_of(0.5_wp*calm_gap(problem)))
     outer = density
     call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)
     reach = max(tail_of_contact, reach/low)
     shape%centre = 1
+    shape%even = is_even(problem%shape)
     shape%d = min(finer*smallest_feature(problem, high)/high, 1.0_wp)
     call add_panels(problem, shape, asinh(1/shape%d), density, digits)
+    call refine_axis(problem, digits, 1.0_wp, shape)
     shape%inner = size(shape%order)
     ! Panels of a whole number of nodes are a little longer, and end on the axis.
     shape%d = 1/sinh(sum(shape%z_length))
@@ -113,10 +122,16 @@ contains
 
     if (problem%law%tail_power < huge(1.0_wp)) then
       shape%tail_order = ceiling(1 + 0.6_wp*digits)
-      shape%decay = 2*problem%law%tail_power
-      reach = max(reach, sqrt(2*problem%law%power_from))
+      shape%decay = problem%shape%growth*problem%law%tail_power
+      ! Of other shapes what is left of the power need not be a polynomial in the inverse position.
+      if (.not. is_even(problem%shape) .or. problem%shape%ends < huge(1.0_wp)) &
+        shape%tail_order = 2*shape%tail_order
+      reach = max(reach, problem%shape%position_of(problem%law%power_from), &
+        beyond_poles*problem%shape%smooth_from())
+      if (problem%shape%ends < near_end*reach) reach = max(reach, beyond_poles*problem%shape%ends)
     else
-      reach = sqrt(2*max(fading_gap(problem, from, negligible*10.0_wp**(-digits)), 1.0_wp))
+      reach = problem%shape%position_of( &
+        max(fading_gap(problem, from, negligible*10.0_wp**(-digits)), 1.0_wp))
       density = crowding*density
     end if
   end subroutine give_tail
@@ -139,9 +154,10 @@ contains
   end function fading_gap
 
   !> Adds sinh panels over z_length: one for the paper's laws, which are powers of the gap or one
-  !> exponential, and to which the density was fitted. Other laws have lengths of their own anywhere
-  !> within their reach: short panels follow them, outside the edge those that fit the law. low,
-  !> high: contact radii; absent inside the edge.
+  !> exponential, and bodies that are parabolas near the axis: the density was fitted to these. Other
+  !> laws have lengths of their own anywhere within their reach: short panels follow them, outside
+  !> the edge those that fit the law. So they do other shapes. low, high: contact radii; absent
+  !> inside the edge.
   subroutine add_panels(problem, shape, z_length, density, digits, low, high)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -149,14 +165,20 @@ contains
     real(wp), intent(in), optional :: low, high
     real(wp), allocatable :: lengths(:)
     integer :: panels, order
+    logical :: broken
 
-    if (problem%law%of_paper) then
+    broken = problem%shape%smooth_from() > 0
+    if (present(low)) broken = broken .or. &
+      (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0) > &
+      problem%shape%ends
+    if (problem%law%of_paper .and. .not. (abs(problem%shape%exponent - 2) > 0 .or. broken)) then
       call add_panel(shape, z_length, density)
       return
     end if
     order = ceiling(short_order + short_orders*digits)
-    if (present(low) .and. problem%law%edge_gap > 0) then
-      lengths = fitting_panels(problem, shape%centre, shape%d, z_length, low, high, order, digits)
+    if (present(low) .and. problem%law%edge_gap > 0 .and. .not. problem%law%of_paper) then
+      lengths = fitting_panels(problem, shape%centre, shape%d, z_length, low, high, order, &
+        merge(min(digits, digits_of_broken), digits, broken))
     else
       panels = ceiling(z_length/longest)
       lengths = spread(z_length/panels, 1, panels)
@@ -165,6 +187,30 @@ contains
     shape%order = [shape%order, spread(order, 1, size(lengths))]
     shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
+
+  !> Halves the panel on the axis of shapes that are not smooth there. The pressure of a contact is
+  !> there r^(n-1), with a logarithm if n is odd, and what the panel cannot resolve is a part r^(n+1)
+  !> of the load: `beyond` n is 1. Before contact it is two powers more.
+  pure subroutine refine_axis(problem, digits, beyond, shape)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: digits, beyond
+    type(mapped_shape_t), intent(inout) :: shape
+    real(wp) :: tip
+
+    if (is_even(problem%shape)) return
+    tip = 10.0_wp**(-digits/(problem%shape%exponent + beyond))
+    do while (shape%z_length(1) > tip)
+      shape%z_length = [0.5_wp*shape%z_length(1), 0.5_wp*shape%z_length(1), shape%z_length(2:)]
+      shape%order = [shape%order(1), shape%order]
+    end do
+  end subroutine refine_axis
+
+  !> Whether a body is even in r, so that nothing on its axis is sharp.
+  pure logical function is_even(shape)
+    class(shape_t), intent(in) :: shape
+
+    is_even = .not. abs(shape%exponent - 2*nint(0.5_wp*shape%exponent)) > 0
+  end function is_even
 
   !> Adds a sinh panel of at least z_length at so many nodes a unit of z.
   pure subroutine add_panel(shape, z_length, density)

@@ -1,13 +1,15 @@
 !> The problem without its units. With gaps in units of the law's length L, lateral positions in
-!> sqrt(R L) and pressures in the law's unit, (14)-(18) of the paper become
+!> those of the shape, sqrt(R L), and pressures in the law's unit, (14)-(18) of the paper become
 !>
-!>     H(rho) = H0 + rho^2/2 + 2 coupling Int P(H) k rho' drho' ,
+!>     H(rho) = H0 + f(rho) + 2 coupling Int P(H) k rho' drho' ,
 !>
-!> with one parameter, coupling = (1-nu^2)/E sqrt(R/L) pressure_unit: sigma (40) for the
-!> Lennard-Jones law, Lambda (39) at h0 = 0 for the exponential one, 0 for rigid bodies.
+!> with f(rho) = rho^2/2 for the paper's parabola and one parameter, coupling = (1-nu^2)/E sqrt(R/L)
+!> pressure_unit: sigma (40) for the Lennard-Jones law, Lambda (39) at h0 = 0 for the exponential
+!> one, 0 for rigid bodies. Of other shapes R is only what makes sqrt(R L) their lateral unit.
 module dimensionless_problem
   use kinds, only: wp
   use force_law, only: force_law_t
+  use shape, only: shape_t
   implicit none
   private
   public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
@@ -15,10 +17,11 @@ module dimensionless_problem
 
   type :: problem_t
     class(force_law_t), allocatable :: law
+    class(shape_t), allocatable :: shape
     real(wp) :: coupling = 0
     !> Units: gap [m], lateral position [m], pressure [Pa], load [N].
     real(wp) :: length = 1, lateral = 1, pressure = 1, load = 1
-    !> Bodies, SI: R, and E/(1-nu^2) of two identical bodies.
+    !> Bodies, SI: R of their shape, and E/(1-nu^2) of two identical bodies.
     real(wp) :: radius = 1, stiffness = 1
     logical :: rigid = .false.
     !> What each body deforms by over what it is for identical ones.
@@ -30,22 +33,25 @@ module dimensionless_problem
 
 contains
 
-  !> radius [m] and stiffness [Pa] as in `bodies`; stiffness is not used for rigid bodies.
-  pure function new_problem(law, radius, stiffness, rigid) result(problem)
+  !> stiffness [Pa] as in `bodies`; it is not used for rigid bodies.
+  pure function new_problem(law, shape, stiffness, rigid) result(problem)
     class(force_law_t), intent(in) :: law
-    real(wp), intent(in) :: radius, stiffness
+    class(shape_t), intent(in) :: shape
+    real(wp), intent(in) :: stiffness
     logical, intent(in) :: rigid
     type(problem_t) :: problem
 
     allocate (problem%law, source=law)
+    allocate (problem%shape, source=shape)
     problem%length = law%length
-    problem%lateral = sqrt(radius*law%length)
+    problem%lateral = sqrt(shape%radius*law%length)
     problem%pressure = law%pressure_unit
-    problem%load = law%pressure_unit*radius*law%length
-    problem%radius = radius
+    problem%load = law%pressure_unit*shape%radius*law%length
+    problem%radius = shape%radius
     problem%stiffness = stiffness
     problem%rigid = rigid
-    if (.not. rigid) problem%coupling = law%pressure_unit/stiffness*sqrt(radius/law%length)
+    if (.not. rigid) problem%coupling = &
+      law%pressure_unit/stiffness*sqrt(shape%radius/law%length)
   end function new_problem
 
   !> Width of the zone outside the contact edge over which the tension decays, lateral units:
@@ -66,26 +72,35 @@ contains
     spacing_over_neck = spacing*problem%coupling*problem%law%adhesion/neck
   end function spacing_over_neck
 
-  !> Tabor's parameter (R gamma^2/(E*^2 L^3))^(1/3) = (4 sigma^2)^(1/3); 0 without adhesion.
+  !> Tabor's parameter (R gamma^2/(E*^2 L^3))^(1/3) = (4 sigma^2)^(1/3), and for a gap B r^n
+  !> ((gamma/E*)^n/(2 B L^(2n-1)))^(1/(2n-1)) = (2 sigma)^(n/(2n-1)); 0 without adhesion.
   pure real(wp) function tabor_parameter(problem)
     type(problem_t), intent(in) :: problem
 
-    tabor_parameter = (4*(problem%coupling*problem%law%adhesion)**2)**(1.0_wp/3)
+    associate (sigma => problem%coupling*problem%law%adhesion, n => problem%shape%exponent)
+      if (abs(n - 2) > 0) then
+        tabor_parameter = (2*sigma)**(n/(2*n - 1))
+      else
+        tabor_parameter = (4*sigma**2)**(1.0_wp/3)
+      end if
+    end associate
   end function tabor_parameter
 
-  !> A gap beyond which bodies hardly deform: twice that of the jump into contact under an r^-3
-  !> attraction, (37); for any law that attracts, where about a tenth of what a jump takes is left.
+  !> A gap beyond which bodies hardly deform: twice that of the jump of parabolas into contact under
+  !> an r^-3 attraction, (37); for any shape and law that attracts, where about a tenth of what a
+  !> jump takes is left.
   pure real(wp) function calm_gap(problem) result(gap)
     type(problem_t), intent(in) :: problem
 
-    gap = max(5.0_wp, 2*(27*problem%coupling*problem%law%adhesion)**(2.0_wp/7), &
-      yielding_gap(problem, 1.0_wp/8))
+    gap = max(5.0_wp, yielding_gap(problem, 1.0_wp/8))
+    if (problem%shape%parabolic) &
+      gap = max(gap, 2*(27*problem%coupling*problem%law%adhesion)**(2.0_wp/7))
   end function calm_gap
 
   !> The largest gap at which bodies yield by more than the part `left` of what makes them jump into
-  !> contact; 0 where they never do. Over the zone of width sqrt(gap) in which they interact the
-  !> law's slope makes them yield by coupling*slope*sqrt(gap) of their gap, times some number; at
-  !> (37), the gap of the jump under an r^-3 attraction, that is one.
+  !> contact; 0 where they never do. Over the zone in which they interact, for a parabola sqrt(gap)
+  !> wide, the law's slope makes them yield by coupling*slope*width of their gap, times some number;
+  !> at (37), the gap of the jump under an r^-3 attraction, that is one.
   pure real(wp) function yielding_gap(problem, left) result(gap)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: left
@@ -99,8 +114,8 @@ contains
     gap = 0
     if (.not. problem%law%adhesion > 0) return
     at = [(ratio**i, i=1, tried)]
-    last = findloc(at_jump*problem%coupling*abs(problem%law%slope(at))*sqrt(at) > left, .true., 1, &
-      back=.true.)
+    last = findloc(at_jump*problem%coupling*abs(problem%law%slope(at))* &
+      problem%shape%position_of(0.5_wp*at) > left, .true., 1, back=.true.)
     if (last > 0) gap = at(last)
   end function yielding_gap
 

@@ -138,10 +138,11 @@ contains
 
     associate (problem => equations%problem, pair => equations%pair)
       c = state%scale
-      if (from == approach) c = radius_of_gap(problem%law%edge_gap, pair%grid(from), state)
+      if (from == approach) c = radius_of_gap(problem%shape, problem%law%edge_gap, &
+        pair%grid(from), state)
       done = c > 0
       if (.not. done) return
-      state = regrid(state, pair%grid(from), pair%grid(to), c)
+      state = regrid(problem%shape, state, pair%grid(from), pair%grid(to), c)
       call solve_anderson(equations, options, frozen, &
         path_control(problem, to, coordinate_of(problem, to, state)), state, done)
     end associate
@@ -247,8 +248,8 @@ contains
     integer, intent(in) :: j
 
     c = self%state(j)%scale
-    if (self%mesh == approach) c = radius_of_gap(equations%problem%law%edge_gap, &
-      equations%pair%grid(approach), self%state(j))
+    if (self%mesh == approach) c = radius_of_gap(equations%problem%shape, &
+      equations%problem%law%edge_gap, equations%pair%grid(approach), self%state(j))
   end function contact_radius
 
 end module continuation

@@ -13,7 +13,7 @@ module curve_states
   use known_path, only: known_path_t
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
-  use path_curve, only: curve_t, along_curve, beyond_mesh
+  use path_curve, only: curve_t, along_curve, no_mesh
   implicit none
   private
   public :: curve_state_t, curve_solver_t, place_t
@@ -66,14 +66,14 @@ contains
 
     found%interval = place%interval
     found%x = place%x
-    associate (node => self%curve%begin_of(place%interval), law => equations%problem%law)
+    associate (node => self%curve%begin_of(place%interval), problem => equations%problem)
       found%modes = self%curve%interval(place%interval)%modes
-      if (node%mesh == beyond_mesh) then
+      if (node%mesh == no_mesh) then
         found%h0 = exp(-place%x)
-        found%load = load_undeformed(law, found%h0)
+        found%load = load_undeformed(problem, found%h0)
         found%axis_gap = found%h0
-        found%energy = energy_undeformed(law, found%h0)
-        found%slopes = -found%h0*[1.0_wp, load_slope_undeformed(law, found%h0)]
+        found%energy = energy_undeformed(problem, found%h0)
+        found%slopes = -found%h0*[1.0_wp, load_slope_undeformed(problem, found%h0)]
         found%converged = .true.
         return
       end if
@@ -88,7 +88,8 @@ contains
       found%axis_gap = state%axis_gap
       found%residual = state%residual
       if (.not. found%converged) return
-      found%radius = radius_of_gap(self%curve%contact_gap, equations%pair%grid(node%mesh), state)
+      found%radius = radius_of_gap(problem%shape, self%curve%contact_gap, &
+        equations%pair%grid(node%mesh), state)
       call energy_of(equations, node%mesh, state, found%energy, found%uncertainty)
       call along_curve(equations, node%mesh, s, state, self%frozen, found%slopes, found%converged)
     end associate

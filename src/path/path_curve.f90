@@ -14,10 +14,10 @@ module path_curve
   use undeformed, only: load_undeformed, load_slope_undeformed
   implicit none
   private
-  public :: curve_t, curve_node_t, curve_interval_t, new_curve, along_curve, beyond_mesh
+  public :: curve_t, curve_node_t, curve_interval_t, new_curve, along_curve, no_mesh
 
   !> A node that no mesh knows: the bodies are undeformed.
-  integer, parameter :: beyond_mesh = 0
+  integer, parameter :: no_mesh = 0
   !> Ratio of h0 between such nodes.
   real(wp), parameter :: outer_ratio = 1.12_wp
   !> A neighbour nearer to an interval than this part of its width makes the polynomial worse.
@@ -26,7 +26,7 @@ module path_curve
   !> An equilibrium of the path. x is the path's coordinate (`continuation`) with the sign that
   !> makes it grow from afar inward, for undeformed bodies -log(h0); slopes are by x.
   type :: curve_node_t
-    integer :: mesh = beyond_mesh
+    integer :: mesh = no_mesh
     real(wp) :: x = 0, h0 = 0, load = 0, h0_slope = 0, load_slope = 0
     !> Up to where bodies are in contact, lateral units; gap on the axis.
     real(wp) :: radius = 0, axis_gap = 0
@@ -98,14 +98,14 @@ contains
 
     if (.not. farthest > h0) return
     n = ceiling(log(farthest/h0)/log(outer_ratio))
-    associate (law => equations%problem%law)
+    associate (problem => equations%problem)
       do i = 0, n
         node%h0 = h0*(farthest/h0)**(1 - real(i, wp)/n)
         node%x = -log(node%h0)
         node%axis_gap = node%h0
-        node%load = load_undeformed(law, node%h0)
+        node%load = load_undeformed(problem, node%h0)
         node%h0_slope = -node%h0
-        node%load_slope = -node%h0*load_slope_undeformed(law, node%h0)
+        node%load_slope = -node%h0*load_slope_undeformed(problem, node%h0)
         curve%node = [curve%node, node]
       end do
     end associate
@@ -130,7 +130,8 @@ contains
     if (.not. there) return
     call along_curve(equations, mesh, s, state, frozen, slopes, found)
     node = curve_node_t(mesh, inward(mesh)*s, state%h0, state%load, slopes(1), slopes(2), &
-      radius_of_gap(contact_gap, equations%pair%grid(mesh), state), state%axis_gap, i)
+      radius_of_gap(equations%problem%shape, contact_gap, equations%pair%grid(mesh), state), &
+      state%axis_gap, i)
   end subroutine node_of_point
 
   !> Derivatives of h0 and load by x at an equilibrium with the coordinate s on a mesh.

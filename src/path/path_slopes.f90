@@ -1,7 +1,9 @@
 !> Derivatives of H0 and load along the equilibrium path, exact to the solver's tolerance.
 module path_slopes
   use kinds, only: wp, pi
-  use equilibrium, only: control_t, state_t, equations_t, at_edge_radius, gap_at_end
+  use beyond_mesh, only: load_slope_beyond
+  use equilibrium, only: control_t, state_t, equations_t, at_edge_radius, load_reach, &
+    gap_at_end
   use jacobian, only: control_derivative
   use linear_algebra, only: solve
   use frozen_jacobian, only: frozen_jacobian_t, freeze
@@ -22,7 +24,7 @@ contains
     real(wp), intent(out) :: h0_slope, load_slope
     logical, intent(out) :: found
     real(wp), allocatable :: dz(:)
-    real(wp) :: c_slope
+    real(wp) :: c_slope, reach, last, of_end(2)
     integer :: n
 
     n = size(state%gap)
@@ -36,14 +38,18 @@ contains
     h0_slope = dz(n + 1)
     c_slope = merge(1.0_wp, 0.0_wp, control%kind == at_edge_radius)
     associate (grid => equations%pair%grid(control%mesh), &
-      law => equations%problem%law)
+      law => equations%problem%law, shape => equations%problem%shape)
       load_slope = 2*pi*(2*state%scale*c_slope*dot_product(grid%weight, state%pressure) + &
         state%scale**2*sum(grid%weight*law%slope(state%gap)*dz(:n)))
       if (.not. grid%is_bounded()) return
-      ! What is beyond a bounded mesh is 2 pi E(gap at its end), which moves with the last node's
-      ! gap and with the end itself.
-      load_slope = load_slope - 2*pi*sum(law%pressure([gap_at_end(grid, state)]))* &
-        (dz(n) + c_slope*state%scale*(grid%end**2 - grid%x(n)**2))
+      ! What is beyond a bounded mesh depends on the position of its end and on the gap there; this
+      ! moves with the last node's and with the end itself.
+      reach = load_reach(grid, state)
+      last = state%scale*grid%x(n)
+      of_end = load_slope_beyond(equations%problem, gap_at_end(shape, grid, state), reach)
+      load_slope = load_slope + 2*pi*(of_end(1)*(dz(n) + c_slope/state%scale* &
+        (reach*shape%slope(reach) - last*shape%slope(last))) + &
+        of_end(2)*reach*c_slope/state%scale)
     end associate
   end subroutine slopes_along_path
 

@@ -5,6 +5,7 @@ module classical_rows
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
   use classical, only: hertz_load_at_displacement, hertz_radius_at_displacement, &
     jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
+  use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius
   use maugis, only: maugis_load, maugis_radius_at_displacement, maugis_lambda, maugis_pull_off
   use scene_groups, only: range_t
   use records, only: theory_row_t
@@ -20,6 +21,7 @@ contains
   !> surface energy. The theories put touching bodies at no separation, so the displacement is -h0;
   !> the state is the one that is stable there, and where a theory has none there is no row. `from`
   !> [m] stands in for a range without a start. None for rigid bodies, which have no displacement.
+  !> Of other shapes than the parabola Hertz and JKR in the form for any convex body.
   function rows_of_classical(problem, range, from) result(rows)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -34,25 +36,44 @@ contains
     if (allocated(range%h0_start)) start = range%h0_start
     gamma = surface_energy(problem)
     strength = largest_tension(problem)
-    associate (r => problem%radius, y => problem%stiffness)
-      do i = 1, range%count
-        h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
-        delta = problem%law%origin - h0
+    do i = 1, range%count
+      h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
+      delta = problem%law%origin - h0
+      if (problem%shape%parabolic) then
+        call add_parabola()
+      else
+        call add_convex()
+      end if
+    end do
+
+  contains
+
+    subroutine add_parabola()
+      associate (r => problem%radius, y => problem%stiffness)
         call add('hertz', hertz_load_at_displacement(delta, r, y), &
           hertz_radius_at_displacement(delta, r))
-        if (.not. gamma > 0) cycle
+        if (.not. gamma > 0) return
         call add('jkr', jkr_load_at_displacement(delta, r, y, gamma), &
           jkr_radius_at_displacement(delta, r, y, gamma))
         call add('dmt', dmt_load_at_displacement(delta, r, y, gamma), &
           hertz_radius_at_displacement(delta, r))
-        if (.not. strength > 0) cycle
+        if (.not. strength > 0) return
         a = maugis_radius_at_displacement(delta, r, y, gamma, strength)
         if (.not. ieee_is_nan(a)) &
           call add('maugis_dugdale', maugis_load(a, r, y, gamma, strength), a)
-      end do
-    end associate
+      end associate
+    end subroutine add_parabola
 
-  contains
+    subroutine add_convex()
+      if (.not. delta < 0) then
+        a = problem%shape%contact_radius(delta/problem%length)
+        call add('hertz', hertz_like_load(problem, a)*problem%load, a*problem%lateral)
+      end if
+      if (.not. gamma > 0) return
+      a = jkr_like_radius(problem%shape, problem%coupling*problem%law%work, delta/problem%length)
+      if (.not. ieee_is_nan(a)) &
+        call add('jkr', jkr_like_load(problem, a)*problem%load, a*problem%lateral)
+    end subroutine add_convex
 
     subroutine add(theory, load, contact_radius)
       character(len=*), intent(in) :: theory
@@ -76,7 +97,8 @@ contains
 
     gamma = surface_energy(problem)
     strength = largest_tension(problem)
-    if (problem%rigid .or. .not. (gamma > 0 .and. strength > 0)) return
+    if (problem%rigid .or. .not. problem%shape%parabolic) return
+    if (.not. (gamma > 0 .and. strength > 0)) return
     call summary%set('maugis_lambda', &
       maugis_lambda(problem%radius, problem%stiffness, gamma, strength))
     call summary%set('maugis_pull_off', &

@@ -65,8 +65,8 @@ contains
       gap = [state%axis_gap, state%gap]
       pressure = [law%pressure([state%axis_gap]), state%pressure]
       energy = law%energy(gap)
-      ! h = h0 + r^2/(2R) - 2u.
-      deformation = -0.5_wp*(gap - state%h0 - 0.5_wp*r**2)
+      ! h = h0 + f - 2u.
+      deformation = -0.5_wp*(gap - state%h0 - problem%shape%height(r))
     end associate
     do j = 1, size(r)
       ! A mesh may have a node on the axis.

@@ -4,6 +4,7 @@ module summarise
   use kinds, only: wp, long
   use dimensionless_problem, only: problem_t, tabor_parameter, surface_energy
   use classical, only: jkr_pull_off, dmt_pull_off
+  use convex_contact, only: jkr_like_pull_off
   use scene_groups, only: scene_t
   use experiment_result, only: experiment_result_t
   use reported, only: reported_t
@@ -85,12 +86,11 @@ contains
     if (problem%law%adhesion > 0) then
       if (problem%law%work > 0) then
         call summary%set('surface_energy', surface_energy(problem))
-        call summary%set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
-        call summary%set('dmt_pull_off', -dmt_pull_off(problem%radius, surface_energy(problem)))
+        call take_pull_offs(problem, summary)
       end if
       if (.not. problem%rigid) then
         call summary%set('sigma', problem%coupling*problem%law%adhesion)
-        call summary%set('tabor', tabor_parameter(problem))
+        if (problem%shape%exponent > 0) call summary%set('tabor', tabor_parameter(problem))
       end if
     else if (problem%law%coupling_name /= '' .and. .not. problem%rigid) then
       call summary%set(trim(problem%law%coupling_name), problem%coupling)
@@ -116,6 +116,20 @@ contains
         readings%loaded, summary)
     end associate
   end subroutine take_readings
+
+  !> Pull-offs of the theories. Of other shapes than the parabola that of JKR theory depends on the
+  !> stiffness, and that of rigid bodies on more of the law than its surface energy.
+  subroutine take_pull_offs(problem, summary)
+    type(problem_t), intent(in) :: problem
+    type(summary_t), intent(inout) :: summary
+
+    if (problem%shape%parabolic) then
+      call summary%set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
+      call summary%set('dmt_pull_off', -dmt_pull_off(problem%radius, surface_energy(problem)))
+    else if (.not. problem%rigid) then
+      call summary%set('jkr_pull_off', -jkr_like_pull_off(problem)*problem%load)
+    end if
+  end subroutine take_pull_offs
 
   !> The energy lost in the cycle.
   subroutine take_energy(problem, outcome, summary)

@@ -67,6 +67,12 @@ contains
         ieee_value(1.0_wp, ieee_quiet_nan)]
       if (.not. at_jump) si(4) = -slopes(2)/slopes(1)*problem%load/problem%length
       unit = maugis_units(problem%radius, problem%stiffness, surface_energy(problem))
+      ! Other shapes have no radius.
+      if (.not. problem%shape%parabolic) then
+        unit%displacement = ieee_value(1.0_wp, ieee_quiet_nan)
+        unit%load = unit%displacement
+        unit%radius = unit%displacement
+      end if
       line%text = merge('approach', 'retreat ', inward)
       line%text = trim(line%text) // ',' // cells([si, si(1)/unit%displacement, &
         si(2)/unit%load, si(3)/unit%radius, si(4)*unit%displacement/unit%load])

@@ -21,8 +21,9 @@ contains
     specs = [ &
       group('bodies', 'The two bodies. Exactly one of: stiffness; young and poisson; ' // &
             'rigid = .true.', required=.true.), &
-      real_key('bodies', 'radius', 'm', 'Radius R of the gap h0 + r^2/(2R); a sphere on a ' // &
-               'plane has its own radius.', above=0.0_wp, required=.true.), &
+      real_key('bodies', 'radius', 'm', 'Radius R of the gap h0 + r^2/(2R), or of &shape; ' // &
+               'a sphere on a plane has its own radius.', above=0.0_wp, &
+               otherwise='none'), &
       real_key('bodies', 'stiffness', 'Pa', 'E/(1-nu^2) of two identical bodies: the compliance ' &
                // '(1-nu^2)/E is the mean over the two.', above=0.0_wp), &
       list_key('bodies', 'young', 'Pa', 'Young''s moduli of the two bodies; one value: the same.', &
@@ -42,7 +43,6 @@ contains
     logical :: pair
 
     associate (deck => scene%deck, bodies => scene%bodies)
-      call deck%get('bodies', 'radius', bodies%radius)
       call deck%get('bodies', 'rigid', bodies%rigid)
       call deck%get('bodies', 'young', young)
       call deck%get('bodies', 'poisson', poisson)

@@ -23,7 +23,7 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: length, pressure, radius, farthest
 
-    radius = log10(scene%bodies%radius)
+    radius = log10(scene%shape%radius)
     length = log10(scene%law%length)
     pressure = log10(scene%law%pressure_unit)
     call check(pressure + radius + length, 'loads', ' N')

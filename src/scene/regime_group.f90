@@ -25,6 +25,8 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
 
     if (.not. scene%deck%has_group('regime')) return
+    if (.not. scene%shape%parabolic) call scene%deck%mistake('regime', '', &
+      'the theories are those of the parabola; leave out this group or &shape', error)
     call check_path(scene, 'regime', error)
     allocate (scene%regime)
   end subroutine take_regime

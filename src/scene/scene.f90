@@ -5,6 +5,7 @@ module scene
   use text, only: brief, listing
   use deck, only: deck_t, read_deck
   use laws, only: read_laws
+  use shapes, only: read_shapes
   use scene_keys, only: keys_of_scene
   use scene_groups, only: scene_t
   use bodies_group, only: take_bodies
@@ -20,6 +21,7 @@ module scene
   use sweep_group, only: take_sweep
   use numerics_group, only: take_numerics
   use magnitudes, only: check_derived
+  use shape_checks, only: check_end
   implicit none
   private
   public :: scene_t, read_scene, make_scene, swept_scene
@@ -59,6 +61,8 @@ contains
     if (allocated(error)) return
     call take_bodies(scene, error)
     call read_laws(scene%deck, scene%law, error)
+    if (allocated(scene%law)) &
+      call read_shapes(scene%deck, scene%law%length, scene%shape, error)
     call take_loading(scene, error)
     ! The groups below take their defaults from &loading and are checked against it.
     if (allocated(error)) return
@@ -78,6 +82,7 @@ contains
       call deck%mistake('', '', 'nothing to compute; a deck needs at least one of ' // &
                         listing(transfer(computing, all_names), '&', ''), error)
     if (.not. allocated(error)) call check_derived(scene, error)
+    if (.not. allocated(error)) call check_end(scene, error)
   end subroutine make_scene
 
   !> The scene, which has a sweep, with the sweep's key set to `value` and without the sweep.

@@ -5,14 +5,13 @@ module scene_groups
   use deck, only: deck_t
   use experiment_request, only: request_t
   use force_law, only: force_law_t
+  use shape, only: shape_t
   implicit none
   private
   public :: scene_t, bodies_t, range_t, stability_t, regime_t, sweep_t
 
   !> &bodies
   type :: bodies_t
-    !> R of the gap h0 + r^2/(2R) [m].
-    real(wp) :: radius = 0
     !> E/(1-nu^2) of two identical bodies equivalent to these [Pa]; without meaning if `rigid`.
     real(wp) :: stiffness = 0
     !> Compliance of each body over their mean.
@@ -50,6 +49,8 @@ module scene_groups
     type(bodies_t) :: bodies
     !> The sum of the deck's forces.
     class(force_law_t), allocatable :: law
+    !> In the units of that law.
+    class(shape_t), allocatable :: shape
     type(range_t), allocatable :: approximations, classical
     type(stability_t), allocatable :: stability
     type(regime_t), allocatable :: regime

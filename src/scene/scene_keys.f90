@@ -4,6 +4,7 @@
 module scene_keys
   use deck_keys, only: key_spec, group, text_key
   use laws, only: keys_of_laws
+  use shapes, only: keys_of_shapes
   use bodies_group, only: bodies_keys
   use cycle_groups, only: cycle_keys
   use path_group, only: path_keys
@@ -31,6 +32,7 @@ contains
       text_key('scene', 'title', 200, 'Title, repeated in every file of results.', &
                otherwise='none'), &
       bodies_keys(), &
+      keys_of_shapes(), &
       keys_of_laws(), &
       cycle_keys(), &
       path_keys(), &

@@ -13,8 +13,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(problem_t) :: problem
 
-    problem = new_problem(scene%law, scene%bodies%radius, scene%bodies%stiffness, &
-      scene%bodies%rigid)
+    problem = new_problem(scene%law, scene%shape, scene%bodies%stiffness, scene%bodies%rigid)
     problem%share = scene%bodies%share
   end function problem_of
 

@@ -18,7 +18,8 @@ contains
     type(key_spec), allocatable :: specs(:)
 
     specs = [range_keys('approximations', 'Closed-form approximations for slow deformation.'), &
-      range_keys('classical', 'Hertz, JKR, DMT and Maugis-Dugdale beside the curve.')]
+      range_keys('classical', 'Hertz, JKR, DMT and Maugis-Dugdale beside the curve; ' // &
+      'Hertz and JKR for the shape that &shape gives.')]
   end function theory_keys
 
   !> The rows of one of them.
@@ -40,6 +41,9 @@ contains
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
 
+    if (scene%deck%has_group('approximations') .and. .not. scene%shape%parabolic) &
+      call scene%deck%mistake('approximations', '', 'the approximations are those of the ' // &
+                              'parabola; leave out this group or &shape', error)
     call take_range(scene, 'approximations', scene%approximations, error)
     call take_range(scene, 'classical', scene%classical, error)
   end subroutine take_theories

@@ -26,8 +26,9 @@ def test_every_module_is_in_a_room_that_meson_knows():
     assert {room_of(name) for name in MODULES} == set(ROOMS)
     for path in MODULES.values():
         if path.stem != "snapin":
-            # Laws are listed by the names of their modules.
-            listed = f"'{path.stem}'" if path.parent.name == "laws" else f"'{path.name}'"
+            # Laws and shapes are listed by the names of their modules.
+            by_name = path.parent.name in ("laws", "shapes")
+            listed = f"'{path.stem}'" if by_name else f"'{path.name}'"
             assert listed in (path.parent / "meson.build").read_text(), path
 
 

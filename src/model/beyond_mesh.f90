@@ -1,0 +1,131 @@
+!> What acts beyond the end of a mesh, where the deformation hardly varies: from the position r0 on
+!> the gap is H(r) = H(r0) + f(r) - f(r0). For the parabola r dr = dH, and the integrals are the
+!> law's own, Derjaguin's (23); for other shapes they are integrated over r0/r. From r0 = 0 on they
+!> are those of whole bodies that do not deform.
+module beyond_mesh
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use quadrature, only: gauss_legendre
+  implicit none
+  private
+  public :: load_beyond, load_slope_beyond, energy_beyond, energy_density
+
+  !> Points; and those for the energy of the parabola, where it is a power of the gap or nothing.
+  integer, parameter :: points = 24, few = 8
+  !> From the axis: nodes of a panel; panels, each twice as long as the one before, so that beyond
+  !> them nothing is left of any law; those that lie where the gap is at most doubled.
+  integer, parameter :: nodes = 12, panels = 63, near_panels = 3
+  !> Gaps beyond which no force acts, and whose powers are numbers.
+  real(wp), parameter :: farthest = 1.0e30_wp
+
+  !> Where the points are: gap, position, and the weight of g in Int g(H) r dr.
+  type :: rule_t
+    real(wp), allocatable :: gap(:), at(:), weight(:)
+  end type rule_t
+
+contains
+
+  !> Int P(H) r dr from `from`, where the gap is `gap`: the load over 2 pi.
+  pure real(wp) function load_beyond(problem, gap, from) result(load)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: gap, from
+    type(rule_t) :: rule
+
+    if (problem%shape%parabolic) then
+      load = sum(problem%law%energy([gap]))
+    else
+      rule = rule_beyond(problem, gap, from)
+      load = sum(rule%weight*problem%law%pressure(rule%gap))
+    end if
+  end function load_beyond
+
+  !> Its derivatives by the gap and by the position.
+  pure function load_slope_beyond(problem, gap, from) result(slope)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: gap, from
+    real(wp) :: slope(2)
+    type(rule_t) :: rule
+
+    slope(1) = -sum(problem%law%pressure([gap]))
+    slope(2) = 0
+    if (problem%shape%parabolic) return
+    slope(2) = slope(1)*from
+    rule = rule_beyond(problem, gap, from)
+    slope(1) = sum(rule%weight*problem%law%slope(rule%gap))
+    slope(2) = slope(2) - problem%shape%slope(from)*slope(1)
+  end function load_slope_beyond
+
+  !> Int e(H) r dr, e being the `energy_density`.
+  pure real(wp) function energy_beyond(problem, gap, from) result(energy)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: gap, from
+    real(wp) :: node(few), weight(few)
+    type(rule_t) :: rule
+
+    if (problem%shape%parabolic) then
+      ! With H = gap/x the interval is finite.
+      call gauss_legendre(node, weight)
+      energy = gap*sum(weight*problem%law%energy(gap/node)/node**2)
+    else
+      rule = rule_beyond(problem, gap, from)
+      energy = sum(rule%weight*energy_density(problem, rule%gap, rule%at))
+    end if
+  end function energy_beyond
+
+  !> The energy of the surface force per area, at gaps and positions. Between shapes that open slowly
+  !> it falls so slowly, under gap^-3 between cones as r^-2, that its integral has hardly a limit, or
+  !> none. Only differences of energies count: that of undeformed bodies at H0 = 1 is taken off.
+  elemental real(wp) function energy_density(problem, gap, r) result(energy)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: gap, r
+    real(wp), parameter :: falls_well = 4
+    real(wp) :: of_gaps(1)
+
+    of_gaps = problem%law%energy([gap])
+    energy = of_gaps(1)
+    if (problem%shape%parabolic .or. &
+      problem%shape%growth*(problem%law%tail_power - 1) >= falls_well) return
+    of_gaps = problem%law%energy([min(1 + problem%shape%height(r), farthest)])
+    energy = energy - of_gaps(1)
+  end function energy_density
+
+  !> With r = from/x, or in panels from the axis.
+  pure function rule_beyond(problem, gap, from) result(rule)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: gap, from
+    type(rule_t) :: rule
+    real(wp) :: x(points), weight(points)
+
+    if (.not. from > 0) then
+      rule = rule_from_axis(problem, gap)
+      return
+    end if
+    call gauss_legendre(x, weight)
+    rule%gap = min(gap + (problem%shape%height(from/x) - problem%shape%height(from)), farthest)
+    rule%at = from/x
+    rule%weight = weight*(from/x)**2/x
+  end function rule_beyond
+
+  !> The same from the axis, where the gap is `gap`.
+  pure function rule_from_axis(problem, gap) result(rule)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: gap
+    type(rule_t) :: rule
+    real(wp), dimension(nodes) :: x, weight, r
+    real(wp) :: left, right
+    integer :: k
+
+    call gauss_legendre(x, weight)
+    allocate (rule%gap(nodes*panels), rule%at(nodes*panels), rule%weight(nodes*panels))
+    right = 0
+    do k = 1, panels
+      left = right
+      right = problem%shape%position_of(gap)*2.0_wp**(k - near_panels)
+      r = left + (right - left)*x
+      rule%gap(nodes*(k - 1) + 1:nodes*k) = min(gap + problem%shape%height(r), farthest)
+      rule%at(nodes*(k - 1) + 1:nodes*k) = r
+      rule%weight(nodes*(k - 1) + 1:nodes*k) = (right - left)*weight*r
+    end do
+  end function rule_from_axis
+
+end module beyond_mesh

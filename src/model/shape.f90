@@ -1,0 +1,192 @@
+!> What every shape of the two bodies offers: the gap f(r) that they leave where they touch without
+!> force. A shape is a type that extends this one, in a file of its own under shapes/, with its keys
+!> and the reading of them, its parameters and formulas.
+!>
+!> Formulas are in the units of `dimensionless_problem`: lateral positions in l, heights in the
+!> force law's length L. A shape chooses l; with the radius l^2/L all else follows as for the
+!> parabola r^2/(2R), whose l is sqrt(R L). Shapes are convex and smooth but for `breaks`.
+!>
+!> The theory of contact needs two integrals of the slope, after Galin and Sneddon: the indentation
+!> q(a) by a rigid body of this shape up to the contact radius a, and the load that it takes.
+module shape
+  use kinds, only: wp, pi
+  use quadrature, only: gauss_legendre
+  use root_finding, only: bracket_t
+  implicit none
+  private
+  public :: shape_t
+
+  type, abstract :: shape_t
+    !> l^2/L [m], l being the lateral unit.
+    real(wp) :: radius = 1
+    !> Whether this is the parabola, for which the load of rigid bodies is the law's energy.
+    logical :: parabolic = .false.
+    !> Power of r that the shape is on the axis (0: none), and far away.
+    real(wp) :: exponent = 2, growth = 2
+    !> Positions between 0 and infinity at which a derivative of the slope, or itself, jumps.
+    real(wp), allocatable :: breaks(:)
+    !> Position at which the body ends; beyond it the shape goes on only so that a gap exists.
+    real(wp) :: ends = huge(1.0_wp)
+  contains
+    !> f(r) and f'(r) at positions r >= 0.
+    procedure(profile_function), deferred :: height
+    procedure(profile_function), deferred :: slope
+    procedure :: position_of
+    procedure :: bend
+    procedure :: unlike_scaling
+    procedure :: indentation
+    procedure :: indentation_load
+    procedure :: contact_radius
+    procedure :: opening
+    procedure :: hertz_gap
+    procedure :: smooth_from
+  end type shape_t
+
+  abstract interface
+    elemental function profile_function(self, r) result(value)
+      import :: shape_t, wp
+      class(shape_t), intent(in) :: self
+      real(wp), intent(in) :: r
+      real(wp) :: value
+    end function profile_function
+  end interface
+
+  !> Points of the quadratures, at least so many in each piece between breaks.
+  integer, parameter :: points = 48, fewest = 4
+
+contains
+
+  !> Position at which the shape has a height >= 0.
+  elemental real(wp) function position_of(self, height) result(r)
+    class(shape_t), intent(in) :: self
+    real(wp), intent(in) :: height
+    type(bracket_t) :: bracket
+
+    bracket = bracket_t(0.0_wp, 1.0_wp)
+    do while (self%height(bracket%high) < height)
+      bracket%high = 2*bracket%high
+    end do
+    do while (bracket%is_open())
+      call bracket%narrow(self%height(bracket%middle()) < height)
+    end do
+    r = bracket%high
+  end function position_of
+
+  !> f(r + dr) - f(r) - f'(r) dr: what a linear step leaves out.
+  elemental real(wp) function bend(self, r, dr)
+    class(shape_t), intent(in) :: self
+    real(wp), intent(in) :: r, dr
+
+    bend = self%height(r + dr) - self%height(r) - self%slope(r)*dr
+  end function bend
+
+  !> x f'(c x) - f(c x)/c: how f(c x), enlarged with c, changes beyond being proportional to c.
+  elemental real(wp) function unlike_scaling(self, c, x) result(change)
+    class(shape_t), intent(in) :: self
+    real(wp), intent(in) :: c, x
+
+    change = x*self%slope(c*x) - self%height(c*x)/c
+  end function unlike_scaling
+
+  !> q(a) = a Int_0^a f'(r)/sqrt(a^2 - r^2) dr, with r = a sin(t).
+  elemental real(wp) function indentation(self, a)
+    class(shape_t), intent(in) :: self
+    real(wp), intent(in) :: a
+
+    indentation = a*slope_integral(self, a, 0)
+  end function indentation
+
+  !> Int_0^a [q(a) - q(x)] dx = Int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr: times 2 E*, the load.
+  elemental real(wp) function indentation_load(self, a) result(load)
+    class(shape_t), intent(in) :: self
+    real(wp), intent(in) :: a
+
+    load = a**2*slope_integral(self, a, 2)
+  end function indentation_load
+
+  !> Int f'(a sin t) sin(t)^power dt from 0 to pi/2, in pieces between breaks.
+  pure real(wp) function slope_integral(self, a, power) result(total)
+    class(shape_t), intent(in) :: self
+    real(wp), intent(in) :: a
+    integer, intent(in) :: power
+    real(wp), allocatable :: ends(:), x(:), w(:), sines(:)
+    integer :: i, n
+
+    allocate (ends(0))
+    if (allocated(self%breaks)) ends = asin(pack(self%breaks, self%breaks < a)/a)
+    ends = [0.0_wp, ends, 0.5_wp*pi]
+    n = max(fewest, points/(size(ends) - 1))
+    allocate (x(n), w(n))
+    call gauss_legendre(x, w)
+    total = 0
+    do i = 1, size(ends) - 1
+      sines = sin(ends(i) + (ends(i + 1) - ends(i))*x)
+      total = total + (ends(i + 1) - ends(i))*sum(w*self%slope(a*sines)*sines**power)
+    end do
+  end function slope_integral
+
+  !> Inverse of `indentation`; 0 where nothing is indented.
+  elemental real(wp) function contact_radius(self, depth) result(a)
+    class(shape_t), intent(in) :: self
+    real(wp), intent(in) :: depth
+    type(bracket_t) :: bracket
+    !> The estimates that it serves need no more.
+    real(wp), parameter :: close = 1.0e-12_wp
+
+    a = 0
+    if (.not. depth > 0) return
+    bracket = bracket_t(0.0_wp, 1.0_wp)
+    do while (self%indentation(bracket%high) < depth)
+      bracket%high = 2*bracket%high
+    end do
+    do while (bracket%is_open() .and. bracket%high - bracket%low > close*bracket%high)
+      call bracket%narrow(self%indentation(bracket%middle()) < depth)
+    end do
+    a = bracket%middle()
+  end function contact_radius
+
+  !> How fast the gap outside a contact of radius a opens: with the distance s from the edge as
+  !> sqrt(opening) s^(3/2), as for the parabola, whose opening is a.
+  elemental real(wp) function opening(self, a)
+    class(shape_t), intent(in) :: self
+    real(wp), intent(in) :: a
+    real(wp), parameter :: part = 0.01_wp
+
+    opening = ((self%indentation(a*(1 + part)) - self%indentation(a*(1 - part)))/(4*part*a))**2/a
+  end function opening
+
+  !> The gap outside a contact of radius a without adhesion, at x >= 1 radii from the axis,
+  !> 2/pi Int_a^r [q(t) - q(a)]/sqrt(r^2 - t^2) dt; both integrals by one rule, for estimates.
+  elemental real(wp) function hertz_gap(self, a, x) result(gap)
+    class(shape_t), intent(in) :: self
+    real(wp), intent(in) :: a, x
+    integer, parameter :: nodes = 12
+    real(wp) :: node(nodes), weight(nodes), angle
+    integer :: k
+
+    call gauss_legendre(node, weight)
+    angle = acos(min(1/x, 1.0_wp))
+    gap = 0
+    do k = 1, nodes
+      gap = gap + 2/pi*angle*weight(k)*(depth(a*x*cos(angle*node(k))) - depth(a))
+    end do
+
+  contains
+
+    pure real(wp) function depth(r)
+      real(wp), intent(in) :: r
+
+      depth = 0.5_wp*pi*r*sum(weight*self%slope(r*sin(0.5_wp*pi*node)))
+    end function depth
+
+  end function hertz_gap
+
+  !> Position beyond which, up to its end, the body is smooth; 0 where it is so but on the axis.
+  pure real(wp) function smooth_from(self) result(r)
+    class(shape_t), intent(in) :: self
+
+    r = 0
+    if (allocated(self%breaks)) r = maxval([0.0_wp, pack(self%breaks, self%breaks < self%ends)])
+  end function smooth_from
+
+end module shape

@@ -1,0 +1,85 @@
+!> What shapes have in common when they read their keys of &shape.
+module shape_reading
+  use kinds, only: wp
+  use failure, only: failure_t
+  use text, only: quoted
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, word_key, real_key
+  implicit none
+  private
+  public :: keys_of_shape, require, read_radius, refuse_radius, refuse_foreign
+
+contains
+
+  !> The rows that belong to no single kind; `kinds` are the names of all. The shapes' own rows come
+  !> after them.
+  pure function keys_of_shape(kinds) result(rows)
+    character(len=*), intent(in) :: kinds
+    type(key_spec), allocatable :: rows(:)
+    real(wp), parameter :: zero = 0
+
+    rows = [ &
+      group('shape', 'Shape of the undeformed gap f(r), so that bodies at h0 are h0 + f(r) ' // &
+            'apart; without it r^2/(2R).'), &
+      word_key('shape', 'kind', kinds, 'Kind of shape.', required=.true.), &
+      real_key('shape', 'radius', 'm', 'Radius R of a parabola or sphere, of the end of a ' // &
+               'spheroid, of the rim of a punch; of a power B = 1/(2 R^(n-1)).', above=zero, &
+               otherwise='that of &bodies')]
+  end function keys_of_shape
+
+  !> Fails where the deck does not give a key that its kind of shape cannot do without.
+  pure subroutine require(deck, kind, key, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: kind, key
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (.not. deck%is_set('shape', key)) &
+      call deck%mistake('shape', key, 'missing; kind '//quoted(kind)//' needs it', error)
+  end subroutine require
+
+  !> R [m], which &shape or &bodies gives.
+  subroutine read_radius(deck, radius, error)
+    type(deck_t), intent(in) :: deck
+    real(wp), intent(out) :: radius
+    type(failure_t), allocatable, intent(inout) :: error
+
+    radius = 1
+    if (deck%is_set('shape', 'radius') .and. deck%is_set('bodies', 'radius')) then
+      call deck%mistake('shape', 'radius', 'given in &bodies too; give it once', error)
+    else if (deck%is_set('shape', 'radius')) then
+      call deck%get('shape', 'radius', radius)
+    else if (deck%is_set('bodies', 'radius')) then
+      call deck%get('bodies', 'radius', radius)
+    else
+      call deck%mistake('bodies', 'radius', 'missing; give it a number > 0 m', error)
+    end if
+  end subroutine read_radius
+
+  !> Fails where there is a radius that means nothing, for the reason given.
+  pure subroutine refuse_radius(deck, reason, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: reason
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (deck%is_set('shape', 'radius')) &
+      call deck%mistake('shape', 'radius', 'has no meaning here: '//reason, error)
+    if (deck%is_set('bodies', 'radius')) &
+      call deck%mistake('bodies', 'radius', 'has no meaning here: '//reason, error)
+  end subroutine refuse_radius
+
+  !> Fails where the deck gives a key of `owner`, whose rows these are, to a shape of another kind.
+  pure subroutine refuse_foreign(deck, kind, owner, rows, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: kind, owner
+    type(key_spec), intent(in) :: rows(:)
+    type(failure_t), allocatable, intent(inout) :: error
+    integer :: i
+
+    if (kind == owner) return
+    do i = 1, size(rows)
+      if (deck%is_set('shape', trim(rows(i)%key))) call deck%mistake('shape', trim(rows(i)%key), &
+        'belongs to kind '//quoted(owner)//', not to '//quoted(kind), error)
+    end do
+  end subroutine refuse_foreign
+
+end module shape_reading

@@ -1,0 +1,39 @@
+!> A cone, the gap r tan(beta): a power with n = 1.
+module cone
+  use kinds, only: wp, pi
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, real_key
+  use shape, only: shape_t
+  use shape_reading, only: require, refuse_radius
+  use power, only: take_power
+  implicit none
+  private
+  public :: keys, read_shape
+
+contains
+
+  !> Its row of &shape.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+
+    rows = [real_key('shape', 'half_angle', 'rad', 'Angle of a cone between axis and surface; ' // &
+      'the gap is r/tan(half_angle).', above=0.0_wp, below=0.5_wp*pi)]
+  end function keys
+
+  !> kind = 'cone'. length: the law's [m].
+  subroutine read_shape(deck, length, shape, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), intent(in) :: length
+    class(shape_t), allocatable, intent(out) :: shape
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: half_angle
+
+    call require(deck, 'cone', 'half_angle', error)
+    call refuse_radius(deck, 'a cone has none', error)
+    if (allocated(error)) return
+    call deck%get('shape', 'half_angle', half_angle)
+    call take_power(deck, 'half_angle', 1.0_wp, -log(tan(half_angle)), length, shape, error)
+  end subroutine read_shape
+
+end module cone

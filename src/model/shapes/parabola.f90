@@ -1,0 +1,132 @@
+!> The gap r^2/(2R) of spheres near their points of contact, in the paper and where a deck has no
+!> &shape.
+module parabola
+  use kinds, only: wp, pi
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec
+  use shape, only: shape_t
+  use shape_reading, only: read_radius
+  implicit none
+  private
+  public :: keys, read_shape, new_parabola
+
+  type, extends(shape_t) :: parabola_t
+  contains
+    procedure :: height
+    procedure :: slope
+    procedure :: position_of
+    procedure :: bend
+    procedure :: unlike_scaling
+    procedure :: indentation
+    procedure :: indentation_load
+    procedure :: contact_radius
+    procedure :: opening
+    procedure :: hertz_gap
+  end type parabola_t
+
+contains
+
+  !> It has no row of &shape of its own.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+
+    allocate (rows(0))
+  end function keys
+
+  !> kind = 'parabola', or no &shape. length: the law's [m], which does not matter.
+  subroutine read_shape(deck, length, shape, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), intent(in) :: length
+    class(shape_t), allocatable, intent(out) :: shape
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: radius
+
+    call read_radius(deck, radius, error)
+    if (.not. allocated(error)) allocate (shape, source=new_parabola(radius))
+  end subroutine read_shape
+
+  !> radius: R [m].
+  pure function new_parabola(radius) result(shape)
+    real(wp), intent(in) :: radius
+    type(parabola_t) :: shape
+
+    shape%radius = radius
+    shape%parabolic = .true.
+  end function new_parabola
+
+  elemental function height(self, r) result(value)
+    class(parabola_t), intent(in) :: self
+    real(wp), intent(in) :: r
+    real(wp) :: value
+
+    value = 0.5_wp*r**2
+  end function height
+
+  elemental function slope(self, r) result(value)
+    class(parabola_t), intent(in) :: self
+    real(wp), intent(in) :: r
+    real(wp) :: value
+
+    value = r
+  end function slope
+
+  elemental real(wp) function position_of(self, height) result(r)
+    class(parabola_t), intent(in) :: self
+    real(wp), intent(in) :: height
+
+    r = sqrt(2*height)
+  end function position_of
+
+  elemental real(wp) function bend(self, r, dr)
+    class(parabola_t), intent(in) :: self
+    real(wp), intent(in) :: r, dr
+
+    bend = 0.5_wp*dr**2
+  end function bend
+
+  elemental real(wp) function unlike_scaling(self, c, x) result(change)
+    class(parabola_t), intent(in) :: self
+    real(wp), intent(in) :: c, x
+
+    change = 0.5_wp*c*x**2
+  end function unlike_scaling
+
+  !> (4).
+  elemental real(wp) function indentation(self, a)
+    class(parabola_t), intent(in) :: self
+    real(wp), intent(in) :: a
+
+    indentation = a**2
+  end function indentation
+
+  !> (5).
+  elemental real(wp) function indentation_load(self, a) result(load)
+    class(parabola_t), intent(in) :: self
+    real(wp), intent(in) :: a
+
+    load = 2*a**3/3
+  end function indentation_load
+
+  elemental real(wp) function contact_radius(self, depth) result(a)
+    class(parabola_t), intent(in) :: self
+    real(wp), intent(in) :: depth
+
+    a = sqrt(max(depth, 0.0_wp))
+  end function contact_radius
+
+  elemental real(wp) function opening(self, a)
+    class(parabola_t), intent(in) :: self
+    real(wp), intent(in) :: a
+
+    opening = a
+  end function opening
+
+  elemental real(wp) function hertz_gap(self, a, x) result(gap)
+    class(parabola_t), intent(in) :: self
+    real(wp), intent(in) :: a, x
+
+    gap = a**2/pi*(sqrt(max(x**2 - 1, 0.0_wp)) + (x**2 - 2)*acos(min(1/x, 1.0_wp)))
+  end function hertz_gap
+
+end module parabola

@@ -1,0 +1,137 @@
+!> The gap B r^n. The lateral unit is where it has half the law's length, so that it is r^n/2
+!> without units; for n = 2 it is the parabola itself.
+module power
+  use kinds, only: wp, pi
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, real_key
+  use law_reading, only: check_decades
+  use shape, only: shape_t
+  use shape_reading, only: require, read_radius, refuse_radius
+  use parabola, only: new_parabola
+  implicit none
+  private
+  public :: keys, read_shape, take_power
+
+  type, extends(shape_t) :: power_t
+    real(wp), private :: kappa = 2
+  contains
+    procedure :: height
+    procedure :: slope
+    procedure :: position_of
+    procedure :: indentation
+    procedure :: indentation_load
+    procedure :: contact_radius
+  end type power_t
+
+contains
+
+  !> Its rows of &shape.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+
+    rows = [ &
+      real_key('shape', 'exponent', '', 'n of the gap B r^n.', low=1.0_wp, high=10.0_wp), &
+      real_key('shape', 'coefficient', 'm^(1-n)', 'B of the gap B r^n.', above=0.0_wp, &
+               otherwise='1/(2 R^(n-1))')]
+  end function keys
+
+  !> kind = 'power': B from coefficient or radius. length: the law's [m].
+  subroutine read_shape(deck, length, shape, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), intent(in) :: length
+    class(shape_t), allocatable, intent(out) :: shape
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: n, coefficient, radius
+
+    call require(deck, 'power', 'exponent', error)
+    if (allocated(error)) return
+    call deck%get('shape', 'exponent', n)
+    if (deck%is_set('shape', 'coefficient')) then
+      call refuse_radius(deck, 'the coefficient stands for it', error)
+      call deck%get('shape', 'coefficient', coefficient)
+      if (abs(n - 2) > 0) then
+        call take_power(deck, 'coefficient', n, log(coefficient), length, shape, error)
+      else
+        allocate (shape, source=new_parabola(0.5_wp/coefficient))
+      end if
+    else
+      call read_radius(deck, radius, error)
+      if (allocated(error)) return
+      if (abs(n - 2) > 0) then
+        call take_power(deck, 'exponent', n, -(n - 1)*log(radius) - log(2.0_wp), length, shape, &
+          error)
+      else
+        allocate (shape, source=new_parabola(radius))
+      end if
+    end if
+  end subroutine read_shape
+
+  !> The shape, from n, the logarithm of B [m^(1-n)] and the law's length [m]; fails where its unit
+  !> is out of range, with the key that is to blame.
+  subroutine take_power(deck, key, n, log_b, length, shape, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: key
+    real(wp), intent(in) :: n, log_b, length
+    class(shape_t), allocatable, intent(out) :: shape
+    type(failure_t), allocatable, intent(inout) :: error
+    type(power_t) :: this
+    real(wp) :: log_radius
+
+    log_radius = 2*(log(length) - log(2.0_wp) - log_b)/n - log(length)
+    call check_decades(deck, 'shape', key, log_radius/log(10.0_wp), 'a radius', ' m', error)
+    if (allocated(error)) return
+    this%radius = exp(log_radius)
+    this%exponent = n
+    this%growth = n
+    this%kappa = sqrt(pi)*gamma(n/2 + 1)/gamma((n + 1)/2)
+    allocate (shape, source=this)
+  end subroutine take_power
+
+  elemental function height(self, r) result(value)
+    class(power_t), intent(in) :: self
+    real(wp), intent(in) :: r
+    real(wp) :: value
+
+    value = 0.5_wp*r**self%exponent
+  end function height
+
+  elemental function slope(self, r) result(value)
+    class(power_t), intent(in) :: self
+    real(wp), intent(in) :: r
+    real(wp) :: value
+
+    value = 0.5_wp*self%exponent*r**(self%exponent - 1)
+  end function slope
+
+  elemental real(wp) function position_of(self, height) result(r)
+    class(power_t), intent(in) :: self
+    real(wp), intent(in) :: height
+
+    r = (2*height)**(1/self%exponent)
+  end function position_of
+
+  !> kappa B a^n, kappa = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2).
+  elemental real(wp) function indentation(self, a)
+    class(power_t), intent(in) :: self
+    real(wp), intent(in) :: a
+
+    indentation = 0.5_wp*self%kappa*a**self%exponent
+  end function indentation
+
+  !> n/(n + 1) times a q(a).
+  elemental real(wp) function indentation_load(self, a) result(load)
+    class(power_t), intent(in) :: self
+    real(wp), intent(in) :: a
+
+    load = self%exponent/(self%exponent + 1)*a*self%indentation(a)
+  end function indentation_load
+
+  elemental real(wp) function contact_radius(self, depth) result(a)
+    class(power_t), intent(in) :: self
+    real(wp), intent(in) :: depth
+
+    a = (2*max(depth, 0.0_wp)/self%kappa)**(1/self%exponent)
+  end function contact_radius
+
+end module power

@@ -1,0 +1,190 @@
+!> A shape from a file of positions and heights: a cubic spline of continuous curvature, flat on the
+!> axis, that goes on beyond the last point as the parabola with value, slope and curvature there.
+module profile
+  use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, text_key
+  use number_columns, only: columns_t, read_columns
+  use cubic, only: spline
+  use law_reading, only: check_decades
+  use shape, only: shape_t
+  use shape_reading, only: require, refuse_radius
+  implicit none
+  private
+  public :: keys, read_shape
+
+  type, extends(shape_t) :: profile_t
+    !> Where the pieces begin and the last one ends; of each piece the height and its derivatives
+    !> there, over 0!, 1!, 2! and 3!, and those at the end.
+    real(wp), allocatable :: at(:), taylor(:, :)
+  contains
+    procedure :: height
+    procedure :: slope
+    procedure, private :: piece
+  end type profile_t
+
+  integer, parameter :: fewest = 5
+  !> Curvature of the wrong sign, over the largest, that digits of a table may have, and a spline
+  !> through a body that is flat at its tip.
+  real(wp), parameter :: straight = 0.02_wp
+
+contains
+
+  !> Its row of &shape.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+
+    rows = [text_key('shape', 'file', 1000, 'File of two columns, r from 0 on and height f in m, ' &
+      // '# before comments; in the folder of the deck unless a path.', otherwise='none')]
+  end function keys
+
+  !> kind = 'profile'. length: the law's [m].
+  subroutine read_shape(deck, length, shape, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), intent(in) :: length
+    class(shape_t), allocatable, intent(out) :: shape
+    type(failure_t), allocatable, intent(inout) :: error
+    type(failure_t), allocatable :: trouble
+    type(profile_t) :: this
+    type(columns_t) :: columns
+    character(len=:), allocatable :: file
+
+    call require(deck, 'profile', 'file', error)
+    call refuse_radius(deck, 'the profile has its own', error)
+    if (allocated(error)) return
+    call deck%get('shape', 'file', file)
+    if (index(file, '/') /= 1) file = deck%source%folder // file
+    call read_columns(file, columns, trouble)
+    if (.not. allocated(trouble)) call check_points(columns, trouble)
+    if (.not. allocated(trouble)) call take_points(columns, length, this, trouble)
+    if (allocated(trouble)) then
+      call deck%mistake('shape', 'file', 'the profile cannot be used: ' // trouble%message, error)
+      return
+    end if
+    call check_decades(deck, 'shape', 'file', log10(this%radius), 'a radius', ' m', error)
+    if (.not. allocated(error)) allocate (shape, source=this)
+  end subroutine read_shape
+
+  !> Fails where positions do not start at 0 and grow, or where heights do not grow with them.
+  subroutine check_points(columns, error)
+    type(columns_t), intent(inout) :: columns
+    type(failure_t), allocatable, intent(inout) :: error
+    integer :: i
+
+    associate (r => columns%first, f => columns%second, n => size(columns%first))
+      if (n < fewest) then
+        call columns%source%complain(len(columns%source%text) + 1, '', '', &
+          'fewer than 5 points', error)
+        return
+      end if
+      if (abs(r(1)) > 0) then
+        call columns%source%complain(columns%place(1), '', '', &
+          'the first position is not 0, the axis', error)
+        return
+      end if
+      do i = 2, n
+        if (r(i) > r(i - 1) .and. f(i) > f(i - 1)) cycle
+        call columns%source%complain(columns%place(i), '', '', &
+          'position and height do not both grow from the line before', error)
+        return
+      end do
+    end associate
+  end subroutine check_points
+
+  !> The shape through the points, in its own units; fails where it is not convex.
+  subroutine take_points(columns, length, this, error)
+    type(columns_t), intent(inout) :: columns
+    real(wp), intent(in) :: length
+    type(profile_t), intent(inout) :: this
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: mirrored(0:3, size(columns%first) - 1)
+    real(wp) :: unit, last
+    integer :: n, i
+
+    n = size(columns%first)
+    last = columns%first(n)
+    this%at = columns%first/last
+    ! The spline is flat at its right end: that of the mirrored profile is.
+    mirrored = spline(-this%at(n:1:-1), (columns%second(n:1:-1) - columns%second(1))/length)
+    allocate (this%taylor(0:3, n))
+    do i = 1, n - 1
+      this%taylor(:, n - i) = expanded_at_end(mirrored(:, i), this%at(n + 1 - i) - this%at(n - i))
+    end do
+    this%taylor(:, n) = [(columns%second(n) - columns%second(1))/length, &
+      -mirrored(1, 1), mirrored(2, 1), 0.0_wp]
+    associate (curvature => this%taylor(2, :))
+      do i = 1, n
+        if (curvature(i) >= -straight*maxval(curvature) .and. &
+          (i == 1 .or. this%taylor(1, i) > 0)) cycle
+        call columns%source%complain(columns%place(i), '', '', 'the profile is not convex ' // &
+          'here; contacts of more than one edge are not computed', error)
+        return
+      end do
+    end associate
+    this%taylor(2, n) = max(this%taylor(2, n), 0.0_wp)
+    unit = this%position_of(0.5_wp)
+    this%at = this%at/unit
+    do i = 1, 3
+      this%taylor(i, :) = this%taylor(i, :)*unit**i
+    end do
+    this%radius = (unit*last)*(unit*last/length)
+    this%exponent = 0
+    this%breaks = this%at(2:)
+  end subroutine take_points
+
+  !> A cubic in the distance from its left end as one in that from its right end, `width` away,
+  !> taken to the left.
+  pure function expanded_at_end(cubic, width) result(taylor)
+    real(wp), intent(in) :: cubic(0:3), width
+    real(wp) :: taylor(0:3)
+
+    taylor(0) = cubic(0) + width*(cubic(1) + width*(cubic(2) + width*cubic(3)))
+    taylor(1) = -(cubic(1) + width*(2*cubic(2) + 3*width*cubic(3)))
+    taylor(2) = cubic(2) + 3*width*cubic(3)
+    taylor(3) = -cubic(3)
+  end function expanded_at_end
+
+  !> The piece that a position lies in, by bisection.
+  elemental integer function piece(self, r)
+    class(profile_t), intent(in) :: self
+    real(wp), intent(in) :: r
+    integer :: beyond, middle
+
+    piece = 1
+    beyond = size(self%at) + 1
+    do while (beyond - piece > 1)
+      middle = (piece + beyond)/2
+      if (self%at(middle) > r) then
+        beyond = middle
+      else
+        piece = middle
+      end if
+    end do
+  end function piece
+
+  elemental function height(self, r) result(value)
+    class(profile_t), intent(in) :: self
+    real(wp), intent(in) :: r
+    real(wp) :: value
+    integer :: i
+
+    i = self%piece(r)
+    associate (c => self%taylor(:, i), t => r - self%at(i))
+      value = c(1) + t*(c(2) + t*(c(3) + t*c(4)))
+    end associate
+  end function height
+
+  elemental function slope(self, r) result(value)
+    class(profile_t), intent(in) :: self
+    real(wp), intent(in) :: r
+    real(wp) :: value
+    integer :: i
+
+    i = self%piece(r)
+    associate (c => self%taylor(:, i), t => r - self%at(i))
+      value = c(2) + t*(2*c(3) + 3*t*c(4))
+    end associate
+  end function slope
+
+end module profile

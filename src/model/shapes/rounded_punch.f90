@@ -1,0 +1,83 @@
+!> A flat punch with a rounded rim: f = 0 up to the radius b and (r - b)^2/(2R) beyond.
+module rounded_punch
+  use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, real_key
+  use shape, only: shape_t
+  use shape_reading, only: require, read_radius
+  implicit none
+  private
+  public :: keys, read_shape
+
+  type, extends(shape_t) :: rounded_punch_t
+    !> b in lateral units, which are those of the parabola with the rim's radius.
+    real(wp), private :: flat = 0
+  contains
+    procedure :: height
+    procedure :: slope
+    procedure :: bend
+    procedure :: position_of
+  end type rounded_punch_t
+
+contains
+
+  !> Its row of &shape.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+
+    rows = [real_key('shape', 'flat_radius', 'm', 'Radius b of the flat face of a punch, ' // &
+      'whose rim has the radius R.', above=0.0_wp)]
+  end function keys
+
+  !> kind = 'rounded_punch'. length: the law's [m].
+  subroutine read_shape(deck, length, shape, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), intent(in) :: length
+    class(shape_t), allocatable, intent(out) :: shape
+    type(failure_t), allocatable, intent(inout) :: error
+    type(rounded_punch_t) :: this
+    real(wp) :: flat_radius
+
+    call require(deck, 'rounded_punch', 'flat_radius', error)
+    call read_radius(deck, this%radius, error)
+    if (allocated(error)) return
+    call deck%get('shape', 'flat_radius', flat_radius)
+    this%flat = flat_radius/sqrt(this%radius*length)
+    this%exponent = 0
+    this%breaks = [this%flat]
+    allocate (shape, source=this)
+  end subroutine read_shape
+
+  elemental function height(self, r) result(value)
+    class(rounded_punch_t), intent(in) :: self
+    real(wp), intent(in) :: r
+    real(wp) :: value
+
+    value = 0.5_wp*self%slope(r)**2
+  end function height
+
+  elemental function slope(self, r) result(value)
+    class(rounded_punch_t), intent(in) :: self
+    real(wp), intent(in) :: r
+    real(wp) :: value
+
+    value = max(r - self%flat, 0.0_wp)
+  end function slope
+
+  elemental real(wp) function bend(self, r, dr)
+    class(rounded_punch_t), intent(in) :: self
+    real(wp), intent(in) :: r, dr
+
+    bend = 0.5_wp*(self%slope(r + dr) - self%slope(r))**2 + &
+      self%slope(r)*(self%slope(r + dr) - self%slope(r) - dr)
+  end function bend
+
+  elemental real(wp) function position_of(self, height) result(r)
+    class(rounded_punch_t), intent(in) :: self
+    real(wp), intent(in) :: height
+
+    r = self%flat + sqrt(2*height)
+  end function position_of
+
+end module rounded_punch

@@ -1,0 +1,36 @@
+!> An exact sphere on a plane: the spheroid whose axes are equal.
+module sphere
+  use kinds, only: wp
+  use failure, only: failure_t
+  use deck, only: deck_t
+  use deck_keys, only: key_spec
+  use shape, only: shape_t
+  use shape_reading, only: read_radius
+  use spheroid, only: take_spheroid
+  implicit none
+  private
+  public :: keys, read_shape
+
+contains
+
+  !> It has no row of &shape of its own.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+
+    allocate (rows(0))
+  end function keys
+
+  !> kind = 'sphere'. length: the law's [m].
+  subroutine read_shape(deck, length, shape, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), intent(in) :: length
+    class(shape_t), allocatable, intent(out) :: shape
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: radius
+
+    call read_radius(deck, radius, error)
+    if (.not. allocated(error)) &
+      call take_spheroid(deck, 'radius', radius, radius, length, shape, error)
+  end subroutine read_shape
+
+end module sphere

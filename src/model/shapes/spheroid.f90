@@ -1,0 +1,94 @@
+!> The end of a spheroid, b - b sqrt(1 - r^2/a^2) with the radius R = a^2/b on the axis. Without
+!> units it is (1 - sqrt(1 - kappa r^2))/kappa, kappa = L/b, and near the axis the parabola. Beyond
+!> 0.98 a it goes on as a straight line, where no force may act any more.
+module spheroid
+  use kinds, only: wp
+  use failure, only: failure_t
+  use text, only: brief
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, real_key
+  use shape, only: shape_t
+  use shape_reading, only: require, read_radius
+  implicit none
+  private
+  public :: keys, read_shape, take_spheroid
+
+  type, extends(shape_t) :: spheroid_t
+    real(wp), private :: kappa = 0
+  contains
+    procedure :: height
+    procedure :: slope
+  end type spheroid_t
+
+  !> Part of the equator's radius up to which the body reaches.
+  real(wp), parameter :: reaching = 0.98_wp
+  !> Half the axis, in lengths of the law, below which no law is short enough.
+  real(wp), parameter :: smallest = 5
+
+contains
+
+  !> Its row of &shape.
+  pure function keys() result(rows)
+    type(key_spec), allocatable :: rows(:)
+
+    rows = [real_key('shape', 'semi_axis', 'm', 'Half the axis b of a spheroid along the line ' // &
+      'through the bodies; across it is sqrt(R b).', above=0.0_wp)]
+  end function keys
+
+  !> kind = 'spheroid'. length: the law's [m].
+  subroutine read_shape(deck, length, shape, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), intent(in) :: length
+    class(shape_t), allocatable, intent(out) :: shape
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: radius, semi_axis
+
+    call require(deck, 'spheroid', 'semi_axis', error)
+    call read_radius(deck, radius, error)
+    if (allocated(error)) return
+    call deck%get('shape', 'semi_axis', semi_axis)
+    call take_spheroid(deck, 'semi_axis', radius, semi_axis, length, shape, error)
+  end subroutine read_shape
+
+  !> The shape, from R, b and the law's length, all [m]; fails where the body is hardly larger than
+  !> that length, with the key that is to blame.
+  subroutine take_spheroid(deck, key, radius, semi_axis, length, shape, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: key
+    real(wp), intent(in) :: radius, semi_axis, length
+    class(shape_t), allocatable, intent(out) :: shape
+    type(failure_t), allocatable, intent(inout) :: error
+    type(spheroid_t) :: this
+
+    if (.not. semi_axis > smallest*length) then
+      call deck%mistake('shape', key, 'the body is not larger than '//brief(smallest)// &
+        ' lengths of the force law, '//brief(length)//' m; it would end where forces act', error)
+      return
+    end if
+    this%radius = radius
+    this%kappa = length/semi_axis
+    this%growth = 1
+    this%ends = reaching/sqrt(this%kappa)
+    this%breaks = [this%ends]
+    allocate (shape, source=this)
+  end subroutine take_spheroid
+
+  elemental function height(self, r) result(value)
+    class(spheroid_t), intent(in) :: self
+    real(wp), intent(in) :: r
+    real(wp) :: value, inside
+
+    inside = min(r, self%ends)
+    value = inside**2/(1 + sqrt(1 - self%kappa*inside**2)) + (r - inside)*self%slope(r)
+  end function height
+
+  elemental function slope(self, r) result(value)
+    class(spheroid_t), intent(in) :: self
+    real(wp), intent(in) :: r
+    real(wp) :: value, inside
+
+    inside = min(r, self%ends)
+    value = inside/sqrt(1 - self%kappa*inside**2)
+  end function slope
+
+end module spheroid

@@ -1,0 +1,48 @@
+!> Whether a body is large enough for what a scene does to it.
+module shape_checks
+  use kinds, only: wp, pi
+  use failure, only: failure_t
+  use dimensionless_problem, only: problem_t
+  use contact_scales, only: largest_radius, contact_level
+  use experiment, only: range_of
+  use scene_groups, only: scene_t
+  use scene_problem, only: problem_of
+  implicit none
+  private
+  public :: check_end
+
+contains
+
+  !> Refuses a body that ends where it touches the other or where the force still acts, which
+  !> Derjaguin's approximation knows nothing of: at its end the pressure over an area of its size is
+  !> to be below the accuracy, as a part of the load of bodies without an end.
+  subroutine check_end(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    type(problem_t) :: problem
+    real(wp) :: low, high, gap, part, widest
+    character(len=7) :: share
+
+    if (.not. scene%finds_states() .or. scene%shape%ends >= huge(1.0_wp)) return
+    problem = problem_of(scene)
+    call range_of(scene, problem, low, high)
+    associate (law => problem%law, shape => problem%shape)
+      widest = 0
+      if (.not. problem%rigid) widest = largest_radius(problem, low, contact_level(problem))
+      gap = shape%height(shape%ends) + min(low, 0.0_wp)
+      if (.not. widest < shape%ends .or. .not. gap > max(law%rest_gap, law%edge_gap)) then
+        write (share, '(es7.1)') shape%ends*problem%lateral
+        call scene%deck%mistake('shape', 'kind', 'the contact would reach the end of the ' // &
+          'body, ' // share // ' m from the axis', error)
+        return
+      end if
+      part = abs(sum(law%pressure([gap])))*shape%ends**2/ &
+        (2*pi*max(law%adhesion, abs(sum(law%energy([max(low, 1.0_wp)])))))
+    end associate
+    write (share, '(es7.1)') min(part, 1.0_wp)
+    if (.not. part <= scene%numerics%accuracy) call scene%deck%mistake('shape', 'kind', &
+      'the body ends where the force still acts: at its end it makes ' // share // &
+      ' of the load, above the accuracy; give &numerics a larger accuracy', error)
+  end subroutine check_end
+
+end module shape_checks

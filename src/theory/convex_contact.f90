@@ -1,0 +1,137 @@
+!> Contact of bodies of any convex shape: Hertz's theory without adhesion, and that of Johnson,
+!> Kendall and Roberts with it, both from the two integrals of a `shape`. In the units of
+!> `dimensionless_problem`; with sigma = coupling*adhesion, gamma the work of adhesion,
+!>
+!>     delta = q(a) - sqrt(4 pi sigma a) ,
+!>     F = (1/coupling) Int_0^a [q(a) - q(x)] dx - sqrt(4 pi adhesion a^3/coupling) .
+!>
+!> For the parabola these are (10) and (11). Arguments are those of elastic bodies that attract,
+!> unless said otherwise.
+module convex_contact
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: wp, pi
+  use root_finding, only: bracket_t
+  use shape, only: shape_t
+  use dimensionless_problem, only: problem_t
+  implicit none
+  private
+  public :: hertz_like_load, jkr_like_load, jkr_like_displacement, jkr_like_radius
+  public :: jkr_like_pull_off, jkr_like_detachment
+
+  !> A contact on which the adhesion is as large as what it works against is this many times as wide
+  !> as the narrowest that may be an extremum; and the sections that find it.
+  real(wp), parameter :: widest_range = 1.0e4_wp
+  integer, parameter :: sections = 80
+
+contains
+
+  !> Load at a contact radius without adhesion.
+  pure real(wp) function hertz_like_load(problem, a) result(load)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: a
+
+    load = problem%shape%indentation_load(a)/problem%coupling
+  end function hertz_like_load
+
+  !> Load at a contact radius; the adhesion is the law's `work`.
+  pure real(wp) function jkr_like_load(problem, a) result(load)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: a
+
+    load = hertz_like_load(problem, a) - sqrt(4*pi*problem%law%work/problem%coupling*a)*a
+  end function jkr_like_load
+
+  !> Displacement at a contact radius, for this sigma.
+  pure real(wp) function jkr_like_displacement(shape, sigma, a) result(displacement)
+    class(shape_t), intent(in) :: shape
+    real(wp), intent(in) :: sigma, a
+
+    displacement = shape%indentation(a) - sqrt(4*pi*sigma*a)
+  end function jkr_like_displacement
+
+  !> Contact radius at a displacement, of the state that is stable there; NaN where there is none.
+  pure real(wp) function jkr_like_radius(shape, sigma, displacement) result(a)
+    class(shape_t), intent(in) :: shape
+    real(wp), intent(in) :: sigma, displacement
+    type(bracket_t) :: bracket
+
+    a = detachment_radius(shape, sigma)
+    if (jkr_like_displacement(shape, sigma, a) > displacement) then
+      a = ieee_value(a, ieee_quiet_nan)
+      return
+    end if
+    bracket = bracket_t(a, 2*a)
+    do while (jkr_like_displacement(shape, sigma, bracket%high) < displacement)
+      bracket%high = 2*bracket%high
+    end do
+    do while (bracket%is_open())
+      call bracket%narrow(jkr_like_displacement(shape, sigma, bracket%middle()) < displacement)
+    end do
+    a = bracket%middle()
+  end function jkr_like_radius
+
+  !> H0 at which bodies come apart at fixed displacement: the largest -delta. 0 without adhesion.
+  pure real(wp) function jkr_like_detachment(shape, sigma) result(h0)
+    class(shape_t), intent(in) :: shape
+    real(wp), intent(in) :: sigma
+
+    if (shape%parabolic) then
+      h0 = 3*(pi*sigma/4)**(2.0_wp/3)
+    else if (.not. sigma > 0) then
+      h0 = 0
+    else
+      h0 = -jkr_like_displacement(shape, sigma, detachment_radius(shape, sigma))
+    end if
+  end function jkr_like_detachment
+
+  !> Contact radius there, by golden section in its logarithm.
+  pure real(wp) function detachment_radius(shape, sigma) result(a)
+    class(shape_t), intent(in) :: shape
+    real(wp), intent(in) :: sigma
+    type(bracket_t) :: bracket
+    real(wp) :: widest, points(2)
+    integer :: i
+
+    widest = widest_at(shape, sigma)
+    bracket = bracket_t(log(widest/widest_range), log(widest))
+    do i = 1, sections
+      points = exp(bracket%golden_points())
+      call bracket%keep_larger([-jkr_like_displacement(shape, sigma, points(1)), &
+        -jkr_like_displacement(shape, sigma, points(2))])
+    end do
+    a = exp(bracket%middle())
+  end function detachment_radius
+
+  !> The least of the load, negative: the pull-off at fixed load.
+  pure real(wp) function jkr_like_pull_off(problem) result(load)
+    type(problem_t), intent(in) :: problem
+    type(bracket_t) :: bracket
+    real(wp) :: widest, points(2)
+    integer :: i
+
+    ! Where delta is positive the load is, or it is not yet and grows.
+    widest = 4*widest_at(problem%shape, problem%coupling*problem%law%work)
+    bracket = bracket_t(log(widest/widest_range), log(widest))
+    do i = 1, sections
+      points = exp(bracket%golden_points())
+      call bracket%keep_larger([-jkr_like_load(problem, points(1)), &
+        -jkr_like_load(problem, points(2))])
+    end do
+    load = jkr_like_load(problem, exp(bracket%middle()))
+  end function jkr_like_pull_off
+
+  !> A contact radius at which the displacement is positive, at most twice as large as need be.
+  pure real(wp) function widest_at(shape, sigma) result(a)
+    class(shape_t), intent(in) :: shape
+    real(wp), intent(in) :: sigma
+
+    a = 1
+    do while (jkr_like_displacement(shape, sigma, a) < 0)
+      a = 2*a
+    end do
+    do while (jkr_like_displacement(shape, sigma, 0.5_wp*a) > 0)
+      a = 0.5_wp*a
+    end do
+  end function widest_at
+
+end module convex_contact

@@ -1,0 +1,297 @@
+"""Claims about shapes of the gap: rigid bodies of any shape, derivatives, limits, and refusals."""
+
+import math
+
+import _snapin
+import numpy as np
+import pytest
+from support.scenes import deck, runner
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("shapes"))
+
+
+def scene(shape, sigma=1.0, **groups):
+    """A deck in units of z0 and of E/(1-nu^2), or of rigid bodies where sigma is 0."""
+    return deck(
+        bodies={"stiffness": 1.0} if sigma else {"rigid": True},
+        shape=shape,
+        force={"law": "lennard_jones", "hamaker": 16 * math.pi * (sigma or 1.0), "z0": 1.0},
+        **groups,
+    )
+
+
+def write_profile(folder, r, f):
+    path = folder / "profile.txt"
+    np.savetxt(path, np.column_stack([r, f]), fmt="%.17e", header="r [m], f [m]")
+    return {"kind": "profile", "file": str(path)}
+
+
+# --- Rigid bodies: a load is an integral over the law
+
+
+@pytest.mark.parametrize(
+    "shape, h0, load",
+    [
+        ({"kind": "cone", "half_angle": 0.4}, 4 ** (-1 / 6), -9.04722 * math.tan(0.4) ** 2),
+        ({"kind": "cone", "half_angle": 1.5}, 4 ** (-1 / 6), -9.04722 * math.tan(1.5) ** 2),
+        ({"kind": "power", "exponent": 3.0, "coefficient": 1.0}, 1.0674, -2.78401),
+        ({"kind": "power", "exponent": 3.0, "coefficient": 8.0}, 1.0674, -2.78401 / 4),
+        ({"kind": "power", "exponent": 2.0, "coefficient": 0.25}, 1.0, -4 * math.pi),
+    ],
+)
+def test_the_largest_tension_of_rigid_bodies_is_known(run, shape, h0, load):
+    """In units of the work of adhesion; the first is -(16 pi/7) 4^(1/6)/tan(beta)^2."""
+    summary = run(scene(shape, 0.0, equilibrium_path={"h0_end": h0})).summary
+    assert summary["end_load"] == pytest.approx(load, rel=3e-6)
+
+
+def rigid_load(height, h0, scale=4):
+    """Load of rigid bodies by quadrature over r = scale x/(1 - x)."""
+    x, w = np.polynomial.legendre.leggauss(400)
+    x, w = (x + 1) / 2, w / 2
+    r = scale * x / (1 - x)
+    h = h0 + height(r)
+    return 2 * math.pi * np.sum(w * 8 / 3 * (h**-9.0 - h**-3.0) * r * scale / (1 - x) ** 2)
+
+
+@pytest.mark.parametrize(
+    "shape, height",
+    [
+        ({"kind": "power", "exponent": 1.7, "radius": 3.0},
+         lambda r: r**1.7 / (2 * 3.0**0.7)),
+        ({"kind": "rounded_punch", "radius": 3.0, "flat_radius": 2.0},
+         lambda r: np.maximum(r - 2.0, 0) ** 2 / 6),
+        ({"kind": "spheroid", "radius": 50.0, "semi_axis": 2e4},
+         lambda r: np.where(r < 1e3, 2e4 * (1 - np.sqrt(np.maximum(1 - r**2 / 1e6, 0))), 1e20)),
+    ],
+)
+def test_the_load_of_rigid_bodies_is_the_integral_over_their_gap(run, shape, height):
+    text = scene(shape, 0.0, equilibrium_path={"h0_end": 1.1}, numerics={"accuracy": 1e-5})
+    assert run(text).summary["end_load"] == pytest.approx(rigid_load(height, 1.1), rel=2e-4)
+
+
+# --- Derivatives
+
+SHAPES = [
+    {"kind": "parabola", "radius": 1.0},
+    {"kind": "cone", "half_angle": math.atan(2.0)},
+    {"kind": "power", "exponent": 1.5, "coefficient": 0.5},
+    {"kind": "power", "exponent": 3.0, "coefficient": 0.5},
+    {"kind": "sphere", "radius": 50.0},
+    {"kind": "spheroid", "radius": 20.0, "semi_axis": 60.0},
+    {"kind": "rounded_punch", "radius": 1.0, "flat_radius": 0.3},
+    {"kind": "profile"},
+]
+
+
+def edge_state(text, c):
+    """H0 and load at a contact radius, and their derivatives by it, on panels out to 30 radii."""
+    inward = 2.0 ** -np.arange(8)
+    ends = np.r_[-inward, 0.0, inward[::-1], 2.0, 4.0, 8.0, 16.0, 30.0]
+    numbers, stat, message = _snapin.flat_numerics.edge_state(text, ends, 12, c)
+    assert stat == 0, bytes(message)
+    return numbers
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: "-".join(map(str, shape.values())))
+def test_the_derivatives_along_the_path_are_those_of_its_states(tmp_path, shape):
+    if shape["kind"] == "profile":
+        r = np.linspace(0, 6, 80)
+        shape = write_profile(tmp_path, r, r**2 / 2 + r**3 / 9)
+    text = scene(
+        shape, 0.3, equilibrium_path={"h0_end": -1.0}, numerics={"accuracy": 1e-1}
+    ).encode()
+    c, step = 0.9, 1e-3
+    states = [edge_state(text, c + k * step) for k in (-2, -1, 0, 1, 2)]
+    values = np.array([state[:2] for state in states])
+    differences = (values[0] - 8 * values[1] + 8 * values[3] - values[4]) / (12 * step)
+    assert states[2][2:] == pytest.approx(differences, rel=1e-7)
+
+
+# --- Limits
+
+
+def test_a_large_sphere_is_the_parabola(run):
+    found = [
+        # The lateral unit is 1e5: sigma is 1, and the largest contact 1e-5 of the radius.
+        run(scene(shape, 1e-5, equilibrium_path={"h0_end": -2.0})).summary
+        for shape in (
+            {"kind": "sphere", "radius": 1e10},
+            {"kind": "spheroid", "radius": 1e10, "semi_axis": 1e12},
+            {"kind": "parabola", "radius": 1e10},
+        )
+    ]
+    for key in ("max_tension", "max_tension_h0", "jump_in_h0", "jump_out_load", "end_load"):
+        for summary in found[:2]:
+            assert summary[key] == pytest.approx(found[2][key], rel=1e-7), key
+
+
+def test_a_power_of_two_is_the_parabola_to_the_last_digit(run):
+    path = {"h0_end": -2.0}
+    first = run(scene({"kind": "power", "exponent": 2.0, "coefficient": 0.5},
+                      equilibrium_path=path))
+    plain = run(scene({"kind": "parabola", "radius": 1.0}, equilibrium_path=path))
+    for name in first.curve.names[1:]:
+        assert (first.curve[name] == plain.curve[name]).all(), name
+
+
+def test_a_profile_is_the_shape_that_it_was_taken_from(run, tmp_path):
+    r = np.linspace(0, 12, 121)
+    path = {"h0_end": -2.0}
+    near = run(scene(write_profile(tmp_path, r, r**2 / 2 + 7), equilibrium_path=path)).summary
+    exact = run(scene({"kind": "parabola", "radius": 1.0}, equilibrium_path=path)).summary
+    # A parabola is its own spline.
+    for key in ("max_tension", "jump_in_h0", "jump_out_h0", "end_load", "jkr_pull_off"):
+        assert near[key] == pytest.approx(exact[key], rel=1e-8), key
+    (tmp_path / "fourth").mkdir()
+    shape = write_profile(tmp_path / "fourth", r, r**4 / 2)
+    near = run(scene(shape, equilibrium_path=path)).summary
+    exact = run(scene(
+        {"kind": "power", "exponent": 4.0, "coefficient": 0.5}, equilibrium_path=path
+    )).summary
+    for key in ("max_tension", "jump_in_h0", "jump_out_h0", "end_load"):
+        assert near[key] == pytest.approx(exact[key], rel=2e-4), key
+
+
+@pytest.mark.parametrize("shape", [
+    {"kind": "cone", "half_angle": math.atan(2.0)},
+    {"kind": "power", "exponent": 3.0, "coefficient": 0.5},
+], ids=["cone", "cube"])
+def test_what_a_cycle_loses_is_the_area_between_its_branches(run, shape):
+    run_of = run(scene(shape, 5.0, loading={"h0_start": 24.0, "h0_end": -6.0, "h0_step": 0.1},
+                       unloading={"h0_end": 24.0, "h0_step": 0.1}))
+    out, back = run_of.curve.rows("loading"), run_of.curve.rows("unloading_1")
+    area = -np.trapezoid(back["load"], back["h0"]) - np.trapezoid(out["load"], out["h0"])
+    # Steps meet the jumps with an error of a step times the jump of the load.
+    summary = run_of.summary
+    assert summary["energy_lost"] == pytest.approx(area, rel=0.03)
+
+
+# --- The mesh
+
+
+@pytest.mark.parametrize("shape", [
+    {"kind": "power", "exponent": 1.5, "coefficient": 0.5},
+    {"kind": "power", "exponent": 3.0, "coefficient": 0.5},
+    {"kind": "power", "exponent": 4.0, "coefficient": 0.5},
+    {"kind": "cone", "half_angle": math.atan(2.0)},
+], ids=["1.5", "3", "4", "cone"])
+def test_the_path_has_the_accuracy_that_was_asked_for(run, shape):
+    path = {"h0_end": -5.0}
+    rough, fine = (
+        run(scene(shape, 5.0, equilibrium_path=path, numerics={"accuracy": accuracy})).summary
+        for accuracy in (1e-4, 1e-7)
+    )
+    for key in ("max_tension", "jump_in_h0", "jump_in_load", "jump_out_h0", "jump_out_load",
+                "end_load"):
+        assert rough[key] == pytest.approx(fine[key], rel=1e-5), key
+
+
+# --- Read from the path
+
+
+@pytest.mark.parametrize("shape, height, scale", [
+    ({"kind": "cone", "half_angle": math.atan(2.0)}, lambda r: r / 2, 2e5),
+    ({"kind": "power", "exponent": 3.0, "coefficient": 0.5}, lambda r: r**3 / 2, 58.0),
+    ({"kind": "rounded_punch", "radius": 1.0, "flat_radius": 0.5},
+     lambda r: np.maximum(r - 0.5, 0) ** 2 / 2, 450.0),
+], ids=["cone", "cube", "punch"])
+def test_far_away_a_device_finds_the_load_of_rigid_bodies(run, shape, height, scale):
+    far = 1e5
+    done = run(scene(shape, 1.0, equilibrium_path={"h0_end": -1.0}, numerics={"accuracy": 1e-5},
+                     device={"z_start": far}))
+    curve = done.table("device.csv")
+    outermost = curve["h0"].argmax()
+    assert curve["h0"][outermost] == pytest.approx(far)
+    assert curve["load"][outermost] == pytest.approx(
+        rigid_load(height, far, scale), rel=1e-6
+    )
+
+
+@pytest.mark.parametrize("shape", [
+    {"kind": "cone", "half_angle": math.atan(2.0)},
+    {"kind": "power", "exponent": 1.3, "coefficient": 0.5},
+    {"kind": "power", "exponent": 3.0, "coefficient": 0.5},
+], ids=["cone", "1.3", "cube"])
+def test_what_jumps_of_a_device_lose_is_the_area_of_its_cycle(run, shape):
+    summary = run(scene(shape, 1.0, equilibrium_path={"h0_end": -1.0},
+                        device={"stiffness": [5.0, 0.5]})).summary
+    assert summary["device_energy_lost"] == pytest.approx(summary["device_cycle_energy"], rel=1e-5)
+
+
+# --- Refusals
+
+
+def refused(run, shape, **groups):
+    text = scene(shape, **{"equilibrium_path": {"h0_end": -1.0}, **groups})
+    return run(text, status=2).stderr
+
+
+@pytest.mark.parametrize(
+    "shape, key, phrase",
+    [
+        ({"kind": "power"}, "exponent", "kind 'power' needs it"),
+        ({"kind": "power", "exponent": 0.5}, "exponent", "out of range"),
+        ({"kind": "power", "exponent": 3.0}, "radius", "missing"),
+        ({"kind": "power", "exponent": 3.0, "coefficient": 1.0, "radius": 1.0}, "radius",
+         "the coefficient stands for it"),
+        ({"kind": "cone"}, "half_angle", "kind 'cone' needs it"),
+        ({"kind": "cone", "half_angle": 1.6}, "half_angle", "out of range"),
+        ({"kind": "cone", "half_angle": 1.0, "radius": 1.0}, "radius", "a cone has none"),
+        ({"kind": "cone", "half_angle": 1.0, "exponent": 2.0}, "exponent",
+         "belongs to kind 'power', not to 'cone'"),
+        ({"kind": "sphere"}, "radius", "missing"),
+        ({"kind": "sphere", "radius": 2.0}, "radius", "it would end where forces act"),
+        ({"kind": "sphere", "radius": 200.0}, "kind", "ends where the force still acts"),
+        ({"kind": "spheroid", "radius": 1.0}, "semi_axis", "kind 'spheroid' needs it"),
+        ({"kind": "rounded_punch", "radius": 1.0}, "flat_radius", "needs it"),
+        ({"kind": "profile"}, "file", "needs it"),
+        ({"kind": "profile", "file": "nowhere.txt"}, "file", "no such file"),
+        ({"kind": "pyramid"}, "kind", "one of 'parabola'"),
+    ],
+)
+def test_a_shape_that_is_none_is_refused(run, shape, key, phrase):
+    stderr = refused(run, shape)
+    assert f'key "{key}"' in stderr and phrase in stderr
+
+
+def test_a_contact_that_reaches_the_end_of_the_body_is_refused(run):
+    stderr = refused(run, {"kind": "sphere", "radius": 1e3}, equilibrium_path={"h0_end": -1.2e3})
+    assert "reach the end of the body" in stderr
+
+
+def test_a_radius_given_twice_is_refused(run):
+    text = scene({"kind": "sphere", "radius": 1e3}, equilibrium_path={"h0_end": -1.0})
+    stderr = run(text.replace("stiffness", "radius = 1.0, stiffness"), status=2).stderr
+    assert "given in &bodies too" in stderr
+
+
+def test_the_approximations_are_refused(run):
+    ends = {"h0_start": 5.0, "h0_end": 3.0}
+    stderr = refused(run, {"kind": "cone", "half_angle": 1.0}, approximations=ends)
+    assert "those of the parabola" in stderr
+
+
+def test_the_regime_of_another_shape_is_refused(run):
+    assert "those of the parabola" in refused(run, {"kind": "cone", "half_angle": 1.0}, regime={})
+
+
+R = np.linspace(0, 5, 21)
+
+
+@pytest.mark.parametrize(
+    "r, f, phrase",
+    [
+        (R, R**2 + 0.3 * np.sin(4 * R) ** 2, "is not convex here"),
+        (R, np.sqrt(R), "is not convex here"),
+        (R + 1, R**2, "the first position is not 0"),
+        (R, R * (4 - R), "do not both grow"),
+        (R[::-1], R[::-1] ** 2, "the first position is not 0"),
+        (R[:4], R[:4] ** 2, "fewer than 5 points"),
+    ],
+)
+def test_a_profile_that_is_no_convex_body_is_refused(run, tmp_path, r, f, phrase):
+    assert phrase in refused(run, write_profile(tmp_path, r, f))
