@@ -162,7 +162,7 @@ def test_every_accepted_key_is_printed(snapin, check):
 
 def test_keys_name_unit_default_and_meaning(snapin):
     table = printed_keys(snapin)
-    assert table["bodies"]["radius"] == "a number > 0 m; required"
+    assert table["loading"]["h0_step"] == "a number > 0 m; required"
     assert table["numerics"]["accuracy"] == "a number from 1e-10 to 0.1; default 1e-6"
     assert table["force"]["part"].endswith("default: full")
     lines = snapin("--keys").stdout.splitlines()
