@@ -10,7 +10,7 @@ module law_panels
   use discretisation, only: local_nodes_t, gauss_nodes
   implicit none
   private
-  public :: fitting_panels
+  public :: fitting_panels, longest
 
   !> Longest panel in z; how often one is halved; gaps on the axis, or contact radii, that are tried.
   real(wp), parameter :: longest = 0.7_wp

@@ -7,7 +7,7 @@ module mesh_rule
   use shape, only: shape_t
   use dimensionless_problem, only: problem_t, calm_gap
   use contact_scales, only: smallest_feature
-  use law_panels, only: fitting_panels
+  use law_panels, only: fitting_panels, longest
   use mapped_mesh, only: mapped_shape_t
   implicit none
   private
@@ -26,9 +26,9 @@ module mesh_rule
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
-  !> Longest panel in z under a law with lengths of its own, and the nodes of such panels: so many,
+  !> Nodes of the short panels (`law_panels`) under a law with lengths of its own: so many,
   !> and more for each digit.
-  real(wp), parameter :: longest = 0.7_wp, short_order = 4, short_orders = 0.9_wp
+  real(wp), parameter :: short_order = 4, short_orders = 0.9_wp
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
   !> Digits that a shape with kinks allows.
