@@ -178,12 +178,12 @@ contains
     if (stat /= 0) return
     this%problem%coupling = coupling
     this%problem%rigid = .not. coupling > 0
-    allocate (this%pair%grid(1))
-    call make_mesh(kind, centre, panel_end, order, coupling > 0, this%pair%grid(1))
+    allocate (this%meshes%grid(1))
+    call make_mesh(kind, centre, panel_end, order, coupling > 0, this%meshes%grid(1))
     this%options = solver_options_t(method=method, tolerance=tolerance, depth=depth, &
       patience=patience, most_iterations=most_iterations, mixing_limit=mixing_limit, &
       stop_on_change=stop_on_change /= 0, displacement_tolerance=displacement_tolerance)
-    state = state_from(this%pair%grid(1)%nodes)
+    state = state_from(this%meshes%grid(1)%nodes)
     state%gap = start
     call this%solve(control_t(kind=at_h0, value=h0, scale=scale), state, met)
     gap = state%gap
@@ -216,11 +216,11 @@ contains
     numbers = 0
     call pose(deck, this%problem, stat, message)
     if (stat /= 0) return
-    allocate (this%pair%grid(1))
-    call make_mesh('panels', 1.0_c_double, panel_end, order, .true., this%pair%grid(1))
+    allocate (this%meshes%grid(1))
+    call make_mesh('panels', 1.0_c_double, panel_end, order, .true., this%meshes%grid(1))
     this%options = solver_options_t(method='newton', tolerance=1.0e-12_c_double)
     control = control_t(kind=at_edge_radius, value=c)
-    associate (problem => this%problem, grid => this%pair%grid(1))
+    associate (problem => this%problem, grid => this%meshes%grid(1))
       state = state_from(grid%nodes)
       state%h0 = problem%law%edge_gap - problem%shape%height(c)
       state%gap = state%h0 + problem%shape%height(c*grid%x(:grid%nodes))

@@ -4,7 +4,7 @@ module forecast
   use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t
   use numerics_choice, only: choice_t, choose, companion
-  use edge_locked, only: mesh_pair_t, new_mesh_pair
+  use edge_locked, only: mesh_family_t, new_mesh_family
   use contact_scales, only: largest_radius, contact_level, smallest_feature, lost_in_rounding
   use experiment, only: range_of
   use scene_problem, only: problem_of
@@ -98,16 +98,16 @@ contains
     logical, intent(in) :: known
     real(wp), intent(inout) :: entries
     type(forecast_t), intent(inout) :: expected
-    type(mesh_pair_t) :: pair
+    type(mesh_family_t) :: meshes
     real(wp) :: n
 
-    pair = new_mesh_pair(problem, high, low, chosen%digits, shape_only=.true.)
-    expected%nodes = maxval(pair%grid%nodes)
+    meshes = new_mesh_family(problem, high, low, chosen%digits, shape_only=.true.)
+    expected%nodes = maxval(meshes%grid%nodes)
     n = expected%nodes
     ! Both kernels, one factorisation and another for a fold, and about half as much
     ! again on the finer mesh of the error estimate, whose kernels are held beside them.
-    entries = sum(real(pair%grid%nodes, wp)**2) + 2*n**2
-    entries = entries + 1.6_wp*(sum(real(pair%grid%nodes, wp)**2) + n**2)
+    entries = sum(real(meshes%grid%nodes, wp)**2) + 2*n**2
+    entries = entries + 1.6_wp*(sum(real(meshes%grid%nodes, wp)**2) + n**2)
     if (scene%has_eigenvalues()) entries = entries + eigenvalue_matrices*n**2
     if (allocated(scene%path) .or. known) &
       expected%seconds = (of_path + of_decade*log10(max(problem%coupling*problem%law%adhesion, &

@@ -97,7 +97,7 @@ contains
     type(state_t), intent(inout) :: state
     real(wp), dimension(size(state%gap)) :: z, g
 
-    associate (grid => equations%pair%grid(control%mesh))
+    associate (grid => equations%meshes%grid(control%mesh))
       z = control%value + equations%problem%shape%height(control%scale*grid%x(:size(z)))
     end associate
     call residual(equations, control, z, g, state)
@@ -170,7 +170,7 @@ contains
     if (control%kind /= at_h0_with_edge) return
     ! The shape of the bodies is not linear in the scale: what a linear step leaves out is known,
     ! and far out it is large.
-    associate (n => size(step) - 1, grid => equations%pair%grid(control%mesh))
+    associate (n => size(step) - 1, grid => equations%meshes%grid(control%mesh))
       now%z(:n) = now%z(:n) + equations%problem%shape%bend( &
         (now%z(n + 1) - step(n + 1))*grid%x(:n), step(n + 1)*grid%x(:n))
     end associate

@@ -13,7 +13,7 @@ module equilibrium
   use beyond_mesh, only: load_beyond
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use contact_scales, only: largest_floor
-  use edge_locked, only: mesh_pair_t
+  use edge_locked, only: mesh_family_t
   use linear_algebra, only: multiply
   use root_finding, only: bracket_t
   implicit none
@@ -67,10 +67,10 @@ module equilibrium
   end type cost_t
 
   !> The equations of a problem on its meshes, and what solving them has cost. A mesh fixed in space
-  !> is the first of the pair, alone.
+  !> is the first of the family, alone.
   type :: equations_t
     type(problem_t) :: problem
-    type(mesh_pair_t) :: pair
+    type(mesh_family_t) :: meshes
     type(cost_t) :: cost
   end type equations_t
 
@@ -91,7 +91,7 @@ contains
     integer :: n, columns
 
     associate (problem => equations%problem, cost => equations%cost, &
-      grid => equations%pair%grid(control%mesh))
+      grid => equations%meshes%grid(control%mesh))
       n = node_count(control, size(z))
       call unpack(control, z, state%h0, state%scale)
       state%gap = z(:n)

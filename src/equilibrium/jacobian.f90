@@ -23,7 +23,7 @@ contains
     type(factorisation_t), intent(inout) :: factors
     real(wp), intent(in), optional :: shift
 
-    associate (grid => equations%pair%grid(control%mesh))
+    associate (grid => equations%meshes%grid(control%mesh))
       call factorise_on(equations%problem, grid, control, state, factors, equations%cost, shift)
     end associate
   end subroutine factorise_jacobian
@@ -118,7 +118,7 @@ contains
       allocate (derivative(n + 1), source=0.0_wp)
       derivative(n + 1) = -1
     case (at_edge_radius)
-      derivative = scale_derivative(equations%problem, equations%pair%grid(control%mesh), state)
+      derivative = scale_derivative(equations%problem, equations%meshes%grid(control%mesh), state)
     end select
   end function control_derivative
 

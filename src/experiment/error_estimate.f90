@@ -35,7 +35,7 @@ module error_estimate
 
 contains
 
-  !> Solves the same problem as `steps` on the meshes that self%pair is to be, and goes on counting
+  !> Solves the same problem as `steps` on the meshes that self%meshes is to be, and goes on counting
   !> what they have cost.
   subroutine take_over(self, steps)
     class(finer_t), intent(inout) :: self
@@ -81,8 +81,8 @@ contains
     associate (witness => reported%witness, error => reported%error)
       ! What did not converge has no counterpart.
       if (.not. witness%state%residual < 1) return
-      state = regrid(own%problem%shape, witness%state, own%pair%grid(witness%mesh), &
-        fine%pair%grid(witness%mesh), witness%state%scale)
+      state = regrid(own%problem%shape, witness%state, own%meshes%grid(witness%mesh), &
+        fine%meshes%grid(witness%mesh), witness%state%scale)
       fine%frozen%factors%valid = .false.
       call fine%find(witness%control, state, found)
       if (.not. found) return
@@ -122,12 +122,12 @@ contains
     real(wp) :: x, gap, strongest
     integer :: j
 
-    associate (law => own%problem%law, finer => fine%pair%grid(mesh))
+    associate (law => own%problem%law, finer => fine%meshes%grid(mesh))
       strongest = max(maxval(abs(right%pressure)), tiny(1.0_wp))
       largest = max(abs(right%axis_gap - state%axis_gap), &
         maxval(abs(law%pressure([right%axis_gap]) - law%pressure([state%axis_gap])))/strongest)
       do j = 1, size(state%gap)
-        x = state%scale*own%pair%grid(mesh)%x(j)/right%scale
+        x = state%scale*own%meshes%grid(mesh)%x(j)/right%scale
         if (x > finer%end) exit
         gap = gap_at(own%problem%shape, finer, right, x)
         largest = max(largest, abs(gap - state%gap(j)), &

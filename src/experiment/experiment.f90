@@ -5,7 +5,7 @@ module experiment
   use dimensionless_problem, only: problem_t
   use experiment_request, only: request_t
   use numerics_choice, only: choice_t, choose, fixed_mesh
-  use edge_locked, only: new_mesh_pair
+  use edge_locked, only: new_mesh_family
   use contact_scales, only: beyond_contact
   use ending, only: turn_not_reached
   use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
@@ -79,11 +79,11 @@ contains
     ! The path has no use for mixing.
     if (steps%options%method == 'mixing') steps%options%method = 'anderson'
     began = seconds()
-    steps%pair = new_mesh_pair(problem, high, low, outcome%chosen%digits)
+    steps%meshes = new_mesh_family(problem, high, low, outcome%chosen%digits)
     steps%cost%kernel_seconds = seconds() - began
-    steps%cost%kernel_entries = sum(steps%pair%grid%kernel_entries())
-    outcome%nodes = sum(steps%pair%grid%nodes)
-    call use_threads_for(maxval(steps%pair%grid%nodes))
+    steps%cost%kernel_entries = sum(steps%meshes%grid%kernel_entries())
+    outcome%nodes = sum(steps%meshes%grid%nodes)
+    call use_threads_for(maxval(steps%meshes%grid%nodes))
     began = seconds()
     select type (steps)
     class is (path_stepper_t)
@@ -117,10 +117,10 @@ contains
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
     steps%cost = outcome%cost
     began = seconds()
-    allocate (steps%pair%grid(1))
-    steps%pair%grid(1) = fixed_mesh(outcome%chosen, problem, low)
+    allocate (steps%meshes%grid(1))
+    steps%meshes%grid(1) = fixed_mesh(outcome%chosen, problem, low)
     steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
-    associate (mesh => steps%pair%grid(1))
+    associate (mesh => steps%meshes%grid(1))
       steps%cost%kernel_entries = steps%cost%kernel_entries + mesh%kernel_entries()
       outcome%nodes = outcome%nodes + mesh%nodes
       call use_threads_for(mesh%nodes)

@@ -84,11 +84,11 @@ contains
     type(state_t) :: expected
 
     if (self%options%method == 'mixing' .or. &
-      .not. over_neck(self%problem, self%pair%grid(1)%spacing) <= resolved) then
+      .not. over_neck(self%problem, self%meshes%grid(1)%spacing) <= resolved) then
       expected = extrapolated(position, h0)
       return
     end if
-    expected = moved_with_edge(self%problem, self%pair%grid(1), position, h0)
+    expected = moved_with_edge(self%problem, self%meshes%grid(1), position, h0)
     ! A factorisation from before the edge moved across a good part of the neck does not serve.
     if (change(position%state, expected) > large_change) self%frozen%factors%valid = .false.
   end function expected_at
@@ -120,7 +120,7 @@ contains
     arrived = .false.
     at_fold = .false.
     call self%linearise(position%state, ahead)
-    allowed = max(few_states, int(min(most_cubes/real(self%pair%grid(1)%nodes, wp)**3, 1.0e3_wp)))
+    allowed = max(few_states, int(min(most_cubes/real(self%meshes%grid(1)%nodes, wp)**3, 1.0e3_wp)))
     do states = 1, allowed
       if (.not. step > self%jump_tolerance) return
       next = position%state%h0 + sense*step

@@ -36,7 +36,7 @@ contains
     class(fixed_jumps_t), intent(in) :: self
     real(wp), intent(in) :: h0
 
-    associate (mesh => self%pair%grid(1))
+    associate (mesh => self%meshes%grid(1))
       is_lost = self%problem%law%adhesion > 0 .and. lost_in_rounding(self%problem, &
         min(largest_radius(self%problem, h0, 0.0_wp), mesh%end))
     end associate
@@ -175,8 +175,8 @@ contains
 
     stays = .false.
     if (.not. event%converged .or. .not. self%problem%law%edge_gap > 0) return
-    from = radius_of_gap(self%problem%shape, self%problem%law%edge_gap, self%pair%grid(1), before)
-    to = radius_of_gap(self%problem%shape, self%problem%law%edge_gap, self%pair%grid(1), after)
+    from = radius_of_gap(self%problem%shape, self%problem%law%edge_gap, self%meshes%grid(1), before)
+    to = radius_of_gap(self%problem%shape, self%problem%law%edge_gap, self%meshes%grid(1), after)
     stays = min(from, to) > 0.5_wp*max(from, to)
   end function stays
 

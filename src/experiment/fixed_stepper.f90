@@ -54,10 +54,10 @@ contains
     end if
     far = h0
     if (.not. self%problem%rigid) far = max(h0, calm_gap(self%problem))
-    state = state_from(self%pair%grid(1)%nodes)
+    state = state_from(self%meshes%grid(1)%nodes)
     state%h0 = far
     state%axis_gap = far
-    state%gap = far + self%problem%shape%height(self%pair%grid(1)%x)
+    state%gap = far + self%problem%shape%height(self%meshes%grid(1)%x)
     call self%solve_at(far, state, event)
     call remember(position, state, 1, .false.)
     steps = ceiling(min((far - h0)/approach_step, real(most_approach, wp)))
@@ -155,7 +155,7 @@ contains
 
     passes_many = self%options%method /= 'mixing' .and. abs(h0 - before%h0) > short_step .and. &
       before%axis_gap < self%problem%law%edge_gap .and. &
-      over_neck(self%problem, self%pair%grid(1)%spacing) < fine_enough
+      over_neck(self%problem, self%meshes%grid(1)%spacing) < fine_enough
   end function passes_many
 
   !> A step as the paper takes it: h0 changes at constant separation, and the iteration goes on

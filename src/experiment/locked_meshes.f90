@@ -3,7 +3,7 @@ module locked_meshes
   use kinds, only: wp
   use shape, only: shape_t
   use equilibrium, only: control_t, at_h0_with_edge
-  use edge_locked, only: mesh_pair_t, contact
+  use edge_locked, only: mesh_family_t, contact
   use contact_scales, only: hertz_scale
   implicit none
   private
@@ -12,27 +12,27 @@ module locked_meshes
 contains
 
   !> The control that prescribes h0 on a mesh.
-  pure function h0_control(shape, pair, mesh, h0) result(control)
+  pure function h0_control(shape, meshes, mesh, h0) result(control)
     class(shape_t), intent(in) :: shape
-    type(mesh_pair_t), intent(in) :: pair
+    type(mesh_family_t), intent(in) :: meshes
     integer, intent(in) :: mesh
     real(wp), intent(in) :: h0
     type(control_t) :: control
 
     control%value = h0
     control%mesh = mesh
-    control%scale = scale_at(shape, pair, h0)
-    if (mesh >= contact .and. pair%traceable) control%kind = at_h0_with_edge
+    control%scale = scale_at(shape, meshes, h0)
+    if (mesh >= contact .and. meshes%traceable) control%kind = at_h0_with_edge
   end function h0_control
 
   !> The scale of the mesh at h0 where it is not an unknown.
-  pure real(wp) function scale_at(shape, pair, h0)
+  pure real(wp) function scale_at(shape, meshes, h0)
     class(shape_t), intent(in) :: shape
-    type(mesh_pair_t), intent(in) :: pair
+    type(mesh_family_t), intent(in) :: meshes
     real(wp), intent(in) :: h0
 
     scale_at = 1
-    if (.not. pair%traceable) scale_at = hertz_scale(shape, pair%level, h0)
+    if (.not. meshes%traceable) scale_at = hertz_scale(shape, meshes%level, h0)
   end function scale_at
 
 end module locked_meshes

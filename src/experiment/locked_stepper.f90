@@ -42,7 +42,7 @@ contains
     real(wp) :: far
     integer :: mesh
 
-    mesh = merge(approach, contact, self%pair%traceable)
+    mesh = merge(approach, contact, self%meshes%traceable)
     far = max(h0, self%far_away())
     if (self%problem%rigid) then
       far = h0
@@ -51,11 +51,11 @@ contains
         return
       end if
     end if
-    associate (grid => self%pair%grid(mesh))
+    associate (grid => self%meshes%grid(mesh))
       state = state_from(grid%nodes)
       state%h0 = far
       state%axis_gap = far
-      state%scale = scale_at(self%problem%shape, self%pair, far)
+      state%scale = scale_at(self%problem%shape, self%meshes, far)
       state%gap = far + self%problem%shape%height(state%scale*grid%x(:size(state%gap)))
     end associate
     call self%attempt(far, state, mesh, event)
@@ -68,7 +68,7 @@ contains
   pure real(wp) function far_away(self)
     class(locked_stepper_t), intent(in) :: self
 
-    far_away = max(calm_gap(self%problem), self%pair%level + 3)
+    far_away = max(calm_gap(self%problem), self%meshes%level + 3)
   end function far_away
 
   !> Solves from the guess `state` at h0.
@@ -79,7 +79,7 @@ contains
     integer, intent(in) :: mesh
     type(step_result_t), intent(inout) :: event
 
-    call self%solve(h0_control(self%problem%shape, self%pair, mesh, h0), state, event%converged)
+    call self%solve(h0_control(self%problem%shape, self%meshes, mesh, h0), state, event%converged)
   end subroutine attempt
 
 end module locked_stepper

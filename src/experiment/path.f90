@@ -176,7 +176,7 @@ contains
     type(error_probe_t) :: witness
 
     witness%mesh = row%mesh
-    witness%control = h0_control(steps%problem%shape, steps%pair, row%mesh, row%state%h0)
+    witness%control = h0_control(steps%problem%shape, steps%meshes, row%mesh, row%state%h0)
     witness%state = row%state
     reported = reported_state(witness)
     if (row%point == 0) return
@@ -194,7 +194,7 @@ contains
     type(path_t), intent(inout) :: path
     type(reported_t) :: reported
 
-    associate (grid => steps%pair%grid(row%mesh), state => row%state)
+    associate (grid => steps%meshes%grid(row%mesh), state => row%state)
       call observer%take(record_of('path', steps%problem, grid, state, &
         merge(stable_yes, stable_no, row%modes == 0), row%converged), steps%problem, grid, state, &
         profile)

@@ -131,8 +131,8 @@ contains
     on_fine = measure
     call energy_of(own, sought%mesh, state, on_fine%energy, uncertainty)
     near%s = coordinate_of(own%problem, sought%mesh, state)
-    near%state = regrid(own%problem%shape, state, own%pair%grid(sought%mesh), &
-      fine%pair%grid(sought%mesh), state%scale)
+    near%state = regrid(own%problem%shape, state, own%meshes%grid(sought%mesh), &
+      fine%meshes%grid(sought%mesh), state%scale)
     call move_to(fine, sought%mesh, sought%kind, sought%h0, near, distance, found)
     if (.not. found) return
     on_fine = measure_at(near, distance)

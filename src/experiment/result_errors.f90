@@ -2,7 +2,7 @@
 module result_errors
   use kinds, only: wp
   use numerics_choice, only: fixed_mesh, companion
-  use edge_locked, only: new_mesh_pair
+  use edge_locked, only: new_mesh_family
   use fixed_stepper, only: fixed_stepper_t
   use locked_stepper, only: locked_stepper_t
   use path_stepper, only: path_stepper_t
@@ -53,7 +53,7 @@ contains
     ! Without a contact edge nothing locks the mesh to what is sharp in a fall, and more nodes gain
     ! less.
     judge%fine%margin = merge(margin, margin_unlocked, steps%problem%law%edge_gap > 0)
-    judge%fine%pair = new_mesh_pair(steps%problem, high, low, &
+    judge%fine%meshes = new_mesh_family(steps%problem, high, low, &
       outcome%chosen%digits + more_digits)
     call count_kernel(judge)
     if (allocated(outcome%path)) call judge_path(judge, outcome%path)
@@ -77,10 +77,10 @@ contains
     if (.not. reports(outcome)) return
     judge%steps => steps
     call judge%fine%take_over(steps)
-    allocate (judge%fine%pair%grid(1))
-    judge%fine%pair%grid(1) = fixed_mesh(companion(outcome%chosen), steps%problem, low)
+    allocate (judge%fine%meshes%grid(1))
+    judge%fine%meshes%grid(1) = fixed_mesh(companion(outcome%chosen), steps%problem, low)
     judge%fine%margin = merge(margin_fixed, margin_coarser, &
-      judge%fine%pair%grid(1)%nodes > steps%pair%grid(1)%nodes)
+      judge%fine%meshes%grid(1)%nodes > steps%meshes%grid(1)%nodes)
     call count_kernel(judge)
     call judge_cycle(judge, outcome)
     call conclude(judge, outcome)
@@ -91,7 +91,7 @@ contains
     type(judge_t), intent(inout) :: judge
 
     associate (cost => judge%fine%cost)
-      cost%kernel_entries = cost%kernel_entries + sum(judge%fine%pair%grid%kernel_entries())
+      cost%kernel_entries = cost%kernel_entries + sum(judge%fine%meshes%grid%kernel_entries())
     end associate
   end subroutine count_kernel
 

@@ -111,7 +111,7 @@ contains
     type(branch_point_t), intent(in) :: position
     type(discretisation_t), pointer :: grid
 
-    grid => self%pair%grid(position%mesh)
+    grid => self%meshes%grid(position%mesh)
   end function grid
 
   !> Distance between nodes at the edge over the width of the neck, for a state; 0 without a neck.
@@ -120,7 +120,7 @@ contains
     type(branch_point_t), intent(in) :: position
 
     spacing_over_neck = over_neck(self%problem, &
-      position%state%scale*self%pair%grid(position%mesh)%spacing)
+      position%state%scale*self%meshes%grid(position%mesh)%spacing)
   end function spacing_over_neck
 
   !> The witness of a position's state: what its h0 was prescribed as.
@@ -130,7 +130,7 @@ contains
     type(error_probe_t) :: witness
 
     witness%mesh = position%mesh
-    witness%control = h0_control(self%problem%shape, self%pair, position%mesh, position%state%h0)
+    witness%control = h0_control(self%problem%shape, self%meshes, position%mesh, position%state%h0)
     witness%state = position%state
   end function witness
 

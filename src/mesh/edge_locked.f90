@@ -13,7 +13,7 @@ module edge_locked
   use contact_scales, only: largest_radius, contact_level, lost_in_rounding
   implicit none
   private
-  public :: mesh_pair_t, new_mesh_pair
+  public :: mesh_family_t, new_mesh_family
   public :: approach, contact
 
   !> The mesh before contact, and the first of those in contact.
@@ -23,7 +23,7 @@ module edge_locked
   !> and more bands have more meshes.
   real(wp), parameter :: widest_band = 30
 
-  type :: mesh_pair_t
+  type :: mesh_family_t
     !> The meshes in the order of the path.
     type(discretisation_t), allocatable :: grid(:)
     !> Contact radius at which the path passes from a mesh to the next, lateral units; of the last it
@@ -34,29 +34,29 @@ module edge_locked
     logical :: traceable = .true.
     !> Gap at which a law without a contact edge begins to deform the bodies.
     real(wp) :: level = -huge(1.0_wp)
-  end type mesh_pair_t
+  end type mesh_family_t
 
 contains
 
   !> Meshes for H0 from h0_high down to h0_low, good for so many digits (`mesh_rule`).
   !> shape_only leaves the kernels out, to learn how large they would be.
-  function new_mesh_pair(problem, h0_high, h0_low, digits, shape_only) result(pair)
+  function new_mesh_family(problem, h0_high, h0_low, digits, shape_only) result(meshes)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, h0_low, digits
     logical, intent(in), optional :: shape_only
-    type(mesh_pair_t) :: pair
+    type(mesh_family_t) :: meshes
     real(wp) :: first, widest
     logical :: elastic
     integer :: bands, k
 
     elastic = .not. problem%rigid
     if (present(shape_only)) elastic = elastic .and. .not. shape_only
-    pair%traceable = problem%law%adhesion > 0 .or. problem%rigid
-    if (.not. pair%traceable) pair%level = contact_level(problem)
-    widest = largest_radius(problem, h0_low, pair%level)
+    meshes%traceable = problem%law%adhesion > 0 .or. problem%rigid
+    if (.not. meshes%traceable) meshes%level = contact_level(problem)
+    widest = largest_radius(problem, h0_low, meshes%level)
     first = min(passage_to_contact(problem), widest)
     bands = 0
-    if (.not. pair%traceable) then
+    if (.not. meshes%traceable) then
       bands = 1
       first = 1
     else if (problem%law%edge_gap > 0 .and. .not. problem%rigid) then
@@ -64,15 +64,15 @@ contains
       if (lost_in_rounding(problem, widest)) widest = widest_band*first
       bands = ceiling(log(widest/first)/log(widest_band))
     end if
-    allocate (pair%grid(approach + bands))
-    pair%passage = [first, (first*(widest/first)**(real(k, wp)/bands), k=1, bands)]
-    if (pair%traceable) pair%grid(approach) = new_mapped_mesh( &
+    allocate (meshes%grid(approach + bands))
+    meshes%passage = [first, (first*(widest/first)**(real(k, wp)/bands), k=1, bands)]
+    if (meshes%traceable) meshes%grid(approach) = new_mapped_mesh( &
       approach_shape(problem, max(h0_high, calm_gap(problem)), digits), elastic)
-    do k = contact, size(pair%grid)
-      pair%grid(k) = new_mapped_mesh(contact_shape(problem, pair%passage(k - 1), &
-        pair%passage(k), pair%level, digits), elastic)
+    do k = contact, size(meshes%grid)
+      meshes%grid(k) = new_mapped_mesh(contact_shape(problem, meshes%passage(k - 1), &
+        meshes%passage(k), meshes%level, digits), elastic)
     end do
-  end function new_mesh_pair
+  end function new_mesh_family
 
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a part of the
   !> neck, and of the radius at which the axis of rigid bodies comes from most tension to rest.

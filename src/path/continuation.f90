@@ -136,13 +136,13 @@ contains
     logical, intent(out) :: done
     real(wp) :: c
 
-    associate (problem => equations%problem, pair => equations%pair)
+    associate (problem => equations%problem, meshes => equations%meshes)
       c = state%scale
       if (from == approach) c = radius_of_gap(problem%shape, problem%law%edge_gap, &
-        pair%grid(from), state)
+        meshes%grid(from), state)
       done = c > 0
       if (.not. done) return
-      state = regrid(problem%shape, state, pair%grid(from), pair%grid(to), c)
+      state = regrid(problem%shape, state, meshes%grid(from), meshes%grid(to), c)
       call solve_anderson(equations, options, frozen, &
         path_control(problem, to, coordinate_of(problem, to, state)), state, done)
     end associate
@@ -219,11 +219,11 @@ contains
     logical :: done(2)
 
     lost = .false.
-    associate (pair => equations%pair)
-      if (.not. equations%problem%law%edge_gap > 0 .or. self%mesh == size(pair%grid)) return
-      if (self%contact_radius(equations, self%held) < pair%passage(self%mesh)) return
+    associate (meshes => equations%meshes)
+      if (.not. equations%problem%law%edge_gap > 0 .or. self%mesh == size(meshes%grid)) return
+      if (self%contact_radius(equations, self%held) < meshes%passage(self%mesh)) return
       if (self%contact_radius(equations, max(1, self%held - 1)) < &
-        nearly_passed*pair%passage(self%mesh)) return
+        nearly_passed*meshes%passage(self%mesh)) return
     end associate
     self%frozen%factors%valid = .false.
     done(1) = .false.
@@ -249,7 +249,7 @@ contains
 
     c = self%state(j)%scale
     if (self%mesh == approach) c = radius_of_gap(equations%problem%shape, &
-      equations%problem%law%edge_gap, equations%pair%grid(approach), self%state(j))
+      equations%problem%law%edge_gap, equations%meshes%grid(approach), self%state(j))
   end function contact_radius
 
 end module continuation

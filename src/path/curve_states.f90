@@ -89,7 +89,7 @@ contains
       found%residual = state%residual
       if (.not. found%converged) return
       found%radius = radius_of_gap(problem%shape, self%curve%contact_gap, &
-        equations%pair%grid(node%mesh), state)
+        equations%meshes%grid(node%mesh), state)
       call energy_of(equations, node%mesh, state, found%energy, found%uncertainty)
       call along_curve(equations, node%mesh, s, state, self%frozen, found%slopes, found%converged)
     end associate

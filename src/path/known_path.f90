@@ -76,7 +76,7 @@ contains
 
     ! Where rounding hides the contact the path is of use up to its first fold.
     blind = lost_in_rounding(equations%problem, &
-      largest_radius(equations%problem, h0_low, equations%pair%level))
+      largest_radius(equations%problem, h0_low, equations%meshes%level))
     for_path = options
     for_path%tolerance = min(options%tolerance, path_tolerance)
     walker = new_continuation(equations%problem, start, approach, path_step)

@@ -75,7 +75,7 @@ contains
     ! What is behind the last stable piece was traced only to find its end.
     last = known%path%held
     if (size(known%piece) > 0) last = maxval(known%piece%last)
-    do mesh = 1, size(equations%pair%grid)
+    do mesh = 1, size(equations%meshes%grid)
       do i = 1, last
         call node_of_point(equations, known, i, mesh, contact_gap, frozen, node, found)
         if (.not. found) return
@@ -130,7 +130,7 @@ contains
     if (.not. there) return
     call along_curve(equations, mesh, s, state, frozen, slopes, found)
     node = curve_node_t(mesh, inward(mesh)*s, state%h0, state%load, slopes(1), slopes(2), &
-      radius_of_gap(equations%problem%shape, contact_gap, equations%pair%grid(mesh), state), &
+      radius_of_gap(equations%problem%shape, contact_gap, equations%meshes%grid(mesh), state), &
       state%axis_gap, i)
   end subroutine node_of_point
 

@@ -37,7 +37,7 @@ contains
     call solve(frozen%factors, dz)
     h0_slope = dz(n + 1)
     c_slope = merge(1.0_wp, 0.0_wp, control%kind == at_edge_radius)
-    associate (grid => equations%pair%grid(control%mesh), &
+    associate (grid => equations%meshes%grid(control%mesh), &
       law => equations%problem%law, shape => equations%problem%shape)
       load_slope = 2*pi*(2*state%scale*c_slope*dot_product(grid%weight, state%pressure) + &
         state%scale**2*sum(grid%weight*law%slope(state%gap)*dz(:n)))

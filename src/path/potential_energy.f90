@@ -22,7 +22,7 @@ contains
     real(wp), intent(out) :: energy, uncertainty
     real(wp), dimension(size(state%gap)) :: of_surface, of_bodies
 
-    associate (n => size(state%gap), c => state%scale, grid => equations%pair%grid(mesh), &
+    associate (n => size(state%gap), c => state%scale, grid => equations%meshes%grid(mesh), &
       shape => equations%problem%shape)
       of_surface = c**2*grid%weight(:n)*energy_density(equations%problem, state%gap, &
         c*grid%x(:n))
