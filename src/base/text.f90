@@ -1,6 +1,7 @@
 !> Small text tools: what messages are made with, and numbers and strings as a deck has them.
 module text
   use kinds, only: wp
+  use decimal, only: put_real, longest_real
   implicit none
   private
   public :: lower, quoted, unquoted, brief, full, guess, clip, listing, printable
@@ -67,10 +68,11 @@ contains
   pure function full(x) result(text)
     real(wp), intent(in) :: x
     character(len=:), allocatable :: text
-    character(len=32) :: buffer
+    character(len=longest_real) :: buffer
+    integer :: length
 
-    write (buffer, '(es24.16e3)') x
-    text = trim(adjustl(buffer))
+    call put_real(x, buffer, length)
+    text = buffer(:length)
   end function full
 
   !> `x` for a message: the fewest digits that still read back as `x`.

@@ -1,6 +1,7 @@
 !> The curve: one row an equilibrium.
 module curve_rows
   use records, only: record_t
+  use decimal, only: put_whole, longest_whole
   use tables, only: cells
   implicit none
   private
@@ -39,13 +40,15 @@ contains
   pure function curve_row(record) result(text)
     type(record_t), intent(in) :: record
     character(len=:), allocatable :: text
-    character(len=24) :: stable, iterations
+    character(len=longest_whole) :: stable, iterations
+    integer :: of_stable, of_iterations
 
-    write (stable, '(i0)') record%stable
-    write (iterations, '(i0)') record%iterations
+    call put_whole(record%stable, stable, of_stable)
+    call put_whole(record%iterations, iterations, of_iterations)
     text = record%branch // ',' // cells([record%h0, record%h_centre, record%displacement, &
-      record%load, record%contact_radius]) // ',' // trim(stable) // ',' // &
-      cells([record%residual]) // ',' // trim(iterations) // merge(',1', ',0', record%converged)
+      record%load, record%contact_radius]) // ',' // stable(:of_stable) // ',' // &
+      cells([record%residual]) // ',' // iterations(:of_iterations) // &
+      merge(',1', ',0', record%converged)
     if (allocated(record%eigenvalue)) text = text // ',' // cells([record%eigenvalue, &
       record%local_criterion, record%axis_criterion])
   end function curve_row

@@ -3,7 +3,7 @@
 module tables
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: full
+  use decimal, only: put_real, longest_real
   use text_file, only: output_t, partial, plain
   implicit none
   private
@@ -44,12 +44,19 @@ contains
   pure function cells(values) result(text)
     real(wp), intent(in) :: values(:)
     character(len=:), allocatable :: text
-    integer :: i
+    character(len=(longest_real + 1)*size(values)) :: buffer
+    integer :: i, held, length
 
-    text = full(values(1))
-    do i = 2, size(values)
-      text = text // ',' // full(values(i))
+    held = 0
+    do i = 1, size(values)
+      if (i > 1) then
+        held = held + 1
+        buffer(held:held) = ','
+      end if
+      call put_real(values(i), buffer(held + 1:), length)
+      held = held + length
     end do
+    text = buffer(:held)
   end function cells
 
 end module tables
