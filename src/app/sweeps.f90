@@ -14,6 +14,7 @@ module sweeps
   use summary, only: summary_t
   use case_columns, only: columns_of, numbers_of
   use journal, only: journal_t
+  use mesh_store, only: mesh_store_t
   use byte_record, only: byte_record_t
   use state_records, only: put_cost, take_cost
   use results, only: results_t
@@ -41,6 +42,7 @@ contains
     integer, intent(out) :: failed
     type(cost_t), intent(out) :: cost
     type(case_t), allocatable :: cases(:)
+    type(mesh_store_t) :: store
     integer :: i, written
 
     allocate (cases(size(scene%sweep%values)))
@@ -49,7 +51,7 @@ contains
     ! Each case has a thread of its own: its kernels and its linear algebra use no more.
     !$omp parallel do schedule(dynamic, 1)
     do i = 1, size(cases)
-      if (.not. cases(i)%done) call complete(scene, i, cases, written, results)
+      if (.not. cases(i)%done) call complete(scene, i, cases, written, results, store)
     end do
     !$omp end parallel do
     failed = count(cases%done .and. .not. cases%converged)
@@ -59,12 +61,13 @@ contains
   end subroutine run_sweep
 
   !> Computes case i and enters it, unless results can no longer be written.
-  subroutine complete(scene, i, cases, written, results)
+  subroutine complete(scene, i, cases, written, results, store)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: i
     type(case_t), intent(inout) :: cases(:)
     integer, intent(inout) :: written
     type(results_t), intent(inout) :: results
+    type(mesh_store_t), intent(inout) :: store
     type(case_t) :: fresh
     logical :: stopped
 
@@ -72,7 +75,7 @@ contains
     stopped = allocated(results%trouble) .or. allocated(results%journal%trouble)
     !$omp end critical (one_at_a_time)
     if (stopped) return
-    call run_case(scene, scene%sweep%values(i), fresh)
+    call run_case(scene, scene%sweep%values(i), store, fresh)
     !$omp critical (one_at_a_time)
     call keep_case(results%journal, i, fresh)
     cases(i) = fresh
@@ -133,10 +136,11 @@ contains
     end do
   end subroutine write_rows
 
-  !> The case of the scene with the swept key at a value.
-  subroutine run_case(scene, value, case)
+  !> The case of the scene with the swept key at a value, on meshes that the cases share.
+  subroutine run_case(scene, value, store, case)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: value
+    type(mesh_store_t), intent(inout) :: store
     type(case_t), intent(out) :: case
     type(scene_t) :: variant
     type(problem_t) :: problem
@@ -152,7 +156,7 @@ contains
     call summary%set('converged', .false.)
     if (.not. allocated(error)) then
       problem = problem_of(variant)
-      call run_experiment(variant, problem, observer, outcome)
+      call run_experiment(variant, problem, observer, outcome, store=store)
     end if
     !$omp critical (one_at_a_time)
     if (.not. allocated(error)) summary = summary_of(variant, problem, outcome)

@@ -5,7 +5,7 @@ module root_finding
   use kinds, only: wp
   implicit none
   private
-  public :: bracket_t, false_position_t, secant_root, golden
+  public :: bracket_t, false_position_t, root_search_t, new_root_search, secant_root, golden
 
   !> An interval that what is searched for lies in, its ends in any order. A root is found by
   !> `narrow` while the bracket `is_open`, a maximum by `keep_larger`.
@@ -30,6 +30,21 @@ module root_finding
     procedure :: next
     procedure :: take
   end type false_position_t
+
+  !> The root of a continuous function between two places at which it differs in sign, to rounding:
+  !> by false position, and by halving where that gains little. (A function that jumps over zero is
+  !> searched for the jump.) `note` is told the value at `place` while the search `is_open`.
+  type, extends(false_position_t) :: root_search_t
+    !> The newest place: in the end the root.
+    real(wp) :: root = 0
+    real(wp), private :: change = huge(1.0_wp), width = huge(1.0_wp)
+    integer, private :: noted = 0
+    logical, private :: met = .false.
+  contains
+    procedure :: place
+    procedure :: is_open => root_is_open
+    procedure :: note
+  end type root_search_t
 
   !> The part of an interval that a golden section keeps.
   real(wp), parameter :: golden = 0.618033988749894848_wp
@@ -127,6 +142,53 @@ contains
       self%last_moved = -1
     end if
   end subroutine take
+
+  !> A search between a and b, at which the function has the values f_a and f_b.
+  elemental type(root_search_t) function new_root_search(a, f_a, b, f_b) result(search)
+    real(wp), intent(in) :: a, f_a, b, f_b
+
+    call search%take(a, f_a)
+    call search%take(b, f_b)
+    if (f_a > 0 .eqv. f_b > 0) then
+      ! Rounding at an end that is the root.
+      search%root = merge(a, b, abs(f_a) < abs(f_b))
+      search%met = .true.
+    else
+      search%width = abs(b - a)
+    end if
+  end function new_root_search
+
+  !> Whether another value tells anything.
+  elemental logical function root_is_open(self)
+    class(root_search_t), intent(in) :: self
+
+    root_is_open = .not. self%met .and. self%noted < most_halvings .and. &
+      abs(self%positive - self%negative) > spacing(max(abs(self%positive), abs(self%negative))) .and. &
+      self%change > spacing(self%root)
+  end function root_is_open
+
+  !> Where the function is to be evaluated next.
+  elemental real(wp) function place(self)
+    class(root_search_t), intent(in) :: self
+
+    place = self%next()
+    if (mod(self%noted, 3) == 2 .and. abs(self%positive - self%negative) > 0.5_wp*self%width) &
+      place = 0.5_wp*(self%positive + self%negative)
+  end function place
+
+  !> Takes the value at x, the place that was asked for.
+  elemental subroutine note(self, x, value)
+    class(root_search_t), intent(inout) :: self
+    real(wp), intent(in) :: x, value
+
+    if (mod(self%noted, 3) == 2) self%width = abs(self%positive - self%negative)
+    self%change = huge(x)
+    if (self%noted > 0) self%change = abs(x - self%root)
+    self%root = x
+    self%noted = self%noted + 1
+    self%met = abs(value) <= 0
+    call self%take(x, value)
+  end subroutine note
 
   !> Where the line through (x, value) and (x_before, value_before) is zero; the values differ.
   elemental real(wp) function secant_root(x, value, x_before, value_before)

@@ -15,7 +15,7 @@ module equilibrium
   use contact_scales, only: largest_floor
   use edge_locked, only: mesh_family_t
   use linear_algebra, only: multiply
-  use root_finding, only: bracket_t
+  use root_finding, only: root_search_t, new_root_search
   implicit none
   private
   public :: control_t, state_t, cost_t, equations_t, residual, largest_step, state_from, &
@@ -240,7 +240,8 @@ contains
     real(wp), intent(in) :: level
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
-    type(bracket_t) :: bracket
+    type(root_search_t) :: search
+    real(wp) :: x
     integer :: j
 
     do j = size(state%gap) - 1, 1, -1
@@ -249,14 +250,16 @@ contains
     c = 0
     if (j == 0) then
       if (.not. state%axis_gap < level) return
-      bracket = bracket_t(0.0_wp, grid%x(1))
+      search = new_root_search(0.0_wp, state%axis_gap - level, grid%x(1), state%gap(1) - level)
     else
-      bracket = bracket_t(grid%x(j), grid%x(j + 1))
+      search = new_root_search(grid%x(j), state%gap(j) - level, grid%x(j + 1), &
+        state%gap(j + 1) - level)
     end if
-    do while (bracket%is_open())
-      call bracket%narrow(gap_at(shape, grid, state, bracket%middle()) < level)
+    do while (search%is_open())
+      x = search%place()
+      call search%note(x, gap_at(shape, grid, state, x) - level)
     end do
-    c = state%scale*bracket%low
+    c = state%scale*search%root
   end function radius_of_gap
 
   !> Whether a state is an equilibrium: to the tolerance, or as well as rounding allows.

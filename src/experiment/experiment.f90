@@ -6,6 +6,7 @@ module experiment
   use experiment_request, only: request_t
   use numerics_choice, only: choice_t, choose, fixed_mesh
   use edge_locked, only: new_mesh_family
+  use mesh_store, only: mesh_store_t
   use contact_scales, only: beyond_contact
   use ending, only: turn_not_reached
   use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
@@ -34,12 +35,14 @@ contains
 
   !> Runs the path and the cycle; neither may be asked for, and then nothing is done.
   !> With a keeper, the cycle's steps go through it: it keeps them, and has those of an earlier run.
-  subroutine run_experiment(request, problem, observer, outcome, keeper)
+  !> With a store of meshes, edge-locked ones come from there.
+  subroutine run_experiment(request, problem, observer, outcome, keeper, store)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(out) :: outcome
     class(keeping_stepper_t), intent(inout), optional :: keeper
+    type(mesh_store_t), intent(inout), optional :: store
     real(wp) :: low, high
     logical :: fixed
 
@@ -48,7 +51,7 @@ contains
     outcome%chosen = choose(request%numerics, problem, low)
     fixed = outcome%chosen%grid /= 'edge_locked'
     if (allocated(request%path) .or. .not. fixed) &
-      call run_locked(request, problem, high, low, .not. fixed, observer, outcome, keeper)
+      call run_locked(request, problem, high, low, .not. fixed, observer, outcome, keeper, store)
     if (allocated(request%loading) .and. fixed) &
       call run_fixed(request, problem, low, observer, outcome, keeper)
   end subroutine run_experiment
@@ -56,7 +59,7 @@ contains
   !> The path, and the cycle if `with_cycle` and the scene has one, in edge-locked coordinates, for
   !> H0 from high to low (law's lengths).
   subroutine run_locked(request, problem, high, low, with_cycle, observer, outcome, &
-    keeper)
+    keeper, store)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: high, low
@@ -64,6 +67,7 @@ contains
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
     class(keeping_stepper_t), intent(inout), optional :: keeper
+    type(mesh_store_t), intent(inout), optional :: store
     type(path_stepper_t), target :: along_path
     type(unique_stepper_t), target :: one_by_one
     class(locked_stepper_t), pointer :: steps
@@ -79,7 +83,7 @@ contains
     ! The path has no use for mixing.
     if (steps%options%method == 'mixing') steps%options%method = 'anderson'
     began = seconds()
-    steps%meshes = new_mesh_family(problem, high, low, outcome%chosen%digits)
+    steps%meshes = new_mesh_family(problem, high, low, outcome%chosen%digits, store=store)
     steps%cost%kernel_seconds = seconds() - began
     steps%cost%kernel_entries = sum(steps%meshes%grid%kernel_entries())
     outcome%nodes = sum(steps%meshes%grid%nodes)
@@ -98,7 +102,7 @@ contains
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
     call observer%hear('estimating errors')
-    call judge_locked(steps, high, low, outcome)
+    call judge_locked(steps, high, low, outcome, store)
     steps%cost%estimate_seconds = seconds() - began
     outcome%cost = steps%cost
   end subroutine run_locked

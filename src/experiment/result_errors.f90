@@ -3,6 +3,7 @@ module result_errors
   use kinds, only: wp
   use numerics_choice, only: fixed_mesh, companion
   use edge_locked, only: new_mesh_family
+  use mesh_store, only: mesh_store_t
   use fixed_stepper, only: fixed_stepper_t
   use locked_stepper, only: locked_stepper_t
   use path_stepper, only: path_stepper_t
@@ -40,11 +41,12 @@ module result_errors
 contains
 
   !> Judges what edge-locked steps have found, for H0 from high to low. Nothing is set up where
-  !> nothing is reported.
-  subroutine judge_locked(steps, high, low, outcome)
+  !> nothing is reported. store: of meshes.
+  subroutine judge_locked(steps, high, low, outcome, store)
     class(locked_stepper_t), intent(inout), target :: steps
     real(wp), intent(in) :: high, low
     type(experiment_result_t), intent(inout) :: outcome
+    type(mesh_store_t), intent(inout), optional :: store
     type(judge_t) :: judge
 
     if (.not. reports(outcome)) return
@@ -54,7 +56,7 @@ contains
     ! less.
     judge%fine%margin = merge(margin, margin_unlocked, steps%problem%law%edge_gap > 0)
     judge%fine%meshes = new_mesh_family(steps%problem, high, low, &
-      outcome%chosen%digits + more_digits)
+      outcome%chosen%digits + more_digits, store=store)
     call count_kernel(judge)
     if (allocated(outcome%path)) call judge_path(judge, outcome%path)
     if (allocated(outcome%stepped_path)) call judge_branch(judge, outcome%stepped_path)

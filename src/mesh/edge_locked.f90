@@ -8,7 +8,8 @@ module edge_locked
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, neck_width, calm_gap
   use discretisation, only: discretisation_t
-  use mapped_mesh, only: new_mapped_mesh
+  use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
+  use mesh_store, only: mesh_store_t
   use mesh_rule, only: approach_shape, contact_shape
   use contact_scales, only: largest_radius, contact_level, lost_in_rounding
   implicit none
@@ -39,11 +40,13 @@ module edge_locked
 contains
 
   !> Meshes for H0 from h0_high down to h0_low, good for so many digits (`mesh_rule`).
-  !> shape_only leaves the kernels out, to learn how large they would be.
-  function new_mesh_family(problem, h0_high, h0_low, digits, shape_only) result(meshes)
+  !> shape_only leaves the kernels out, to learn how large they would be. store: meshes made before,
+  !> to which these are added.
+  function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store) result(meshes)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, h0_low, digits
     logical, intent(in), optional :: shape_only
+    type(mesh_store_t), intent(inout), optional :: store
     type(mesh_family_t) :: meshes
     real(wp) :: first, widest
     logical :: elastic
@@ -66,12 +69,26 @@ contains
     end if
     allocate (meshes%grid(approach + bands))
     meshes%passage = [first, (first*(widest/first)**(real(k, wp)/bands), k=1, bands)]
-    if (meshes%traceable) meshes%grid(approach) = new_mapped_mesh( &
-      approach_shape(problem, max(h0_high, calm_gap(problem)), digits), elastic)
+    if (meshes%traceable) call add_mesh( &
+      approach_shape(problem, max(h0_high, calm_gap(problem)), digits), meshes%grid(approach))
     do k = contact, size(meshes%grid)
-      meshes%grid(k) = new_mapped_mesh(contact_shape(problem, meshes%passage(k - 1), &
-        meshes%passage(k), meshes%level, digits), elastic)
+      call add_mesh(contact_shape(problem, meshes%passage(k - 1), meshes%passage(k), meshes%level, &
+        digits), meshes%grid(k))
     end do
+
+  contains
+
+    subroutine add_mesh(shape, grid)
+      type(mapped_shape_t), intent(in) :: shape
+      type(discretisation_t), intent(inout) :: grid
+
+      if (present(store) .and. elastic) then
+        call store%obtain(shape, grid)
+      else
+        grid = new_mapped_mesh(shape, elastic)
+      end if
+    end subroutine add_mesh
+
   end function new_mesh_family
 
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a part of the

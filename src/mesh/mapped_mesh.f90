@@ -9,7 +9,7 @@ module mapped_mesh
   use mapped_kernel, only: add_panel
   implicit none
   private
-  public :: mapped_shape_t, new_mapped_mesh
+  public :: mapped_shape_t, same_shape, new_mapped_mesh
 
   !> What a mapped mesh is like.
   type :: mapped_shape_t
@@ -30,6 +30,16 @@ module mapped_mesh
   end type mapped_shape_t
 
 contains
+
+  !> Whether two meshes are the same to the last digit.
+  pure logical function same_shape(a, b) result(same)
+    type(mapped_shape_t), intent(in) :: a, b
+
+    same = size(a%order) == size(b%order) .and. a%inner == b%inner .and. &
+      a%tail_order == b%tail_order .and. (a%even .eqv. b%even)
+    if (same) same = all(a%order == b%order) .and. all(abs(a%z_length - b%z_length) <= 0) .and. &
+      all(abs([a%centre, a%d, a%decay, a%digits] - [b%centre, b%d, b%decay, b%digits]) <= 0)
+  end function same_shape
 
   !> The mesh of a shape; elastic = .false. leaves the kernel out.
   function new_mapped_mesh(shape, elastic) result(grid)

@@ -31,6 +31,9 @@ module mesh_rule
   real(wp), parameter :: short_order = 4, short_orders = 0.9_wp
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
+  !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
+  !> near one another have the same meshes: at the cost of a fraction of a node.
+  real(wp), parameter :: rung = 0.25_wp
   !> Digits that a shape with kinks allows.
   real(wp), parameter :: digits_of_broken = 4
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
@@ -72,7 +75,7 @@ contains
       (1 + 0.03_wp*log(1 + strength(problem)))
     reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
-    shape%d = finer*smallest_feature(problem, 1.0_wp)
+    shape%d = exp(rung*floor(log(finer*smallest_feature(problem, 1.0_wp))/rung))
     shape%even = is_even(problem%shape)
     call add_panels(problem, shape, asinh(reach/shape%d), density, digits, 0.0_wp, 0.0_wp)
     call refine_axis(problem, digits, 3.0_wp, shape)
@@ -216,12 +219,12 @@ contains
   pure subroutine add_panel(shape, z_length, density)
     type(mapped_shape_t), intent(inout) :: shape
     real(wp), intent(in) :: z_length, density
-    integer :: order
+    real(wp) :: length
 
     if (.not. allocated(shape%order)) allocate (shape%order(0), shape%z_length(0))
-    order = ceiling(density*z_length + more_nodes)
-    shape%order = [shape%order, order]
-    shape%z_length = [shape%z_length, (order - more_nodes)/density]
+    length = rung*ceiling(z_length/rung)
+    shape%order = [shape%order, ceiling(density*length + more_nodes)]
+    shape%z_length = [shape%z_length, length]
   end subroutine add_panel
 
   !> sigma (40): the coupling times the surface energy; 0 without adhesion.
@@ -235,7 +238,7 @@ contains
   pure real(wp) function kernel_digits(digits)
     real(wp), intent(in) :: digits
 
-    kernel_digits = max(5.0_wp, 1.2_wp*digits - 2)
+    kernel_digits = max(5, ceiling(1.2_wp*digits - 2))
   end function kernel_digits
 
 end module mesh_rule
