@@ -7,6 +7,8 @@
     cusp        the same where jumps begin to exist, sigma 0.28 to 0.45
     folds       states a hair before and beyond the folds
     energy      the energy lost and its uncertainty
+    laws        true error over estimated error under every law, the truth being the program's own
+                at a higher accuracy
 
 The program is $SNAPIN, else build/snapin. Ends with status 1 where a study finds something wrong.
 """
@@ -23,6 +25,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
 from support import study_cycles, study_energy, study_estimates, study_folds  # noqa: E402
+from support import study_laws  # noqa: E402
 from support.decks_in_units import program_path  # noqa: E402
 from support.spread import spread  # noqa: E402
 
@@ -38,15 +41,16 @@ def cusp_jobs(count, folder, *, seed):
     return study_cycles.jobs(count, folder, seed=seed, low=0.28, high=0.45)
 
 
-# Module, jobs, number of them (decks for cycles, strengths for others), and what is bad.
+# Module, jobs, number of them (decks for cycles, scenes for laws, else strengths), and what is bad.
 STUDIES = {
     "estimates": (study_estimates, study_estimates.jobs, 40, bad_estimate),
     "cycles": (study_cycles, study_cycles.jobs, 1000, lambda finding: finding.wrong),
     "cusp": (study_cycles, cusp_jobs, 1000, lambda finding: finding.wrong),
     "folds": (study_folds, study_folds.jobs, 10, lambda finding: finding.wrong),
+    "laws": (study_laws, study_laws.jobs, 1000, study_laws.is_bad),
     "energy": (study_energy, study_energy.jobs, 40, lambda f: f.wrong or f.ratio > 1),
 }
-SEEDED = ("cycles", "cusp")
+SEEDED = ("cycles", "cusp", "laws")
 
 
 def study(name, arguments, folder):
@@ -62,7 +66,7 @@ def study(name, arguments, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("studies", nargs="*", default=list(STUDIES), metavar="STUDY")
-    parser.add_argument("--count", type=int, help="decks (cycles, cusp) or strengths (others)")
+    parser.add_argument("--count", type=int, help="decks, scenes or strengths")
     parser.add_argument("--seed", type=int, default=1, help="of the random decks")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--out", type=pathlib.Path, help="a file that the tables go to as well")

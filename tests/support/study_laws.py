@@ -1,0 +1,299 @@
+"""True errors beside estimated ones under every law: random scenes, paths and cycles.
+
+There is no independent solution for most laws. The truth is the same scene at a much higher
+accuracy, and a deviation counts where it is well above what that run says of itself. Scene k of a seed is
+always the same scene.
+"""
+
+import collections
+import math
+import os
+import random
+import shutil
+import subprocess
+from typing import NamedTuple
+
+import f90nml
+import numpy as np
+from support.decks_in_units import LENGTHS, LOADS, program_path
+from support.scenes import deck, several
+
+ACCURACIES = (1e-3, 1e-8)
+STRENGTHS = (1e-4, 1e4)
+RADIUS, STIFFNESS, Z0 = 1.5e-2, 1e10, 0.5e-9
+KEYS = (*LOADS, *LENGTHS, "energy_lost")
+# By how much the truth is more accurate than the run, and how accurate runs can be.
+FINER, FINEST = 1e-2, 1e-10
+# The truth is off by as much as it says; a deviation this many times larger is the run's own.
+WELL_ABOVE = 3
+SECONDS = 30
+# Quantiles of a table, and what is below the least honest ratio: an estimate 30 times the error.
+QUANTILES, PESSIMISTIC = (0.05, 0.5, 0.95), 1 / 30
+
+
+class Law(NamedTuple):
+    """The groups of a law, the gap at rest or thereabouts, and its length [m]."""
+
+    groups: dict
+    rest: float
+    length: float
+
+
+class Scene(NamedTuple):
+    """What is run: its number and seed, and what was drawn."""
+
+    number: int
+    seed: int
+    law: str
+    sigma: float
+    kind: str
+    accuracy: float
+    folder: object
+
+
+class Deviation(NamedTuple):
+    """A number of a run: what it should be, its error, and the error that it may have, it says."""
+
+    key: str
+    value: float
+    error: float
+    allowed: float
+
+    @property
+    def ratio(self):
+        return self.error / self.allowed if self.allowed else math.inf
+
+
+class Finding(NamedTuple):
+    """A scene with its deviations, how many numbers were as good as the truth, what is wrong."""
+
+    scene: Scene
+    deviations: list
+    unknown: int
+    wrong: list
+
+
+def lennard_jones(rng, **more):
+    return {"force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": Z0, **more}}
+
+
+def beside(rng, **groups):
+    """Another force beside a Lennard-Jones one."""
+    return Law({**lennard_jones(rng), **groups}, Z0, Z0)
+
+
+def dispersion(rng, **groups):
+    """Van der Waals attraction and Born repulsion, retarded or not, and others."""
+    hamaker, z0 = 1e-19, rng.uniform(0.2, 0.5) * 1e-9
+    retarded = {"retardation_length": rng.uniform(2, 100) * 1e-9} if rng.random() < 0.5 else {}
+    return Law({"van_der_waals": {"hamaker": hamaker, **retarded},
+                "born": {"hamaker": hamaker, "z0": z0}, **groups}, z0, z0)  # fmt: skip
+
+
+def morse(rng):
+    decay = rng.uniform(0.1, 0.5) * 1e-9
+    z0 = rng.uniform(0.3, 3) * 1e-9
+    return Law({"morse": {"surface_energy": 0.05, "z0": z0, "decay_length": decay}}, z0, 2 * decay)
+
+
+def other_powers(rng):
+    n, m = rng.choice([(9, 3), (10, 4), (12, 6), (7, 3)])
+    force = {"law": "lennard_jones", "surface_energy": 0.01, "z0": Z0, "exponents": [n, m]}
+    return Law({"force": force}, Z0, Z0)
+
+
+def table_of(rng):
+    """A Lennard-Jones law as a table of pressures."""
+    return Law({"tabulated": {"file": "law.txt", "tail_exponent": 3}}, Z0, Z0)
+
+
+# Each draws its numbers; the range of an exponential or a step is some of the first law's lengths.
+LAWS = {
+    "lennard_jones": lambda rng: Law(lennard_jones(rng), Z0, Z0),
+    "repulsive": lambda rng: Law(lennard_jones(rng, part="repulsive"), Z0, Z0),
+    "powers": other_powers,
+    "exponential": lambda rng: Law(
+        {"force": {"law": "exponential", "p0": 2.5e8, "decay_length": 0.2e-9}}, 0.0, 0.2e-9
+    ),
+    "morse": morse,
+    "dispersion": dispersion,
+    "double_layer": lambda rng: dispersion(
+        rng, double_layer={"potential": -rng.uniform(0.02, 0.1), "regulation": rng.random(),
+                           "salt": 10 ** rng.uniform(-1, 2), "valence": 1}
+    ),  # fmt: skip
+    "hydration": lambda rng: beside(
+        rng, hydration={"energy": rng.uniform(1e-3, 1e-2), "decay_length": rng.uniform(0.2, 1) * 1e-9}
+    ),
+    "hydrophobic": lambda rng: beside(
+        rng,
+        hydrophobic={"energy": rng.uniform(1e-3, 2e-2), "decay_length": rng.uniform(0.5, 2) * 1e-9},
+    ),
+    "steric": lambda rng: beside(
+        rng, steric={"brush_thickness": rng.uniform(1, 4) * 1e-9, "grafting_density": 1e16}
+    ),
+    "structural": lambda rng: beside(
+        rng, structural={"amplitude": rng.uniform(1e5, 3e6), "period": rng.uniform(0.8, 2) * 1e-9,
+                         "decay_length": 1e-9}
+    ),  # fmt: skip
+    "depletion": lambda rng: beside(
+        rng, depletion={"osmotic_pressure": 1e5, "diameter": rng.uniform(1, 5) * 1e-9}
+    ),
+    "capillary": lambda rng: beside(rng, capillary={"humidity": rng.uniform(0.2, 0.7)}),
+    "dugdale": lambda rng: beside(
+        rng, dugdale={"stress": 1e7, "range": rng.uniform(0.7, 2) * 1e-9}
+    ),
+    "tabulated": table_of,
+}  # fmt: skip
+
+
+def jobs(count, folder, *, seed=1):
+    """Scenes one by one, the laws in turn."""
+    made = []
+    for number in range(count):
+        rng = random.Random(f"laws {seed} {number}")
+        made.append(Scene(
+            number, seed, list(LAWS)[number % len(LAWS)], float(f"{logarithmic(rng, *STRENGTHS):.4g}"),
+            rng.choice(("path", "cycle")), float(f"{logarithmic(rng, *ACCURACIES):.1g}"),
+            folder / f"scene{number}"))  # fmt: skip
+    return made
+
+
+def logarithmic(rng, low, high):
+    """A number whose logarithm is uniform."""
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def examine(scene):
+    """The findings of a job: one."""
+    rng = random.Random(f"law {scene.seed} {scene.number}")
+    law = LAWS[scene.law](rng)
+    scene.folder.mkdir(parents=True, exist_ok=True)
+    if scene.law == "tabulated":
+        gap = np.geomspace(0.5, 60, 300) * Z0
+        pressure = 1e-19 / (6 * math.pi) * (Z0**6 / gap**9 - 1 / gap**3)
+        np.savetxt(scene.folder / "law.txt", np.column_stack([gap, pressure]))
+    stiffness = STIFFNESS * strength(scene, law) / scene.sigma
+    groups = {"bodies": {"radius": RADIUS, "stiffness": stiffness}, **law.groups}
+    groups.update(driven(rng, scene, law))
+    found = run(scene, "asked", {**groups, "numerics": {"accuracy": scene.accuracy}})
+    numerics = {"accuracy": max(FINER * scene.accuracy, FINEST), "residual_tolerance": 1e-12}
+    truth = run(scene, "truth", {**groups, "numerics": numerics})
+    shutil.rmtree(scene.folder)
+    return [judged(scene, law, found, truth)]
+
+
+def driven(rng, scene, law):
+    """A path, or a cycle of a hundred states, to some lengths beyond the first contact."""
+    far = law.rest + (4 + 3.5 * scene.sigma ** (2 / 3)) * law.length * rng.uniform(0.5, 1.2)
+    depth = law.rest - logarithmic(rng, 0.5, 20) * law.length
+    if scene.kind == "path":
+        return {"equilibrium_path": {"h0_end": depth}}
+    step = (far - depth) / rng.uniform(20, 60)
+    return {"loading": {"h0_start": far, "h0_end": depth, "h0_step": step},
+            "unloading": {"from_": depth}}  # fmt: skip
+
+
+def strength(scene, law):
+    """sigma of the law on bodies of the usual stiffness, from a table that solves nothing; of a law
+    without adhesion Lambda."""
+    summary, _ = run(scene, "strength", {
+        "bodies": {"radius": RADIUS, "stiffness": STIFFNESS}, **law.groups,
+        "classical": {"h0_start": law.rest + law.length, "h0_end": law.rest}})  # fmt: skip
+    return summary.get("sigma") or summary.get("big_lambda") or 1.0
+
+
+def run(scene, name, groups):
+    """The summary of a deck and what went wrong, if anything did."""
+    (scene.folder / f"{name}.nml").write_text(deck(**groups))
+    environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
+    try:
+        done = subprocess.run(
+            [str(program_path()), "--quiet", f"{name}.nml"], cwd=scene.folder, check=False,
+            capture_output=True, text=True, errors="replace", timeout=SECONDS, env=environment,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired:
+        return {}, f"more than {SECONDS} s"
+    path = scene.folder / "results" / name / "summary.nml"
+    if not path.exists():
+        return {}, f"status {done.returncode}: {done.stderr.strip()[-200:]}"
+    summary = f90nml.read(path)["summary"]
+    said = " | ".join(several(summary.get("warnings", [])))
+    return summary, f"status {done.returncode}: {said[:200]}" if done.returncode else ""
+
+
+def judged(scene, law, found, truth):
+    """Numbers of a run beside those of the truth, or why there is nothing to compare."""
+    (mine, trouble), (theirs, doubt) = found, truth
+    # Failing aloud is honest; without a truth nothing can be said.
+    if trouble or doubt:
+        return Finding(scene, [], 0, [f"accuracy {scene.accuracy:g}: {trouble}"] if trouble else [])
+    load = max(abs(x) for x in (*several(theirs.get("max_tension", 0.0)), theirs.get("end_load", 0.0)))
+    deviations, wrong, unknown = [], [], 0
+    for key in KEYS:
+        one, other = (several(summary.get(key, [])) for summary in (mine, theirs))
+        if len(one) != len(other) or [math.isnan(x) for x in one] != [math.isnan(x) for x in other]:
+            wrong.append(f"{key} has {one} for {other}")
+            continue
+        scale = 0.0 if key == "energy_lost" else load if key in LOADS else law.length
+        for i, (a, b) in enumerate(zip(one, other)):
+            if math.isnan(a):
+                continue
+            size = max(abs(b), scale)
+            allowed, known = (of_number(summary, key, i, size) for summary in (mine, theirs))
+            if abs(a - b) > WELL_ABOVE * known:
+                deviations.append(Deviation(key, b, abs(a - b), allowed))
+            else:
+                unknown += 1
+    return Finding(scene, deviations, unknown, wrong)
+
+
+def of_number(summary, key, i, size):
+    """The estimate of a number: its own, else the one for all times its size."""
+    for name in (f"{key}_error", f"{key}_uncertainty"):
+        errors = several(summary.get(name, []))
+        if i < len(errors):
+            return errors[i]
+    return summary.get("error_estimate", 0.0) * size
+
+
+def is_bad(finding):
+    """Something is missing, invented or failed, or an error is larger than its estimate."""
+    return finding.wrong or any(one.ratio > 1 for one in finding.deviations)
+
+
+def table(findings):
+    """Lines of a report: quantiles of the ratio for each number, and the offenders, worst first."""
+    by_key = collections.defaultdict(list)
+    for finding in findings:
+        for one in finding.deviations:
+            by_key[finding.scene.kind, one.key].append(one.ratio)
+    every = [ratio for ratios in by_key.values() for ratio in ratios]
+    heads = [f"{100 * q:.0f} %" for q in QUANTILES]
+    lines = [f"{'true error over estimated':<34} {'number':>6} " + "".join(f"{h:>9}" for h in heads)
+             + f"{'largest':>9} {'above 1':>8} {'below 1/30':>11}"]  # fmt: skip
+    for (kind, key), ratios in [*sorted(by_key.items()), (("all", "numbers"), every)]:
+        if ratios:
+            cells = "".join(f"{x:9.1e}" for x in [*np.quantile(ratios, QUANTILES), max(ratios)])
+            low = sum(r < PESSIMISTIC for r in ratios)
+            lines.append(f"{kind + ' ' + key:<34} {len(ratios):6d} {cells} "
+                         f"{sum(r > 1 for r in ratios):8d} {low:11d}")  # fmt: skip
+    unknown = sum(finding.unknown for finding in findings)
+    compared = sum(bool(f.deviations) or f.unknown > 0 for f in findings)
+    lines.append(f"scenes {len(findings)}, compared {compared}; numbers as good as the truth {unknown}")
+    lines += offenders(findings)
+    return lines
+
+
+def offenders(findings, most=25):
+    """Lines on the numbers above their estimates and on what is missing, invented or failed."""
+    above = [(one, f.scene) for f in findings for one in f.deviations if one.ratio > 1]
+    above.sort(key=lambda item: -item[0].ratio)
+    lines = [f"  {named(s)} {one.key}: {one.ratio:.1e} (off by {one.error:.1e} of {one.value:.6g})"
+             for one, s in above[:most]]  # fmt: skip
+    odd = [f for f in findings if f.wrong]
+    return lines + [f"  {named(f.scene)}: {'; '.join(f.wrong)[:200]}" for f in odd[:most]]
+
+
+def named(scene):
+    return (f"scene {scene.number} of seed {scene.seed}: {scene.law}, sigma {scene.sigma:g}, "
+            f"{scene.kind}, accuracy {scene.accuracy:g},")  # fmt: skip
