@@ -4,7 +4,7 @@ module path_errors
   use kinds, only: wp
   use regridding, only: regrid
   use equilibrium, only: state_t, equations_t
-  use continuation, only: coordinate_of
+  use path_coordinate, only: coordinate_of
   use potential_energy, only: energy_of
   use traced_path, only: path_point_t
   use known_path, only: known_path_t, landing_t, landing_over

@@ -4,8 +4,8 @@
 module path_expansion
   use kinds, only: wp
   use equilibrium, only: state_t
-  use continuation, only: path_control
-  use path_slopes, only: slopes_along_path
+  use path_coordinate, only: path_control
+  use path_tangent, only: tangent_t, tangent_at
   use potential_energy, only: energy_of
   use reported, only: measure_t
   use error_estimate, only: finer_t
@@ -90,14 +90,14 @@ contains
     type(state_t), intent(inout) :: state
     logical, intent(out) :: found
     real(wp), intent(out), optional :: slopes(2)
+    type(tangent_t) :: tangent
 
     associate (control => path_control(fine%problem, mesh, s))
       call fine%find(control, state, found)
       if (.not. (found .and. present(slopes))) return
-      call slopes_along_path(fine%equations_t, control, state, fine%frozen, slopes(1), slopes(2), &
-        found)
+      call tangent_at(fine%equations_t, control, state, fine%frozen, tangent, found)
       ! On both meshes the control's value is exp(s) and a constant.
-      slopes = slopes*exp(s)
+      slopes = [tangent%h0, tangent%load]*exp(s)
     end associate
   end subroutine solve_fine
 
