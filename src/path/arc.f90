@@ -35,10 +35,14 @@ module arc
     procedure :: guess
     procedure :: value
     procedure :: slope
+    procedure :: curvature
     procedure :: state_at
     procedure :: exact_state_at
     procedure, private :: support
   end type arc_t
+
+  !> Difference of s for a second derivative.
+  real(wp), parameter :: nearby = 1.0e-5_wp
 
 contains
 
@@ -256,6 +260,15 @@ contains
       slope = hermite_slope(self%coordinate(nodes), known(nodes), slopes(nodes), s)
     end associate
   end function slope
+
+  !> Its second derivative by s; where a state is in the way, the mean of those on either side.
+  pure real(wp) function curvature(self, quantity, s)
+    class(arc_t), intent(in) :: self
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: s
+
+    curvature = (self%slope(quantity, s + nearby) - self%slope(quantity, s - nearby))/(2*nearby)
+  end function curvature
 
   !> h0 or load of the arc's states, and its derivatives by s.
   pure subroutine ordinates(self, quantity, known, slopes)

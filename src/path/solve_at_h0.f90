@@ -11,7 +11,7 @@ module solve_at_h0
   use path_tangent, only: tangent_t
   use path_coordinate, only: coordinate_of
   use arc, only: arc_t, of_h0, most_states
-  use traced_path, only: traced_path_t
+  use traced_path, only: traced_path_t, either_side
   implicit none
   private
   public :: neighbours_t, neighbours_of, coordinate_at_h0, solve_between
@@ -28,9 +28,6 @@ module solve_at_h0
   type, extends(arc_t) :: neighbours_t
     integer :: lower = 0
   end type neighbours_t
-  !> Points of the path on either side of a piece: of folds and extrema one may be too near to tell
-  !> anything.
-  integer, parameter :: either_side = 2
 
 contains
 

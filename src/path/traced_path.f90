@@ -22,7 +22,7 @@ module traced_path
   use continuation, only: continuation_t
   implicit none
   private
-  public :: traced_path_t, path_point_t, extend, collapsed
+  public :: traced_path_t, path_point_t, extend, collapsed, either_side
 
   !> One equilibrium of the path.
   type :: path_point_t
@@ -51,9 +51,14 @@ module traced_path
   contains
     procedure :: modes_at
     procedure :: add_to
+    procedure :: arc_about
     procedure, private :: is_behind
     procedure :: mesh_between
   end type traced_path_t
+
+  !> Points on either side of a piece of the path that tell about it: of folds and extrema one may be
+  !> too near to tell anything.
+  integer, parameter :: either_side = 2
 
   !> Without repulsion the bodies fall onto each other once they have jumped, and the path goes on
   !> to no gap at all. What is left of the gap at the first fold when it is followed no farther,
@@ -100,6 +105,23 @@ contains
       end if
     end associate
   end subroutine add_to
+
+  !> The arc of the points about s on a mesh.
+  pure function arc_about(self, mesh, s) result(arc)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    type(arc_t) :: arc
+    integer :: i, j
+
+    do i = self%held, 1, -1
+      if (self%point(i)%mesh <= mesh .and. .not. self%is_behind(i, mesh, s)) exit
+    end do
+    arc%mesh = mesh
+    do j = max(1, i - either_side), min(self%held, i + 1 + either_side)
+      call self%add_to(j, arc)
+    end do
+  end function arc_about
 
   !> Whether the i-th point is known on a mesh and lies farther along the path than s there.
   pure logical function is_behind(self, i, mesh, s)
