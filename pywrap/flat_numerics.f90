@@ -199,7 +199,7 @@ contains
   subroutine edge_state(deck, panel_end, order, c, numbers, stat, message, m)
     use deck_problem, only: pose
     use equilibrium, only: control_t, state_t, at_edge_radius, state_from
-    use path_slopes, only: slopes_along_path
+    use path_tangent, only: tangent_t, tangent_at
     use solver, only: solver_t
     use solver_options, only: solver_options_t
     character(len=*), intent(in) :: deck
@@ -211,6 +211,7 @@ contains
     type(solver_t) :: this
     type(control_t) :: control
     type(state_t) :: state
+    type(tangent_t) :: tangent
     logical :: met, found
 
     numbers = 0
@@ -227,9 +228,8 @@ contains
       state%scale = c
     end associate
     call this%solve(control, state, met)
-    call slopes_along_path(this%equations_t, control, state, this%frozen, numbers(3), numbers(4), &
-      found)
-    numbers(:2) = [state%h0, state%load]
+    call tangent_at(this%equations_t, control, state, this%frozen, tangent, found)
+    numbers = [state%h0, state%load, tangent%h0, tangent%load]
     stat = merge(0, 1, met .and. found)
     if (stat /= 0) message = 'no state was found'
   end subroutine edge_state

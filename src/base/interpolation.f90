@@ -6,7 +6,7 @@ module interpolation
   implicit none
   private
   public :: polynomial_weights, polynomial_value, polynomial_slope, interpolated_maximum
-  public :: hermite_value, hermite_slope
+  public :: hermite_weights, hermite_value, hermite_slope
 
 contains
 
@@ -66,14 +66,26 @@ contains
     x = bracket%middle()
   end function interpolated_maximum
 
-  !> The polynomial of least degree with the values and slopes given at `at` (all different), at x:
-  !> the sum of [v (1 - 2 l'(x_j) (x - x_j)) + s (x - x_j)] l(x)^2 over Lagrange's l.
+  !> Weights of values and of slopes at `at` (all different) in the polynomial of least degree that
+  !> has them, at x: it is the sum of [v (1 - 2 l'(x_j) (x - x_j)) + s (x - x_j)] l(x)^2 over
+  !> Lagrange's l.
+  pure subroutine hermite_weights(at, x, of_value, of_slope)
+    real(wp), intent(in) :: at(:), x
+    real(wp), intent(out) :: of_value(:), of_slope(:)
+    real(wp) :: squares(size(at))
+
+    squares = polynomial_weights(at, x)**2
+    of_slope = (x - at)*squares
+    of_value = squares - 2*own_slopes(at)*of_slope
+  end subroutine hermite_weights
+
+  !> That polynomial at x.
   pure real(wp) function hermite_value(at, value, slope, x) result(y)
     real(wp), intent(in) :: at(:), value(:), slope(:), x
-    real(wp), dimension(size(at)) :: basis
+    real(wp), dimension(size(at)) :: of_value, of_slope
 
-    basis = polynomial_weights(at, x)
-    y = sum((value + (slope - 2*own_slopes(at)*value)*(x - at))*basis**2)
+    call hermite_weights(at, x, of_value, of_slope)
+    y = sum(of_value*value + of_slope*slope)
   end function hermite_value
 
   !> Its derivative at x.

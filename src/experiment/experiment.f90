@@ -91,7 +91,7 @@ contains
     began = seconds()
     select type (steps)
     class is (path_stepper_t)
-      call steps%know_path(high, low, allocated(request%path), observer)
+      call steps%know_path(high, low, allocated(request%path), request%reads_path(), observer)
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
       if (request%reads_path()) call read_path(request, steps, observer, outcome%readings)
     class is (unique_stepper_t)

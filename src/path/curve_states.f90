@@ -5,15 +5,15 @@ module curve_states
   use kinds, only: wp
   use root_finding, only: bracket_t
   use equilibrium, only: state_t, equations_t, radius_of_gap
-  use solver_options, only: solver_options_t, tightened
+  use solver_options, only: solver_options_t
   use frozen_jacobian, only: frozen_jacobian_t
-  use edge_locked, only: approach
-  use continuation, only: state_at
+  use path_coordinate, only: inward
+  use path_tangent, only: tangent_t
   use solve_at_h0, only: neighbours_t, neighbours_of
   use known_path, only: known_path_t
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
-  use path_curve, only: curve_t, along_curve, no_mesh
+  use path_curve, only: curve_t, no_mesh
   implicit none
   private
   public :: curve_state_t, curve_solver_t, place_t
@@ -61,6 +61,7 @@ contains
     type(place_t), intent(in) :: place
     type(curve_state_t), intent(out) :: found
     type(state_t) :: state
+    type(tangent_t) :: tangent
     type(neighbours_t) :: near
     real(wp) :: s
 
@@ -77,12 +78,11 @@ contains
         found%converged = .true.
         return
       end if
-      s = merge(-place%x, place%x, node%mesh == approach)
+      s = inward(node%mesh)*place%x
       near = neighbours_of(known%path, node%point)
-      call state_at(equations, tightened(self%options), self%frozen, near%arc_t, s, state, &
+      call near%exact_state_at(equations, self%options, self%frozen, s, state, tangent, &
         found%converged)
       self%solved = self%solved + 1
-      found%converged = found%converged .or. state%residual <= self%options%tolerance
       found%h0 = state%h0
       found%load = state%load
       found%axis_gap = state%axis_gap
@@ -91,7 +91,7 @@ contains
       found%radius = radius_of_gap(problem%shape, self%curve%contact_gap, &
         equations%meshes%grid(node%mesh), state)
       call energy_of(equations, node%mesh, state, found%energy, found%uncertainty)
-      call along_curve(equations, node%mesh, s, state, self%frozen, found%slopes, found%converged)
+      found%slopes = inward(node%mesh)*[tangent%h0, tangent%load]
     end associate
   end subroutine state_of
 
