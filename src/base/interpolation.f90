@@ -7,6 +7,17 @@ module interpolation
   private
   public :: polynomial_weights, polynomial_value, polynomial_slope, interpolated_maximum
   public :: hermite_weights, hermite_value, hermite_slope
+  public :: hermite_t, new_hermite
+
+  !> Polynomials that have given values and slopes at the same places, in Newton's form, each place
+  !> counted twice.
+  type :: hermite_t
+    private
+    real(wp), allocatable :: at(:), coefficient(:, :)
+  contains
+    procedure :: evaluate
+    procedure :: evaluate_first
+  end type hermite_t
 
 contains
 
@@ -103,6 +114,58 @@ contains
     steepness = slope - 2*own_slopes(at)*value
     y = sum(steepness*basis**2 + 2*(value + steepness*(x - at))*basis*basis_slope)
   end function hermite_slope
+
+  !> Polynomials with the values and slopes (how many, size(at)) at `at`, all different.
+  pure function new_hermite(at, values, slopes) result(curve)
+    real(wp), intent(in) :: at(:), values(:, :), slopes(:, :)
+    type(hermite_t) :: curve
+    integer :: j, order, n
+
+    n = 2*size(at)
+    allocate (curve%at(n), curve%coefficient(size(values, 1), n))
+    curve%at = [(at((j + 1)/2), j=1, n)]
+    do j = 1, n
+      curve%coefficient(:, j) = values(:, (j + 1)/2)
+    end do
+    do order = 1, n - 1
+      do j = n, order + 1, -1
+        if (order == 1 .and. mod(j, 2) == 0) then
+          curve%coefficient(:, j) = slopes(:, j/2)
+        else
+          curve%coefficient(:, j) = (curve%coefficient(:, j) - curve%coefficient(:, j - 1))/ &
+            (curve%at(j) - curve%at(j - order))
+        end if
+      end do
+    end do
+  end function new_hermite
+
+  !> All of them at x.
+  pure subroutine evaluate(self, x, values)
+    class(hermite_t), intent(in) :: self
+    real(wp), intent(in) :: x
+    real(wp), intent(out) :: values(:)
+    integer :: j
+
+    values = self%coefficient(:, size(self%at))
+    do j = size(self%at) - 1, 1, -1
+      values = self%coefficient(:, j) + (x - self%at(j))*values
+    end do
+  end subroutine evaluate
+
+  !> The first of them at x, and its slope.
+  pure subroutine evaluate_first(self, x, value, slope)
+    class(hermite_t), intent(in) :: self
+    real(wp), intent(in) :: x
+    real(wp), intent(out) :: value, slope
+    integer :: j
+
+    value = self%coefficient(1, size(self%at))
+    slope = 0
+    do j = size(self%at) - 1, 1, -1
+      slope = value + (x - self%at(j))*slope
+      value = self%coefficient(1, j) + (x - self%at(j))*value
+    end do
+  end subroutine evaluate_first
 
   !> The slope of each Lagrange polynomial where it is one.
   pure function own_slopes(at) result(slope)

@@ -11,12 +11,12 @@ module path_stepper
   use equilibrium, only: state_t
   use locked_stepper, only: locked_stepper_t
   use path_coordinate, only: coordinate_of
-  use arc, only: between
   use ending, only: fallen_before, beyond_path
   use traced_path, only: traced_path_t
-  use solve_at_h0, only: neighbours_t, neighbours_of, coordinate_at_h0, solve_between
+  use solve_at_h0, only: neighbours_t, neighbours_of, solve_between
+  use path_span, only: path_span_t, new_path_span
   use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
-  use stepper, only: branch_point_t, step_result_t, extreme_t, remember
+  use stepper, only: branch_point_t, step_result_t, extreme_t
   implicit none
   private
   public :: path_stepper_t
@@ -24,6 +24,8 @@ module path_stepper
   type, extends(locked_stepper_t) :: path_stepper_t
     !> The path, once `know_path` has traced it.
     type(known_path_t) :: known
+    !> The part of it that the last step went to.
+    type(path_span_t), private :: span
   contains
     procedure :: approach_to
     procedure :: step_to
@@ -62,6 +64,7 @@ contains
       allocate (self%known%piece(0))
     end if
     self%frozen%factors%valid = .false.
+    self%span%point = 0
   end subroutine know_path
 
   subroutine approach_to(self, h0, position, event)
@@ -93,7 +96,7 @@ contains
     if (size(self%known%piece) == 0) event%ending = self%known%ending
     if (event%ending%early()) return
     from = h0
-    if (position%held > 0) from = position%state%h0
+    if (allocated(position%state%gap)) from = position%state%h0
     do while (h0 > self%known%piece(position%piece)%high .or. &
       h0 < self%known%piece(position%piece)%low)
       call self%step_over(h0 < self%known%piece(position%piece)%low, from, position, lowest, event)
@@ -146,7 +149,6 @@ contains
     if (landing%state%load < lowest%load) &
       lowest = extreme_t(landing%state%load, from, landing%fold, .true.)
     position%piece = landing%piece
-    position%held = 0
   end subroutine step_over
 
   !> Lets a point of the path be the largest tension if it is; 0 is none.
@@ -168,32 +170,25 @@ contains
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(inout) :: event
-    type(neighbours_t) :: near
-    type(state_t) :: state
-    real(wp) :: s, ends(2)
+    real(wp) :: s
     integer :: i
-    logical :: jumped
 
-    jumped = event%jumped
     i = interval_at(self%known, position%piece, h0)
-    near = neighbours_of(self%known%path, i)
-    s = coordinate_at_h0(near, h0)
-    ends = near%coordinate(near%lower:near%lower + 1)
-    if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
-      if (near%mesh == position%mesh .and. goes_on(position, h0)) then
-        state = between(position%h0(:position%held), position%past(:position%held), h0)
-      else
-        state = near%guess(s)
+    if (self%span%point /= i) self%span = new_path_span(self%known%path, i)
+    associate (ends => self%span%ends, mesh => self%span%mesh, state => position%state)
+      s = self%span%coordinate_at_h0(h0)
+      if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
+        call self%span%guess(s, state)
+        call self%attempt(h0, state, mesh, event)
+        if (event%converged) then
+          s = coordinate_of(self%problem, mesh, state)
+          event%converged = s >= minval(ends) - slack .and. s <= maxval(ends) + slack
+        end if
       end if
-      call self%attempt(h0, state, near%mesh, event)
-      if (event%converged) then
-        s = coordinate_of(self%problem, near%mesh, state)
-        event%converged = s >= minval(ends) - slack .and. s <= maxval(ends) + slack
-      end if
-    end if
-    if (.not. event%converged) call solve_between(self%equations_t, self%options, near, h0, s, &
-      state, event%converged)
-    call remember(position, state, near%mesh, jumped)
+      position%mesh = mesh
+    end associate
+    if (.not. event%converged) &
+      call self%state_at_h0(i, h0, position%mesh, position%state, event%converged)
   end subroutine solve_on_piece
 
   !> Whether the coordinate s in the piece after point i, between `ends`, is so near a fold that h0
@@ -211,19 +206,6 @@ contains
         beside = beside .or. abs(s - ends(2)) < beside_fold*width
     end associate
   end function is_beside_fold
-
-  !> Whether h0 goes on from the last two states of a position by a step that is not much longer
-  !> than the last: then these tell more of the next state than the points of the path.
-  pure logical function goes_on(position, h0)
-    type(branch_point_t), intent(in) :: position
-    real(wp), intent(in) :: h0
-
-    goes_on = .false.
-    if (position%held < 2) return
-    associate (last => position%h0(position%held), before => position%h0(position%held - 1))
-      goes_on = abs(h0 - last) <= 2*abs(last - before)
-    end associate
-  end function goes_on
 
   !> The state at h0 on the piece of the path after point i, however near a fold.
   subroutine state_at_h0(self, i, h0, mesh, state, converged)

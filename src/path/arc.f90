@@ -12,7 +12,7 @@ module arc
   use path_tangent, only: tangent_t, tangent_at, scaled
   implicit none
   private
-  public :: arc_t, tangent_along, between, of_h0, of_load, most_states
+  public :: arc_t, tangent_along, between, take_if_sound, of_h0, of_load, most_states
 
   integer, parameter :: most_states = 8
   !> What the path is asked about: h0 or the load.
@@ -38,7 +38,7 @@ module arc
     procedure :: curvature
     procedure :: state_at
     procedure :: exact_state_at
-    procedure, private :: support
+    procedure :: support
   end type arc_t
 
   !> Difference of s for a second derivative.
