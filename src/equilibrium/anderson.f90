@@ -32,9 +32,9 @@ module anderson
     type(history_t) :: history
   end type iterate_t
 
-  !> A factorisation that has served this many states and now takes this many iterations is
-  !> renewed: it costs about as much as the iterations that it saves the next states.
-  integer, parameter :: long_service = 15, many_iterations = 5
+  !> Iterations that a state takes anyway, and those that a factorisation of so many unknowns costs
+  !> as much as: one is renewed when states took more than this beyond that.
+  integer, parameter :: few_iterations = 2, unknowns_an_iteration = 6
   !> Steps rejected before a solution is given up.
   integer, parameter :: most_rejections = 4
 
@@ -83,9 +83,8 @@ contains
       state = best
     end if
     ! The next state is better off with a new one.
-    frozen%served = frozen%served + 1
-    if (frozen%served >= long_service .and. state%iterations > many_iterations) &
-      frozen%factors%valid = .false.
+    frozen%excess = frozen%excess + max(0, state%iterations - few_iterations)
+    if (unknowns_an_iteration*frozen%excess > size(now%z)) frozen%factors%valid = .false.
   end subroutine solve_anderson
 
   !> Rigid bodies: their gap is known.
@@ -111,7 +110,7 @@ contains
     type(iterate_t), intent(inout) :: now
 
     call freeze(equations, control, state, frozen)
-    frozen%served = 0
+    frozen%excess = 0
     now%history%held = 0
     if (allocated(now%history%f_before)) deallocate (now%history%f_before)
     now%since_renewal = 0

@@ -219,7 +219,7 @@ contains
     if (self%options%method == 'mixing') return
     control%value = state%h0
     call freeze(self%equations_t, control, state, self%frozen)
-    self%frozen%served = 0
+    self%frozen%excess = 0
     ahead%regular = self%frozen%factors%valid
     if (.not. ahead%regular) return
     ahead%determinant = log_determinant(self%frozen%factors)

@@ -7,6 +7,7 @@
 !> steps; beside a fold the state is looked for along the path.
 module path_stepper
   use kinds, only: wp
+  use interpolation, only: polynomial_weights
   use listener, only: listener_t
   use equilibrium, only: state_t
   use locked_stepper, only: locked_stepper_t
@@ -16,7 +17,7 @@ module path_stepper
   use solve_at_h0, only: neighbours_t, neighbours_of, solve_between
   use path_span, only: path_span_t, new_path_span
   use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
-  use stepper, only: branch_point_t, step_result_t, extreme_t
+  use stepper, only: branch_point_t, step_result_t, extreme_t, remember
   implicit none
   private
   public :: path_stepper_t
@@ -38,6 +39,9 @@ module path_stepper
   !> Beside a fold h0 moves with the square of the coordinate and iterations at fixed h0 do not
   !> converge: the part of the last piece before one in which a state is looked for along the path.
   real(wp), parameter :: beside_fold = 0.3_wp
+  !> The largest sum of the weights of states that tell by how much a span misses the next: an
+  !> extrapolation far beyond them tells nothing.
+  real(wp), parameter :: most_weight = 30
   !> Change of the path's coordinate by which a state may miss its piece: meshes of more or fewer
   !> nodes differ by their errors.
   real(wp), parameter :: slack = 1.0e-3_wp
@@ -96,7 +100,7 @@ contains
     if (size(self%known%piece) == 0) event%ending = self%known%ending
     if (event%ending%early()) return
     from = h0
-    if (allocated(position%state%gap)) from = position%state%h0
+    if (position%held > 0) from = position%state%h0
     do while (h0 > self%known%piece(position%piece)%high .or. &
       h0 < self%known%piece(position%piece)%low)
       call self%step_over(h0 < self%known%piece(position%piece)%low, from, position, lowest, event)
@@ -149,6 +153,7 @@ contains
     if (landing%state%load < lowest%load) &
       lowest = extreme_t(landing%state%load, from, landing%fold, .true.)
     position%piece = landing%piece
+    position%held = 0
   end subroutine step_over
 
   !> Lets a point of the path be the largest tension if it is; 0 is none.
@@ -170,26 +175,62 @@ contains
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(inout) :: event
+    type(state_t) :: state
     real(wp) :: s
-    integer :: i
+    integer :: i, mesh
+    logical :: jumped
 
+    jumped = event%jumped
     i = interval_at(self%known, position%piece, h0)
     if (self%span%point /= i) self%span = new_path_span(self%known%path, i)
-    associate (ends => self%span%ends, mesh => self%span%mesh, state => position%state)
+    mesh = self%span%mesh
+    associate (ends => self%span%ends)
       s = self%span%coordinate_at_h0(h0)
       if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
-        call self%span%guess(s, state)
+        call expect(self, h0, s, position, state)
         call self%attempt(h0, state, mesh, event)
         if (event%converged) then
           s = coordinate_of(self%problem, mesh, state)
           event%converged = s >= minval(ends) - slack .and. s <= maxval(ends) + slack
         end if
       end if
-      position%mesh = mesh
     end associate
-    if (.not. event%converged) &
-      call self%state_at_h0(i, h0, position%mesh, position%state, event%converged)
+    if (.not. event%converged) call self%state_at_h0(i, h0, mesh, state, event%converged)
+    call remember(position, state, mesh, jumped)
   end subroutine solve_on_piece
+
+  !> The state that is expected at h0, where the span has the coordinate s: that of the span, and by
+  !> how much it missed the last states, extrapolated.
+  subroutine expect(self, h0, s, position, state)
+    class(path_stepper_t), intent(in) :: self
+    real(wp), intent(in) :: h0, s
+    type(branch_point_t), intent(in) :: position
+    type(state_t), intent(out) :: state
+    real(wp), dimension(position%held) :: at, weight
+    real(wp) :: missed
+    type(state_t) :: there(position%held)
+    integer :: k, first
+
+    first = position%held + 1
+    if (position%mesh == self%span%mesh) first = 1
+    do k = first, position%held
+      at(k) = coordinate_of(self%problem, self%span%mesh, position%past(k))
+    end do
+    do first = first, position%held
+      weight(first:) = polynomial_weights(at(first:), s)
+      if (sum(abs(weight(first:))) <= most_weight) exit
+    end do
+    missed = 0
+    do k = first, position%held
+      call self%span%guess(at(k), there(k))
+      missed = missed + weight(k)*(position%h0(k) - there(k)%h0)
+    end do
+    call self%span%guess(self%span%coordinate_at_h0(h0 - missed), state)
+    do k = first, position%held
+      state%gap = state%gap + weight(k)*(position%past(k)%gap - there(k)%gap)
+      state%scale = state%scale + weight(k)*(position%past(k)%scale - there(k)%scale)
+    end do
+  end subroutine expect
 
   !> Whether the coordinate s in the piece after point i, between `ends`, is so near a fold that h0
   !> hardly moves.

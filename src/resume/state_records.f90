@@ -227,7 +227,7 @@ contains
     logical, intent(in) :: known
 
     call record%put(frozen%factors%valid)
-    call record%put(frozen%served)
+    call record%put(frozen%excess)
     call record%put(frozen%control%kind)
     call record%put(frozen%control%mesh)
     call record%put(known .or. frozen%renewals == 0)
@@ -245,7 +245,7 @@ contains
     logical :: known
 
     call record%take(frozen%factors%valid)
-    call record%take(frozen%served)
+    call record%take(frozen%excess)
     call record%take(frozen%control%kind)
     call record%take(frozen%control%mesh)
     call record%take(known)
