@@ -73,7 +73,8 @@ contains
       branch%first_piece = position%piece
     end if
     do i = 1, size(plan%h0)
-      previous = position
+      ! On a known path the steps themselves tell the largest tension, one and all.
+      if (.not. allocated(event%lowest)) previous = position
       if (fresh .and. i == 1) then
         call steps%approach_to(plan%h0(i), position, event)
         branch%first_piece = position%piece
