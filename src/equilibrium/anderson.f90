@@ -7,7 +7,7 @@
 !> every step and no history.
 module anderson
   use kinds, only: wp
-  use equilibrium, only: control_t, state_t, equations_t, residual, largest_step, state_from, &
+  use equilibrium, only: control_t, state_t, equations_t, residual, largest_step, &
     unknowns_of, holds, at_h0, at_h0_with_edge
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: solve
@@ -24,10 +24,11 @@ module anderson
   end type history_t
 
   !> Where an iteration is: the unknowns, their residual and minus the plain step from them; the
-  !> unknowns with the shortest one so far; the lengths of the last one and of the shortest.
+  !> unknowns with the shortest one so far, and those with the least residual; the lengths of the
+  !> last step and of the shortest, and the least residual.
   type :: iterate_t
-    real(wp), allocatable :: z(:), g(:), f(:), z_best(:)
-    real(wp) :: length = huge(1.0_wp), shortest = huge(1.0_wp)
+    real(wp), allocatable :: z(:), g(:), f(:), z_best(:), z_least(:)
+    real(wp) :: length = huge(1.0_wp), shortest = huge(1.0_wp), least = huge(1.0_wp)
     integer :: since_renewal = 0, rejections = 0
     type(history_t) :: history
   end type iterate_t
@@ -51,7 +52,6 @@ contains
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
     type(iterate_t) :: now
-    type(state_t) :: best
     integer :: iteration
 
     if (.not. equations%problem%coupling > 0 .and. control%kind == at_h0) then
@@ -61,15 +61,18 @@ contains
     end if
     now%z = unknowns_of(control, state)
     now%z_best = now%z
+    now%z_least = now%z
     allocate (now%g(size(now%z)))
     frozen%factors%valid = frozen%serves(control, size(now%z))
-    best = state_from(size(state%gap))
     converged = .false.
     do iteration = 1, options%most_iterations
       call residual(equations, control, now%z, now%g, state)
       equations%cost%iterations = equations%cost%iterations + 1
       state%iterations = iteration
-      if (state%residual < best%residual) best = state
+      if (state%residual < now%least) then
+        now%least = state%residual
+        now%z_least = now%z
+      end if
       converged = holds(equations%problem, options%tolerance, state)
       if (converged .or. .not. state%residual < huge(1.0_wp)) exit
       if (.not. frozen%factors%valid .or. now%since_renewal >= options%patience) &
@@ -78,10 +81,8 @@ contains
       if (.not. frozen%factors%valid .or. now%rejections > most_rejections) exit
       call advance(equations, options%depth, control, now)
     end do
-    if (.not. converged .and. best%residual < state%residual) then
-      best%iterations = state%iterations
-      state = best
-    end if
+    if (.not. converged .and. now%least < state%residual) &
+      call residual(equations, control, now%z_least, now%g, state)
     ! The next state is better off with a new one.
     frozen%excess = frozen%excess + max(0, state%iterations - few_iterations)
     if (unknowns_an_iteration*frozen%excess > size(now%z)) frozen%factors%valid = .false.
