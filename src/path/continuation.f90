@@ -23,8 +23,9 @@ module continuation
   real(wp), parameter :: first_step = 0.04_wp, shortest_step = 1.0e-6_wp, longest_step = 0.5_wp
   !> How far a guess may be from the state, relative or in the law's lengths, for two or three
   !> iterations to correct it; the power of the step that an extrapolation from three states with
-  !> tangents misses by; limits of the change of a step.
-  real(wp), parameter :: wanted_miss = 3.0e-4_wp, growth = 1.7_wp, shrinkage = 0.3_wp
+  !> tangents misses by; limits of the change of a step, and its ladder.
+  real(wp), parameter :: wanted_miss = 3.0e-4_wp, growth = 1.7_wp, shrinkage = 0.3_wp, &
+    rung = 1.2_wp
   integer, parameter :: order = 6
   !> The same of a path whose points are to make a smooth curve, and its longest step.
   real(wp), parameter :: miss_of_curve = 1.0e-6_wp, step_of_curve = 0.12_wp
@@ -98,10 +99,19 @@ contains
       if (lost) return
     end do
     self%step = min(self%longest_step, abs(s - self%coordinate(self%held))* &
-      min(growth, max(shrinkage, (self%wanted_miss/max(miss, tiny(1.0_wp)))**(1.0_wp/order))))
+      factor_for(self%wanted_miss/max(miss, tiny(1.0_wp))))
     if (self%held == memory) call self%drop_first()
     call self%add(s, state, tangent)
   end subroutine advance
+
+  !> By how much the next step is longer, where the miss may be so many times what it was: in steps
+  !> of a ladder, so that rounding does not show in where the path has its points.
+  pure real(wp) function factor_for(ratio) result(factor)
+    real(wp), intent(in) :: ratio
+
+    factor = rung**floor(log(ratio)/(order*log(rung)))
+    factor = min(growth, max(shrinkage, factor))
+  end function factor_for
 
   !> The step that is due, or the longest that the mesh in use is good for.
   pure real(wp) function next_step(self, equations) result(step)
