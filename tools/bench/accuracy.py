@@ -36,7 +36,8 @@ def _row(problem, kind, value, run, reference, length):
     errors = run.errors(reference, length)
     return {
         "problem": problem.name, "deck": kind, "accuracy": value, "nodes": run.nodes,
-        "states": run.states, "seconds": run.seconds, "estimate_seconds": run.estimate_seconds,
+        "states": run.states, "price": run.price, "least_price": run.least_price,
+        "price_of_estimate": run.price - run.price_of_run,
         "products": run.products, "factorisations": run.factorisations,
         **{f"error_{key}": errors.get(key, math.nan) for key in ("pull_off", "jump_in", "load")},
         "error": max(errors.values(), default=math.nan),
@@ -46,11 +47,11 @@ def _row(problem, kind, value, run, reference, length):
 
 
 def draw(rows, folder):
-    """Draw error and estimate against the accuracy asked for, and time against error."""
+    """Draw error and estimate against the accuracy asked for, and the price of each."""
     page, panels = pictures.figure(1, 2, (9.0, 4.6))
     pictures.dress(panels[0, 0], "what is asked and what is got", "accuracy asked for",
                    "relative error")
-    pictures.dress(panels[0, 1], "what it costs", "accuracy asked for", "time [s]")
+    pictures.dress(panels[0, 1], "what it costs", "accuracy asked for", "time [G]")
     for problem, colour, marker in zip(problems.ALL, pictures.COLOURS, pictures.MARKERS):
         mine = [row for row in rows if row["problem"] == problem.name and row["deck"] == "path"]
         asked = [row["accuracy"] for row in mine]
@@ -58,30 +59,39 @@ def draw(rows, folder):
                           linestyle="-", linewidth=1.2, label=problem.label)
         panels[0, 0].plot(asked, [row["estimate"] for row in mine], marker, color=colour,
                           linestyle=":", linewidth=1.0, markersize=4, markerfacecolor="white")
-        panels[0, 1].plot(asked, [row["seconds"] for row in mine], marker, color=colour,
+        panels[0, 1].plot(asked, [row["price"] for row in mine], marker, color=colour,
                           linestyle="-", linewidth=1.2)
+        panels[0, 1].plot(asked, [row["least_price"] for row in mine], color=colour,
+                          linestyle=":", linewidth=1.0)
     panels[0, 0].plot(ACCURACIES, ACCURACIES, color=pictures.GREY, linewidth=2, zorder=0,
                       label="error = accuracy")
+    panels[0, 1].plot([], [], ":", color="#555555", label="linear algebra and rows alone")
+    panels[0, 1].legend(frameon=False, fontsize=8)
     panels[0, 0].plot([], [], "o:", color="#555555", markersize=4, markerfacecolor="white",
                       label="error_estimate")
     for panel in panels.flat:
         panel.invert_xaxis()
-    pictures.plain_ticks(panels[0, 1], (0.01, 0.02, 0.05, 0.1, 0.2, 0.5), "y")
+    pictures.plain_ticks(panels[0, 1], (1, 2, 5, 10, 20, 50, 100), "y")
     pictures.legend(page, 4)
     pictures.save(page, folder / "accuracy.png")
 
 
-def tables(rows):
-    """Return the guide's tables: each accuracy, and the ratios of estimate and error."""
+def tables(rows, before):
+    """Return the price list: the path at each accuracy, and what it cost in the last version."""
     lines = []
-    for problem in _LAW:
+    earlier = {(row["problem"], row["deck"], row["accuracy"]): row.get("price", math.nan)
+               for row in before}
+    for problem in problems.ALL:
         for row in rows:
-            if (row["problem"] == problem.name and row["deck"] == "path"
-                    and row["accuracy"] in (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)):
-                lines.append([problem.label, f"{row['accuracy']:.0e}", f"{row['nodes']:.0f}",
-                              row["error"], row["estimate"], f"{row['seconds']:.2g}"])
-    return {"accuracy": (["", "accuracy", "nodes", "true error", "error_estimate", "seconds"],
-                         lines)}
+            if row["problem"] == problem.name and row["deck"] == "path":
+                key = row["problem"], row["deck"], row["accuracy"]
+                lines.append([problem.label, f"{row['accuracy']:.0e}", row["price"],
+                              row["least_price"], earlier.get(key, math.nan),
+                              f"{row['nodes']:.0f}", f"{row['states']:.0f}",
+                              f"{row['products']:.0f}", f"{row['factorisations']:.0f}",
+                              row["error"], row["estimate"]])
+    return {"accuracy": (["", "accuracy", "G", "limit", "before", "nodes", "states", "products",
+                          "factorisations", "true error", "error_estimate"], lines)}
 
 
 def measure_law(program, quick, say):
@@ -155,7 +165,7 @@ def draw_law(rows, folder):
     pictures.save(page, folder / "error_law.png")
 
 
-def tables_law(rows):
+def tables_law(rows, before):
     """Return the guide's table: the laws fitted to what is above rounding and without a warning."""
     lines = []
     for knob, name in (("locked", "edge-locked: factor for each ten nodes"),

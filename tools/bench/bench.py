@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
 """Measure what accuracy costs: tables and pictures in docs/bench/, tables in docs/accuracy.md.
 
-    ./bench                          everything, 20 minutes or so
-    ./bench --quick                  everything, coarser, in a few minutes, into results/bench/
+    ./bench                          everything, a quarter of an hour
+    ./bench --quick                  everything, coarser, in two minutes, into results/bench/
     ./bench --only work_precision    one part
     ./bench --resume                 what an interrupted run left undone
     ./bench --draw                   pictures and tables once more, from the measurements at hand
+
+Times are in G, one DGESV of 400 unknowns on one core in the same run, and beside them is the least
+that the same linear algebra and rows take by themselves. Measurements of earlier sources are kept
+as NAME_before.csv, and the price list compares with them.
 """
 
 import argparse
@@ -60,8 +64,11 @@ def main():
             began = time.perf_counter()
             _say(name)
             rows = _PARTS[name][0](runner, quick, lambda text: _say(f"  {text}"))
+            sources = f"sources {pages.digest()}"
+            if path.is_file() and f"# {sources}\n" not in path.read_text(encoding="utf-8"):
+                path.replace(_before(path))
             tables.write(path, rows, [f"./bench --only {name}{' --quick' if quick else ''}",
-                                      version, tables.machine()])
+                                      version, sources, tables.machine()])
             _say(f"  {time.perf_counter() - began:.0f} s; {path}")
     in_guide = not quick and options.out is None
     _present(folder, in_guide)
@@ -77,7 +84,7 @@ def _present(folder, in_guide):
         if rows and draw:
             draw(rows, folder)
         if rows and make_tables:
-            found.update(make_tables(rows))
+            found.update(make_tables(rows, tables.read(_before(folder / f"{name}.csv"))))
     if (folder / "accuracy.csv").is_file():
         found.update(accuracy.honesty(folder))
     for name, (header, lines) in found.items():
@@ -87,10 +94,15 @@ def _present(folder, in_guide):
             print(f"\n{name}\n\n{tables.markdown(header, lines)}")
 
 
+def _before(path):
+    """Return where the measurements of earlier sources are kept."""
+    return path.with_name(f"{path.stem}_before.csv")
+
+
 def _options():
     parser = argparse.ArgumentParser(
         prog="./bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="coarser, in a few minutes")
+    parser.add_argument("--quick", action="store_true", help="coarser, in two minutes")
     parser.add_argument("--only", action="append", choices=_PARTS, metavar="PART",
                         help=f"one part (may be repeated): {', '.join(_PARTS)}")
     parser.add_argument("--resume", action="store_true",

@@ -27,12 +27,12 @@ def measure(program, quick, say):
     }
     rows = []
     for case, run in program.best_of(3 if quick else 15, cases).items():
-        rest = run.seconds - run.kernel_seconds - run.solve_seconds - run.estimate_seconds
+        rest = run.wall - run.kernel_seconds - run.solve_seconds - run.estimate_seconds
         for what, seconds in (("kernel", run.kernel_seconds), ("solution", run.solve_seconds),
                               ("error estimate", run.estimate_seconds),
                               ("deck, results, start", rest)):
             rows.append({"case": case, "kind": "seconds", "what": what, "value": seconds,
-                         "share": seconds / run.seconds})
+                         "share": seconds / run.wall})
     if not (shutil.which("valgrind") and shutil.which("callgrind_annotate")):
         say("no valgrind: the timers only")
         return rows
@@ -67,7 +67,7 @@ def _count(digits):
     return int(digits.replace(",", ""))
 
 
-def tables(rows):
+def tables(rows, before):
     """Return the guide's table: shares in the two cases, side by side."""
     cases = list(dict.fromkeys(row["case"] for row in rows))
     lines = []

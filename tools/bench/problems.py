@@ -45,8 +45,7 @@ class Problem:
 
 def lennard_jones(sigma):
     """Return the Lennard-Jones problem of a strength of adhesion sigma, (40) of the paper."""
-    gamma = _HAMAKER / (16 * math.pi * _Z0**2)
-    stiffness = gamma / sigma * math.sqrt(_RADIUS / _Z0**3)
+    stiffness = _stiffness_of(sigma)
     # Where the retreat jumps apart, in units of z0, and some more.
     start = 5 + 3.2 * sigma ** (2 / 3)
     start, turn = float(f"{start:.2g}"), -float(f"{0.25 * start:.1g}")
@@ -55,6 +54,12 @@ def lennard_jones(sigma):
         f"&bodies radius = {_RADIUS}, stiffness = {stiffness!r} /\n"
         f"&force law = 'lennard_jones', hamaker = {_HAMAKER}, z0 = {_Z0} /",
         _Z0, start, turn, (start - turn) / 50)
+
+
+def _stiffness_of(sigma):
+    """Return the E/(1-nu^2) [Pa] that gives a sigma."""
+    gamma = _HAMAKER / (16 * math.pi * _Z0**2)
+    return gamma / sigma * math.sqrt(_RADIUS / _Z0**3)
 
 
 def exponential(big_lambda):
@@ -66,6 +71,17 @@ def exponential(big_lambda):
         f"&bodies radius = {_RADIUS}, stiffness = {stiffness!r} /\n"
         f"&force law = 'exponential', p0 = {_P0}, decay_length = {_DECAY} /",
         _DECAY, float(start), 0.0, start / 30, adhesive=False)
+
+
+def sweep_of_paths(count):
+    """Return a deck of so many paths, sigma from 1e-3 to 1e3."""
+    # The stiffness goes as one over sigma.
+    soft, stiff = (_stiffness_of(sigma) for sigma in (1e3, 1e-3))
+    return (f"&bodies radius = {_RADIUS}, stiffness = {soft!r} /\n"
+            f"&force law = 'lennard_jones', hamaker = {_HAMAKER}, z0 = {_Z0} /\n"
+            f"&equilibrium_path h0_end = {-5 * _Z0!r} /\n"
+            f"&sweep key = 'bodies.stiffness', from = {soft!r}, to = {stiff!r}, count = {count}, "
+            "scale = 'log' /\n&numerics accuracy = 1e-6 /\n")
 
 
 FIGURE_10C = (

@@ -4,12 +4,13 @@ import dataclasses
 import math
 import os
 import pathlib
+import resource
 import shutil
 import subprocess
 import sys
 
 import f90nml
-import numpy as np
+from gauge import Gauge
 from snapin.results import read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -26,26 +27,44 @@ _LENGTHS = ("jump_in", "jump_out", "displacement")
 
 @dataclasses.dataclass
 class Run:
-    """One run: what was found, what it cost, and what was wrong with it."""
+    """One run: what was found, what it cost, and what was wrong with it.
 
+    seconds: of the processor, start and files included, so that other work on the machine does not
+    count; wall: by the clock, like those of its parts. unit: the seconds of G beside it (`gauge`);
+    limit: those of its linear algebra and rows alone.
+    """
+
+    unit: float = math.nan
+    limit: float = math.nan
     seconds: float = math.nan
+    wall: float = math.nan
     kernel_seconds: float = math.nan
     solve_seconds: float = math.nan
     estimate_seconds: float = math.nan
     nodes: int = 0
     states: int = 0
     products: int = 0
+    columns: int = 0
     factorisations: int = 0
-    median_products: float = math.nan
     estimate: float = math.nan
     failure: str = ""
     warning: str = ""
     values: dict = dataclasses.field(default_factory=dict)
 
     @property
-    def seconds_of_run(self):
-        """Time of what the deck asks for, without that of the error estimate."""
-        return self.seconds - self.estimate_seconds
+    def price(self):
+        """Time in G."""
+        return self.seconds / self.unit
+
+    @property
+    def price_of_run(self):
+        """The same of what the deck asks for, without that of the error estimate."""
+        return self.price * (1 - self.estimate_seconds / self.wall)
+
+    @property
+    def least_price(self):
+        """The limit in G."""
+        return self.limit / self.unit
 
     def errors(self, reference, length):
         """Return relative errors against a converged run, for a force law of some length."""
@@ -70,6 +89,7 @@ class Program:
         # A copy, so that everything is measured with one program even if it is built anew meanwhile.
         self.snapin = pathlib.Path(shutil.copy2(self.build / "snapin", self.scratch))
         self._references = {}
+        self.gauge = Gauge(self.build, self.environment)
 
     def environment(self, threads=1):
         """Return an environment with so many threads."""
@@ -80,29 +100,46 @@ class Program:
         path = self.scratch / "deck.nml"
         path.write_text(deck, encoding="utf-8")
         command = [*before, str(self.snapin), "--quiet", "--out", str(self.scratch), str(path)]
+        began = _processor_seconds()
         try:
             done = subprocess.run(command, env=self.environment(threads), capture_output=True,
                                   text=True, timeout=cap, check=False)
         except subprocess.TimeoutExpired:
-            return Run(seconds=cap, failure=f"not finished in {cap:g} s")
+            return Run(seconds=cap, wall=cap, failure=f"not finished in {cap:g} s")
         if done.returncode not in (0, 1):
             return Run(failure=(done.stderr.strip().splitlines() or ["no message"])[0])
-        return self._read(done.returncode)
+        run = self._read(done.returncode)
+        run.seconds = _processor_seconds() - began
+        return run
 
     def best_of(self, rounds, decks, cap=60, enough=3.0, **options):
         """Run every deck of a dict in turn, `rounds` times over; keep each one's fastest run.
 
-        What takes longer than `enough` seconds, or fails, is run once.
+        What takes longer than `enough` seconds, or fails, is run once. G is the least of those
+        measured between them.
         """
-        best = {}
+        best, unit = {}, math.inf
         for _ in range(rounds):
             for key, deck in decks.items():
+                unit = min(unit, self.gauge.unit())
                 if key in best and not best[key].seconds < enough:
                     continue
                 run = self.run(deck, cap, **options)
                 if key not in best or run.seconds < best[key].seconds:
                     best[key] = run
+        for run in best.values():
+            run.unit, run.limit = unit, self.gauge.limit(run)
         return best
+
+    def start_up(self, rounds=10):
+        """Return the price of a program that starts and says what it is."""
+        least = math.inf
+        for _ in range(rounds):
+            began = _processor_seconds()
+            subprocess.run([str(self.snapin), "--version"], env=self.environment(), check=True,
+                           capture_output=True)
+            least = min(least, _processor_seconds() - began)
+        return least / self.gauge.unit()
 
     def reference(self, problem):
         """Return a converged run: the path, as accurate as the program goes."""
@@ -118,16 +155,15 @@ class Program:
         folder = self.scratch / "deck"
         groups = f90nml.read(folder / "summary.nml")
         summary, cost = groups["summary"], groups["cost"]
-        curve = read_table(folder, "curve.csv")
         warnings = summary.get("warnings", [])
         warnings = [warnings] if isinstance(warnings, str) else warnings
         run = Run(
-            seconds=cost["wall_seconds"], kernel_seconds=cost["kernel_seconds"],
+            wall=cost["wall_seconds"], kernel_seconds=cost["kernel_seconds"],
             solve_seconds=cost["solve_seconds"],
-            estimate_seconds=cost.get("estimate_seconds", 0.0), nodes=cost["nodes"],
+            estimate_seconds=cost.get("estimate_seconds", 0.0), nodes=cost.get("nodes", 0),
             states=cost["states"], products=cost["operator_products"],
+            columns=cost["operator_columns"],
             factorisations=cost["factorisations"],
-            median_products=float(np.median(curve["iterations"])),
             estimate=float(summary.get("error_estimate", math.nan)),
             warning="; ".join(warnings))
         if returncode:
@@ -138,9 +174,19 @@ class Program:
             if f"{key}_h0" in summary:
                 run.values[key] = summary[f"{key}_h0"]
                 run.values[f"{key}_load"] = summary[f"{key}_load"]
+        run.summary = summary
+        # A sweep has none.
+        if not (folder / "curve.csv").is_file():
+            return run
+        curve = read_table(folder, "curve.csv")
         branch = curve["branch"] == curve["branch"][0]
         # Loading and path both end at the turning point.
         for key in ("load", "displacement"):
             run.values[key] = float(curve[key][branch][-1])
-        run.summary = summary
         return run
+
+
+def _processor_seconds():
+    """Return the processor time of all that was run and has ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime

@@ -1,18 +1,15 @@
 """How time grows with adhesion, nodes and threads."""
 
-import io
 import os
-import subprocess
 
 import pictures
 import problems
-from program import ROOT
 
 _PIECES = ("assembly", "dgemv", "residual", "mixing", "dgetrs", "anderson", "dgesv", "newton")
 
 
 def measure_sigma(program, quick, say):
-    """Return the time of path and cycle against the strength of adhesion."""
+    """Return the price of path and cycle against the strength of adhesion."""
     exponents = range(-3, 5, 2) if quick else [k / 2 for k in range(-6, 9)]
     cases = {}
     for exponent in exponents:
@@ -23,9 +20,10 @@ def measure_sigma(program, quick, say):
     rows = []
     for (name, kind), run in runs.items():
         rows.append({
-            "sigma": float(name.split("_")[1]), "deck": kind, "seconds": run.seconds,
-            "kernel_seconds": run.kernel_seconds, "solve_seconds": run.solve_seconds,
-            "estimate_seconds": run.estimate_seconds, "nodes": run.nodes, "states": run.states,
+            "sigma": float(name.split("_")[1]), "deck": kind, "price": run.price,
+            "least_price": run.least_price, "kernel": run.kernel_seconds / run.unit,
+            "solution": run.solve_seconds / run.unit,
+            "error_estimate": run.estimate_seconds / run.unit, "nodes": run.nodes, "states": run.states,
             "products": run.products, "factorisations": run.factorisations,
             "estimate": run.estimate, "failure": run.failure, "warning": run.warning})
     say(f"{len(rows)} runs")
@@ -33,17 +31,19 @@ def measure_sigma(program, quick, say):
 
 
 def draw_sigma(rows, folder):
-    """Draw time, nodes and states against sigma."""
+    """Draw price, nodes and states against sigma."""
     page, panels = pictures.figure(1, 2, (9.0, 4.2))
-    pictures.dress(panels[0, 0], "accuracy 1e-6, one core", "σ", "time [s]")
+    pictures.dress(panels[0, 0], "accuracy 1e-6, one core", "σ", "time [G]")
     pictures.dress(panels[0, 1], "the path", "σ", "number")
     for kind, colour, marker in (("path", pictures.BLUE, "o"),
                                  ("cycle of 102 states", pictures.VERMILION, "s")):
         mine = sorted((row for row in rows if row["deck"] == kind.split()[0]),
                       key=lambda row: row["sigma"])
         good = [row for row in mine if not row["failure"]]
-        panels[0, 0].plot([row["sigma"] for row in good], [row["seconds"] for row in good], marker,
+        panels[0, 0].plot([row["sigma"] for row in good], [row["price"] for row in good], marker,
                           color=colour, linestyle="-", label=kind)
+        panels[0, 0].plot([row["sigma"] for row in good], [row["least_price"] for row in good],
+                          color=colour, linestyle=":", linewidth=1)
         failed = [row["sigma"] for row in mine if row["failure"]]
         panels[0, 0].plot(failed, [0.97] * len(failed), "x", color=colour, markersize=9,
                           markeredgewidth=2, transform=panels[0, 0].get_xaxis_transform())
@@ -52,29 +52,19 @@ def draw_sigma(rows, folder):
                                      ("states", pictures.PURPLE, "D")):
                 panels[0, 1].plot([row["sigma"] for row in good], [row[key] for row in good],
                                   shape, color=tone, linestyle="-", label=key)
-    pictures.plain_ticks(panels[0, 0], (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2), "y")
+    pictures.plain_ticks(panels[0, 0], (1, 2, 5, 10, 20, 50, 100), "y")
     pictures.plain_ticks(panels[0, 1], (50, 100, 200, 500, 1000), "y")
     for panel in panels.flat:
         panel.legend(frameon=False, fontsize=9)
     pictures.save(page, folder / "sigma.png")
 
 
-def limits(program, nodes, threads=1):
-    """Return the driver's rows for the given numbers of nodes."""
-    subprocess.run([str(ROOT / ".venv/bin/ninja"), "-C", str(program.build), "linear_limits"],
-                   check=True, capture_output=True)
-    output = subprocess.run(
-        [str(program.build / "linear_limits"), *map(str, nodes)],
-        env=program.environment(threads), check=True, capture_output=True, text=True).stdout
-    lines = io.StringIO(output)
-    header = next(lines).strip().split(",")
-    return [dict(zip(header, map(float, line.split(",")))) for line in lines]
-
-
 def measure_nodes(program, quick, say):
-    """Return seconds of the library's pieces against nodes."""
-    rows = limits(program, (100, 200, 400) if quick else (100, 200, 300, 400, 600, 800, 1000, 1500,
-                                                          2000))
+    """Return times of the library's pieces against nodes, in G."""
+    rows = program.gauge.pieces((100, 200, 400) if quick else (100, 200, 400, 800, 1500))
+    unit = next(row["dgesv"] for row in rows if row["nodes"] == 400)
+    rows = [{key: value if key == "nodes" else value / unit for key, value in row.items()}
+            for row in rows]
     say(f"{len(rows)} grids")
     return rows
 
@@ -83,7 +73,7 @@ def draw_nodes(rows, folder):
     """Draw the pieces' times."""
     page, panels = pictures.figure(1, 2, (9.0, 4.4))
     nodes = [row["nodes"] for row in rows]
-    pictures.dress(panels[0, 0], "one core", "nodes", "time [s]")
+    pictures.dress(panels[0, 0], "one core", "nodes", "time [G]")
     pictures.dress(panels[0, 1], "over the linear algebra in it", "nodes", "ratio", log="x")
     for piece, colour, marker in zip(_PIECES, pictures.COLOURS, pictures.MARKERS):
         plain = piece.startswith("dge")
@@ -104,17 +94,17 @@ def draw_nodes(rows, folder):
         pictures.plain_ticks(panel, ticks)
     panels[0, 1].axhline(1.3, color=pictures.GREY, linewidth=1, linestyle=(0, (4, 2)))
     panels[0, 1].set_ylim(0, None)
-    panels[0, 0].set_ylim(5e-7, 100)
+    panels[0, 0].set_ylim(5e-4, 1e5)
     panels[0, 0].legend(frameon=False, fontsize=9, ncols=2, loc="upper left")
     panels[0, 1].legend(frameon=False, fontsize=9)
     pictures.save(page, folder / "nodes.png")
 
 
 def measure_threads(program, quick, say):
-    """Return kernel and solve seconds of large uniform runs against threads."""
+    """Return the times of large uniform runs against threads, in G of one thread."""
     rows = []
     problem = problems.ADHESIVE[1]
-    for nodes in (400,) if quick else (400, 1000, 2000):
+    for nodes in (400,) if quick else (400, 1000):
         deck = problem.cycle(f"grid = 'uniform', nodes = {nodes}, accuracy = 1e-2",
                              20 * problem.step)
         for threads in (1, 2, 4):
@@ -122,18 +112,19 @@ def measure_threads(program, quick, say):
                 continue
             run = program.best_of(1 if nodes > 1000 else 2, {0: deck}, 180, threads=threads)[0]
             rows.append({
-                "nodes": nodes, "threads": threads, "kernel_seconds": run.kernel_seconds,
-                "solve_seconds": run.solve_seconds, "estimate_seconds": run.estimate_seconds,
-                "seconds": run.seconds, "failure": run.failure, "warning": run.warning})
+                "nodes": nodes, "threads": threads, "kernel": run.kernel_seconds / run.unit,
+                "solution": run.solve_seconds / run.unit,
+                "error_estimate": run.estimate_seconds / run.unit,
+                "price": run.wall / run.unit, "failure": run.failure, "warning": run.warning})
         say(f"{nodes} nodes: kernel " + ", ".join(
-            f"{row['kernel_seconds']:.3f}" for row in rows if row["nodes"] == nodes) + " s")
+            f"{row['kernel']:.3g}" for row in rows if row["nodes"] == nodes) + " G")
     return rows
 
 
 def draw_threads(rows, folder):
     """Draw the speed-up by threads."""
     page, panels = pictures.figure(1, 2, (9.0, 4.0), sharey=True)
-    for panel, key, title in zip(panels.flat, ("kernel_seconds", "solve_seconds"),
+    for panel, key, title in zip(panels.flat, ("kernel", "solution"),
                                  ("kernel assembly", "solution")):
         pictures.dress(panel, title, "threads", "speed-up" if key[0] == "k" else "", log="")
         panel.plot((1, 4), (1, 4), color=pictures.GREY, linewidth=1, linestyle=(0, (4, 2)),
@@ -150,9 +141,9 @@ def draw_threads(rows, folder):
     pictures.save(page, folder / "threads.png")
 
 
-def tables_threads(rows):
+def tables_threads(rows, before):
     """Return the guide's table."""
     return {"threads": (
-        ["nodes", "threads", "kernel [s]", "solution [s]", "estimate [s]"],
-        [[f"{row['nodes']:.0f}", f"{row['threads']:.0f}", row["kernel_seconds"],
-          row["solve_seconds"], row["estimate_seconds"]] for row in rows])}
+        ["nodes", "threads", "kernel [G]", "solution [G]", "estimate [G]"],
+        [[f"{row['nodes']:.0f}", f"{row['threads']:.0f}", row["kernel"], row["solution"],
+          row["error_estimate"]] for row in rows])}

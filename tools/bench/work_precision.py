@@ -10,7 +10,7 @@ NAMES = {"pull_off": "pull-off", "jump_in": "jump-in $h_0$", "load": "load at fi
 
 _ACCURACY = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
 # A run much longer than this is not started: the last one on a coarser grid tells.
-_CAP = {True: 10.0, False: 40.0}
+_CAP = {True: 2.0, False: 5.0}
 
 # Name, what of &numerics makes it, whether nodes or accuracy set its cost, and the power of the
 # nodes that a step costs.
@@ -30,7 +30,7 @@ _METHODS = (
 def measure(program, quick, say):
     """Return one row for every problem, method and fineness."""
     cap = _CAP[quick]
-    nodes = (50, 100, 200) if quick else (100, 200, 400, 800, 1500)
+    nodes = (50, 100) if quick else (100, 200, 400, 800)
     accuracy = _ACCURACY[1::2] if quick else _ACCURACY
     rows = []
     for problem in problems.ALL:
@@ -72,8 +72,8 @@ def _row(problem, method, knob, value, run, reference):
         failure = f"found no {' and no '.join(lost)}"
     return {
         "problem": problem.name, "method": method, "knob": knob, "value": value,
-        "seconds": run.seconds_of_run if run.states else run.seconds,
-        "estimate_seconds": run.estimate_seconds, "products": run.products,
+        "price": run.price_of_run if run.states else run.price,
+        "least_price": run.least_price, "products": run.products,
         "factorisations": run.factorisations, "states": run.states, "nodes": run.nodes,
         **{f"error_{key}": errors.get(key, math.nan) for key in QUANTITIES},
         "error": max(known, default=math.nan), "error_claimed": max(claimed, default=math.nan),
@@ -83,12 +83,12 @@ def _row(problem, method, knob, value, run, reference):
 
 
 def _outcome(row):
-    return "failed" if row["failure"] else f"{row['error']:.0e} in {row['seconds']:.2g} s"
+    return "failed" if row["failure"] else f"{row['error']:.0e} for {row['price']:.2g} G"
 
 
 def draw(rows, folder):
-    """Draw the largest error against seconds and products, and each error against seconds."""
-    for cost, unit in (("seconds", "time [s]"), ("products", "operator products")):
+    """Draw the largest error against time and products, and each error against time."""
+    for cost, unit in (("price", "time [G]"), ("products", "operator products")):
         page, panels = pictures.figure(3, 2, (9.0, 11.0), sharey=True)
         for panel, problem in zip(panels.flat, problems.ALL):
             pictures.dress(panel, problem.label, unit, "")
@@ -101,8 +101,8 @@ def draw(rows, folder):
     for column, problem in enumerate(problems.ADHESIVE[1:]):
         for row, key in enumerate(QUANTITIES):
             pictures.dress(panels[row, column], problem.label if row == 0 else "",
-                           "time [s]" if row == 2 else "")
-            _panel(panels[row, column], rows, problem, f"error_{key}", "seconds")
+                           "time [G]" if row == 2 else "")
+            _panel(panels[row, column], rows, problem, f"error_{key}", "price")
     for row, key in enumerate(QUANTITIES):
         panels[row, 0].set_ylabel(f"error of {NAMES[key]}")
     _finish(page, panels[0, 0])
@@ -140,7 +140,7 @@ def _finish(page, panel):
     pictures.legend(page)
 
 
-def tables(rows):
+def tables(rows, before):
     """Return the guide's table: the cheapest run of each method within an error of 1e-3."""
     text = []
     for method, *_ in _METHODS:
@@ -148,11 +148,11 @@ def tables(rows):
         for problem in problems.ALL:
             good = [row for row in rows if row["problem"] == problem.name
                     and row["method"] == method and not row["failure"] and row["error"] <= 1e-3]
-            best = min(good, key=lambda row: row["seconds"], default=None)
-            cells.append(f"{_time(best['seconds'])}" if best else "–")
+            best = min(good, key=lambda row: row["price"], default=None)
+            cells.append(f"{_time(best['price'])}" if best else "–")
         text.append(cells)
-    return {"work_precision": (["seconds", *(p.label for p in problems.ALL)], text)}
+    return {"work_precision": (["G", *(p.label for p in problems.ALL)], text)}
 
 
-def _time(seconds):
-    return f"{seconds:.2g}"
+def _time(price):
+    return f"{price:.2g}"

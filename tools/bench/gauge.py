@@ -1,0 +1,83 @@
+"""The unit of time, and the least time that a task can take.
+
+G is one DGESV of 400 unknowns on one core, measured between the runs that are counted in it: it
+goes up and down with the load and the machine, and so do they.
+"""
+
+import bisect
+import io
+import math
+import os
+import pathlib
+import subprocess
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# Unknowns whose linear algebra is timed; between them times are powers of the number.
+_SIZES = (16, 32, 64, 128, 256, 512)
+_UNIT = 400
+# Seconds after which G is measured again.
+_STALE = 5.0
+# Bytes of a row of the curve and of the journal, about.
+_ROW = (230, 900)
+
+
+class Gauge:
+    """Times of the linear algebra of one build."""
+
+    def __init__(self, build, environment):
+        self.build, self.environment = build, environment
+        self._unit, self._measured, self._pieces, self._row = None, -1e9, None, None
+        subprocess.run([str(ROOT / ".venv/bin/ninja"), "-C", str(build), "linear_limits"],
+                       check=True, capture_output=True)
+
+    def unit(self):
+        """Return G [s], not older than some seconds."""
+        if time.monotonic() - self._measured > _STALE:
+            self._unit = self.pieces((_UNIT,), ("dgesv",))[0]["dgesv"]
+            self._measured = time.monotonic()
+        return self._unit
+
+    def pieces(self, nodes, names=(), threads=1):
+        """Return a dict of seconds for each number of nodes, of all pieces or of those named."""
+        output = subprocess.run(
+            [str(self.build / "linear_limits"), *names, *map(str, nodes)],
+            env=self.environment(threads), check=True, capture_output=True, text=True).stdout
+        lines = io.StringIO(output)
+        header = next(lines).strip().split(",")
+        return [dict(zip(header, map(float, line.split(",")))) for line in lines]
+
+    def limit(self, run):
+        """Return the seconds of a run's products, solutions, factorisations and rows alone.
+
+        Each is timed by itself on matrices of the run's mean size. Every state but for its last
+        product solves with factors.
+        """
+        if not run.products:
+            return float("nan")
+        if self._pieces is None:
+            self._pieces = self.pieces(_SIZES, ("dgemv", "dgetrs", "dgesv"))
+            self._row = _seconds_of_row()
+        size = run.columns / run.products
+        dgemv, dgetrs, dgesv = (self._at(size, name) for name in ("dgemv", "dgetrs", "dgesv"))
+        return (run.products * dgemv + max(run.products - run.states, 0) * dgetrs
+                + run.factorisations * (dgesv - dgetrs) + run.states * self._row)
+
+    def _at(self, size, name):
+        """Return the seconds of a piece at a size, a power of it between those measured."""
+        i = min(max(bisect.bisect(_SIZES, size) - 1, 0), len(_SIZES) - 2)
+        low, high = (self._pieces[j][name] for j in (i, i + 1))
+        return low * (high / low) ** (math.log(max(size, 1) / _SIZES[i])
+                                      / math.log(_SIZES[i + 1] / _SIZES[i]))
+
+
+def _seconds_of_row():
+    """Return the time of handing a row and its record to the system."""
+    blocks = [bytes(size) for size in _ROW]
+    with open(os.devnull, "wb", buffering=0) as file:
+        began = time.perf_counter()
+        for _ in range(2000):
+            for block in blocks:
+                file.write(block)
+        return (time.perf_counter() - began) / 2000
