@@ -1,7 +1,7 @@
 !> linear_limits [PIECE ...] NODES [NODES ...]: times the library's pieces, or those that are named,
 !> beside the linear algebra that bounds them from below, on a uniform grid of each number of nodes.
-!> One line of comma-separated seconds of the processor each; every time is the least of several rounds, and each
-!> round has all pieces, so that ratios mean something on a busy machine.
+!> One line of comma-separated seconds of the processor each; every time is the least of several
+!> rounds, and each round has all pieces, so that ratios mean something on a busy machine.
 program linear_limits
   use, intrinsic :: iso_fortran_env, only: output_unit
   use kinds, only: wp
