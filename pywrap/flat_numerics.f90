@@ -130,8 +130,8 @@ contains
   end subroutine mapped_matrix
 
   !> Values at positions `at` of the function with the given values at the nodes, bounded far away.
-  subroutine mapped_interpolation(centre, d, inner, order, z_length, tail_order, values, at, found, &
-    panels, nodes, n)
+  subroutine mapped_interpolation(centre, d, inner, order, z_length, tail_order, values, at, &
+    found, panels, nodes, n)
     use discretisation, only: discretisation_t
     use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
     integer(c_int), intent(in) :: panels, nodes, n, inner, order(panels), tail_order

@@ -53,7 +53,7 @@ def _sum_and_distance(total, distance):
 
 
 def kernel(total, distance):
-    """Return k(r, t) for arrays of r + t and |r - t|, both positive (src/mesh/elastic_kernel.f90)."""
+    """Return k(r, t) for arrays of r + t and |r - t|, both positive."""
     return _flat.kernel_values(*_sum_and_distance(total, distance))[0]
 
 
