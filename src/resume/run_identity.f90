@@ -1,5 +1,5 @@
 !> What a run's numbers depend on, as a text, and what differs between two of them: an interrupted
-!> run can only be gone on with by one that would have done the same.
+!> run can only be continued by one that would have done the same.
 module run_identity
   use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp, long

@@ -159,7 +159,7 @@ GUARDS = {
         ("resume/test_resume_sweep.py::test_a_damaged_record_is_computed_again",),
     ),
     "owner": Guard(
-        "a journal of another deck or program is not gone on with",
+        "a journal of another deck or program is not continued",
         "resume/journal.f90",
         "if (other /= owner) then",
         "if (.false.) then",
