@@ -9,7 +9,7 @@ module elastic_kernel
   use kinds, only: wp, pi
   implicit none
   private
-  public :: kernel, kernel_log_coefficient, agm
+  public :: kernel, kernel_log_coefficient
 
 contains
 

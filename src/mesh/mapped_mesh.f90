@@ -4,7 +4,7 @@
 module mapped_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t, gauss_nodes, axis_row, centre_row, first_node
-  use panel_map, only: panel_map_t, sinh_panel, algebraic_panel
+  use panel_map, only: sinh_panel, algebraic_panel
   use graded_rule, only: graded_rule_t, new_graded_rule
   use mapped_kernel, only: add_panel
   implicit none

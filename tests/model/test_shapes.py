@@ -91,14 +91,20 @@ def test_the_derivative_along_the_path_is_that_of_loads_at_stepped_h0(run, tmp_p
     if shape["kind"] == "profile":
         r = np.linspace(0, 6, 80)
         shape = write_profile(tmp_path, r, r**2 / 2 + r**3 / 9)
-    table = run(scene(shape, 0.3, equilibrium_path={"h0_end": -1.0}, table={})).table("table.csv")
-    rows = table.rows("retreat")
+    # Bodies that end so near are refused at a smaller accuracy.
+    ends = shape["kind"] in ("sphere", "spheroid")
+    numerics = {"accuracy": 1e-3 if ends else 1e-6}
+    path = scene(shape, 0.3, equilibrium_path={"h0_end": -1.0}, table={}, numerics=numerics)
+    rows = run(path).table("table.csv").rows("retreat")
     row, step = np.argmin(abs(rows["indentation"])), 1e-2
     h0, stiffness = -rows["indentation"][row], rows["stiffness"][row]
     steps = {"h0_start": h0 + 2 * step, "h0_end": h0 - 2 * step, "h0_step": step}
-    load = run(scene(shape, 0.3, loading=steps)).curve["load"]
+    load = run(scene(shape, 0.3, loading=steps, numerics=numerics)).curve["load"]
     difference = (8 * (load[3] - load[1]) - (load[4] - load[0])) / (12 * step)
-    assert difference == pytest.approx(stiffness, rel=1e-6)
+    # Path and steps have meshes of their own, which agree as well as the accuracy lets them. A
+    # punch's kink moves across the panels as the contact grows, and takes digits.
+    digits = 1e-5 if shape["kind"] == "rounded_punch" else 1e-7
+    assert difference == pytest.approx(stiffness, rel=1e-4 if ends else digits)
 
 
 # --- Limits

@@ -10,7 +10,7 @@ module exponential
   use law_reading, only: is_law, check_parameter, check_decades
   implicit none
   private
-  public :: exponential_t, new_exponential, keys, read_law, read_exponentials
+  public :: exponential_t, keys, read_law, read_exponentials
 
   type, extends(force_law_t) :: exponential_t
     !> 1, or -1 for an attraction.
