@@ -86,7 +86,8 @@ class Program:
         self.build = pathlib.Path(build)
         self.scratch = pathlib.Path(scratch)
         self.scratch.mkdir(parents=True, exist_ok=True)
-        # A copy, so that everything is measured with one program even if it is built anew meanwhile.
+        # A copy, so that everything is measured with one program even if it is built anew
+        # meanwhile.
         self.snapin = pathlib.Path(shutil.copy2(self.build / "snapin", self.scratch))
         self._references = {}
         self.gauge = Gauge(self.build, self.environment)
