@@ -5,7 +5,7 @@ module mesh_rule
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
   use shape, only: shape_t
-  use dimensionless_problem, only: problem_t, calm_gap
+  use dimensionless_problem, only: problem_t, calm_gap, neck_width
   use contact_scales, only: smallest_feature
   use law_panels, only: fitting_panels, longest
   use mapped_mesh, only: mapped_shape_t
@@ -39,26 +39,29 @@ module mesh_rule
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
   !> which come the nearer to one another the stronger adhesion is.
   real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_for_folds = 9, &
-    most_digits = 13
+    more_for_profiles = 1.1_wp, most_digits = 13
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; a factor in it.
   real(wp), parameter :: onset = 0.29_wp, near_onset = 1.15_wp
 
 contains
 
   !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy:
-  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, which feel
-  !> every error of the edge's place, are more sensitive. widest: the largest contact radius. No
-  !> more than rounding leaves of the deformation.
-  pure real(wp) function digits_for(problem, widest, accuracy) result(digits)
+  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, if any are asked
+  !> for, which feel every error of the edge's place, are more sensitive. widest: the largest contact
+  !> radius. No more than rounding leaves of the deformation.
+  pure real(wp) function digits_for(problem, widest, accuracy, profiles) result(digits)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
+    logical, intent(in) :: profiles
     real(wp) :: left, for_folds
 
     for_folds = fewest_digits + more_for_folds*log10(1 + strength(problem))
     ! Where jumps have just begun the two folds are so near each other that coarse meshes lose them.
     if (abs(log(max(strength(problem), tiny(1.0_wp))/onset)) < log(near_onset)) &
       for_folds = max(for_folds, most_for_folds)
-    digits = max(2.2_wp - 1.05_wp*log10(accuracy), 0.2_wp - 1.38_wp*log10(accuracy), for_folds)
+    digits = max(1.1_wp - 1.05_wp*log10(accuracy), -0.9_wp - 1.38_wp*log10(accuracy))
+    if (profiles) digits = digits + more_for_profiles
+    digits = max(digits, for_folds)
     left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
     digits = max(fewest_digits, min(digits, left, most_digits))
     ! Folds have to be told apart as long as there is a contact at all.
@@ -100,6 +103,9 @@ contains
     end if
     reach = max(nearest_tail, beyond_poles*problem%shape%position_of(0.5_wp*calm_gap(problem)))
     outer = density
+    ! As long as the contact is smaller than its neck, the pressure around it is that before contact.
+    if (problem%law%adhesion > 0) &
+      outer = density*(1 + 0.5_wp/(1 + 3*(low/neck_width(problem))**2))
     call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)
     reach = max(tail_of_contact, reach/low)
     shape%centre = 1

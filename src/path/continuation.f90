@@ -32,7 +32,7 @@ module continuation
   !> The least contact radius over that of a passage for a state to be taken to the next mesh; the
   !> largest that a step may lead to on a mesh, which is no good beyond, and how short it is made
   !> for that.
-  real(wp), parameter :: nearly_passed = 0.5_wp, beyond_passage = 1.1_wp, shortest_passage = 0.05_wp
+  real(wp), parameter :: nearly_passed = 0.8_wp, beyond_passage = 1.1_wp, shortest_passage = 0.05_wp
 
   !> The last states on the mesh in use, newest last.
   type, extends(arc_t) :: continuation_t
@@ -64,16 +64,27 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: mesh
     logical, intent(out) :: lost
+
+    self%mesh = mesh
+    call add_with_tangent(equations, self%frozen, state, self%arc_t, lost)
+  end subroutine begin_with
+
+  !> Adds a state to an arc of its mesh. lost: it has no tangent.
+  subroutine add_with_tangent(equations, frozen, state, arc, lost)
+    type(equations_t), intent(inout) :: equations
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(state_t), intent(in) :: state
+    type(arc_t), intent(inout) :: arc
+    logical, intent(out) :: lost
     type(tangent_t) :: tangent
     real(wp) :: s
     logical :: found
 
-    self%mesh = mesh
-    s = coordinate_of(equations%problem, mesh, state)
-    call tangent_along(equations, mesh, s, state, self%frozen, tangent, found)
+    s = coordinate_of(equations%problem, arc%mesh, state)
+    call tangent_along(equations, arc%mesh, s, state, frozen, tangent, found)
     lost = .not. found
-    if (found) call self%add(s, state, tangent)
-  end subroutine begin_with
+    if (found) call arc%add(s, state, tangent)
+  end subroutine add_with_tangent
 
   !> The next state of the path, on the same mesh. lost: no step, however small, converged.
   subroutine advance(self, equations, options, lost)
@@ -136,15 +147,17 @@ contains
   end function next_step
 
   !> Passes to the next mesh once the contact radius has crossed the passage to it (to be called
-  !> after each `advance`), taking the last two states along, so that the next one is extrapolated
-  !> from both. That mesh must not be too coarse for the first of the two.
+  !> after each `advance`), taking the last two states along: what is between them is known on the
+  !> next mesh too. That mesh must not be too coarse for the first of the two, and both meshes must
+  !> agree there on which way h0 and load go, or an extremum would be seen twice or not at all.
   subroutine change_mesh(self, equations, options, lost)
     class(continuation_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
-    type(state_t) :: taken(2)
-    integer :: j, from
+    type(arc_t) :: next
+    type(state_t) :: state
+    integer :: j
     logical :: done
 
     lost = .false.
@@ -155,17 +168,20 @@ contains
       if (self%contact_radius(equations, self%held - 1) < &
         nearly_passed*meshes%passage(self%mesh)) return
     end associate
+    next%mesh = self%mesh + 1
     self%frozen%factors%valid = .false.
-    taken = self%state(self%held - 1:self%held)
-    from = self%mesh
-    self%mesh = from + 1
-    self%held = 0
-    do j = 1, 2
-      call move_to_mesh(equations, options, self%frozen, from, self%mesh, taken(j), done)
-      if (done) call self%begin_with(equations, taken(j), self%mesh, lost)
+    do j = self%held - 1, self%held
+      state = self%state(j)
+      call move_to_mesh(equations, options, self%frozen, self%mesh, next%mesh, state, done)
+      lost = .not. done
+      if (done) call add_with_tangent(equations, self%frozen, state, next, lost)
+      if (lost) return
     end do
-    ! Of the newest the path goes on; the one before only helps.
-    lost = lost .or. .not. done
+    associate (here => self%tangent(self%held - 1), there => next%tangent(1), &
+      turned => inward(self%mesh)*inward(next%mesh))
+      if (.not. (turned*here%h0*there%h0 > 0 .and. turned*here%load*there%load > 0)) return
+    end associate
+    self%arc_t = next
     self%step = 0.5_wp*self%step
   end subroutine change_mesh
 

@@ -163,15 +163,14 @@ contains
     call walker%advance(equations, options, lost)
     if (lost) return
     call append(path, walker)
+    call change_mesh(path, walker, equations, options, lost)
     do quantity = of_h0, of_load
-      call find_extrema(equations, options, walker%frozen, walker%arc_t, quantity, extrema, &
-        lost)
       if (lost) return
+      call find_extrema(equations, options, walker%frozen, walker%arc_t, quantity, extrema, lost)
       do k = 1, size(extrema)
         call put(path, walker, quantity, extrema(k))
       end do
     end do
-    call change_mesh(path, walker, equations, options, lost)
   end subroutine extend
 
   !> Makes the tracer's newest state the last point.
@@ -196,22 +195,19 @@ contains
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
     real(wp) :: before(2)
-    integer :: mesh, n, i, k, taken
+    integer :: mesh, i, k
 
     mesh = walker%mesh
-    n = walker%held
-    before = walker%coordinate([max(1, n - 1), n])
+    before = walker%coordinate(walker%held - 1:walker%held)
     call walker%change_mesh(equations, options, lost)
     if (lost .or. walker%mesh == mesh) return
-    ! One or both of the last two, the newest last.
-    taken = walker%held
-    do k = 3 - taken, 2
+    do k = 1, 2
       do i = path%held, 1, -1
         if (path%point(i)%mesh == mesh .and. abs(path%point(i)%coordinate - before(k)) <= 0) exit
       end do
       if (i == 0) cycle
-      path%point(i)%twin = walker%state(k - 2 + taken)
-      path%point(i)%twin_tangent = walker%tangent(k - 2 + taken)
+      path%point(i)%twin = walker%state(k)
+      path%point(i)%twin_tangent = walker%tangent(k)
     end do
   end subroutine change_mesh
 

@@ -1,8 +1,8 @@
 """True errors beside estimated ones under every law: random scenes, paths and cycles.
 
 There is no independent solution for most laws. The truth is the same scene at a much higher
-accuracy, and a deviation counts where it is well above what that run says of itself. Scene k of a seed is
-always the same scene.
+accuracy, and a deviation counts where it is well above what that run says of itself. Scene k of a
+seed is always the same scene.
 """
 
 import collections
@@ -122,7 +122,8 @@ LAWS = {
                            "salt": 10 ** rng.uniform(-1, 2), "valence": 1}
     ),  # fmt: skip
     "hydration": lambda rng: beside(
-        rng, hydration={"energy": rng.uniform(1e-3, 1e-2), "decay_length": rng.uniform(0.2, 1) * 1e-9}
+        rng,
+        hydration={"energy": rng.uniform(1e-3, 1e-2), "decay_length": rng.uniform(0.2, 1) * 1e-9},
     ),
     "hydrophobic": lambda rng: beside(
         rng,
@@ -152,8 +153,8 @@ def jobs(count, folder, *, seed=1):
     for number in range(count):
         rng = random.Random(f"laws {seed} {number}")
         made.append(Scene(
-            number, seed, list(LAWS)[number % len(LAWS)], float(f"{logarithmic(rng, *STRENGTHS):.4g}"),
-            rng.choice(("path", "cycle")), float(f"{logarithmic(rng, *ACCURACIES):.1g}"),
+            number, seed, list(LAWS)[number % len(LAWS)],
+            float(f"{logarithmic(rng, *STRENGTHS):.4g}"), rng.choice(("path", "cycle")), float(f"{logarithmic(rng, *ACCURACIES):.1g}"),
             folder / f"scene{number}"))  # fmt: skip
     return made
 
@@ -227,7 +228,8 @@ def judged(scene, law, found, truth):
     # Failing aloud is honest; without a truth nothing can be said.
     if trouble or doubt:
         return Finding(scene, [], 0, [f"accuracy {scene.accuracy:g}: {trouble}"] if trouble else [])
-    load = max(abs(x) for x in (*several(theirs.get("max_tension", 0.0)), theirs.get("end_load", 0.0)))
+    loads = (*several(theirs.get("max_tension", 0.0)), theirs.get("end_load", 0.0))
+    load = max(map(abs, loads))
     deviations, wrong, unknown = [], [], 0
     for key in KEYS:
         one, other = (several(summary.get(key, [])) for summary in (mine, theirs))
@@ -279,7 +281,8 @@ def table(findings):
                          f"{sum(r > 1 for r in ratios):8d} {low:11d}")  # fmt: skip
     unknown = sum(finding.unknown for finding in findings)
     compared = sum(bool(f.deviations) or f.unknown > 0 for f in findings)
-    lines.append(f"scenes {len(findings)}, compared {compared}; numbers as good as the truth {unknown}")
+    lines.append(f"scenes {len(findings)}, compared {compared}; "
+                 f"numbers as good as the truth {unknown}")  # fmt: skip
     lines += offenders(findings)
     return lines
 
