@@ -163,8 +163,8 @@ contains
     class(root_search_t), intent(in) :: self
 
     root_is_open = .not. self%met .and. self%noted < most_halvings .and. &
-      abs(self%positive - self%negative) > spacing(max(abs(self%positive), abs(self%negative))) .and. &
-      self%change > spacing(self%root)
+      self%change > spacing(self%root) .and. abs(self%positive - self%negative) > &
+      spacing(max(abs(self%positive), abs(self%negative)))
   end function root_is_open
 
   !> Where the function is to be evaluated next.

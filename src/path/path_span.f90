@@ -1,6 +1,6 @@
 !> The equilibria between two neighbouring points of the path as one polynomial of the path's
-!> coordinate, made once for many of them: gaps, H0 and scale with the values and tangents that up to
-!> four points have.
+!> coordinate, made once for many of them: gaps, H0 and scale with the values and tangents that up
+!> to four points have.
 module path_span
   use kinds, only: wp
   use root_finding, only: bracket_t

@@ -1,5 +1,7 @@
 """Claims about the files of results: names, columns, contents, and what a failure leaves."""
 
+import math
+import random
 import re
 import resource
 import sys
@@ -7,7 +9,7 @@ import sys
 import f90nml
 import pytest
 from conftest import ROOT
-from support.scenes import exponential, lennard_jones, loading, runner
+from support.scenes import deck, exponential, lennard_jones, loading, runner
 
 sys.path.append(str(ROOT / "tools"))
 
@@ -126,6 +128,28 @@ def test_every_row_has_every_cell_to_all_digits(full):
             assert re.fullmatch(r"-?\d\.\d{16}E[+-]\d{3}", cell), cell
             # Seventeen digits are the number.
             assert float(f"{float(cell):.16e}") == float(cell)
+
+
+def test_numbers_of_any_size_are_written_to_the_last_digit(snapin, tmp_path):
+    rng = random.Random(1)
+    values = [rng.uniform(1, 10) * 10.0**order for order in range(-45, 25) for _ in range(8)]
+    values += [math.nextafter(10.0**order, way) for order in range(-30, 20) for way in (0.0, math.inf)]
+    # Exactly between two numbers of seventeen digits.
+    values += [10.0**15 + k + 0.25 * (2 * k + 1) % 1 for k in range(20)]
+    values += [(2**53 - 1 - 2 * k) / 8 for k in range(20)] + [2.0**k for k in range(-140, 80)]
+    values = sorted(set(values))
+    text = deck(bodies={"radius": 1e-6, "stiffness": 1e10},
+                force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+                classical={"h0_start": 1e-9, "h0_end": -1e-9, "count": 2},
+                sweep={"key": "bodies.stiffness", "values": values})  # fmt: skip
+    done = runner(snapin, tmp_path)(text)
+    lines = (done.folder / "sweep.csv").read_text().splitlines()
+    rows = [line.split(",") for line in lines if not line.startswith("#")][1:]
+    for value, row in zip(values, rows, strict=True):
+        assert float(row[0]) == value
+        for cell in row:
+            mantissa, exponent = f"{float(cell):.16e}".upper().split("E") if cell != "NaN" else "NN"
+            assert cell == "NaN" or cell == f"{mantissa}E{int(exponent):+04d}"
 
 
 def test_displacement_is_the_centre_gap_less_h0(full):

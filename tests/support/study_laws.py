@@ -154,7 +154,8 @@ def jobs(count, folder, *, seed=1):
         rng = random.Random(f"laws {seed} {number}")
         made.append(Scene(
             number, seed, list(LAWS)[number % len(LAWS)],
-            float(f"{logarithmic(rng, *STRENGTHS):.4g}"), rng.choice(("path", "cycle")), float(f"{logarithmic(rng, *ACCURACIES):.1g}"),
+            float(f"{logarithmic(rng, *STRENGTHS):.4g}"),
+            rng.choice(("path", "cycle")), float(f"{logarithmic(rng, *ACCURACIES):.1g}"),
             folder / f"scene{number}"))  # fmt: skip
     return made
 

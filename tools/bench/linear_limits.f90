@@ -82,7 +82,7 @@ program linear_limits
           duration(pieces(piece), max(1, min(most_repeats, int(slice/max(once, 1.0e-7_wp))))))
       end do
     end do
-    write (output_unit, '(i0, *(:, ",", es11.4))') equations%meshes%grid(1)%nodes, pack(least, wanted)
+    write (output_unit, '(i0, *(:, ",", es11.4))') size(start%gap), pack(least, wanted)
     flush (output_unit)
   end do
 

@@ -9,7 +9,7 @@ _GOALS = ((0.0087, 3, 0, 0), (0.87, 3, 0, 0), (8.7, 4, 350, 10), (1000.0, 10, 50
 
 
 def measure(program, quick, say):
-    """Return one row for every claim: what is measured, its limit and goal, and whether it holds."""
+    """Return one row for every claim: measured, limit, goal, and whether it holds."""
     rows = []
 
     def claim(quantity, case, value, goal, limit=math.nan, least=False):

@@ -23,7 +23,8 @@ def measure_sigma(program, quick, say):
             "sigma": float(name.split("_")[1]), "deck": kind, "price": run.price,
             "least_price": run.least_price, "kernel": run.kernel_seconds / run.unit,
             "solution": run.solve_seconds / run.unit,
-            "error_estimate": run.estimate_seconds / run.unit, "nodes": run.nodes, "states": run.states,
+            "error_estimate": run.estimate_seconds / run.unit, "nodes": run.nodes,
+            "states": run.states,
             "products": run.products, "factorisations": run.factorisations,
             "estimate": run.estimate, "failure": run.failure, "warning": run.warning})
     say(f"{len(rows)} runs")
