@@ -133,7 +133,8 @@ def test_every_row_has_every_cell_to_all_digits(full):
 def test_numbers_of_any_size_are_written_to_the_last_digit(snapin, tmp_path):
     rng = random.Random(1)
     values = [rng.uniform(1, 10) * 10.0**order for order in range(-45, 25) for _ in range(8)]
-    values += [math.nextafter(10.0**order, way) for order in range(-30, 20) for way in (0.0, math.inf)]
+    ends = 0.0, math.inf
+    values += [math.nextafter(10.0**order, end) for order in range(-30, 20) for end in ends]
     # Exactly between two numbers of seventeen digits.
     values += [10.0**15 + k + 0.25 * (2 * k + 1) % 1 for k in range(20)]
     values += [(2**53 - 1 - 2 * k) / 8 for k in range(20)] + [2.0**k for k in range(-140, 80)]
