@@ -1,4 +1,4 @@
-!> The polynomial through a few scattered values: weights, value, slope, maximum; and the one that
+!> The polynomial through a few scattered values: weights, value, slope, maximum; and Hermite's, which
 !> has given slopes there too.
 module interpolation
   use kinds, only: wp
@@ -6,17 +6,18 @@ module interpolation
   implicit none
   private
   public :: polynomial_weights, polynomial_value, polynomial_slope, interpolated_maximum
-  public :: hermite_weights, hermite_value, hermite_slope
-  public :: hermite_t, new_hermite
+  public :: hermite_t, hermite_through, hermite_weights, most_hermite_nodes
 
-  !> Polynomials that have given values and slopes at the same places, in Newton's form, each place
-  !> counted twice.
+  integer, parameter :: most_hermite_nodes = 4
+
+  !> The polynomial of least degree with given values and slopes, in Newton's form: nodes, each
+  !> twice, and divided differences.
   type :: hermite_t
-    private
-    real(wp), allocatable :: at(:), coefficient(:, :)
+    integer, private :: terms = 0
+    real(wp), private :: node(2*most_hermite_nodes) = 0, difference(2*most_hermite_nodes) = 0
   contains
-    procedure :: evaluate
-    procedure :: evaluate_first
+    procedure :: value => hermite_value
+    procedure :: slope => hermite_slope
   end type hermite_t
 
 contains
@@ -77,8 +78,8 @@ contains
     x = bracket%middle()
   end function interpolated_maximum
 
-  !> Weights of values and of slopes at `at` (all different) in the polynomial of least degree that
-  !> has them, at x: it is the sum of [v (1 - 2 l'(x_j) (x - x_j)) + s (x - x_j)] l(x)^2 over
+  !> Weights of values and of slopes at `at` (all different) in Hermite's polynomial at x: it is the
+  !> sum of [v (1 - 2 l'(x_j) (x - x_j)) + s (x - x_j)] l(x)^2 over
   !> Lagrange's l.
   pure subroutine hermite_weights(at, x, of_value, of_slope)
     real(wp), intent(in) :: at(:), x
@@ -90,82 +91,53 @@ contains
     of_value = squares - 2*own_slopes(at)*of_slope
   end subroutine hermite_weights
 
-  !> That polynomial at x.
-  pure real(wp) function hermite_value(at, value, slope, x) result(y)
-    real(wp), intent(in) :: at(:), value(:), slope(:), x
-    real(wp), dimension(size(at)) :: of_value, of_slope
+  !> Hermite's polynomial with the given values and slopes at `at` (all different).
+  pure type(hermite_t) function hermite_through(at, value, slope) result(polynomial)
+    real(wp), intent(in) :: at(:), value(:), slope(:)
+    integer :: j, k, n
 
-    call hermite_weights(at, x, of_value, of_slope)
-    y = sum(of_value*value + of_slope*slope)
+    n = 2*size(at)
+    polynomial%terms = n
+    associate (x => polynomial%node, c => polynomial%difference)
+      x(1:n:2) = at
+      x(2:n:2) = at
+      c(1:n:2) = value
+      c(2:n:2) = slope
+      c(3:n:2) = (value(2:) - value(:size(at) - 1))/(at(2:) - at(:size(at) - 1))
+      do k = 2, n - 1
+        do j = n, k + 1, -1
+          c(j) = (c(j) - c(j - 1))/(x(j) - x(j - k))
+        end do
+      end do
+      c(1) = value(1)
+    end associate
+  end function hermite_through
+
+  pure real(wp) function hermite_value(self, x) result(y)
+    class(hermite_t), intent(in) :: self
+    real(wp), intent(in) :: x
+    integer :: k
+
+    y = 0
+    do k = self%terms, 1, -1
+      y = self%difference(k) + (x - self%node(k))*y
+    end do
   end function hermite_value
 
   !> Its derivative at x.
-  pure real(wp) function hermite_slope(at, value, slope, x) result(y)
-    real(wp), intent(in) :: at(:), value(:), slope(:), x
-    real(wp), dimension(size(at)) :: basis, basis_slope, steepness, one
-    integer :: j
-
-    basis = polynomial_weights(at, x)
-    do j = 1, size(at)
-      one = 0
-      one(j) = 1
-      basis_slope(j) = polynomial_slope(at, one, x)
-    end do
-    steepness = slope - 2*own_slopes(at)*value
-    y = sum(steepness*basis**2 + 2*(value + steepness*(x - at))*basis*basis_slope)
-  end function hermite_slope
-
-  !> Polynomials with the values and slopes (how many, size(at)) at `at`, all different.
-  pure function new_hermite(at, values, slopes) result(curve)
-    real(wp), intent(in) :: at(:), values(:, :), slopes(:, :)
-    type(hermite_t) :: curve
-    integer :: j, order, n
-
-    n = 2*size(at)
-    allocate (curve%at(n), curve%coefficient(size(values, 1), n))
-    curve%at = [(at((j + 1)/2), j=1, n)]
-    do j = 1, n
-      curve%coefficient(:, j) = values(:, (j + 1)/2)
-    end do
-    do order = 1, n - 1
-      do j = n, order + 1, -1
-        if (order == 1 .and. mod(j, 2) == 0) then
-          curve%coefficient(:, j) = slopes(:, j/2)
-        else
-          curve%coefficient(:, j) = (curve%coefficient(:, j) - curve%coefficient(:, j - 1))/ &
-            (curve%at(j) - curve%at(j - order))
-        end if
-      end do
-    end do
-  end function new_hermite
-
-  !> All of them at x.
-  pure subroutine evaluate(self, x, values)
+  pure real(wp) function hermite_slope(self, x) result(slope)
     class(hermite_t), intent(in) :: self
     real(wp), intent(in) :: x
-    real(wp), intent(out) :: values(:)
-    integer :: j
+    real(wp) :: y
+    integer :: k
 
-    values = self%coefficient(:, size(self%at))
-    do j = size(self%at) - 1, 1, -1
-      values = self%coefficient(:, j) + (x - self%at(j))*values
-    end do
-  end subroutine evaluate
-
-  !> The first of them at x, and its slope.
-  pure subroutine evaluate_first(self, x, value, slope)
-    class(hermite_t), intent(in) :: self
-    real(wp), intent(in) :: x
-    real(wp), intent(out) :: value, slope
-    integer :: j
-
-    value = self%coefficient(1, size(self%at))
+    y = 0
     slope = 0
-    do j = size(self%at) - 1, 1, -1
-      slope = value + (x - self%at(j))*slope
-      value = self%coefficient(1, j) + (x - self%at(j))*value
+    do k = self%terms, 1, -1
+      slope = y + (x - self%node(k))*slope
+      y = self%difference(k) + (x - self%node(k))*y
     end do
-  end subroutine evaluate_first
+  end function hermite_slope
 
   !> The slope of each Lagrange polynomial where it is one.
   pure function own_slopes(at) result(slope)

@@ -185,7 +185,7 @@ contains
     if (self%span%point /= i) self%span = new_path_span(self%known%path, i)
     mesh = self%span%mesh
     associate (ends => self%span%ends)
-      s = self%span%coordinate_at_h0(h0)
+      s = self%span%at_h0(h0)
       if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
         call expect(self, h0, s, position, state)
         call self%attempt(h0, state, mesh, event)
@@ -222,10 +222,10 @@ contains
     end do
     missed = 0
     do k = first, position%held
-      call self%span%guess(at(k), there(k))
+      there(k) = self%span%guess(at(k))
       missed = missed + weight(k)*(position%h0(k) - there(k)%h0)
     end do
-    call self%span%guess(self%span%coordinate_at_h0(h0 - missed), state)
+    state = self%span%guess(self%span%at_h0(h0 - missed))
     do k = first, position%held
       state%gap = state%gap + weight(k)*(position%past(k)%gap - there(k)%gap)
       state%scale = state%scale + weight(k)*(position%past(k)%scale - there(k)%scale)

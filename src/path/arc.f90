@@ -2,7 +2,8 @@
 !> they make a state a Hermite polynomial of the path's coordinate, node by node.
 module arc
   use kinds, only: wp
-  use interpolation, only: polynomial_weights, hermite_weights, hermite_value, hermite_slope
+  use interpolation, only: polynomial_weights, hermite_weights, hermite_t, hermite_through, &
+    most_hermite_nodes
   use equilibrium, only: state_t, equations_t
   use solver_options, only: solver_options_t, tightened
   use anderson, only: solve_anderson
@@ -12,7 +13,7 @@ module arc
   use path_tangent, only: tangent_t, tangent_at, scaled
   implicit none
   private
-  public :: arc_t, tangent_along, between, take_if_sound, of_h0, of_load, most_states
+  public :: arc_t, tangent_along, between, of_h0, of_load, most_states
 
   integer, parameter :: most_states = 8
   !> What the path is asked about: h0 or the load.
@@ -33,6 +34,8 @@ module arc
     procedure :: add
     procedure :: drop_first
     procedure :: guess
+    procedure :: guess_from
+    procedure :: curve
     procedure :: value
     procedure :: slope
     procedure :: curvature
@@ -138,68 +141,80 @@ contains
 
   !> The states whose polynomial tells about s: the ends of the interval that it is in, with the
   !> nearest on either side that is well apart; beyond an end, the nearest few.
-  pure function support(self, s) result(nodes)
+  pure subroutine support(self, s, nodes, n)
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: s
-    integer, allocatable :: nodes(:)
+    integer, intent(out) :: nodes(most_hermite_nodes), n
     real(wp) :: least
     integer :: i, j
 
-    associate (x => self%coordinate, n => self%held)
-      do i = 1, n - 1
+    n = 0
+    associate (x => self%coordinate, last => self%held)
+      do i = 1, last - 1
         if ((x(i) - s)*(x(i + 1) - s) <= 0) exit
       end do
-      if (i >= n) then
-        if (abs(x(1) - s) < abs(x(n) - s)) then
-          nodes = [(j, j=1, min(n, extrapolated_from))]
-        else
-          nodes = [(j, j=max(1, n + 1 - extrapolated_from), n)]
-        end if
+      if (i >= last) then
+        i = 1
+        if (abs(x(1) - s) > abs(x(last) - s)) i = max(1, last + 1 - extrapolated_from)
+        n = min(last, i - 1 + extrapolated_from) + 1 - i
+        nodes(:n) = [(j, j=i, i - 1 + n)]
         return
       end if
-      nodes = [i, i + 1]
       least = well_apart*abs(x(i + 1) - x(i))
       do j = i - 1, 1, -1
         if (abs(x(j) - x(i)) < least) cycle
-        nodes = [j, nodes]
+        n = 1
+        nodes(1) = j
         exit
       end do
-      do j = i + 2, n
+      nodes(n + 1:n + 2) = [i, i + 1]
+      n = n + 2
+      do j = i + 2, last
         if (abs(x(j) - x(i + 1)) < least) cycle
-        nodes = [nodes, j]
+        n = n + 1
+        nodes(n) = j
         exit
       end do
     end associate
-  end function support
+  end subroutine support
 
   !> The state that the arc lets expect at s.
   pure function guess(self, s) result(expected)
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: s
     type(state_t) :: expected
-    real(wp), dimension(most_states) :: of_value, of_slope
+    integer :: nodes(most_hermite_nodes), n
+
+    call self%support(s, nodes, n)
+    expected = self%guess_from(nodes(:n), s)
+  end function guess
+
+  !> The state that some of the arc's states let expect at s.
+  pure function guess_from(self, nodes, s) result(expected)
+    class(arc_t), intent(in) :: self
+    integer, intent(in) :: nodes(:)
+    real(wp), intent(in) :: s
+    type(state_t) :: expected
+    real(wp), dimension(size(nodes)) :: at, of_value, of_slope
     real(wp), allocatable :: gap(:)
     real(wp) :: h0, scale
     integer :: j
 
-    associate (nodes => self%support(s))
-      associate (n => size(nodes), at => self%coordinate(nodes))
-        call hermite_weights(at, s, of_value(:n), of_slope(:n))
-        expected = self%state(nodes(minloc(abs(at - s), 1)))
+    at = self%coordinate(nodes)
+    call hermite_weights(at, s, of_value, of_slope)
+    expected = self%state(nodes(minloc(abs(at - s), 1)))
+    allocate (gap(size(expected%gap)), source=0.0_wp)
+    h0 = 0
+    scale = 0
+    do j = 1, size(nodes)
+      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
+        gap = gap + of_value(j)*state%gap + of_slope(j)*tangent%gap
+        h0 = h0 + of_value(j)*state%h0 + of_slope(j)*tangent%h0
+        scale = scale + of_value(j)*state%scale + of_slope(j)*tangent%scale
       end associate
-      allocate (gap(size(expected%gap)), source=0.0_wp)
-      h0 = 0
-      scale = 0
-      do j = 1, size(nodes)
-        associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
-          gap = gap + of_value(j)*state%gap + of_slope(j)*tangent%gap
-          h0 = h0 + of_value(j)*state%h0 + of_slope(j)*tangent%h0
-          scale = scale + of_value(j)*state%scale + of_slope(j)*tangent%scale
-        end associate
-      end do
-    end associate
+    end do
     call take_if_sound(gap, h0, scale, expected)
-  end function guess
+  end function guess_from
 
   !> The polynomial through states at the given values of some coordinate, evaluated at s.
   pure function between(coordinate, states, s) result(expected)
@@ -235,17 +250,34 @@ contains
     if (scale > 0.5_wp*expected%scale) expected%scale = scale
   end subroutine take_if_sound
 
+  !> The polynomial that h0 or load is about s.
+  pure type(hermite_t) function curve(self, quantity, s)
+    class(arc_t), intent(in) :: self
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: s
+    real(wp), dimension(most_hermite_nodes) :: at, value, slope
+    integer :: nodes(most_hermite_nodes), n, j
+
+    call self%support(s, nodes, n)
+    do j = 1, n
+      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
+        at(j) = self%coordinate(nodes(j))
+        value(j) = merge(state%h0, state%load, quantity == of_h0)
+        slope(j) = merge(tangent%h0, tangent%load, quantity == of_h0)
+      end associate
+    end do
+    curve = hermite_through(at(:n), value(:n), slope(:n))
+  end function curve
+
   !> h0 or load at s, as the arc lets expect it.
   pure real(wp) function value(self, quantity, s)
     class(arc_t), intent(in) :: self
     integer, intent(in) :: quantity
     real(wp), intent(in) :: s
-    real(wp), dimension(most_states) :: known, slopes
+    type(hermite_t) :: about
 
-    call ordinates(self, quantity, known, slopes)
-    associate (nodes => self%support(s))
-      value = hermite_value(self%coordinate(nodes), known(nodes), slopes(nodes), s)
-    end associate
+    about = self%curve(quantity, s)
+    value = about%value(s)
   end function value
 
   !> Its derivative by s.
@@ -253,12 +285,10 @@ contains
     class(arc_t), intent(in) :: self
     integer, intent(in) :: quantity
     real(wp), intent(in) :: s
-    real(wp), dimension(most_states) :: known, slopes
+    type(hermite_t) :: about
 
-    call ordinates(self, quantity, known, slopes)
-    associate (nodes => self%support(s))
-      slope = hermite_slope(self%coordinate(nodes), known(nodes), slopes(nodes), s)
-    end associate
+    about = self%curve(quantity, s)
+    slope = about%slope(s)
   end function slope
 
   !> Its second derivative by s; where a state is in the way, the mean of those on either side.
@@ -269,18 +299,5 @@ contains
 
     curvature = (self%slope(quantity, s + nearby) - self%slope(quantity, s - nearby))/(2*nearby)
   end function curvature
-
-  !> h0 or load of the arc's states, and its derivatives by s.
-  pure subroutine ordinates(self, quantity, known, slopes)
-    class(arc_t), intent(in) :: self
-    integer, intent(in) :: quantity
-    real(wp), intent(out) :: known(:), slopes(:)
-    integer :: j
-
-    do j = 1, self%held
-      known(j) = merge(self%state(j)%h0, self%state(j)%load, quantity == of_h0)
-      slopes(j) = merge(self%tangent(j)%h0, self%tangent(j)%load, quantity == of_h0)
-    end do
-  end subroutine ordinates
 
 end module arc

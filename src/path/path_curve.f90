@@ -4,7 +4,7 @@
 !> path something happens, and the state there is then solved (`curve_states`).
 module path_curve
   use kinds, only: wp
-  use interpolation, only: hermite_value, hermite_slope
+  use interpolation, only: hermite_t, hermite_through
   use equilibrium, only: state_t, equations_t, radius_of_gap
   use path_coordinate, only: inward
   use arc, only: arc_t
@@ -48,7 +48,7 @@ module path_curve
     procedure :: slope
     procedure :: begin_of
     procedure :: end_of
-    procedure, private :: support
+    procedure, private :: polynomial, support
   end type curve_t
 
 contains
@@ -133,11 +133,10 @@ contains
     class(curve_t), intent(in) :: self
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2), x
+    type(hermite_t) :: polynomial
 
-    associate (node => self%node(self%support(i)))
-      value = hermite_value(node%x, weights(1)*node%h0 + weights(2)*node%load, &
-        weights(1)*node%h0_slope + weights(2)*node%load_slope, x)
-    end associate
+    polynomial = self%polynomial(i, weights)
+    value = polynomial%value(x)
   end function value
 
   !> Its derivative by x.
@@ -145,12 +144,23 @@ contains
     class(curve_t), intent(in) :: self
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2), x
+    type(hermite_t) :: polynomial
+
+    polynomial = self%polynomial(i, weights)
+    slope = polynomial%slope(x)
+  end function slope
+
+  !> weights(1) h0 + weights(2) load in interval i.
+  pure type(hermite_t) function polynomial(self, i, weights)
+    class(curve_t), intent(in) :: self
+    integer, intent(in) :: i
+    real(wp), intent(in) :: weights(2)
 
     associate (node => self%node(self%support(i)))
-      slope = hermite_slope(node%x, weights(1)*node%h0 + weights(2)*node%load, &
-        weights(1)*node%h0_slope + weights(2)*node%load_slope, x)
+      polynomial = hermite_through(node%x, weights(1)*node%h0 + weights(2)*node%load, &
+        weights(1)*node%h0_slope + weights(2)*node%load_slope)
     end associate
-  end function slope
+  end function polynomial
 
   !> The nodes that the polynomial of interval i fits: its ends and, on the same mesh, the nearest
   !> on either side that is well apart.

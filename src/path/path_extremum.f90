@@ -8,6 +8,7 @@ module path_extremum
   use equilibrium, only: state_t, equations_t
   use solver_options, only: solver_options_t
   use frozen_jacobian, only: frozen_jacobian_t
+  use interpolation, only: hermite_t
   use root_finding, only: bracket_t, secant_root
   use path_coordinate, only: inward
   use path_tangent, only: tangent_t
@@ -91,6 +92,7 @@ contains
     real(wp), intent(in) :: error
     logical, intent(out) :: turns, doubt
     real(wp), intent(out) :: s
+    type(hermite_t) :: curve
     real(wp) :: course, mean, least, slope, step
     integer :: k
 
@@ -101,11 +103,12 @@ contains
       ! differ, up to the first and, turned round, beyond it.
       course = sign(1.0_wp, ends(1))
       step = (x(2) - x(1))/places
-      mean = abs(near%value(quantity, x(2)) - near%value(quantity, x(1)))/abs(x(2) - x(1))
+      curve = near%curve(quantity, x(1) + 0.5_wp*(x(2) - x(1)))
+      mean = abs(curve%value(x(2)) - curve%value(x(1)))/abs(x(2) - x(1))
       least = merge(0.0_wp, minval(abs(ends)), turns)
       s = x(1)
       do k = 1, places - 1
-        slope = course*near%slope(quantity, x(1) + k*step)
+        slope = course*curve%slope(x(1) + k*step)
         if (turns .and. slope < 0 .and. course*ends(1) > 0) then
           course = -course
           slope = -slope
@@ -119,7 +122,7 @@ contains
         return
       end if
       if (.not. least < suspicious*mean) return
-      call descend(near, quantity, course, [max(s - abs(step), minval(x)), &
+      call descend(curve, course, [max(s - abs(step), minval(x)), &
         min(s + abs(step), maxval(x))], s, least)
       doubt = minval(abs(s - x)) > at_end*abs(x(2) - x(1)) .and. &
         (least < doubtful*error .or. .not. error < huge(1.0_wp))
@@ -127,9 +130,8 @@ contains
   end subroutine look
 
   !> The least slope of the curve in the sense of its course, and its place, between two places.
-  pure subroutine descend(near, quantity, course, ends, s, least)
-    type(arc_t), intent(in) :: near
-    integer, intent(in) :: quantity
+  pure subroutine descend(curve, course, ends, s, least)
+    type(hermite_t), intent(in) :: curve
     real(wp), intent(in) :: course, ends(2)
     real(wp), intent(out) :: s, least
     type(bracket_t) :: bracket
@@ -138,12 +140,11 @@ contains
     bracket = bracket_t(ends(1), ends(2))
     do step = 1, golden_steps
       associate (points => bracket%golden_points())
-        call bracket%keep_larger(-course*[near%slope(quantity, points(1)), &
-          near%slope(quantity, points(2))])
+        call bracket%keep_larger(-course*[curve%slope(points(1)), curve%slope(points(2))])
       end associate
     end do
     s = bracket%middle()
-    least = course*near%slope(quantity, s)
+    least = course*curve%slope(s)
   end subroutine descend
 
   !> The extremum between state i of an arc and the next: a root of the exact slope, begun at that of
@@ -157,6 +158,7 @@ contains
     type(extremum_t), intent(out) :: found
     logical, intent(out) :: lost
     type(bracket_t) :: bracket
+    type(hermite_t) :: curve
     type(arc_t) :: beside
     type(extremum_t) :: tried
     real(wp) :: slope, least, slope_before, s_before, s, width
@@ -167,6 +169,7 @@ contains
       rising = slope_of(quantity, near%tangent(merge(i, i + 1, x(1) < x(2)))) > 0
       bracket = bracket_t(minval(x), maxval(x))
       width = abs(x(2) - x(1))
+      curve = near%curve(quantity, x(1) + 0.5_wp*(x(2) - x(1)))
     end associate
     s = root_of_curve()
     beside = near
@@ -185,7 +188,7 @@ contains
       call bracket%narrow((slope > 0) .eqv. rising, s)
       if (round == 1) then
         s_before = s + 1.0e-4_wp*width
-        slope_before = slope + near%slope(quantity, s_before) - near%slope(quantity, s)
+        slope_before = slope + curve%slope(s_before) - curve%slope(s)
       end if
       if (.not. abs(slope - slope_before) > tiny(slope)) exit
       s = bracket%within(secant_root(s, slope, s_before, slope_before))
@@ -207,7 +210,7 @@ contains
 
       halves = bracket
       do while (halves%is_open() .and. abs(halves%high - halves%low) > root_tolerance)
-        call halves%narrow((near%slope(quantity, halves%middle()) > 0) .eqv. rising)
+        call halves%narrow((curve%slope(halves%middle()) > 0) .eqv. rising)
       end do
       root = halves%middle()
     end function root_of_curve

@@ -3,6 +3,7 @@
 module solve_at_h0
   use kinds, only: wp
   use root_finding, only: bracket_t
+  use interpolation, only: hermite_t
   use equilibrium, only: control_t, state_t, equations_t, holds, residual_floor, at_h0_with_edge
   use solver_options, only: solver_options_t
   use anderson, only: solve_anderson
@@ -51,20 +52,22 @@ contains
     type(neighbours_t), intent(in) :: near
     real(wp), intent(in) :: h0
     type(bracket_t) :: bracket
+    type(hermite_t) :: curve
     real(wp) :: missing, before
     logical :: rising
 
     associate (x => near%coordinate(near%lower:near%lower + 1), &
       ends => near%state(near%lower:near%lower + 1)%h0)
       bracket = bracket_t(minval(x), maxval(x))
+      curve = near%curve(of_h0, 0.5_wp*sum(x))
       rising = (ends(2) - ends(1))*(x(2) - x(1)) > 0
       s = bracket%within(x(1) + (x(2) - x(1))*(h0 - ends(1))/(ends(2) - ends(1)))
     end associate
     do while (bracket%is_open())
-      missing = h0 - near%value(of_h0, s)
+      missing = h0 - curve%value(s)
       call bracket%narrow((missing > 0) .eqv. rising, s)
       before = s
-      s = bracket%within(s + missing/near%slope(of_h0, s))
+      s = bracket%within(s + missing/curve%slope(s))
       if (abs(s - before) <= spacing(s)) exit
     end do
   end function coordinate_at_h0
