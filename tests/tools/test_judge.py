@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from support import study_cycles, study_energy, study_estimates, study_folds
+from support import study_cycles, study_energy, study_estimates, study_folds, study_laws
 from support.comparison import deviations
 from support.decks_in_units import Report
 from support.reference import Path
@@ -82,6 +82,14 @@ def test_each_number_is_as_good_as_its_estimate_says(tmp_path, sigma):
             assert ratio is None or ratio <= 1, (finding.kind, finding.accuracy, one, ratio)
 
 
+# Two cycles and two paths, with attraction and without.
+@pytest.mark.parametrize("number", [0, 1, 3, 17])
+def test_estimates_hold_under_other_laws(tmp_path, number):
+    [finding] = study_laws.examine(study_laws.jobs(18, tmp_path)[number])
+    assert finding.deviations
+    assert not study_laws.is_bad(finding), finding
+
+
 # --- The studies themselves
 
 
@@ -105,6 +113,19 @@ def test_an_estimate_of_a_number_goes_before_the_one_for_all():
     assert (one.own, all_.own, first.own, second.own) == (True, False, True, True)
     ratios = [study_estimates.ratio(d) for d in (one, all_, first, second)]
     assert ratios == pytest.approx([0.25, 0.1 / 5.1e-3, 1.0, 0.5], rel=1e-3)
+
+
+def test_the_study_of_laws_names_what_is_worse_than_its_estimate(tmp_path):
+    scene = study_laws.jobs(1, tmp_path)[0]
+    law = study_laws.Law({}, 1.0, 1.0)
+    truth = {"max_tension": 2.0, "max_tension_error": 1e-9, "jump_in_h0": 3.0, "end_load": -1.0}
+    found = {"max_tension": 2.2, "max_tension_error": 0.1, "end_load": -1.001, "error_estimate": 1.0}
+    finding = study_laws.judged(scene, law, (found, ""), (truth, ""))
+    assert [one.key for one in finding.deviations if one.ratio > 1] == ["max_tension"]
+    assert [text.split()[0] for text in finding.wrong] == ["jump_in_h0"]
+    lines = study_laws.table([finding])
+    assert any("max_tension: 2.0e+00" in line for line in lines), lines
+    assert any("jump_in_h0 has" in line for line in lines), lines
 
 
 def test_decks_of_a_study_are_always_the_same(tmp_path):
