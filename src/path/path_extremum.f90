@@ -43,16 +43,16 @@ module path_extremum
 contains
 
   !> The extrema of h0 or load between the last two states of an arc, in order. lost: a solve failed.
-  subroutine find_extrema(equations, options, frozen, arc, quantity, extrema, lost)
+  subroutine find_extrema(equations, options, arc, quantity, extrema, lost)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
-    type(frozen_jacobian_t), intent(inout) :: frozen
     type(arc_t), intent(in) :: arc
     integer, intent(in) :: quantity
     type(extremum_t), allocatable, intent(out) :: extrema(:)
     logical, intent(out) :: lost
     type(arc_t) :: near
     type(extremum_t) :: found
+    type(frozen_jacobian_t) :: frozen
     type(state_t) :: state
     type(tangent_t) :: tangent
     real(wp) :: s, expected, error
@@ -76,7 +76,7 @@ contains
         cycle
       end if
       if (turns) then
-        call polish(equations, options, frozen, near, i, quantity, found, lost)
+        call polish(equations, options, near, i, quantity, found, lost)
         if (lost) return
         extrema = [extrema, found]
       end if
@@ -149,10 +149,9 @@ contains
 
   !> The extremum between state i of an arc and the next: a root of the exact slope, begun at that of
   !> the curve.
-  subroutine polish(equations, options, frozen, near, i, quantity, found, lost)
+  subroutine polish(equations, options, near, i, quantity, found, lost)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
-    type(frozen_jacobian_t), intent(inout) :: frozen
     type(arc_t), intent(in) :: near
     integer, intent(in) :: i, quantity
     type(extremum_t), intent(out) :: found
@@ -160,6 +159,8 @@ contains
     type(bracket_t) :: bracket
     type(hermite_t) :: curve
     type(arc_t) :: beside
+    ! Factors made where the curve has the extremum serve all of its corrections.
+    type(frozen_jacobian_t) :: frozen
     type(extremum_t) :: tried
     real(wp) :: slope, least, slope_before, s_before, s, width
     integer :: round

@@ -166,7 +166,7 @@ contains
     call change_mesh(path, walker, equations, options, lost)
     do quantity = of_h0, of_load
       if (lost) return
-      call find_extrema(equations, options, walker%frozen, walker%arc_t, quantity, extrema, lost)
+      call find_extrema(equations, options, walker%arc_t, quantity, extrema, lost)
       do k = 1, size(extrema)
         call put(path, walker, quantity, extrema(k))
       end do
