@@ -87,11 +87,25 @@ def _present(folder, in_guide):
             found.update(make_tables(rows, tables.read(_before(folder / f"{name}.csv"))))
     if (folder / "accuracy.csv").is_file():
         found.update(accuracy.honesty(folder))
+    if in_guide:
+        tables.insert(_GUIDE, "version", _versions(folder))
     for name, (header, lines) in found.items():
         if in_guide:
             tables.insert(_GUIDE, name, tables.markdown(header, lines))
         else:
             print(f"\n{name}\n\n{tables.markdown(header, lines)}")
+
+
+def _versions(folder):
+    """Return which sources the measurements at hand belong to, as a sentence for each."""
+    by_sources = {}
+    for name in _PARTS:
+        notes = tables.notes(folder / f"{name}.csv")
+        if notes:
+            sources = next((x for x in notes if x.startswith("sources ")), "earlier sources")
+            by_sources.setdefault((sources, notes[-1]), []).append(name)
+    return "\n".join(f"Measured with {sources} ({machine}): {', '.join(names)}."
+                     for (sources, machine), names in by_sources.items())
 
 
 def _before(path):

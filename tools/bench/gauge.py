@@ -24,12 +24,12 @@ _ROW = (230, 900)
 
 
 class Gauge:
-    """Times of the linear algebra of one build."""
+    """Times of the linear algebra, whatever build is measured: by the one of this checkout."""
 
-    def __init__(self, build, environment):
-        self.build, self.environment = build, environment
+    def __init__(self, environment):
+        self.build, self.environment = ROOT / "build", environment
         self._unit, self._measured, self._pieces, self._row = None, -1e9, None, None
-        subprocess.run([str(ROOT / ".venv/bin/ninja"), "-C", str(build), "linear_limits"],
+        subprocess.run([str(ROOT / ".venv/bin/ninja"), "-C", str(self.build), "linear_limits"],
                        check=True, capture_output=True)
 
     def unit(self):

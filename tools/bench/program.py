@@ -90,7 +90,7 @@ class Program:
         # meanwhile.
         self.snapin = pathlib.Path(shutil.copy2(self.build / "snapin", self.scratch))
         self._references = {}
-        self.gauge = Gauge(self.build, self.environment)
+        self.gauge = Gauge(self.environment)
 
     def environment(self, threads=1):
         """Return an environment with so many threads."""

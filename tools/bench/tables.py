@@ -32,6 +32,14 @@ def read(path):
     return [{key: _value(cell) for key, cell in row.items()} for row in rows]
 
 
+def notes(path):
+    """Return the lines of notes of a table; none if there is no such file."""
+    if not path.is_file():
+        return []
+    with path.open(encoding="utf-8") as file:
+        return [line[1:].strip() for line in file if line.startswith("#")]
+
+
 def markdown(header, rows):
     """Return a Markdown table; numbers are shortened."""
     lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
