@@ -12,7 +12,7 @@ module sweeps
   use records, only: silent_observer_t
   use summarise, only: summary_of
   use summary, only: summary_t
-  use case_columns, only: columns_of, numbers_of
+  use case_columns, only: columns_of, numbers_of, column_width
   use journal, only: journal_t
   use mesh_store, only: mesh_store_t
   use byte_record, only: byte_record_t
@@ -43,15 +43,17 @@ contains
     type(cost_t), intent(out) :: cost
     type(case_t), allocatable :: cases(:)
     type(mesh_store_t) :: store
+    character(len=column_width), allocatable :: columns(:)
     integer :: i, written
 
     allocate (cases(size(scene%sweep%values)))
+    columns = columns_of(scene)
     written = 0
-    call recall_cases(scene, cases, written, results)
+    call recall_cases(scene, columns, cases, written, results)
     ! Each case has a thread of its own: its kernels and its linear algebra use no more.
     !$omp parallel do schedule(dynamic, 1)
     do i = 1, size(cases)
-      if (.not. cases(i)%done) call complete(scene, i, cases, written, results, store)
+      if (.not. cases(i)%done) call complete(scene, i, columns, cases, written, results, store)
     end do
     !$omp end parallel do
     failed = count(cases%done .and. .not. cases%converged)
@@ -61,8 +63,9 @@ contains
   end subroutine run_sweep
 
   !> Computes case i and enters it, unless results can no longer be written.
-  subroutine complete(scene, i, cases, written, results, store)
+  subroutine complete(scene, i, columns, cases, written, results, store)
     type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: columns(:)
     integer, intent(in) :: i
     type(case_t), intent(inout) :: cases(:)
     integer, intent(inout) :: written
@@ -80,13 +83,14 @@ contains
     call keep_case(results%journal, i, fresh)
     cases(i) = fresh
     call results%progress%step('case')
-    call write_rows(scene, cases, written, results)
+    call write_rows(scene, columns, cases, written, results)
     !$omp end critical (one_at_a_time)
   end subroutine complete
 
   !> Takes the cases that an interrupted run has completed.
-  subroutine recall_cases(scene, cases, written, results)
+  subroutine recall_cases(scene, columns, cases, written, results)
     type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: columns(:)
     type(case_t), intent(inout) :: cases(:)
     integer, intent(inout) :: written
     type(results_t), intent(inout) :: results
@@ -103,7 +107,7 @@ contains
       call record%take(cases(i)%numbers)
       call take_cost(record, cases(i)%cost)
       call results%progress%skip('case')
-      call write_rows(scene, cases, written, results)
+      call write_rows(scene, columns, cases, written, results)
     end do
   end subroutine recall_cases
 
@@ -122,8 +126,9 @@ contains
   end subroutine keep_case
 
   !> Writes the rows whose turn it is, after the first `written`.
-  subroutine write_rows(scene, cases, written, results)
+  subroutine write_rows(scene, columns, cases, written, results)
     type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: columns(:)
     type(case_t), intent(in) :: cases(:)
     integer, intent(inout) :: written
     type(results_t), intent(inout) :: results
@@ -131,7 +136,7 @@ contains
     do while (written < size(cases))
       if (.not. cases(written + 1)%done) exit
       written = written + 1
-      call results%take_case(scene%sweep%key, scene%sweep%values(written), columns_of(scene), &
+      call results%take_case(scene%sweep%key, scene%sweep%values(written), columns, &
         cases(written)%numbers)
     end do
   end subroutine write_rows

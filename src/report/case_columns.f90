@@ -9,16 +9,17 @@ module case_columns
   use summary, only: summary_t
   implicit none
   private
-  public :: columns_of, numbers_of
+  public :: columns_of, numbers_of, column_width
 
-  integer, parameter :: width = 132
+  !> Characters of a column's description.
+  integer, parameter :: column_width = 132
 
 contains
 
   !> The columns of a sweep of this scene, each described as 'name [unit] what it is'.
   pure function columns_of(scene) result(columns)
     type(scene_t), intent(in) :: scene
-    character(len=width), allocatable :: columns(:)
+    character(len=column_width), allocatable :: columns(:)
     character(len=:), allocatable :: number
     integer, allocatable :: single(:)
     integer :: i, k, n
@@ -71,10 +72,24 @@ contains
     integer :: i
 
     single = [pack([(i, i=1, size(rows))], rows%sweep == 'always'), &
-      pack([(i, i=1, size(rows))], [(scene%deck%has_group(trim(rows(i)%sweep)) .and. &
-      .not. each_turn(rows(i)), i=1, size(rows))])]
+      pack([(i, i=1, size(rows))], [(comes_with_group(rows(i)), i=1, size(rows))])]
     if (.not. scene%law%of_paper) &
       single = [single, pack([(i, i=1, size(rows))], rows%sweep == '(forces)')]
+
+  contains
+
+    !> The deck is only asked for what names a group: each case asks for all rows.
+    pure logical function comes_with_group(row)
+      type(row_t), intent(in) :: row
+
+      select case (row%sweep)
+      case ('', 'always', '(forces)', 'unloading')
+        comes_with_group = .false.
+      case default
+        comes_with_group = scene%deck%has_group(trim(row%sweep))
+      end select
+    end function comes_with_group
+
   end function single_columns
 
   !> Whether a row is one column for each turning point.
@@ -94,7 +109,7 @@ contains
   pure function described(row, suffix) result(text)
     type(row_t), intent(in) :: row
     character(len=*), intent(in) :: suffix
-    character(len=width) :: text
+    character(len=column_width) :: text
 
     text = trim(row%key) // suffix // ' [' // trim(row%unit) // '] ' // row%meaning
   end function described
