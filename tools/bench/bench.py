@@ -64,7 +64,7 @@ def main():
             began = time.perf_counter()
             _say(name)
             rows = _PARTS[name][0](runner, quick, lambda text: _say(f"  {text}"))
-            sources = f"sources {pages.digest()}"
+            sources = f"sources {_digest(build)}"
             if path.is_file() and f"# {sources}\n" not in path.read_text(encoding="utf-8"):
                 path.replace(_before(path))
             tables.write(path, rows, [f"./bench --only {name}{' --quick' if quick else ''}",
@@ -81,6 +81,9 @@ def _present(folder, in_guide):
     found = {}
     for name, (_, draw, make_tables) in _PARTS.items():
         rows = tables.read(folder / f"{name}.csv")
+        if not _sources(folder / f"{name}.csv"):
+            # Measured in seconds, by a bench before this one.
+            continue
         if rows and draw:
             draw(rows, folder)
         if rows and make_tables:
@@ -100,12 +103,22 @@ def _versions(folder):
     """Return which sources the measurements at hand belong to, as a sentence for each."""
     by_sources = {}
     for name in _PARTS:
-        notes = tables.notes(folder / f"{name}.csv")
-        if notes:
-            sources = next((x for x in notes if x.startswith("sources ")), "earlier sources")
-            by_sources.setdefault((sources, notes[-1]), []).append(name)
+        path = folder / f"{name}.csv"
+        if path.is_file():
+            sources = _sources(path) or "sources before these, in seconds"
+            by_sources.setdefault((sources, tables.notes(path)[-1]), []).append(name)
     return "\n".join(f"Measured with {sources} ({machine}): {', '.join(names)}."
                      for (sources, machine), names in by_sources.items())
+
+
+def _sources(path):
+    """Return the note of a table that says which sources were measured; empty without one."""
+    return next((note for note in tables.notes(path) if note.startswith("sources ")), "")
+
+
+def _digest(build):
+    """Return the digest of the sources that a build folder is of."""
+    return pages.digest(build.parent / "src")
 
 
 def _before(path):
