@@ -179,3 +179,24 @@ def test_files_that_may_not_belong_together_are_not_drawn(plot, results):
         note.unlink()
     assert done.returncode != 0
     assert "may not belong together" in done.stderr
+
+
+def test_a_law_is_drawn_beside_its_curve(plot, tmp_path):
+    """A table's file is looked for beside the deck, wherever the command is given."""
+    for name in ("tabulated", "van_der_waals"):
+        done = plot("law_and_curve.py", ROOT / "inputs" / "examples" / f"{name}.nml", "-o", "here.png")
+        assert (done.returncode, done.stdout) == (0, "here.png\n"), done.stderr
+        assert size_of(tmp_path / "here.png") == (1350, 585)
+    done = plot("law_and_curve.py", "nowhere.nml")
+    assert done.returncode == 1 and "nowhere.nml" in done.stderr
+
+
+def test_a_curve_does_not_swing_between_uneven_steps(monkeypatch):
+    monkeypatch.syspath_prepend(SCRIPTS)
+    from drawing import smooth
+
+    # The last state before a jump, far from those before it in one direction only.
+    points = np.array([[4.0, 0.0], [3.0, 0.1], [2.0, 0.2], [1.0, 0.3], [0.8, 5.0]])
+    curve = smooth(points)
+    assert len(curve) > len(points)
+    assert (np.diff(curve[:, 0]) <= 0).all() and (np.diff(curve[:, 1]) >= 0).all()
