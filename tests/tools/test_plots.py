@@ -195,8 +195,9 @@ def test_a_curve_does_not_swing_between_uneven_steps(monkeypatch):
     monkeypatch.syspath_prepend(SCRIPTS)
     from drawing import smooth
 
-    # The last state before a jump, far from those before it in one direction only.
-    points = np.array([[4.0, 0.0], [3.0, 0.1], [2.0, 0.2], [1.0, 0.3], [0.8, 5.0]])
-    curve = smooth(points)
-    assert len(curve) > len(points)
-    assert (np.diff(curve[:, 0]) <= 0).all() and (np.diff(curve[:, 1]) >= 0).all()
+    # A load near its maximum and, after a much longer step, at a fold.
+    h0 = np.array([60.0, 30.0, 10.0, 1.5, 1.25, 1.0, 0.84])
+    load = np.array([0.0, 0.1, 4.2, 57.7, 59.0, 58.2, 45.4])
+    curve = smooth(np.column_stack([h0, load]))
+    assert len(curve) > len(h0)
+    assert (np.diff(curve[:, 0]) <= 0).all()
