@@ -53,7 +53,9 @@ def smooth(points):
     least = np.minimum(abs(slope[:-1]), abs(slope[1:]))
     bound = np.where(slope[:-1] * slope[1:] > 0, _STEEPEST * least, np.inf)
     inner = np.clip(inner, -bound, bound)
-    tangent = np.vstack([2 * slope[0] - inner[0], inner, 2 * slope[-1] - inner[-1]])
+    ends = 2 * slope[[0, -1]] - inner[[0, -1]]
+    ends = np.where(ends * slope[[0, -1]] > 0, ends, 0)
+    tangent = np.vstack([ends[:1], inner, ends[1:]])
     t = np.linspace(0, 1, 12, endpoint=False)[:, None]
     curve = []
     for i, step in enumerate(along):
