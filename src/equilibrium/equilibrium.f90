@@ -106,7 +106,7 @@ contains
         return
       end if
       state%pressure = problem%law%pressure(state%gap)
-      cost%pressure_evaluations = cost%pressure_evaluations + n
+      cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
       raised = 0
       if (problem%coupling > 0) then
         columns = acting_columns(state%pressure)

@@ -123,6 +123,7 @@ contains
     real(wp), intent(in) :: length, unit, origin
     integer :: i
 
+    law%terms = size(law%term)
     law%length = length
     law%pressure_unit = unit
     law%origin = origin

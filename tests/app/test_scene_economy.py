@@ -1,7 +1,7 @@
 """Claims about cost, by the counters of &cost: what a scene leaves out costs nothing."""
 
 import pytest
-from support.scenes import exponential, lennard_jones, loading, runner
+from support.scenes import deck, exponential, lennard_jones, loading, runner
 
 COUNTERS = [
     "states",
@@ -59,6 +59,39 @@ def test_short_ranged_repulsion_multiplies_by_few_columns(run):
     # Attraction reaches everywhere.
     cost = run(lennard_jones(0.1, loading=loading(8, -2, 0.5), numerics=numerics)).cost
     assert cost["operator_columns"] >= 0.95 * cost["operator_products"] * cost["nodes"]
+
+
+def test_forces_that_are_absent_are_not_evaluated(run):
+    """Rigid bodies need no iterations: counts are nodes times states times forces; the search for
+    the largest tension may take some more or fewer states."""
+    forces = {
+        "van_der_waals": {"hamaker": 1.0},
+        "born": {"z0": 1.0},
+        "hydration": {"energy": 0.01, "decay_length": 2.0},
+        "structural": {"amplitude": 0.001, "period": 2.0, "decay_length": 1.0},
+    }
+    bodies = {"radius": 1.0, "rigid": True}
+    numerics = {"grid": "uniform", "nodes": 300}
+    one = run(lennard_jones(1.0, loading=loading(8, 1, 0.25), numerics=numerics).replace(
+        "stiffness = 1.0", "rigid = .true.")).cost["pressure_evaluations"]
+    assert one >= 300 * 29
+    for count in (2, 3, 4):
+        present = dict(list(forces.items())[:count])
+        cost = run(deck(bodies=bodies, **present, loading=loading(8, 1, 0.25), numerics=numerics)).cost
+        assert cost["pressure_evaluations"] == pytest.approx(count * one, rel=0.1)
+
+
+def test_one_force_alone_runs_without_a_sum(run):
+    """The paper's law and the group that is the same law: the same work, to the last digit."""
+    bodies, numerics = {"radius": 1.0, "stiffness": 1.0}, {"grid": "uniform", "nodes": 300}
+    paper, group = (
+        run(deck(bodies=bodies, **law, loading=loading(8, -6, 0.5), numerics=numerics)) for law in (
+            {"force": {"law": "exponential", "p0": 3.0, "decay_length": 1.0}},
+            {"hydration": {"pressure": 3.0, "decay_length": 1.0}})
+    )
+    assert counts(group) == counts(paper)
+    for name in ("h0", "load", "h_centre", "residual"):
+        assert list(group.curve[name]) == list(paper.curve[name]), name
 
 
 def test_a_law_without_attraction_meshes_the_contact_alone(run):
