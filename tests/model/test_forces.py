@@ -32,6 +32,15 @@ def test_van_der_waals_and_born_make_the_lennard_jones_law():
         claim(found, exact, abs(up) + abs(down))
 
 
+@pytest.mark.parametrize("z0", [1e-15, 1e-9, 1.0, 1e9])
+def test_a_power_has_no_length_that_others_could_be_too_long_or_short_for(z0):
+    groups = {"van_der_waals": {"hamaker": 1e-19 * z0**2}, "born": {"z0": z0}}
+    numbers = snapin.law_numbers(groups)
+    assert numbers.rest_gap == pytest.approx(z0, rel=1e-12)
+    assert numbers.edge_gap == pytest.approx(3 ** (1 / 6) * z0, rel=1e-12)
+    assert numbers.surface_energy == pytest.approx(1e-19 / (16 * math.pi), rel=1e-12)
+
+
 def test_retardation_is_gregory_s_and_far_away_an_inverse_fourth_power():
     length = 1e-8
     c = 5.32 / length
