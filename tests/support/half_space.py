@@ -189,24 +189,9 @@ def dlvo(z0, **keys):
     return values
 
 
-def lowest_eigenvalues(law, s, states):
-    """The two lowest eigenvalues of I - 2 s W diag(P') for (ends of the panels, gaps) of each."""
-    found = []
-    for ends, gap in states:
-        half_space = HalfSpace(ends, len(gap) // (len(ends) - 1))
-        operator = np.eye(len(gap)) - 2 * s * half_space.matrix[1:] * law(np.array(gap))[1]
-        found.append(np.sort(np.linalg.eigvals(operator).real)[:2].tolist())
-    return found
-
-
 def independent_states(law, s, h0, ends, largest=0.8):
     """Gaps on the axis and loads at each H0 on panels with the given ends."""
     return carried_out({"law": law, "s": s, "h0": list(h0), "ends": list(ends), "largest": largest})
-
-
-def independent_eigenvalues(law, s, states):
-    """`lowest_eigenvalues`, (two, states)."""
-    return carried_out({"law": law, "s": s, "states": states})
 
 
 def independent_folds(law, s, axis, ends, **keys):
@@ -241,9 +226,6 @@ def main():
     law = {
         "exponential": exponential, "lennard_jones": lennard_jones, "barrier": behind_a_barrier,
     }.get(task["law"]) or dlvo(**task["keys"])
-    if "states" in task:
-        print(json.dumps(lowest_eigenvalues(law, task["s"], task["states"])))
-        return
     half_space = HalfSpace(task["ends"])
     if "folds" in task:
         print(json.dumps(half_space.folds(law, task["s"], task["folds"])))
