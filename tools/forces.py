@@ -41,7 +41,8 @@ def variants(name, keys):
         return {model: {name: {**keys[name], "model": model}}
                 for model in ("superposition", "linear", "nonlinear")}
     if name == "steric":
-        models = {"alexander_de_gennes": "Alexander, de Gennes", "milner_witten_cates": "Milner et al."}
+        models = {"alexander_de_gennes": "Alexander, de Gennes",
+                  "milner_witten_cates": "Milner et al."}
         return {label: {name: {**keys[name], "model": model}} for model, label in models.items()}
     if name == "lennard_jones_10_4":
         return {f"{n:g}, {m:g}": {"force": {**keys["force"], "exponents": [n, m]}}

@@ -27,8 +27,8 @@ _DASHES = ((5, 2), (2, 1.5), (5, 1.5, 1, 1.5), (1, 1.5))
 def draw_law_and_curve(deck, results, terms=None, quantity="pressure"):
     """Return a figure of the law of a deck's file and the curve in the folder `results`.
 
-    quantity: pressure or energy of the law; terms: label -> groups of a law that is drawn beside that of the deck; without it the deck's own
-    terms, if there are several.
+    quantity: pressure or energy of the law; terms: label -> groups of a law that is drawn beside
+    that of the deck; without it the deck's own terms, if there are several.
     """
     groups = forces_of(deck)
     if terms is None:
@@ -58,13 +58,13 @@ def draw_law_and_curve(deck, results, terms=None, quantity="pressure"):
 
 
 def _look_at_contact(panel, curve):
-    """Show what adhesion does: not how the curve goes on under high loads, nor where it is level."""
+    """Show what adhesion does: not how the curve goes on under high loads, or where it is level."""
     h0, load = curve.table["h0"] / curve.lengths[0], curve.table["load"] / curve.loads[0]
     deepest = abs(load.min())
     if load.min() < 0:
         seen = h0[(load <= _HIGHEST * deepest) & (abs(load) >= _FAINT * deepest)]
         span = np.ptp(seen)
-        panel.set_xlim(max(h0.min(), seen.min()) - 0.05 * span, min(h0.max(), seen.max() + 0.2 * span))
+        panel.set_xlim(seen.min() - 0.05 * span, min(h0.max(), seen.max() + 0.2 * span))
         panel.set_ylim(-1.2 * deepest, min(1.05 * load.max(), _HIGHEST * deepest))
 
 

@@ -44,11 +44,13 @@ contains
     integer, parameter :: letters = storage_size(0_long)/8
     integer(long) :: words((len(text) + letters - 1)/letters)
     character(len=letters) :: piece
-    integer :: i
+    integer :: i, first, last
 
     do i = 1, size(words)
+      first = letters*(i - 1) + 1
+      last = min(letters*i, len(text))
       piece = repeat(achar(0), letters)
-      piece(:min(letters, len(text) - letters*(i - 1))) = text(letters*(i - 1) + 1:min(letters*i, len(text)))
+      piece(:last - first + 1) = text(first:last)
       words(i) = transfer(piece, words(i))
     end do
     checksum = of_words(words)

@@ -29,8 +29,8 @@ module force_law
     !> Whether `length` and `pressure_unit` are scales of the force; else those of its well become
     !> the units (`force_sum`).
     logical :: has_units = .true.
-    !> Whether there is a length at which the force changes; a single power has none, and its `length`
-    !> is any.
+    !> Whether there is a length at which the force changes; a single power has none, and its
+    !> `length` is any.
     logical :: has_length = .true.
     !> Whether `length` is the z0 of a law of powers, in which the field gives sigma and Tabor's
     !> parameter; else it is the range, surface energy over largest tension.

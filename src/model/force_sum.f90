@@ -82,9 +82,9 @@ contains
   end function terms_in
 
   !> Units and scales of a law whose terms are complete. A sum is looked at in units of its shortest
-  !> term first, of those that have a length. If it has a well its units are then those of the well: z0 of the first term that
-  !> has one, else the range, which is the depth over the largest tension; and the largest tension.
-  !> The contact is at gap 1. So are those of a law without units of its own, a sum of one.
+  !> term first, of those that have a length. If it has a well its units are then those of the well:
+  !> z0 of the first term that has one, else the range, which is the depth over the largest tension;
+  !> and the largest tension. The contact is at gap 1. So are those of a law without units of its own, a sum of one.
   subroutine settle(law)
     class(force_law_t), allocatable, intent(inout) :: law
     type(force_sum_t) :: alone

@@ -212,7 +212,7 @@ contains
   end function path_of
 
   !> Notes what was in the file that a key names: `resolved` then gives the whole path, since it may
-  !> be read in another folder, and a checksum, so that a deck whose file has changed is another one.
+  !> be read in another folder, and a checksum: a deck whose file has changed is another one.
   subroutine note_file(self, group, key, content)
     class(deck_t), intent(inout) :: self
     character(len=*), intent(in) :: group, key, content

@@ -23,7 +23,7 @@ module number_columns
 
 contains
 
-  !> Reads the file that a key of the deck names; `error` says what is not two numbers, with the line.
+  !> Reads the file that a key of the deck names; `error` says what is not two numbers, and where.
   subroutine read_columns(deck, group, key, columns, error)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, key

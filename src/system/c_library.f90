@@ -7,7 +7,8 @@ module c_library
   implicit none
   private
   public :: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, c_make_folder, &
-    c_current_folder, c_lock, c_kind, c_rename, c_remove, c_is_terminal, c_prepare, c_openblas_threads, c_openblas_config
+    c_current_folder, c_lock, c_kind, c_rename, c_remove, c_is_terminal, c_prepare, &
+    c_openblas_threads, c_openblas_config
   public :: explain, system_failure, nul
   public :: as_input, as_output, as_kept_output, as_folder
   public :: too_large, disk_full, in_the_way, not_there, locked_elsewhere

@@ -67,7 +67,7 @@ def drawn(law, draw):
 
 
 def separations(unit, groups):
-    """Separations from deep within the law to far away, with those at which it is not smooth, and no
+    """Separations from deep within the law to far away, those at which it is not smooth too, no
     farther from each other than a period."""
     gap = unit.origin + unit.length * np.geomspace(0.5, 40, 60)
     if "steric" in groups:

@@ -1,5 +1,5 @@
-"""Claims about contact that lies behind a barrier: scan and path of DLVO forces and of a simpler law
-with a barrier, against equations and elastic states that share nothing with the program."""
+"""Claims about contact that lies behind a barrier: scan and path of DLVO forces and of a simpler
+law with a barrier, against equations and elastic states that share nothing with the program."""
 
 import functools
 import math
@@ -129,7 +129,8 @@ def test_before_the_jump_the_load_is_that_of_undeformed_bodies():
     sphere = 2 * math.pi * bodies["radius"]
     deepest = sphere * result.summary["secondary_minimum_energy"]
     assert before["load"].min() == pytest.approx(deepest, rel=1e-3)
-    assert before["load"].max() == pytest.approx(sphere * result.summary["barrier_energy"], rel=0.01)
+    highest = sphere * result.summary["barrier_energy"]
+    assert before["load"].max() == pytest.approx(highest, rel=0.01)
     # Outside the barrier the load lies between those of the gap that was and of the gap that is.
     before = before[before["h0"] > 2e-9]
     ends = np.array([sphere * law(before[gap])[2] for gap in ("h0", "h_centre")])

@@ -1,12 +1,12 @@
-"""The sphere under the Lennard-Jones law at values of Tabor's parameter that others have tabulated."""
+"""The sphere under the Lennard-Jones law at values of Tabor's parameter that others tabulate."""
 
 import math
 
 import pytest
 import snapin
 
-# From another program, to 2e-9, by Tabor's parameter: pull-off over pi w R and where it is; jumps in
-# and out, h0 and load each, and energy lost in a cycle, in units of w R and z0.
+# From another program, to 2e-9, by Tabor's parameter: pull-off over pi w R and where it is; jumps
+# in and out, h0 and load each, and energy lost in a cycle, in units of w R and z0.
 TABLE = {
     0.01: (1.998969, 1.0019),
     0.1: (1.968956, 1.0586),

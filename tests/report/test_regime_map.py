@@ -1,5 +1,5 @@
-"""The errors that `&regime` gives, over all strengths of adhesion: those of the theories' equations,
-solved here, against the profile and the curve in the results."""
+"""The errors that `&regime` gives, over all strengths of adhesion: those of the theories'
+equations, solved here, against the profile and the curve in the results."""
 
 import math
 
@@ -27,8 +27,8 @@ def root(function, low, high):
     return (low + high) / 2
 
 
-# --- Theories. R = z0 = E/(1-nu^2) = 1, so that K = 4/3 E* = 2/3 and w = sigma. Each gives pull-off,
-# and contact radius and indentation under a load.
+# --- Theories. R = z0 = E/(1-nu^2) = 1, so that K = 4/3 E* = 2/3 and w = sigma. Each gives
+# pull-off, and contact radius and indentation under a load.
 
 K = 2 / 3
 

@@ -59,7 +59,7 @@ def test_a_summary_runs_again_wherever_it_is(snapin, tmp_path, scene):
 
 
 @every_scene
-def test_finished_results_of_another_file_are_not_taken_for_those_of_this_one(snapin, tmp_path, scene):
+def test_finished_results_of_another_file_are_not_taken_for_these(snapin, tmp_path, scene):
     (tmp_path / "deck.nml").write_text(lay_out(tmp_path, scene, equilibrium_path=PATH))
     results = tmp_path / "results/deck"
     assert snapin("deck.nml", cwd=tmp_path).returncode == 0

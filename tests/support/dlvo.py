@@ -27,7 +27,8 @@ class Dlvo:
         y = [potential / thermal] * 2
         nodes = chebyshev.chebpts1(48)
         at = FAR * ((nodes + 1) / 2) ** 2
-        values = [math.log(boundary_value.pressure(y, [regulation] * 2, x, 32, 6)[0]) + x for x in at]
+        both = [regulation] * 2
+        values = [math.log(boundary_value.pressure(y, both, x, 32, 6)[0]) + x for x in at]
         self.series = chebyshev.chebfit(nodes, values, 47)
         self.derivative = chebyshev.chebder(self.series)
 

@@ -1,5 +1,5 @@
-"""Claims about any force law, given as a function of separations that returns `LawValues`: the slope
-is the derivative of the pressure, the energy its integral."""
+"""Claims about any force law, given as a function of separations that returns `LawValues`: the
+slope is the derivative of the pressure, the energy its integral."""
 
 import numpy as np
 
@@ -9,8 +9,8 @@ def claim_slope(of, gap, unit, size=None):
 
     size: the slope's parts, which set the rounding where it passes through zero; else itself.
     """
-    # Extrapolated twice: the error is that of the sixth order in a step of 1 % of the gap or length,
-    # 1e-12 times the ninth power's coefficients.
+    # Extrapolated twice: the error is that of the sixth order in a step of 1 % of the gap or
+    # length, 1e-12 times the ninth power's coefficients.
     step = 1e-2 * np.minimum(gap - unit.origin, unit.length)
     d = [
         (of(gap + h).pressure - of(gap - h).pressure) / (2 * h)

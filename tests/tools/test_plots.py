@@ -184,7 +184,8 @@ def test_files_that_may_not_belong_together_are_not_drawn(plot, results):
 def test_a_law_is_drawn_beside_its_curve(plot, tmp_path):
     """A table's file is looked for beside the deck, wherever the command is given."""
     for name in ("tabulated", "van_der_waals"):
-        done = plot("law_and_curve.py", ROOT / "inputs" / "examples" / f"{name}.nml", "-o", "here.png")
+        deck = ROOT / "inputs" / "examples" / f"{name}.nml"
+        done = plot("law_and_curve.py", deck, "-o", "here.png")
         assert (done.returncode, done.stdout) == (0, "here.png\n"), done.stderr
         assert size_of(tmp_path / "here.png") == (1350, 585)
     done = plot("law_and_curve.py", "nowhere.nml")
