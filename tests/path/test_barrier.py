@@ -158,3 +158,17 @@ def test_dlvo_jumps_are_those_of_independent_states():
     unit = energy * bodies["radius"] / sigma
     assert [summary["jump_in_load"], summary["jump_out_load"]] == pytest.approx(
         load * unit, rel=1e-6)
+
+
+def test_a_soft_spring_jumps_at_the_top_of_the_barrier_and_lands_pushing():
+    deck = DECK.read_text().split("&loading")[0]
+    deck += "&equilibrium_path h0_end = -4e-9 /\n&device stiffness = 1.0 /\n"
+    found = snapin.run(deck).summary
+    summary = scene()[0].summary
+    # Below the top by the square of the spring over the curve's own stiffness.
+    highest = 2 * math.pi * scene()[1]["radius"] * summary["barrier_energy"]
+    before, after = found["device_jump_in_load"], found["device_jump_in_load_after"]
+    assert highest < before < 1.02 * highest
+    # The drive stands still while the bodies close by a nanometre or two.
+    assert 0 < before - after < 3e-9 * 1.0
+    assert found["device_energy_lost"] == pytest.approx(found["device_cycle_energy"], rel=1e-6)
