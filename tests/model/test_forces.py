@@ -177,3 +177,26 @@ def test_forces_that_contradict_themselves_are_refused(check, forces, phrase):
     )
     assert status == 2
     assert phrase in err, err
+
+
+# --- What the scan of a sum finds
+
+
+def test_layers_of_a_liquid_have_their_contact_at_a_positive_separation():
+    """The formula goes on to negative ones with ever larger swings, which mean nothing."""
+    layers = {"structural": {"amplitude": 3e6, "period": 0.9e-9, "decay_length": 1e-9}}
+    numbers = snapin.law_numbers(layers)
+    assert numbers.rest_gap == pytest.approx(0.75 * 0.9e-9, rel=1e-12)
+    assert 0 < numbers.surface_energy < 3e6 * 0.9e-9
+
+
+def test_what_is_left_of_repulsions_far_away_is_no_well():
+    """The sum of a longer and a shorter exponential, whose signs rounding decides far away."""
+    groups = {
+        "structural": {"amplitude": 3e6, "period": 0.9e-9, "decay_length": 0.5e-9},
+        "hydration": {"energy": 5e-3, "decay_length": 0.9e-9},
+    }
+    assert (pressure(GAP, **groups) >= 0).all()
+    numbers = snapin.law_numbers(groups)
+    assert numbers.surface_energy == 0
+    assert math.isnan(numbers.rest_gap) and math.isnan(numbers.edge_gap)
