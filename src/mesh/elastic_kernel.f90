@@ -9,7 +9,7 @@ module elastic_kernel
   use kinds, only: wp, pi
   implicit none
   private
-  public :: kernel, kernel_log_coefficient, agm
+  public :: kernel, kernel_log_coefficient
 
   !> Steps of the mean that reach double precision from the first of these ratios upward, from the
   !> next with one more, and so on; from 1e-14 with three.
