@@ -60,7 +60,8 @@ contains
     if (abs(log(max(strength(problem), tiny(1.0_wp))/onset)) < log(near_onset)) &
       for_folds = max(for_folds, most_for_folds)
     digits = max(1.1_wp - 1.05_wp*log10(accuracy), -0.9_wp - 1.38_wp*log10(accuracy))
-    if (profiles) digits = digits + more_for_profiles
+    ! So are extrema of the load where the edge passes a kink of the bodies.
+    if (profiles .or. problem%shape%smooth_from() > 0) digits = digits + more_for_profiles
     digits = max(digits, for_folds)
     left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
     digits = max(fewest_digits, min(digits, left, most_digits))
