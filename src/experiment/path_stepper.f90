@@ -3,8 +3,8 @@
 !> and where a jump leads, and what the largest tension on the way is.
 !>
 !> The iteration solves the states; its result counts where it is the one that the path has. Usually
-!> that is a few accelerated iterations from the extrapolated state, with one factorisation for many
-!> steps; beside a fold the state is looked for along the path.
+!> that is one correction of the state that the path lets expect, and a check, with one factorisation
+!> for many steps; beside a fold the state is looked for along the path.
 module path_stepper
   use kinds, only: wp
   use interpolation, only: polynomial_weights
@@ -217,6 +217,10 @@ contains
       at(k) = coordinate_of(self%problem, self%span%mesh, position%past(k))
     end do
     do first = first, position%held
+      ! A span's polynomial is good for no more than its length; and states whose places differ in
+      ! rounding alone tell nothing of a third.
+      if (abs(at(first) - s) > abs(self%span%ends(2) - self%span%ends(1))) cycle
+      if (any(abs(at(first + 1:) - at(first:position%held - 1)) <= 0)) cycle
       weight(first:) = polynomial_weights(at(first:), s)
       if (sum(abs(weight(first:))) <= most_weight) exit
     end do
