@@ -1,5 +1,5 @@
-!> The polynomial through a few scattered values: weights, value, slope, maximum; and Hermite's, which
-!> has given slopes there too.
+!> The polynomial through a few scattered values: weights, value, slope, maximum; and Hermite's,
+!> which has given slopes there too.
 module interpolation
   use kinds, only: wp
   use root_finding, only: bracket_t

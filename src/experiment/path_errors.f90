@@ -9,8 +9,8 @@ module path_errors
   use traced_path, only: path_point_t, traced_path_t
   use known_path, only: known_path_t, landing_t, landing_over
   use reported, only: reported_t, error_t, measure_t
-  use path_expansion, only: expansion_t, expansion_about, move_to, solve_fine, distance_to, measure_at, &
-    extremum_of_h0, extremum_of_load, at_h0
+  use path_expansion, only: expansion_t, expansion_about, move_to, solve_fine, distance_to, &
+    measure_at, extremum_of_h0, extremum_of_load, at_h0
   use error_estimate, only: finer_t, unknown_error, profile_error, rounding, worst_residual, &
     what_is_left
   implicit none

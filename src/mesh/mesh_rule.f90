@@ -46,9 +46,9 @@ module mesh_rule
 contains
 
   !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy:
-  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, if any are asked
-  !> for, which feel every error of the edge's place, are more sensitive. widest: the largest contact
-  !> radius. No more than rounding leaves of the deformation.
+  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, if any are
+  !> asked for, which feel every error of the edge's place, are more sensitive. widest: the largest
+  !> contact radius. No more than rounding leaves of the deformation.
   pure real(wp) function digits_for(problem, widest, accuracy, profiles) result(digits)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
@@ -104,7 +104,7 @@ contains
     end if
     reach = max(nearest_tail, beyond_poles*problem%shape%position_of(0.5_wp*calm_gap(problem)))
     outer = density
-    ! As long as the contact is smaller than its neck, the pressure around it is that before contact.
+    ! As long as a contact is smaller than its neck, the pressure around it is that before contact.
     if (problem%law%adhesion > 0) &
       outer = density*(1 + 0.5_wp/(1 + 3*(low/neck_width(problem))**2))
     call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)

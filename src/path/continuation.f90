@@ -1,7 +1,7 @@
-!> Follows the equilibrium path from afar into contact, stable and unstable, in the coordinate in which
-!> it has no folds (`path_coordinate`). Each step is extrapolated from the last states and their
-!> tangents, and corrected by the accelerated iteration; how far the correction goes decides how
-!> long the next step is.
+!> Follows the equilibrium path from afar into contact, stable and unstable, in the coordinate in
+!> which it has no folds (`path_coordinate`). Each step is extrapolated from the last states and
+!> their tangents, and corrected by the accelerated iteration; how far the correction goes decides
+!> how long the next step is.
 module continuation
   use kinds, only: wp
   use equilibrium, only: state_t, equations_t, radius_of_gap

@@ -1,5 +1,5 @@
-!> The coordinate s of the equilibrium path, in which it has no folds: before contact the logarithm of
-!> the gap on the axis, above nine tenths of the gap at rest, in contact of the contact radius
+!> The coordinate s of the equilibrium path, in which it has no folds: before contact the logarithm
+!> of the gap on the axis, above nine tenths of the gap at rest, in contact of the contact radius
 !> (`edge_locked`).
 module path_coordinate
   use kinds, only: wp
@@ -43,8 +43,8 @@ contains
     end if
   end function coordinate_of
 
-  !> The sign that makes the coordinate of a mesh grow from afar inward: the gap on the axis shrinks,
-  !> the contact radius grows.
+  !> The sign that makes the coordinate of a mesh grow from afar inward: the gap on the axis
+  !> shrinks, the contact radius grows.
   elemental integer function inward(mesh)
     integer, intent(in) :: mesh
 

@@ -42,7 +42,8 @@ module path_extremum
 
 contains
 
-  !> The extrema of h0 or load between the last two states of an arc, in order. lost: a solve failed.
+  !> The extrema of h0 or load between the last two states of an arc, in order. lost: a solve
+  !> failed.
   subroutine find_extrema(equations, options, arc, quantity, extrema, lost)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
@@ -84,8 +85,8 @@ contains
     end do
   end subroutine find_extrema
 
-  !> What is between state i of an arc and the next: `turns`, an extremum; `doubt`, perhaps two more,
-  !> which a state at s would show. error: of the curve's slope; huge where it is not known.
+  !> What is between state i of an arc and the next: `turns`, an extremum; `doubt`, perhaps two
+  !> more, which a state at s would show. error: of the curve's slope; huge where it is not known.
   pure subroutine look(near, quantity, i, error, turns, doubt, s)
     type(arc_t), intent(in) :: near
     integer, intent(in) :: quantity, i
@@ -147,8 +148,8 @@ contains
     least = course*curve%slope(s)
   end subroutine descend
 
-  !> The extremum between state i of an arc and the next: a root of the exact slope, begun at that of
-  !> the curve.
+  !> The extremum between state i of an arc and the next: a root of the exact slope, begun at that
+  !> of the curve.
   subroutine polish(equations, options, near, i, quantity, found, lost)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options

@@ -56,8 +56,8 @@ module traced_path
     procedure :: mesh_between
   end type traced_path_t
 
-  !> Points on either side of a piece of the path that tell about it: of folds and extrema one may be
-  !> too near to tell anything.
+  !> Points on either side of a piece of the path that tell about it: of folds and extrema one may
+  !> be too near to tell anything.
   integer, parameter :: either_side = 2
 
   !> Without repulsion the bodies fall onto each other once they have jumped, and the path goes on
@@ -148,8 +148,8 @@ contains
   end function mesh_between
 
   !> Advances the tracer by a step and appends the new point, and before it the extrema that have
-  !> been passed. A new path begins with the tracer's own newest state. lost: no step, however small,
-  !> converged.
+  !> been passed. A new path begins with the tracer's own newest state. lost: no step, however
+  !> small, converged.
   subroutine extend(path, walker, equations, options, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
