@@ -3,8 +3,8 @@
 !> and where a jump leads, and what the largest tension on the way is.
 !>
 !> The iteration solves the states; its result counts where it is the one that the path has. Usually
-!> that is one correction of the state that the path lets expect, and a check, with one factorisation
-!> for many steps; beside a fold the state is looked for along the path.
+!> that is one correction of the state that the path lets expect, and a check, with one
+!> factorisation for many steps; beside a fold the state is looked for along the path.
 module path_stepper
   use kinds, only: wp
   use interpolation, only: polynomial_weights
