@@ -45,6 +45,9 @@ _PARTS = {
     "work_precision": (work_precision.measure, work_precision.draw, work_precision.tables),
 }
 
+# Those whose tables compare with the sources before.
+_COMPARED = ("accuracy", "ratios")
+
 
 def main():
     """Run the parts that are asked for."""
@@ -65,7 +68,7 @@ def main():
             _say(name)
             rows = _PARTS[name][0](runner, quick, lambda text: _say(f"  {text}"))
             sources = f"sources {_digest(build)}"
-            if path.is_file() and f"# {sources}\n" not in path.read_text(encoding="utf-8"):
+            if name in _COMPARED and path.is_file() and _sources(path) not in ("", sources):
                 path.replace(_before(path))
             tables.write(path, rows, [f"./bench --only {name}{' --quick' if quick else ''}",
                                       version, sources, tables.machine()])

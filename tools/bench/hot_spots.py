@@ -11,7 +11,7 @@ _PIECES = (
     ("matrix-vector products (DGEMV)", r"dgemv_"),
     ("factorisations (DGETRF)", r"dgetrf_"),
     ("solutions with factors (DGETRS)", r"dgetrs_"),
-    ("kernel assembly", r"__discretisation_MOD_new_discretisation"),
+    ("kernel assembly", r"__mapped_mesh_MOD_new_mapped_mesh"),
     ("force law", r"__lennard_jones_MOD_(?:pressure|slope|energy)"),
     ("interpolation", r"__discretisation_MOD_interpolate"),
     ("rows of results", r"__results_MOD_take"),
