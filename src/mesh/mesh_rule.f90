@@ -39,30 +39,26 @@ module mesh_rule
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
   !> which come the nearer to one another the stronger adhesion is.
   real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_for_folds = 9, &
-    more_for_profiles = 1.1_wp, most_digits = 13
+    most_digits = 13
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; a factor in it.
   real(wp), parameter :: onset = 0.29_wp, near_onset = 1.15_wp
 
 contains
 
   !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy:
-  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, if any are
-  !> asked for, which feel every error of the edge's place, are more sensitive. widest: the largest
-  !> contact radius. No more than rounding leaves of the deformation.
-  pure real(wp) function digits_for(problem, widest, accuracy, profiles) result(digits)
+  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, which feel
+  !> every error of the edge's place, are more sensitive. widest: the largest contact radius. No
+  !> more than rounding leaves of the deformation.
+  pure real(wp) function digits_for(problem, widest, accuracy) result(digits)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
-    logical, intent(in) :: profiles
     real(wp) :: left, for_folds
 
     for_folds = fewest_digits + more_for_folds*log10(1 + strength(problem))
     ! Where jumps have just begun the two folds are so near each other that coarse meshes lose them.
     if (abs(log(max(strength(problem), tiny(1.0_wp))/onset)) < log(near_onset)) &
       for_folds = max(for_folds, most_for_folds)
-    digits = max(1.1_wp - 1.05_wp*log10(accuracy), -0.9_wp - 1.38_wp*log10(accuracy))
-    ! So are extrema of the load where the edge passes a kink of the bodies.
-    if (profiles .or. problem%shape%smooth_from() > 0) digits = digits + more_for_profiles
-    digits = max(digits, for_folds)
+    digits = max(2.2_wp - 1.05_wp*log10(accuracy), 0.2_wp - 1.38_wp*log10(accuracy), for_folds)
     left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
     digits = max(fewest_digits, min(digits, left, most_digits))
     ! Folds have to be told apart as long as there is a contact at all.
