@@ -81,6 +81,8 @@ contains
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
     ! The path has no use for mixing.
     if (steps%options%method == 'mixing') steps%options%method = 'anderson'
+    ! Kernels are made of small products, and cases of a sweep make them at the same time.
+    call use_threads_for(1)
     began = seconds()
     steps%meshes = new_mesh_family(problem, high, low, outcome%chosen%digits, store=store)
     steps%cost%kernel_seconds = seconds() - began
