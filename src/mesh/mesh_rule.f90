@@ -100,8 +100,9 @@ contains
     end if
     reach = max(nearest_tail, beyond_poles*problem%shape%position_of(0.5_wp*calm_gap(problem)))
     outer = density
-    ! As long as a contact is smaller than its neck, the pressure around it is that before contact.
-    if (problem%law%adhesion > 0) &
+    ! As long as a contact is smaller than its neck, the pressure around it is that before contact;
+    ! where the neck is wider than the force reaches, this is smooth enough.
+    if (problem%law%adhesion > 0 .and. neck_width(problem) < 1) &
       outer = density*(1 + 0.5_wp/(1 + 3*(low/neck_width(problem))**2))
     call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)
     reach = max(tail_of_contact, reach/low)
