@@ -237,7 +237,8 @@ contains
     end do
   end function table_error
 
-  !> The least that any of the forces allows.
+  !> The least that any of the forces allows; and beyond the range half of what is beyond it, whatever
+  !> their lengths: far out gaps are large, and so is what a prediction of them is off by.
   pure function closure(self, gap) result(most)
     class(force_sum_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
@@ -250,6 +251,7 @@ contains
         most = min(most, part%closure(term%stretch*gap + term%shift)/term%stretch)
       end associate
     end do
+    if (self%range > 0) most = max(most, 0.5_wp*(gap - self%range))
   end function closure
 
 end module force_sum
