@@ -133,10 +133,15 @@ contains
   end function locked_gap
 
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a part of the
-  !> neck, and of the radius at which the axis of rigid bodies comes from most tension to rest.
+  !> neck, and of the radius at which the axis of rigid bodies comes from most tension to rest. Inside
+  !> a front nothing is sharp before that.
   pure real(wp) function passage_to_contact(problem) result(c)
     type(problem_t), intent(in) :: problem
 
+    if (front_leads(problem%law)) then
+      c = 0.5_wp*last_front(problem)
+      return
+    end if
     c = 0.25_wp*neck_width(problem)
     if (problem%law%edge_gap > 0) &
       c = min(c, 0.25_wp*problem%shape%position_of( &
