@@ -10,8 +10,8 @@ module edge_locked
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, neck_width, calm_gap
   use discretisation, only: discretisation_t
-  use mapped_mesh, only: new_mapped_mesh
-  use mesh_rule, only: approach_shape, contact_shape
+  use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
+  use mesh_rule, only: approach_shape, contact_shape, short_orders
   use law_panels, only: about_front, about_edge
   use step_front, only: front_leads, first_front, last_front
   use force_law, only: force_law_t
@@ -34,6 +34,9 @@ module edge_locked
   type :: mesh_family_t
     !> The meshes in the order of the path.
     type(discretisation_t), allocatable :: grid(:)
+    !> What these are like, and whether panels of them were halved.
+    type(mapped_shape_t), allocatable :: shape(:)
+    logical, allocatable :: refined(:)
     !> Radius of what the next mesh is locked to at which the path passes to it, lateral units; of the
     !> last it is the largest that is expected.
     real(wp), allocatable :: passage(:)
@@ -47,6 +50,8 @@ module edge_locked
   contains
     procedure :: in_contact
     procedure :: locked_gap
+    procedure :: halve_panels
+    procedure :: follow
   end type mesh_family_t
 
 contains
@@ -82,14 +87,18 @@ contains
         call add_bands(first, widest, bands_for(problem%law, first, widest), low, high)
       end associate
     end if
-    allocate (meshes%grid(approach + size(low)))
+    allocate (meshes%grid(approach + size(low)), meshes%shape(approach + size(low)))
+    meshes%refined = spread(.false., 1, size(meshes%grid))
     meshes%passage = [low, widest]
-    if (meshes%traceable) meshes%grid(approach) = new_mapped_mesh( &
-      approach_shape(problem, max(h0_high, calm_gap(problem)), digits), elastic)
+    if (meshes%traceable) meshes%shape(approach) = &
+      approach_shape(problem, max(h0_high, calm_gap(problem)), digits)
     do k = contact, size(meshes%grid)
-      meshes%grid(k) = new_mapped_mesh(contact_shape(problem, &
+      meshes%shape(k) = contact_shape(problem, &
         merge(about_edge, about_front, meshes%in_contact(k)), low(k - 1), high(k - 1), &
-        meshes%level, digits), elastic)
+        meshes%level, digits)
+    end do
+    do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
+      meshes%grid(k) = new_mapped_mesh(meshes%shape(k), elastic)
     end do
   end function new_mesh_family
 
@@ -114,6 +123,32 @@ contains
     low = [low, border(:bands - 1)]
     high = [high, border(1:)]
   end subroutine add_bands
+
+  !> Halves panels of a mesh for bodies that yield.
+  subroutine halve_panels(self, mesh, which)
+    class(mesh_family_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+    logical, intent(in) :: which(:)
+
+    self%refined(mesh) = .true.
+    self%shape(mesh) = self%shape(mesh)%halved(which)
+    self%grid(mesh) = new_mapped_mesh(self%shape(mesh), elastic=.true.)
+  end subroutine halve_panels
+
+  !> Makes meshes that were refined in another family, where they have fewer digits, those of it with
+  !> more nodes.
+  subroutine follow(self, other, more_digits)
+    class(mesh_family_t), intent(inout) :: self
+    class(mesh_family_t), intent(in) :: other
+    real(wp), intent(in) :: more_digits
+    integer :: k
+
+    do k = 1, size(other%grid)
+      if (.not. other%refined(k)) cycle
+      self%shape(k) = other%shape(k)%enriched(ceiling(short_orders*more_digits), more_digits)
+      self%grid(k) = new_mapped_mesh(self%shape(k), elastic=.true.)
+    end do
+  end subroutine follow
 
   !> Whether a mesh is locked to the contact edge.
   pure logical function in_contact(self, mesh)

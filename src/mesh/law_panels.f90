@@ -74,8 +74,7 @@ contains
       offset = side*d*sinh(z + length*local%node)
       do j = 1, size(parameter)
         pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset))
-        tail = max(tail, abs(coefficient(local, pressure, order - 1)), &
-          abs(coefficient(local, pressure, order - 2)))
+        tail = max(tail, local%tail(pressure))
       end do
     end function tail_on
 
@@ -126,23 +125,5 @@ contains
         2/pi*sqrt(4*pi*problem%coupling*problem%law%adhesion*h)*angle
     end select
   end function gap_at
-
-  !> A Legendre coefficient of a function given on Gauss-Legendre nodes.
-  pure real(wp) function coefficient(local, value, degree)
-    type(local_nodes_t), intent(in) :: local
-    real(wp), intent(in) :: value(:)
-    integer, intent(in) :: degree
-    real(wp), dimension(size(value)) :: before, now, next
-    integer :: k
-
-    before = 1
-    now = 2*local%node - 1
-    do k = 1, degree - 1
-      next = ((2*k + 1)*(2*local%node - 1)*now - k*before)/(k + 1)
-      before = now
-      now = next
-    end do
-    coefficient = (2*degree + 1)*sum(local%weight*value*now)
-  end function coefficient
 
 end module law_panels

@@ -12,7 +12,7 @@ module mesh_rule
   use mapped_mesh, only: mapped_shape_t
   implicit none
   private
-  public :: approach_shape, contact_shape, digits_for
+  public :: approach_shape, contact_shape, digits_for, short_orders
 
   !> d over the smallest feature: errors change little from half of it to twice.
   real(wp), parameter :: finer = 0.5_wp
