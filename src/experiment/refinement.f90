@@ -31,7 +31,8 @@ contains
   end function unresolved_from
 
   !> Traces the path (`know_path`), again where panels had to be halved; panel_tail: the largest tail
-  !> that is left. The paper's laws need none of it: their meshes were fitted to their errors.
+  !> that is left, but of a fall onto each other, which ends on no mesh. The paper's laws need none of
+  !> it: their meshes were fitted to their errors.
   subroutine trace_resolved(steps, h0_high, h0_low, into_contact, accuracy, listener, panel_tail)
     class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_high, h0_low, accuracy
@@ -51,7 +52,7 @@ contains
       do mesh = 1, size(tails)
         panel_tail = max(panel_tail, maxval(tails(mesh)%of_panel))
       end do
-      if (.not. panel_tail > unresolved_from(accuracy) .or. round == most_rounds) return
+      if (.not. panel_tail > unresolved_from(accuracy) .or. round == most_rounds) exit
       do mesh = 1, size(tails)
         associate (long => tails(mesh)%of_panel > unresolved_from(accuracy), &
           cost => steps%cost, meshes => steps%meshes)
@@ -63,6 +64,7 @@ contains
       steps%known = nothing
       call steps%know_path(h0_high, h0_low, into_contact, listener)
     end do
+    if (steps%known%fallen) panel_tail = 0
   end subroutine trace_resolved
 
   !> The largest tails over all states of the path.

@@ -99,7 +99,8 @@ contains
     coefficient = (2*degree + 1)*sum(local%weight*value*now)
   end function coefficient
 
-  !> The tail of a pressure on each panel, over the largest pressure; 0 on a panel to infinity.
+  !> The tail of a pressure on each panel, over the largest pressure or its unit, which is the law's
+  !> largest tension or near it; 0 on a panel to infinity.
   pure function panel_tails(self, pressure) result(tails)
     class(discretisation_t), intent(in) :: self
     real(wp), intent(in) :: pressure(:)
@@ -113,7 +114,7 @@ contains
         tails(k) = local%tail(pressure(first:first + size(local%node) - 1))
       end associate
     end do
-    tails = tails/max(maxval(abs(pressure)), tiny(1.0_wp))
+    tails = tails/max(maxval(abs(pressure)), 1.0_wp)
   end function panel_tails
 
   !> Value at position x of the function with the given nodal values, by the panel's polynomial: of
