@@ -44,9 +44,9 @@ module mesh_rule
 contains
 
   !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy:
-  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, which feel every
-  !> error of the edge's place, are more sensitive. widest: the largest contact radius. No more than
-  !> rounding leaves of the deformation.
+  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, which feel
+  !> every error of the edge's place, are more sensitive. widest: the largest contact radius. No
+  !> more than rounding leaves of the deformation.
   pure real(wp) function digits_for(problem, widest, accuracy) result(digits)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
@@ -199,8 +199,8 @@ contains
   end subroutine add_panels
 
   !> Halves the panel on the axis of shapes that are not smooth there. The pressure of a contact is
-  !> there r^(n-1), with a logarithm if n is odd, and what the panel cannot resolve is a part r^(n+1)
-  !> of the load: `beyond` n is 1. Before contact it is two powers more.
+  !> there r^(n-1), with a logarithm if n is odd, and what the panel cannot resolve is a part
+  !> r^(n+1) of the load: `beyond` n is 1. Before contact it is two powers more.
   pure subroutine refine_axis(problem, digits, beyond, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, beyond

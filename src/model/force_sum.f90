@@ -8,10 +8,13 @@ module force_sum
   private
   public :: add_term, settle
 
-  !> One of the forces, and the units of the sum in its own: its gap is stretch*gap + shift.
+  !> One of the forces, and the units of the sum in its own: its gap is stretch*gap + shift, and its
+  !> pressure counts `weight` times.
   type :: term_t
     class(force_law_t), allocatable :: law
-    real(wp) :: stretch = 1, shift = 0
+    real(wp) :: stretch = 1, shift = 0, weight = 1
+  contains
+    procedure :: own
   end type term_t
 
   type, extends(force_law_t) :: force_sum_t
@@ -79,9 +82,9 @@ contains
   end function terms_in
 
   !> Units and scales of a law whose terms are complete. A sum is looked at in units of its shortest
-  !> term first. If it has a well its units are then those of the well: z0 of the first term that
-  !> has one, else the range, which is the depth over the largest tension; and the largest tension.
-  !> The contact is at gap 1. So are those of a law without units of its own, a sum of one.
+  !> term first, of those that have a length. If it has a well its units are then those of the well:
+  !> z0 of the first term that has one, else the range, which is the depth over the largest tension;
+  !> and the largest tension. The contact is at gap 1. So are those of a law without units of its own, a sum of one.
   subroutine settle(law)
     class(force_law_t), allocatable, intent(inout) :: law
     type(force_sum_t) :: alone
@@ -123,6 +126,7 @@ contains
     real(wp), intent(in) :: length, unit, origin
     integer :: i
 
+    law%terms = size(law%term)
     law%length = length
     law%pressure_unit = unit
     law%origin = origin
@@ -142,6 +146,7 @@ contains
       associate (term => law%term(i), part => law%term(i)%law)
         term%stretch = length/part%length
         term%shift = (origin - part%origin)/part%length
+        term%weight = part%pressure_unit/unit
         law%smallest_gap = max(law%smallest_gap, (part%smallest_gap - term%shift)/term%stretch)
         law%repulsion_length = min(law%repulsion_length, part%repulsion_length/term%stretch)
         law%tail_power = min(law%tail_power, part%tail_power)
@@ -157,13 +162,28 @@ contains
     law%length_key = law%term(1)%law%length_key
   end subroutine take_units
 
+  !> Gaps of the sum as those of a term.
+  elemental real(wp) function own(self, gap)
+    class(term_t), intent(in) :: self
+    real(wp), intent(in) :: gap
+
+    own = self%stretch*gap + self%shift
+  end function own
+
+  !> Lengths of the terms; of those that have one, if any has.
   pure function lengths(law)
     type(force_sum_t), intent(in) :: law
-    real(wp) :: lengths(size(law%term))
+    real(wp), allocatable :: lengths(:)
+    logical :: any_has
     integer :: i
 
+    any_has = .false.
     do i = 1, size(law%term)
-      lengths(i) = law%term(i)%law%length
+      any_has = any_has .or. law%term(i)%law%has_length
+    end do
+    allocate (lengths(0))
+    do i = 1, size(law%term)
+      if (law%term(i)%law%has_length .or. .not. any_has) lengths = [lengths, law%term(i)%law%length]
     end do
   end function lengths
 
@@ -185,9 +205,8 @@ contains
 
     value = 0
     do i = 1, size(self%term)
-      associate (term => self%term(i), part => self%term(i)%law)
-        value = value + part%pressure_unit/self%pressure_unit* &
-          part%pressure(term%stretch*gap + term%shift)
+      associate (term => self%term(i))
+        value = value + term%weight*term%law%pressure(term%own(gap))
       end associate
     end do
   end function pressure
@@ -200,9 +219,8 @@ contains
 
     value = 0
     do i = 1, size(self%term)
-      associate (term => self%term(i), part => self%term(i)%law)
-        value = value + part%pressure_unit/self%pressure_unit*term%stretch* &
-          part%slope(term%stretch*gap + term%shift)
+      associate (term => self%term(i))
+        value = value + term%weight*term%stretch*term%law%slope(term%own(gap))
       end associate
     end do
   end function slope
@@ -215,9 +233,8 @@ contains
 
     value = 0
     do i = 1, size(self%term)
-      associate (term => self%term(i), part => self%term(i)%law)
-        value = value + part%pressure_unit/self%pressure_unit/term%stretch* &
-          part%energy(term%stretch*gap + term%shift)
+      associate (term => self%term(i))
+        value = value + term%weight/term%stretch*term%law%energy(term%own(gap))
       end associate
     end do
   end function energy
@@ -230,9 +247,8 @@ contains
 
     value = 0
     do i = 1, size(self%term)
-      associate (term => self%term(i), part => self%term(i)%law)
-        value = value + part%pressure_unit/self%pressure_unit/term%stretch* &
-          part%table_error(term%stretch*gap + term%shift)
+      associate (term => self%term(i))
+        value = value + term%weight/term%stretch*term%law%table_error(term%own(gap))
       end associate
     end do
   end function table_error
@@ -247,8 +263,8 @@ contains
 
     most = huge(1.0_wp)
     do i = 1, size(self%term)
-      associate (term => self%term(i), part => self%term(i)%law)
-        most = min(most, part%closure(term%stretch*gap + term%shift)/term%stretch)
+      associate (term => self%term(i))
+        most = min(most, term%law%closure(term%own(gap))/term%stretch)
       end associate
     end do
     if (self%range > 0) most = max(most, 0.5_wp*(gap - self%range))

@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -124,6 +125,12 @@ int snapin_make_folder(const char *path) {
   return 0;
 }
 
+/* Blank where it is not known. */
+void snapin_current_folder(char *text, int size) {
+  char path[PATH_MAX];
+  hand_over(getcwd(path, sizeof path) != NULL ? path : "", text, size);
+}
+
 int snapin_lock(int folder) { return status_of(flock(folder, LOCK_EX | LOCK_NB)); }
 
 /* 0 where there is nothing of that name, 1 a file, 2 a folder. */
@@ -146,7 +153,8 @@ int snapin_is_terminal(int fd) { return isatty(fd) == 1; }
 
 /* The sort of a failure, 0 for others, and the system's words for it. */
 int snapin_explain(int status, char *reason, int size) {
-  hand_over(status == -not_regular ? "not a file but a link, a pipe or a device" : strerror(-status),
+  hand_over(status == -not_regular ? "not a file but a link, a pipe or a device"
+                                   : strerror(-status),
             reason, size);
   switch (-status) {
   case EFBIG:

@@ -1,6 +1,6 @@
 !> Van der Waals attraction between half-spaces: p = -A/(6 pi h^3), or retarded
-!> (Gregory, J. Colloid Interface Sci. 83, 138, 1981): the energy -A/(12 pi h^2) is divided by 1 + c h,
-!> c = 5.32/retardation_length, so that p falls as h^-4 far away.
+!> (Gregory, J. Colloid Interface Sci. 83, 138, 1981): the energy -A/(12 pi h^2) is divided by 1 + c
+!> h, c = 5.32/retardation_length, so that p falls as h^-4 far away.
 module van_der_waals
   use kinds, only: wp, pi
   use failure, only: failure_t
@@ -51,6 +51,7 @@ contains
     if (.not. deck%has_group('van_der_waals')) return
     call deck%get('van_der_waals', 'hamaker', hamaker)
     this%length = nanometre
+    this%has_length = .false.
     call check_decades(deck, 'van_der_waals', 'hamaker', &
       log10(hamaker) - log10(6*pi) - 3*log10(this%length), 'a pressure', ' Pa', error)
     if (allocated(error)) return
