@@ -1,5 +1,5 @@
-!> The guard over meshes under laws with lengths of their own: where the pressure of a state of the path
-!> is not the polynomial of its panel, the panel is halved and the path traced again.
+!> The guard over meshes under laws with lengths of their own: where the pressure of a state of the
+!> path is not the polynomial of its panel, the panel is halved and the path traced again.
 module refinement
   use kinds, only: wp
   use listener, only: listener_t
@@ -9,10 +9,10 @@ module refinement
   private
   public :: trace_resolved, unresolved_from
 
-  !> How often panels are halved, and the tail over the accuracy from which on they are. Tails are of
-  !> pressures, on the worst panel of the worst state; load and h0 are far better: with tails of 1e-4
-  !> their errors were below 1e-7 (tests of steps). Never below what the iteration leaves of a stiff
-  !> pressure.
+  !> How often panels are halved, and the tail over the accuracy from which on they are. Tails are
+  !> of pressures, on the worst panel of the worst state; load and h0 are far better: with tails of
+  !> 1e-4 their errors were below 1e-7 (tests of steps). Never below what the iteration leaves of a
+  !> stiff pressure.
   integer, parameter :: most_rounds = 3
   real(wp), parameter :: times = 100, least = 1.0e-8_wp
 
@@ -30,9 +30,9 @@ contains
     tail = max(times*accuracy, least)
   end function unresolved_from
 
-  !> Traces the path (`know_path`), again where panels had to be halved; panel_tail: the largest tail
-  !> that is left, but of a fall onto each other, which ends on no mesh. The paper's laws need none of
-  !> it: their meshes were fitted to their errors.
+  !> Traces the path (`know_path`), again where panels had to be halved; panel_tail: the largest
+  !> tail that is left, but of a fall onto each other, which ends on no mesh. The paper's laws need
+  !> none of it: their meshes were fitted to their errors.
   subroutine trace_resolved(steps, h0_high, h0_low, into_contact, accuracy, listener, panel_tail)
     class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_high, h0_low, accuracy

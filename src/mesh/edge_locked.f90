@@ -1,11 +1,11 @@
 !> The meshes on which the whole equilibrium path is resolved at any adhesion strength.
 !>
 !> Before contact the mesh is mapped to the axis and the gap there is the coordinate of the path. In
-!> contact meshes are locked to the contact edge: positions are in units of the contact radius c, the
-!> edge stays at 1, and c is the coordinate. Both coordinates are monotone along the path. A mesh
-!> serves a band of contact radii; the path passes from one to the next. Where a step of the pressure
-!> pulls the bodies together, meshes between the two are locked to its front (`step_front`) in the
-!> same way.
+!> contact meshes are locked to the contact edge: positions are in units of the contact radius c,
+!> the edge stays at 1, and c is the coordinate. Both coordinates are monotone along the path. A
+!> mesh serves a band of contact radii; the path passes from one to the next. Where a step of the
+!> pressure pulls the bodies together, meshes between the two are locked to its front (`step_front`)
+!> in the same way.
 module edge_locked
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, neck_width, calm_gap
@@ -37,8 +37,8 @@ module edge_locked
     !> What these are like, and whether panels of them were halved.
     type(mapped_shape_t), allocatable :: shape(:)
     logical, allocatable :: refined(:)
-    !> Radius of what the next mesh is locked to at which the path passes to it, lateral units; of the
-    !> last it is the largest that is expected.
+    !> Radius of what the next mesh is locked to at which the path passes to it, lateral units; of
+    !> the last it is the largest that is expected.
     real(wp), allocatable :: passage(:)
     !> Whether the path can be traced: the law attracts, or the bodies are rigid and it is trivial.
     !> If not, there is one mesh for contact, and its scale is prescribed by `hertz_scale`.
@@ -135,8 +135,8 @@ contains
     self%grid(mesh) = new_mapped_mesh(self%shape(mesh), elastic=.true.)
   end subroutine halve_panels
 
-  !> Makes meshes that were refined in another family, where they have fewer digits, those of it with
-  !> more nodes.
+  !> Makes meshes that were refined in another family, where they have fewer digits, those of it
+  !> with more nodes.
   subroutine follow(self, other, more_digits)
     class(mesh_family_t), intent(inout) :: self
     class(mesh_family_t), intent(in) :: other
@@ -168,8 +168,8 @@ contains
   end function locked_gap
 
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a part of the
-  !> neck, and of the radius at which the axis of rigid bodies comes from most tension to rest. Inside
-  !> a front nothing is sharp before that.
+  !> neck, and of the radius at which the axis of rigid bodies comes from most tension to rest.
+  !> Inside a front nothing is sharp before that.
   pure real(wp) function passage_to_contact(problem) result(c)
     type(problem_t), intent(in) :: problem
 

@@ -1,8 +1,8 @@
 !> Panels short enough for a force law with lengths of its own: barriers, oscillations and steps lie
 !> somewhere between the edge and infinity, where no general rule can know of them.
 !>
-!> The pressure is tried over gaps as bodies have them: undeformed before contact; about the front of
-!> a step those of a disk under tension; in contact the gap outside a JKR contact. Panels in z on
+!> The pressure is tried over gaps as bodies have them: undeformed before contact; about the front
+!> of a step those of a disk under tension; in contact the gap outside a JKR contact. Panels in z on
 !> which the last Legendre coefficients of that pressure are not small are halved.
 module law_panels
   use kinds, only: wp, pi

@@ -161,8 +161,8 @@ contains
   end function fading_gap
 
   !> Adds sinh panels over z_length: one for the paper's laws, which are powers of the gap or one
-  !> exponential, and bodies that are parabolas near the axis: the density was fitted to these. Other
-  !> laws have lengths of their own anywhere within their reach: short panels follow them, but
+  !> exponential, and bodies that are parabolas near the axis: the density was fitted to these.
+  !> Other laws have lengths of their own anywhere within their reach: short panels follow them, but
   !> inside the edge those that fit the law. So they do other shapes. about, side, low, high: as for
   !> `fitting_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high)

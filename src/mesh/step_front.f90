@@ -1,7 +1,7 @@
-!> The front of a step of the pressure. Where an attraction ends suddenly (`step_attraction`), bodies
-!> that come together are pulled first where their gap has just passed the step: a disk about the
-!> axis under nearly uniform tension, outside which there is none. Its rim is the front. It is sharp
-!> before there is a contact edge, and meshes are locked to it until there is one.
+!> The front of a step of the pressure. Where an attraction ends suddenly (`step_attraction`),
+!> bodies that come together are pulled first where their gap has just passed the step: a disk about
+!> the axis under nearly uniform tension, outside which there is none. Its rim is the front. It is
+!> sharp before there is a contact edge, and meshes are locked to it until there is one.
 module step_front
   use kinds, only: wp, pi
   use force_law, only: force_law_t
@@ -11,8 +11,8 @@ module step_front
   public :: front_leads, first_front, last_front, front_width, gap_about_front
 
   !> Inside the step, so many of its widths from the middle, its tension is complete; and the least
-  !> part of the largest tension that makes bodies follow the step before what is nearer. Under less,
-  !> the front recedes while the axis is drawn into contact.
+  !> part of the largest tension that makes bodies follow the step before what is nearer. Under
+  !> less, the front recedes while the axis is drawn into contact.
   real(wp), parameter :: complete = 2, leading = 0.5_wp
 
 contains
@@ -28,8 +28,8 @@ contains
     front_leads = pressure(2) < leading*pressure(1)
   end function front_leads
 
-  !> Coupling times the tension inside the step: its disk of radius c is deformed by 4 c of it on the
-  !> axis and by 8/pi c at the rim.
+  !> Coupling times the tension inside the step: its disk of radius c is deformed by 4 c of it on
+  !> the axis and by 8/pi c at the rim.
   pure real(wp) function pull(problem)
     type(problem_t), intent(in) :: problem
     real(wp) :: pressure(1)
@@ -38,8 +38,8 @@ contains
     pull = -problem%coupling*pressure(1)
   end function pull
 
-  !> Radius, lateral units, from which on there is a front: that of a disk over which the gap changes
-  !> by the width of the step.
+  !> Radius, lateral units, from which on there is a front: that of a disk over which the gap
+  !> changes by the width of the step.
   pure real(wp) function first_front(problem)
     type(problem_t), intent(in) :: problem
 
@@ -61,8 +61,8 @@ contains
     c = min(problem%shape%position_of(height), height/((4 - 8/pi)*pull(problem)))
   end function radius_spanning
 
-  !> Width of the front of radius c in units of it: that of the step over the slope of the gap, which
-  !> is logarithmic in the width.
+  !> Width of the front of radius c in units of it: that of the step over the slope of the gap,
+  !> which is logarithmic in the width.
   pure real(wp) function front_width(problem, c) result(width)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
@@ -72,7 +72,8 @@ contains
       (c*(problem%shape%slope(c) + 4/pi*logarithm*pull(problem))))
   end function front_width
 
-  !> The gap at positions x (units of c) about a front of radius c whose disk is under uniform tension.
+  !> The gap at positions x (units of c) about a front of radius c whose disk is under uniform
+  !> tension.
   elemental real(wp) function gap_about_front(problem, c, x) result(gap)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c, x

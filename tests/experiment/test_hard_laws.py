@@ -1,5 +1,5 @@
-"""Claims about force laws that end in a step, oscillate, or attract alone: the path is found, it has
-the folds that it has and no others, and its numbers are as good as their errors say.
+"""Claims about force laws that end in a step, oscillate, or attract alone: the path is found, it
+has the folds that it has and no others, and its numbers are as good as their errors say.
 
 Laws are in units of the step's tension and range, on a body of unit radius; the stiffness is the
 inverse of sigma but for a factor near 1.
@@ -92,7 +92,8 @@ def test_hard_dugdale_bodies_tend_to_maugis(run, parameter):
             work = summary["surface_energy"]
         return summary["max_tension"] / (math.pi * work)
 
-    soft, hard = (abs(pull_off(*law) / MAUGIS[parameter] - 1) for law in ((0.1, 0.05), (0.02, 0.005)))
+    laws = ((0.1, 0.05), (0.02, 0.005))
+    soft, hard = (abs(pull_off(*law) / MAUGIS[parameter] - 1) for law in laws)
     assert hard < 3e-3
     assert soft > 3 * hard
 
