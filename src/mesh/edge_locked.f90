@@ -164,7 +164,8 @@ contains
     class(force_law_t), intent(in) :: law
     integer, intent(in) :: mesh
 
-    gap = merge(law%edge_gap, law%step_at, self%in_contact(mesh))
+    gap = law%edge_gap
+    if (self%fronts > 0 .and. .not. self%in_contact(mesh)) gap = law%step_at
   end function locked_gap
 
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a part of the
