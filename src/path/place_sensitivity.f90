@@ -15,11 +15,12 @@ module place_sensitivity
   use edge_locked, only: approach
   use continuation, only: path_control
   use potential_energy, only: energy_of
+  use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   use variation, only: variation_t
   use state_sensitivity, only: change_t, place_on_path_t, differentiate, move
   implicit none
   private
-  public :: local_t, find_local, at_fixed, at_extremum
+  public :: local_t, find_local, local_undeformed, at_fixed, at_extremum
   public :: quantities, of_h0, of_load, of_displacement, of_energy, of_radius
 
   !> What is reported of a state: h0 [m], load [N], displacement [m], potential energy [J], contact
@@ -60,6 +61,32 @@ contains
       call measure(equations, place, varied(i), change(i), radius, local%rate(:, i - 1))
     end do
   end subroutine find_local
+
+  !> The same of bodies that do not deform, at the gap h0; their place is -log(h0) (`path_curve`).
+  function local_undeformed(problem, h0, varied) result(local)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+    type(variation_t), intent(in) :: varied(:)
+    type(local_t) :: local
+    real(wp) :: gap
+    integer :: i, k
+
+    allocate (local%rate(quantities, size(varied) - 1), source=0.0_wp)
+    local%slope(of_h0) = -h0*problem%length
+    local%slope(of_load) = -h0*load_slope_undeformed(problem, h0)*problem%load
+    local%slope(of_energy) = h0*load_undeformed(problem, h0)*problem%load*problem%length
+    do i = 2, size(varied)
+      do k = 1, size(varied(i)%offset)
+        associate (other => varied(i)%problem(k), rate => local%rate(:, i - 1))
+          gap = other%law%gap_of(problem%law%separation_of(h0))
+          rate(of_load) = rate(of_load) + &
+            varied(i)%weight(k)*load_undeformed(other, gap)*other%load
+          rate(of_energy) = rate(of_energy) + &
+            varied(i)%weight(k)*energy_undeformed(other, gap)*other%load*other%length
+        end associate
+      end do
+    end do
+  end function local_undeformed
 
   !> Derivatives of the quantities along a line of equilibria; radius: of the contact.
   subroutine measure(equations, place, varied, line, radius, rate)
