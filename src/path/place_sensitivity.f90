@@ -28,14 +28,16 @@ module place_sensitivity
   integer, parameter :: quantities = 5
   integer, parameter :: of_h0 = 1, of_load = 2, of_displacement = 3, of_energy = 4, of_radius = 5
 
-  !> rate(:, i): derivatives of the quantities by parameter i at a fixed place; slope: by s.
+  !> rate(:, i): derivatives of the quantities by parameter i at a fixed place; slope: by s; along:
+  !> of the separations at the nodes and of h0 by s.
   type :: local_t
     real(wp) :: slope(quantities) = 0
+    real(wp), allocatable :: along(:)
     real(wp), allocatable :: rate(:, :)
   end type local_t
 
   !> Difference of positions, relative, over which the gap's slope is taken.
-  real(wp), parameter :: close = 1.0e-4_wp
+  real(wp), parameter :: close = 1.0e-6_wp
 
 contains
 
@@ -54,6 +56,7 @@ contains
     allocate (local%rate(quantities, size(varied) - 1))
     call differentiate(equations, place, frozen, varied, change, found)
     if (.not. found) return
+    local%along = change(1)%separation
     radius = radius_of_gap(equations%problem%shape, contact_level_of(equations%problem), &
       equations%meshes%grid(place%mesh), place%state)
     call measure(equations, place, varied(1), change(1), radius, local%slope)
@@ -172,8 +175,9 @@ contains
     type(local_t) :: local, there
     ! Second derivatives of D, by s and by s and each parameter.
     real(wp) :: bend, cross(size(varied) - 1)
-    integer :: k, i
+    integer :: k, i, n
 
+    n = size(place%state%gap)
     call find_local(equations, place, frozen, varied, local, found)
     bend = 0
     cross = 0
@@ -181,6 +185,10 @@ contains
       if (.not. found) return
       near = place
       near%s = place%s + steps(k)*apart
+      associate (moved => steps(k)*apart*local%along/equations%problem%length)
+        near%state%gap = near%state%gap + moved(:n)
+        near%state%h0 = near%state%h0 + moved(n + 1)
+      end associate
       call solve_anderson(equations, tightened(options), frozen, &
         path_control(equations%problem, near%mesh, near%s), near%state, found)
       found = found .or. near%state%residual <= options%tolerance
