@@ -21,7 +21,7 @@ module sensitivity_finder
   real(wp), parameter :: h0_alone(2) = [1.0_wp, 0.0_wp], load_alone(2) = [0.0_wp, 1.0_wp]
   !> Part of the distance of two points of the path over which second derivatives are taken, and
   !> that distance where it is not known.
-  real(wp), parameter :: part = 0.03_wp, usual = 0.1_wp
+  real(wp), parameter :: part = 0.015_wp, usual = 0.1_wp
 
 contains
 

@@ -48,7 +48,7 @@ contains
     call take_energy(problem, outcome, summary)
     call take_end(problem, outcome, summary)
     if (.not. outcome%differentiated) &
-      call summary%fail_with('not all derivatives of &sensitivity were found')
+      call summary%fail_with('sensitivity: not all derivatives were found')
     if (.not. problem%rigid) call judge_resolution(summary)
     call judge_accuracy(scene, outcome, summary)
     call judge_stopping(outcome, ended_as_planned(outcome), summary)
