@@ -1,6 +1,6 @@
-!> How the curve of all equilibria changes with parameters of the problem: derivatives of h0 and load
-!> at every node of the curve (`path_curve`) at a fixed place x on it, in SI units. At a fixed h0, or
-!> position of a drive, the place moves; `held` takes that into account.
+!> How the curve of all equilibria changes with parameters of the problem: derivatives of h0 and
+!> load at every node of the curve (`path_curve`) at a fixed place x on it, in SI units. At a fixed
+!> h0, or position of a drive, the place moves; `held` takes that into account.
 module path_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -78,7 +78,8 @@ contains
   end function rate_undeformed
 
   !> The rate at a fixed value of weights(1) h0 + weights(2) load, SI units, in place of a fixed x:
-  !> at h0 with 1, 0; at the position of a drive of stiffness k with 1, -1/k; under a load with 0, 1.
+  !> at h0 with 1, 0; at the position of a drive of stiffness k with 1, -1/k; under a load with
+  !> 0, 1.
   !> Infinite where that value turns round along the path.
   pure type(rate_t) function held(problem, node, rate, weights)
     type(problem_t), intent(in) :: problem

@@ -1,6 +1,6 @@
-!> How what is reported of an equilibrium changes with the parameters: where it stays at its place on
-!> the path, and where it is defined by an h0, a position of a drive or a load, or as an extremum of
-!> one of these. SI units throughout.
+!> How what is reported of an equilibrium changes with the parameters: where it stays at its place
+!> on the path, and where it is defined by an h0, a position of a drive or a load, or as an extremum
+!> of one of these. SI units throughout.
 !>
 !> With s the path's coordinate and p a parameter, dQ/dp = Q_p + Q_s s_p. A given value of
 !> D = a h0 + b F asks for s_p = (dD/dp - D_p)/D_s, an extremum of D for s_p = -D_sp/D_ss; D itself
@@ -158,8 +158,8 @@ contains
   end function at_fixed
 
   !> Derivatives of the quantities at an extremum of weights(1) h0 + weights(2) load. The second
-  !> derivatives are differences over places that are `apart` in s. found = .false.: a state there was
-  !> not solved.
+  !> derivatives are differences over places that are `apart` in s. found = .false.: a state there
+  !> was not solved.
   subroutine at_extremum(equations, options, place, weights, apart, varied, rate, found)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options

@@ -41,8 +41,8 @@ def value_of(found, quantity):
 
 @pytest.mark.parametrize("sigma", [0.01, 0.87, 8.7, 1000.0])
 def test_derivatives_obey_the_dimensions_of_the_problem(run, sigma):
-    """Loads are (A/z0^2) R times a function of sigma ~ A R^(1/2) / (E z0^(7/2)), lengths z0 times one:
-    one derivative says the other three."""
+    """Loads are (A/z0^2) R times a function of sigma ~ A R^(1/2) / (E z0^(7/2)), lengths z0 times
+    one: one derivative says the other three."""
     names = ["force.hamaker", "bodies.radius", "force.z0", "bodies.stiffness"]
     found = derivatives(run(lennard_jones(
         sigma, equilibrium_path={"h0_end": -2.0}, sensitivity={"parameters": names})))
@@ -125,8 +125,8 @@ def number_in(groups, name):
 
 @pytest.mark.parametrize("case", CASES)
 def test_derivatives_are_those_of_whole_runs(run, case):
-    """Of fourth order in a direction in which all parameters change, by 4e-3 of themselves and less:
-    what that leaves out is some 1e-8, and errors of runs of accuracy 1e-9 count 250 times."""
+    """Of fourth order in a direction in which all parameters change, by 4e-3 of themselves and
+    less: what that leaves out is some 1e-8, and errors of runs of accuracy 1e-9 count 250 times."""
     groups, names = CASES[case]
     groups = {**groups, "numerics": {"accuracy": 1e-9}}
     found = run(deck(**groups, sensitivity={"parameters": names}))
