@@ -1,12 +1,24 @@
-!> The polynomial through a few scattered values: weights, value, slope, maximum; and the one that
-!> has given slopes there too.
+!> The polynomial through a few scattered values: weights, value, slope, maximum; and Hermite's,
+!> which has given slopes there too.
 module interpolation
   use kinds, only: wp
   use root_finding, only: bracket_t
   implicit none
   private
   public :: polynomial_weights, polynomial_value, polynomial_slope, interpolated_maximum
-  public :: hermite_value, hermite_slope
+  public :: hermite_t, hermite_through, hermite_weights, most_hermite_nodes
+
+  integer, parameter :: most_hermite_nodes = 4
+
+  !> The polynomial of least degree with given values and slopes, in Newton's form: nodes, each
+  !> twice, and divided differences.
+  type :: hermite_t
+    integer, private :: terms = 0
+    real(wp), private :: node(2*most_hermite_nodes) = 0, difference(2*most_hermite_nodes) = 0
+  contains
+    procedure :: value => hermite_value
+    procedure :: slope => hermite_slope
+  end type hermite_t
 
 contains
 
@@ -66,30 +78,65 @@ contains
     x = bracket%middle()
   end function interpolated_maximum
 
-  !> The polynomial of least degree with the values and slopes given at `at` (all different), at x:
-  !> the sum of [v (1 - 2 l'(x_j) (x - x_j)) + s (x - x_j)] l(x)^2 over Lagrange's l.
-  pure real(wp) function hermite_value(at, value, slope, x) result(y)
-    real(wp), intent(in) :: at(:), value(:), slope(:), x
-    real(wp), dimension(size(at)) :: basis
+  !> Weights of values and of slopes at `at` (all different) in Hermite's polynomial at x: it is the
+  !> sum of [v (1 - 2 l'(x_j) (x - x_j)) + s (x - x_j)] l(x)^2 over
+  !> Lagrange's l.
+  pure subroutine hermite_weights(at, x, of_value, of_slope)
+    real(wp), intent(in) :: at(:), x
+    real(wp), intent(out) :: of_value(:), of_slope(:)
+    real(wp) :: squares(size(at))
 
-    basis = polynomial_weights(at, x)
-    y = sum((value + (slope - 2*own_slopes(at)*value)*(x - at))*basis**2)
+    squares = polynomial_weights(at, x)**2
+    of_slope = (x - at)*squares
+    of_value = squares - 2*own_slopes(at)*of_slope
+  end subroutine hermite_weights
+
+  !> Hermite's polynomial with the given values and slopes at `at` (all different).
+  pure type(hermite_t) function hermite_through(at, value, slope) result(polynomial)
+    real(wp), intent(in) :: at(:), value(:), slope(:)
+    integer :: j, k, n
+
+    n = 2*size(at)
+    polynomial%terms = n
+    associate (x => polynomial%node, c => polynomial%difference)
+      x(1:n:2) = at
+      x(2:n:2) = at
+      c(1:n:2) = value
+      c(2:n:2) = slope
+      c(3:n:2) = (value(2:) - value(:size(at) - 1))/(at(2:) - at(:size(at) - 1))
+      do k = 2, n - 1
+        do j = n, k + 1, -1
+          c(j) = (c(j) - c(j - 1))/(x(j) - x(j - k))
+        end do
+      end do
+      c(1) = value(1)
+    end associate
+  end function hermite_through
+
+  pure real(wp) function hermite_value(self, x) result(y)
+    class(hermite_t), intent(in) :: self
+    real(wp), intent(in) :: x
+    integer :: k
+
+    y = 0
+    do k = self%terms, 1, -1
+      y = self%difference(k) + (x - self%node(k))*y
+    end do
   end function hermite_value
 
   !> Its derivative at x.
-  pure real(wp) function hermite_slope(at, value, slope, x) result(y)
-    real(wp), intent(in) :: at(:), value(:), slope(:), x
-    real(wp), dimension(size(at)) :: basis, basis_slope, steepness, one
-    integer :: j
+  pure real(wp) function hermite_slope(self, x) result(slope)
+    class(hermite_t), intent(in) :: self
+    real(wp), intent(in) :: x
+    real(wp) :: y
+    integer :: k
 
-    basis = polynomial_weights(at, x)
-    do j = 1, size(at)
-      one = 0
-      one(j) = 1
-      basis_slope(j) = polynomial_slope(at, one, x)
+    y = 0
+    slope = 0
+    do k = self%terms, 1, -1
+      slope = y + (x - self%node(k))*slope
+      y = self%difference(k) + (x - self%node(k))*y
     end do
-    steepness = slope - 2*own_slopes(at)*value
-    y = sum(steepness*basis**2 + 2*(value + steepness*(x - at))*basis*basis_slope)
   end function hermite_slope
 
   !> The slope of each Lagrange polynomial where it is one.

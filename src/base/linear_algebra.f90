@@ -3,7 +3,7 @@ module linear_algebra
   use kinds, only: wp
   implicit none
   private
-  public :: multiply, factorisation_t, factorise, solve, determinant_sign, &
+  public :: multiply, multiply_transposed, factorisation_t, factorise, solve, determinant_sign, &
     log_determinant, claim_buffers, eigenvalues, solve_tridiagonal
 
   !> LU factors of a square matrix, from `factorise`.
@@ -22,6 +22,13 @@ module linear_algebra
       real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
       real(wp), intent(inout) :: y(*)
     end subroutine dgemv
+    subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
+      import :: wp
+      character, intent(in) :: transa, transb
+      integer, intent(in) :: m, n, k, lda, ldb, ldc
+      real(wp), intent(in) :: alpha, beta, a(lda, *), b(ldb, *)
+      real(wp), intent(inout) :: c(ldc, *)
+    end subroutine dgemm
     subroutine dgetrf(m, n, a, lda, ipiv, info)
       import :: wp
       integer, intent(in) :: m, n, lda
@@ -75,6 +82,15 @@ contains
     if (columns > 0) &
       call dgemv('n', size(y), columns, 1.0_wp, a, size(a, 1), x, 1, 0.0_wp, y, 1)
   end subroutine multiply
+
+  !> c = matmul(transpose(a), b).
+  subroutine multiply_transposed(a, b, c)
+    real(wp), intent(in), contiguous :: a(:, :), b(:, :)
+    real(wp), intent(out) :: c(:, :)
+
+    call dgemm('t', 'n', size(a, 2), size(b, 2), size(a, 1), 1.0_wp, a, size(a, 1), b, size(b, 1), &
+      0.0_wp, c, size(c, 1))
+  end subroutine multiply_transposed
 
   !> Factorises the matrix held in factors%lu in place.
   subroutine factorise(factors)

@@ -4,7 +4,7 @@ module quadrature
   use kinds, only: wp, pi
   implicit none
   private
-  public :: gauss_legendre, logarithm_weights, barycentric_weights, lagrange_basis
+  public :: gauss_legendre, legendre_values, logarithm_weights, barycentric_weights, lagrange_basis
 
 contains
 
@@ -12,25 +12,43 @@ contains
   !> exact for polynomials of degree 2 size(x) - 1.
   pure subroutine gauss_legendre(x, w)
     real(wp), intent(out) :: x(:), w(:)
-    real(wp) :: z, step, value, slope
+    real(wp), dimension((size(x) + 1)/2) :: z, value, slope
     integer :: i, n, iteration
 
     n = size(x)
-    do i = 1, (n + 1)/2
-      z = cos(pi*(i - 0.25_wp)/(n + 0.5_wp))
-      do iteration = 1, 20
-        call legendre(n, z, value, slope)
-        step = value/slope
-        z = z - step
-        if (abs(step) <= 2*epsilon(z)) exit
-      end do
+    ! Tricomi's estimate of the roots in [0, 1), largest first.
+    z = [((1 - (1 - 1.0_wp/n)/(8.0_wp*n**2))*cos(pi*(i - 0.25_wp)/(n + 0.5_wp)), i=1, size(z))]
+    do iteration = 1, 20
       call legendre(n, z, value, slope)
-      x(i) = 0.5_wp*(1 - z)
-      x(n + 1 - i) = 0.5_wp*(1 + z)
-      w(i) = 1/((1 - z**2)*slope**2)
+      z = z - value/slope
+      ! Steps shrink quadratically: the next would be below rounding.
+      if (maxval(abs(value/slope)) <= 1.0e-9_wp) exit
+    end do
+    call legendre(n, z, value, slope)
+    do i = 1, size(z)
+      x(i) = 0.5_wp*(1 - z(i))
+      x(n + 1 - i) = 0.5_wp*(1 + z(i))
+      w(i) = 1/((1 - z(i)**2)*slope(i)**2)
       w(n + 1 - i) = w(i)
     end do
   end subroutine gauss_legendre
+
+  !> values(i, m): the Legendre polynomial of degree m - 1, shifted to [0, 1], at x(i), for degrees
+  !> below `count`.
+  pure function legendre_values(x, count) result(values)
+    real(wp), intent(in) :: x(:)
+    integer, intent(in) :: count
+    real(wp) :: values(size(x), count)
+    real(wp) :: z(size(x))
+    integer :: m
+
+    z = 2*x - 1
+    values(:, 1) = 1
+    if (count > 1) values(:, 2) = z
+    do m = 2, count - 1
+      values(:, m + 1) = ((2*m - 1)*z*values(:, m) - (m - 1)*values(:, m - 1))/m
+    end do
+  end function legendre_values
 
   !> Weights v on the Gauss-Legendre nodes x (of [0, 1], weights w) such that
   !> sum(v*f(x)) is the integral of f(s) ln(s) over [0, 1] for every polynomial f of
@@ -90,11 +108,12 @@ contains
     l = l/sum(l)
   end function lagrange_basis
 
+  !> The Legendre polynomial of degree n on [-1, 1] and its slope.
   pure subroutine legendre(n, z, value, slope)
     integer, intent(in) :: n
-    real(wp), intent(in) :: z
-    real(wp), intent(out) :: value, slope
-    real(wp) :: before, next
+    real(wp), intent(in) :: z(:)
+    real(wp), intent(out) :: value(:), slope(:)
+    real(wp), dimension(size(z)) :: before, next
     integer :: m
 
     before = 0

@@ -62,9 +62,7 @@ contains
     now%z = unknowns_of(control, state)
     now%z_best = now%z
     allocate (now%g(size(now%z)))
-    if (frozen%control%kind /= control%kind .or. frozen%control%mesh /= control%mesh) &
-      frozen%factors%valid = .false.
-    if (frozen%factors%valid) frozen%factors%valid = size(frozen%factors%lu, 1) == size(now%z)
+    frozen%factors%valid = frozen%serves(control, size(now%z))
     best = state_from(size(state%gap))
     converged = .false.
     do iteration = 1, options%most_iterations

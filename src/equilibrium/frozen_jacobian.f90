@@ -17,9 +17,22 @@ module frozen_jacobian
     integer :: served = 0
     !> Jacobians that were frozen here, this one included.
     integer :: renewals = 0
+  contains
+    procedure :: serves
   end type frozen_jacobian_t
 
 contains
+
+  !> Whether there are factors for so many unknowns of a control of this kind on the same mesh.
+  pure logical function serves(self, control, unknowns)
+    class(frozen_jacobian_t), intent(in) :: self
+    type(control_t), intent(in) :: control
+    integer, intent(in) :: unknowns
+
+    serves = self%factors%valid .and. self%control%kind == control%kind .and. &
+      self%control%mesh == control%mesh
+    if (serves) serves = size(self%factors%lu, 1) == unknowns
+  end function serves
 
   !> Takes the Jacobian at a state for the present one. frozen%factors%valid: whether it is regular.
   subroutine freeze(equations, control, state, frozen)

@@ -4,12 +4,12 @@ module jacobian
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
-  use linear_algebra, only: factorisation_t, factorise
+  use linear_algebra, only: factorisation_t, factorise, multiply
   use equilibrium, only: control_t, state_t, cost_t, equations_t, at_h0, at_axis_gap, &
     at_edge_radius, at_h0_with_edge
   implicit none
   private
-  public :: factorise_jacobian, factorise_on, control_derivative
+  public :: factorise_jacobian, factorise_on, jacobian_times, control_derivative
 
 contains
 
@@ -53,7 +53,7 @@ contains
     cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
     diagonal = 1
     if (present(shift)) diagonal = 1 + shift
-    row = merge(axis_row, centre_row, control%kind == at_axis_gap)
+    row = bordered_row(control)
     do j = 1, n
       if (problem%coupling > 0) then
         factors%lu(:n, j) = factor(j)*grid%kernel(first_node:first_node - 1 + n, j)
@@ -67,6 +67,41 @@ contains
     call factorise(factors)
     cost%factorisations = cost%factorisations + 1
   end subroutine factorise_on
+
+  !> The Jacobian of `residual` at a state times a change of the unknowns.
+  function jacobian_times(equations, control, state, change) result(product)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: change(:)
+    real(wp) :: product(size(change))
+    real(wp) :: raised(first_node - 1 + size(state%gap)), column(size(change))
+
+    associate (problem => equations%problem, grid => equations%meshes%grid(control%mesh), &
+      n => size(state%gap), m => size(change), cost => equations%cost)
+      raised = 0
+      if (problem%coupling > 0) then
+        call multiply(grid%kernel, n, problem%law%slope(state%gap)*change(:n), raised)
+        raised = 2*problem%coupling*state%scale*raised
+        cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
+        cost%operator_products = cost%operator_products + 1
+        cost%operator_columns = cost%operator_columns + n
+      end if
+      product(:n) = change(:n) - raised(first_node:)
+      if (m == n) return
+      call border(problem, grid, equations%meshes%locked_gap(problem%law, control%mesh), control, &
+        state, column)
+      product(:n) = product(:n) + column(:n)*change(m)
+      product(m) = raised(bordered_row(control)) + column(m)*change(m)
+    end associate
+  end function jacobian_times
+
+  !> The row of the kernel in the control's own equation.
+  pure integer function bordered_row(control)
+    type(control_t), intent(in) :: control
+
+    bordered_row = merge(axis_row, centre_row, control%kind == at_axis_gap)
+  end function bordered_row
 
   !> The column of derivatives of `residual` by the control's unknown.
   pure subroutine border(problem, grid, locked_gap, control, state, column)

@@ -87,8 +87,8 @@ contains
     began = seconds()
     select type (steps)
     class is (path_stepper_t)
-      call trace_resolved(steps, high, low, allocated(request%path), request%numerics%accuracy, &
-        observer, outcome%panel_tail)
+      call trace_resolved(steps, high, low, allocated(request%path), request%reads_path(), &
+        request%numerics%accuracy, observer, outcome%panel_tail)
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
       if (request%reads_path()) call read_path(request, steps, observer, outcome%readings)
     class is (unique_stepper_t)

@@ -35,7 +35,7 @@ module numerics_choice
 
 contains
 
-  !> For H0 from h0_high down to h0_low (law's lengths).
+  !> For H0 down to h0_low (law's lengths).
   function choose(numerics, problem, h0_low) result(chosen)
     type(numerics_t), intent(in) :: numerics
     type(problem_t), intent(in) :: problem

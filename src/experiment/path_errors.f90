@@ -4,13 +4,13 @@ module path_errors
   use kinds, only: wp
   use regridding, only: regrid
   use equilibrium, only: state_t, equations_t
-  use continuation, only: coordinate_of
+  use path_coordinate, only: coordinate_of
   use potential_energy, only: energy_of
-  use traced_path, only: path_point_t
+  use traced_path, only: path_point_t, traced_path_t
   use known_path, only: known_path_t, landing_t, landing_over
   use reported, only: reported_t, error_t, measure_t
-  use path_expansion, only: expansion_t, move_to, solve_fine, distance_to, measure_at, &
-    extremum_of_h0, extremum_of_load, at_h0
+  use path_expansion, only: expansion_t, expansion_about, move_to, solve_fine, distance_to, &
+    measure_at, extremum_of_h0, extremum_of_load, at_h0
   use error_estimate, only: finer_t, unknown_error, profile_error, rounding, worst_residual, &
     what_is_left
   implicit none
@@ -53,14 +53,15 @@ contains
     else if (reported%point > 0 .and. with_profile) then
       ! The point's own errors leave the profile out.
       associate (point => known%path%point(reported%point))
-        call judge(own, fine, sought_at(point, .true.), point%state, on_fine, reported%error)
+        call judge(own, fine, known%path, sought_at(point, .true.), point%state, on_fine, &
+          reported%error)
       end associate
     else if (reported%point > 0) then
       call judge_point(own, fine, known, reported%point)
       reported%error = known%path%point(reported%point)%error
     else
       associate (witness => reported%witness)
-        call judge(own, fine, sought_t(witness%mesh, at_h0, reported%h0, &
+        call judge(own, fine, known%path, sought_t(witness%mesh, at_h0, reported%h0, &
           what_is_left(witness%state), with_profile), witness%state, on_fine, reported%error)
       end associate
     end if
@@ -82,11 +83,13 @@ contains
     type(known_path_t), intent(inout) :: known
     integer, intent(in) :: i
     type(measure_t) :: on_fine
+    type(error_t), allocatable :: error
 
     associate (point => known%path%point(i))
       if (allocated(point%error)) return
-      call judge(own, fine, sought_at(point, .false.), point%state, on_fine, point%error)
+      call judge(own, fine, known%path, sought_at(point, .false.), point%state, on_fine, error)
       point%fine = on_fine
+      point%error = error
     end associate
   end subroutine judge_point
 
@@ -105,17 +108,18 @@ contains
         landing%error = unknown_error(reported_t(h0=fold%state%h0))
         return
       end if
-      call judge(own, fine, sought_t(landing%mesh, at_h0, fold%fine%h0, tight, .false.), &
-        landing%state, on_fine, landing%error)
+      call judge(own, fine, known%path, sought_t(landing%mesh, at_h0, fold%fine%h0, tight, &
+        .false.), landing%state, on_fine, landing%error)
       landing%fine = on_fine
       landing%error%h0 = fold%error%h0
     end associate
   end subroutine judge_landing
 
-  !> Errors of a state, and what it is on the finer mesh.
-  subroutine judge(own, fine, sought, state, on_fine, error)
+  !> Errors of a state of a path, and what it is on the finer mesh.
+  subroutine judge(own, fine, path, sought, state, on_fine, error)
     type(equations_t), intent(in) :: own
     type(finer_t), intent(inout) :: fine
+    type(traced_path_t), intent(in) :: path
     type(sought_t), intent(in) :: sought
     type(state_t), intent(in) :: state
     type(measure_t), intent(out) :: on_fine
@@ -123,16 +127,16 @@ contains
     type(expansion_t) :: near
     type(measure_t) :: measure
     type(state_t) :: right
-    real(wp) :: distance, uncertainty
+    real(wp) :: s, distance, uncertainty
     logical :: found
 
     measure = measure_t(state%h0, state%axis_gap - state%h0, state%load)
     error = unknown_error(reported_t(measure%h0, measure%displacement, measure%load))
     on_fine = measure
     call energy_of(own, sought%mesh, state, on_fine%energy, uncertainty)
-    near%s = coordinate_of(own%problem, sought%mesh, state)
-    near%state = regrid(own%problem%shape, state, own%meshes%grid(sought%mesh), &
-      fine%meshes%grid(sought%mesh), state%scale)
+    s = coordinate_of(own%problem, sought%mesh, state)
+    near = expansion_about(path%arc_about(sought%mesh, s), s, regrid(own%problem%shape, state, &
+      own%meshes%grid(sought%mesh), fine%meshes%grid(sought%mesh), state%scale))
     call move_to(fine, sought%mesh, sought%kind, sought%h0, near, distance, found)
     if (.not. found) return
     on_fine = measure_at(near, distance)

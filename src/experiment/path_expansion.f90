@@ -1,17 +1,19 @@
-!> The path near a state on a finer mesh: a parabola in its coordinate, whose slopes are exact
-!> (`path_slopes`). From it the same state follows, at the h0 or at the extremum that defines it.
-!> That holds beside folds too, where an h0 that is off by little moves the load by much.
+!> The path near a state on a finer mesh: a parabola in its coordinate with exact slopes
+!> (`path_tangent`); how these change, the path itself tells. From it the same state follows, at the
+!> h0 or at the extremum that defines it. That holds beside folds too, where an h0 that is off by
+!> little moves the load by much.
 module path_expansion
   use kinds, only: wp
   use equilibrium, only: state_t
-  use continuation, only: path_control
-  use path_slopes, only: slopes_along_path
+  use path_coordinate, only: path_control
+  use path_tangent, only: tangent_t
+  use arc, only: arc_t, tangent_along, of_h0, of_load
   use potential_energy, only: energy_of
   use reported, only: measure_t
   use error_estimate, only: finer_t
   implicit none
   private
-  public :: expansion_t, move_to, solve_fine, distance_to, measure_at
+  public :: expansion_t, expansion_about, move_to, solve_fine, distance_to, measure_at
   public :: extremum_of_h0, extremum_of_load, at_h0
 
   !> Value, slope and second derivative by the path's coordinate.
@@ -30,12 +32,24 @@ module path_expansion
   !> What defines a state: it is an extremum of h0 or of the load, or it is at a given h0.
   integer, parameter :: extremum_of_h0 = 1, extremum_of_load = 2, at_h0 = 3
 
-  !> Distance of the second state of an expansion; how far an expansion is believed; its longest
-  !> move, and how often it may.
-  real(wp), parameter :: apart = 1.0e-4_wp, believed = 1.0e-3_wp, farthest = 0.1_wp
+  !> How far an expansion is believed; its longest move, and how often it may.
+  real(wp), parameter :: believed = 1.0e-3_wp, farthest = 0.1_wp
   integer, parameter :: most_moves = 8
 
 contains
+
+  !> An expansion at the coordinate s, not yet solved: from the guess `state` on the finer mesh, and
+  !> with the curvatures of the path about it.
+  pure type(expansion_t) function expansion_about(about, s, state) result(near)
+    type(arc_t), intent(in) :: about
+    real(wp), intent(in) :: s
+    type(state_t), intent(in) :: state
+
+    near%s = s
+    near%state = state
+    near%h0%curvature = about%curvature(of_h0, s)
+    near%load%curvature = about%curvature(of_load, s)
+  end function expansion_about
 
   !> Moves an expansion along the path until the state that `kind` defines, at h0 if that is it, is
   !> near, and says how far it is. found = .false.: the finer mesh has no such state.
@@ -48,6 +62,7 @@ contains
     logical, intent(out) :: found
     integer :: move
 
+    fine%frozen%factors%valid = .false.
     do move = 1, most_moves
       call expand(fine, mesh, near, found)
       if (.not. found) return
@@ -65,40 +80,28 @@ contains
     integer, intent(in) :: mesh
     type(expansion_t), intent(inout) :: near
     logical, intent(out) :: found
-    type(state_t) :: second
-    real(wp) :: slopes(2), slopes_there(2), uncertainty
+    type(tangent_t) :: tangent
+    real(wp) :: uncertainty
 
-    fine%frozen%factors%valid = .false.
-    call solve_fine(fine, mesh, near%s, near%state, found, slopes)
+    call solve_fine(fine, mesh, near%s, near%state, found)
+    if (found) call tangent_along(fine%equations_t, mesh, near%s, near%state, fine%frozen, &
+      tangent, found)
     if (.not. found) return
-    ! So near, the factors that the slopes were found with serve.
-    second = near%state
-    call solve_fine(fine, mesh, near%s + apart, second, found, slopes_there)
-    if (.not. found) return
-    near%h0 = parabola_t(near%state%h0, slopes(1), (slopes_there(1) - slopes(1))/apart)
-    near%load = parabola_t(near%state%load, slopes(2), (slopes_there(2) - slopes(2))/apart)
-    near%axis_gap = parabola_t(near%state%axis_gap, &
-      (second%axis_gap - near%state%axis_gap)/apart, 0.0_wp)
+    near%h0 = parabola_t(near%state%h0, tangent%h0, near%h0%curvature)
+    near%load = parabola_t(near%state%load, tangent%load, near%load%curvature)
+    near%axis_gap = parabola_t(near%state%axis_gap, tangent%axis_gap, 0.0_wp)
     call energy_of(fine%equations_t, mesh, near%state, near%energy, uncertainty)
   end subroutine expand
 
-  !> Solves for the state at the coordinate s on the finer mesh; slopes: of h0 and load by s.
-  subroutine solve_fine(fine, mesh, s, state, found, slopes)
+  !> Solves for the state at the coordinate s on the finer mesh.
+  subroutine solve_fine(fine, mesh, s, state, found)
     type(finer_t), intent(inout) :: fine
     integer, intent(in) :: mesh
     real(wp), intent(in) :: s
     type(state_t), intent(inout) :: state
     logical, intent(out) :: found
-    real(wp), intent(out), optional :: slopes(2)
 
-    associate (control => path_control(fine%problem, mesh, s))
-      call fine%find(control, state, found)
-      if (.not. (found .and. present(slopes))) return
-      call slopes_along_path(fine%equations_t, control, state, fine%frozen, slopes(1), slopes(2), &
-        found)
-      ! On both meshes the control's value is exp(s) and a constant.
-      slopes = slopes*exp(s)
-    end associate
+    call fine%find(path_control(fine%problem, mesh, s), state, found)
   end subroutine solve_fine
 
   !> How far from the middle of an expansion the state is that `kind` defines. Beyond a fold, where

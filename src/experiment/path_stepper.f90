@@ -10,10 +10,11 @@ module path_stepper
   use listener, only: listener_t
   use equilibrium, only: state_t
   use locked_stepper, only: locked_stepper_t
-  use continuation, only: coordinate_of, between
+  use path_coordinate, only: coordinate_of
+  use arc, only: between
   use ending, only: fallen_before, beyond_path
   use traced_path, only: traced_path_t
-  use solve_at_h0, only: neighbours_t, neighbours_of, coordinate_at_h0, guess_at_h0, solve_between
+  use solve_at_h0, only: neighbours_t, neighbours_of, coordinate_at_h0, solve_between
   use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
   use stepper, only: branch_point_t, step_result_t, extreme_t, remember
   implicit none
@@ -42,20 +43,20 @@ module path_stepper
 contains
 
   !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
-  !> h0_low; into_contact: until it is also on the mesh for contact. To be called before the first
-  !> step. The listener hears how far it is.
-  subroutine know_path(self, h0_high, h0_low, into_contact, listener)
+  !> h0_low; into_contact: until it is also on the mesh for contact; closely: with points enough for
+  !> a smooth curve. To be called before the first step. The listener hears how far it is.
+  subroutine know_path(self, h0_high, h0_low, into_contact, closely, listener)
     class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0_high, h0_low
-    logical, intent(in) :: into_contact
+    logical, intent(in) :: into_contact, closely
     class(listener_t), intent(inout) :: listener
     type(branch_point_t) :: position
     type(step_result_t) :: event
 
     call self%begin_afar(h0_high, position, event)
     if (.not. event%ending%early()) then
-      call trace(self%equations_t, self%options, position%state, h0_low, into_contact, listener, &
-        self%known)
+      call trace(self%equations_t, self%options, position%state, h0_low, into_contact, closely, &
+        listener, self%known)
     else
       self%known%ending = event%ending
       allocate (self%known%piece(0))
@@ -182,7 +183,7 @@ contains
       if (near%mesh == position%mesh .and. goes_on(position, h0)) then
         state = between(position%h0(:position%held), position%past(:position%held), h0)
       else
-        state = guess_at_h0(near, s)
+        state = near%guess(s)
       end if
       call self%attempt(h0, state, near%mesh, event)
       if (event%converged) then

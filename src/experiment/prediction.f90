@@ -6,7 +6,7 @@ module prediction
   use interpolation, only: polynomial_weights
   use equilibrium, only: state_t, radius_of_gap
   use stepper, only: branch_point_t
-  use continuation, only: between
+  use arc, only: between
   implicit none
   private
   public :: extrapolated, moved_with_edge, towards_fold

@@ -6,6 +6,7 @@ module reading_sensitivities
   use frozen_jacobian, only: frozen_jacobian_t
   use path_curve, only: no_mesh
   use curve_states, only: curve_solver_t, curve_state_t, coordinate_at
+  use path_tangent, only: tangent_t
   use driven_pieces, only: drive_t
   use device, only: jump_t
   use state_sensitivity, only: place_on_path_t
@@ -129,6 +130,7 @@ contains
     type(curve_state_t), intent(in) :: state
     type(place_on_path_t), intent(out) :: place
     logical, intent(out) :: found
+    type(tangent_t) :: along
 
     associate (node => solver%curve%begin_of(state%interval))
       place%mesh = node%mesh
@@ -137,7 +139,7 @@ contains
     if (.not. found) return
     place%s = coordinate_at(solver%curve, state)
     call solver%equilibrium_at(finder%steps%equations_t, finder%steps%known, state, place%state, &
-      found)
+      along, found)
   end subroutine place_of
 
   !> Derivatives of the energy of bodies and spring, or dead load (`driven_pieces`).

@@ -33,10 +33,11 @@ contains
   !> Traces the path (`know_path`), again where panels had to be halved; panel_tail: the largest
   !> tail that is left, but of a fall onto each other, which ends on no mesh. The paper's laws need
   !> none of it: their meshes were fitted to their errors.
-  subroutine trace_resolved(steps, h0_high, h0_low, into_contact, accuracy, listener, panel_tail)
+  subroutine trace_resolved(steps, h0_high, h0_low, into_contact, closely, accuracy, listener, &
+    panel_tail)
     class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_high, h0_low, accuracy
-    logical, intent(in) :: into_contact
+    logical, intent(in) :: into_contact, closely
     class(listener_t), intent(inout) :: listener
     real(wp), intent(out) :: panel_tail
     type(tails_t), allocatable :: tails(:)
@@ -44,7 +45,7 @@ contains
     integer :: round, mesh
 
     panel_tail = 0
-    call steps%know_path(h0_high, h0_low, into_contact, listener)
+    call steps%know_path(h0_high, h0_low, into_contact, closely, listener)
     if (steps%problem%law%of_paper) return
     do round = 0, most_rounds
       tails = tails_on_path(steps)
@@ -62,7 +63,7 @@ contains
         end associate
       end do
       steps%known = nothing
-      call steps%know_path(h0_high, h0_low, into_contact, listener)
+      call steps%know_path(h0_high, h0_low, into_contact, closely, listener)
     end do
     if (steps%known%fallen) panel_tail = 0
   end subroutine trace_resolved

@@ -4,7 +4,7 @@ module result_sensitivities
   use listener, only: listener_t
   use equilibrium, only: state_t
   use frozen_jacobian, only: frozen_jacobian_t
-  use continuation, only: coordinate_of
+  use path_coordinate, only: coordinate_of
   use known_path, only: landing_t, landing_over
   use reported, only: reported_t, measure_t
   use variation, only: along_path

@@ -4,7 +4,7 @@ module unique_stepper
   use kinds, only: wp
   use equilibrium, only: state_t
   use locked_stepper, only: locked_stepper_t
-  use continuation, only: between
+  use arc, only: between
   use ending, only: touching, steps_lost
   use stepper, only: branch_point_t, step_result_t, remember
   implicit none

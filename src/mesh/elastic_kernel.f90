@@ -11,6 +11,11 @@ module elastic_kernel
   private
   public :: kernel, kernel_log_coefficient
 
+  !> Steps of the mean that reach double precision from the first of these ratios upward, from the
+  !> next with one more, and so on; from 1e-14 with three.
+  integer, parameter :: fewest_steps = 4
+  real(wp), parameter :: one_more(3) = [0.06_wp, 9.0e-4_wp, 2.0e-7_wp]
+
 contains
 
   !> k as a function of the sums r + t and the distances |r - t|, both positive, in units of
@@ -31,9 +36,8 @@ contains
     a = 4/(pi*total*agm(sqrt((1 - x)*(1 + x))))
   end function kernel_log_coefficient
 
-  !> Arithmetic-geometric means of 1 and x, 0 < x <= 1, to rounding. The number of steps is fixed,
-  !> and steps are taken for all at once, so that the loops vectorise: seven reach double precision
-  !> from x = 1e-14 upward.
+  !> Arithmetic-geometric means of 1 and x, 0 < x <= 1, to rounding. Steps are taken for all at
+  !> once, so that the loops vectorise: as many as the smallest x needs.
   pure function agm(x) result(mean)
     real(wp), intent(in) :: x(:)
     real(wp), dimension(size(x)) :: mean, g, next
@@ -41,7 +45,7 @@ contains
 
     mean = 1
     g = x
-    do step = 1, 7
+    do step = 1, fewest_steps + count(minval(x) < one_more)
       next = 0.5_wp*(mean + g)
       g = sqrt(mean*g)
       mean = next

@@ -3,11 +3,11 @@
 !> logarithm there is as smooth as v**(power - 1) ln(v), and one a little farther off stays away
 !> from the points in proportion.
 !>
-!> Values of the panel's Lagrange polynomials at these points, and on panels mapped by sinh the
-!> exponentials of the map, are the same whatever the target, and tabulated.
+!> Integrals are taken against Legendre polynomials, whose values follow from a recurrence; those
+!> against the panel's Lagrange polynomials are combinations of them.
 module graded_rule
   use kinds, only: wp
-  use quadrature, only: gauss_legendre, lagrange_basis
+  use quadrature, only: gauss_legendre, legendre_values
   implicit none
   private
   public :: graded_rule_t, new_graded_rule
@@ -17,56 +17,40 @@ module graded_rule
   integer, parameter :: power = 4
 
   type :: graded_rule_t
-    integer :: order = 0, points = 0
+    integer :: order = 0
     !> The panel's nodes on [0, 1], (order).
     real(wp), allocatable :: node(:)
     !> Points and weights of the substitution on [0, 1], (points).
     real(wp), allocatable :: step(:), step_weight(:)
-    !> basis(j, q): polynomial j at s = step(q), (order, points).
-    real(wp), allocatable :: basis(:, :)
-    !> after(j, q, i): polynomial j at s = node(i) + (1 - node(i))*step(q), (order, points, order).
-    !> Points before a node are those after its mirror image, with polynomials in reverse.
-    real(wp), allocatable :: after(:, :, :)
-    !> Of a panel mapped by sinh: with delta = z_length*(s - node(i)), exp(delta/2) and
-    !> 2 sinh(delta/2) at the same points, (points, order); and from the left end, (points).
-    real(wp), allocatable :: growth(:, :), chord(:, :), end_growth(:), end_chord(:)
+    !> lagrange(m, j): part of the Legendre polynomial of degree m - 1 in the Lagrange polynomial of
+    !> node j, (order, order). Of the panel's mirror image parts of odd degree have the other sign,
+    !> parity(m).
+    real(wp), allocatable :: lagrange(:, :), parity(:)
   end type graded_rule_t
 
 contains
 
-  !> Rule for a panel with the Gauss-Legendre nodes `node` of [0, 1], for so many digits; z_length:
-  !> of a panel mapped by sinh, otherwise zero.
-  pure function new_graded_rule(node, barycentric, z_length, digits) result(rule)
-    real(wp), intent(in) :: node(:), barycentric(:), z_length, digits
+  !> Rule for a panel with the Gauss-Legendre nodes `node` of [0, 1] and their weights, for so many
+  !> digits; z_length: of a panel mapped by sinh, otherwise zero.
+  pure function new_graded_rule(node, weight, z_length, digits) result(rule)
+    real(wp), intent(in) :: node(:), weight(:), z_length, digits
     type(graded_rule_t) :: rule
     real(wp), allocatable :: v(:), v_weight(:)
-    integer :: i, q
+    integer :: points, m
 
     rule%order = size(node)
-    rule%points = points_for(rule%order, z_length, digits)
     rule%node = node
-    associate (order => rule%order, points => rule%points)
-      allocate (v(points), v_weight(points))
-      allocate (rule%basis(order, points), rule%after(order, points, order))
-    end associate
+    points = points_for(rule%order, z_length, digits)
+    allocate (v(points), v_weight(points))
     call gauss_legendre(v, v_weight)
     rule%step = v**power
     rule%step_weight = power*v**(power - 1)*v_weight
-    do q = 1, rule%points
-      rule%basis(:, q) = lagrange_basis(node, barycentric, rule%step(q))
-      do i = 1, rule%order
-        rule%after(:, q, i) = lagrange_basis(node, barycentric, &
-          rule%node(i) + (1 - rule%node(i))*rule%step(q))
-      end do
+    ! The nodes' own rule is exact for products of two polynomials of theirs.
+    rule%lagrange = transpose(legendre_values(node, rule%order))
+    do m = 1, rule%order
+      rule%lagrange(m, :) = (2*m - 1)*weight*rule%lagrange(m, :)
     end do
-    if (.not. z_length > 0) return
-    rule%end_growth = exp(0.5_wp*z_length*rule%step)
-    rule%end_chord = 2*sinh(0.5_wp*z_length*rule%step)
-    allocate (rule%growth(rule%points, rule%order), rule%chord(rule%points, rule%order))
-    do i = 1, rule%order
-      rule%growth(:, i) = exp(0.5_wp*z_length*(1 - node(i))*rule%step)
-      rule%chord(:, i) = 2*sinh(0.5_wp*z_length*(1 - node(i))*rule%step)
-    end do
+    rule%parity = [(real((-1)**(m - 1), wp), m=1, rule%order)]
   end function new_graded_rule
 
   !> Points that integrate a logarithm times polynomials of that many nodes to the digits. The

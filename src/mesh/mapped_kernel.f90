@@ -2,6 +2,8 @@
 module mapped_kernel
   use kinds, only: wp
   use elastic_kernel, only: kernel
+  use linear_algebra, only: multiply_transposed
+  use quadrature, only: legendre_values
   use panel_map, only: panel_map_t, sinh_map
   use graded_rule, only: graded_rule_t
   implicit none
@@ -14,6 +16,9 @@ module mapped_kernel
     real(wp), allocatable :: distance(:), t(:), weight(:)
   end type points_t
 
+  !> Below it the series of sinh is exact, and exponentials cancel.
+  real(wp), parameter :: small = 0.5_wp
+
 contains
 
   !> matrix(i, j) = integral of k(r, t) b_j(t) t dt over the panel, for r = centre + target(i) and
@@ -25,35 +30,76 @@ contains
     real(wp), intent(in) :: centre, target(:)
     integer, intent(in) :: own
     real(wp), intent(out) :: matrix(:, :)
-    type(points_t) :: from_left, from_right, before, after
-    real(wp) :: r
+    ! Integrals against Legendre polynomials, (order, targets).
+    real(wp) :: moments(rule%order, size(target)), legendre(size(rule%step), rule%order)
+    integer, allocatable :: others(:)
     integer :: i, k
 
-    associate (n => rule%order)
-      from_left = points_from_end(panel, rule, centre, .true.)
-      if (panel%right < huge(1.0_wp)) from_right = points_from_end(panel, rule, centre, .false.)
-      do i = 1, size(target)
-        r = centre + target(i)
-        k = i - own + 1
-        if (k >= 1 .and. k <= n) then
-          after = points_from_node(panel, rule, centre, k, .true.)
-          before = points_from_node(panel, rule, centre, k, .false.)
-          matrix(i, :) = matmul(rule%after(:, :, k), integrand(after, r, 0.0_wp)) + &
-            reversed(matmul(rule%after(:, :, n + 1 - k), integrand(before, r, 0.0_wp)))
-        else if (target(i) <= panel%left) then
-          matrix(i, :) = matmul(rule%basis, integrand(from_left, r, panel%left - target(i)))
-        else
-          matrix(i, :) = reversed(matmul(rule%basis, &
-            integrand(from_right, r, target(i) - panel%right)))
-        end if
+    call add_nodes(panel, rule, centre, target, own, moments)
+    legendre = legendre_values(rule%step, rule%order)
+    others = [(i, i=1, own - 1), (i, i=own + rule%order, size(target))]
+    call add_others(.true., pack(others, target(others) <= panel%left))
+    call add_others(.false., pack(others, .not. target(others) <= panel%left))
+    call multiply_transposed(moments, rule%lagrange, matrix)
+    if (.not. panel%decay > 0) return
+    do k = 1, rule%order
+      matrix(:, k) = matrix(:, k)/(1 - rule%node(k))**panel%decay
+    end do
+
+  contains
+
+    !> Moments of targets that are beyond the left end or the right one.
+    subroutine add_others(left, which)
+      logical, intent(in) :: left
+      integer, intent(in) :: which(:)
+      type(points_t) :: points
+      real(wp) :: f(size(rule%step), size(which)), of_these(rule%order, size(which)), gap
+      integer :: j
+
+      if (size(which) == 0) return
+      points = points_from_end(panel, rule, centre, left)
+      do j = 1, size(which)
+        gap = merge(panel%left - target(which(j)), target(which(j)) - panel%right, left)
+        f(:, j) = integrand(points, centre + target(which(j)), gap)
       end do
-      if (panel%decay > 0) then
-        do k = 1, n
-          matrix(:, k) = matrix(:, k)/(1 - rule%node(k))**panel%decay
-        end do
-      end if
-    end associate
+      call multiply_transposed(legendre, f, of_these)
+      do j = 1, size(which)
+        moments(:, which(j)) = of_these(:, j)
+        if (.not. left) moments(:, which(j)) = rule%parity*of_these(:, j)
+      end do
+    end subroutine add_others
+
   end subroutine add_panel
+
+  !> Moments of the panel's own nodes: the part after node k and, its mirror image, the part before
+  !> the image of node k have their points at the same local distances.
+  subroutine add_nodes(panel, rule, centre, target, own, moments)
+    type(panel_map_t), intent(in) :: panel
+    type(graded_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: centre, target(:)
+    integer, intent(in) :: own
+    real(wp), intent(inout) :: moments(:, :)
+    real(wp) :: f(size(rule%step), 2), of_both(rule%order, 2)
+    real(wp) :: legendre(size(rule%step), rule%order), length
+    real(wp), dimension(size(rule%step)) :: growth, chord
+    integer :: k, image
+
+    moments(:, own:own + rule%order - 1) = 0
+    do k = 1, rule%order
+      image = rule%order + 1 - k
+      length = 1 - rule%node(k)
+      if (panel%kind == sinh_map) &
+        call exponentials(0.5_wp*panel%z_length*length*rule%step, growth, chord)
+      legendre = legendre_values(rule%node(k) + length*rule%step, rule%order)
+      f(:, 1) = integrand(points_from_node(panel, rule, centre, k, length, growth, chord), &
+        centre + target(own + k - 1), 0.0_wp)
+      f(:, 2) = integrand(points_from_node(panel, rule, centre, image, -length, growth, chord), &
+        centre + target(own + image - 1), 0.0_wp)
+      call multiply_transposed(legendre, f, of_both)
+      moments(:, own + k - 1) = moments(:, own + k - 1) + of_both(:, 1)
+      moments(:, own + image - 1) = moments(:, own + image - 1) + rule%parity*of_both(:, 2)
+    end do
+  end subroutine add_nodes
 
   !> Weights times kernel for the target at r, which is `gap` away from where the points begin.
   pure function integrand(points, r, gap) result(f)
@@ -71,6 +117,7 @@ contains
     real(wp), intent(in) :: centre
     logical, intent(in) :: left
     type(points_t) :: points
+    real(wp), dimension(size(rule%step)) :: growth, chord
     real(wp) :: z
 
     if (panel%kind /= sinh_map) then
@@ -78,37 +125,49 @@ contains
       return
     end if
     z = merge(panel%z_left, -(panel%z_left + panel%z_length), left)
-    points = points_along_sinh(panel%d, exp(z), rule%end_growth, rule%end_chord)
+    call exponentials(0.5_wp*panel%z_length*rule%step, growth, chord)
+    points = points_along_sinh(panel%d, exp(z), growth, chord)
     ! On the axis centre and end cancel, and the distance is the position.
     points%t = merge((centre + panel%left) + points%distance, &
       (centre + panel%right) - points%distance, left)
     points%weight = points%weight*panel%z_length*rule%step_weight*points%t
   end function points_from_end
 
-  !> Points graded towards node k, after it or before it.
-  pure function points_from_node(panel, rule, centre, k, after) result(points)
+  !> Points graded towards node k: over the part `length` of the panel after it or, below zero,
+  !> before it. growth, chord: their `exponentials` on a panel mapped by sinh.
+  pure function points_from_node(panel, rule, centre, k, length, growth, chord) result(points)
     type(panel_map_t), intent(in) :: panel
     type(graded_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: centre
+    real(wp), intent(in) :: centre, length, growth(:), chord(:)
     integer, intent(in) :: k
-    logical, intent(in) :: after
     type(points_t) :: points
-    real(wp) :: z, length
-    integer :: image
+    real(wp) :: z
 
-    image = merge(k, rule%order + 1 - k, after)
-    length = 1 - rule%node(image)
     if (panel%kind == sinh_map) then
       z = panel%z_left + panel%z_length*rule%node(k)
-      points = points_along_sinh(panel%d, exp(merge(z, -z, after)), rule%growth(:, image), &
-        rule%chord(:, image))
-      points%t = centre + panel%d*sinh(z) + merge(points%distance, -points%distance, after)
-      points%weight = points%weight*panel%z_length*length*rule%step_weight*points%t
+      points = points_along_sinh(panel%d, exp(sign(1.0_wp, length)*z), growth, chord)
+      points%t = centre + panel%d*sinh(z) + sign(1.0_wp, length)*points%distance
+      points%weight = points%weight*panel%z_length*abs(length)*rule%step_weight*points%t
     else
-      points = points_of_tail(panel, rule%node(k), merge(length, -length, after)*rule%step, &
-        length*rule%step_weight)
+      points = points_of_tail(panel, rule%node(k), length*rule%step, abs(length)*rule%step_weight)
     end if
   end function points_from_node
+
+  !> exp(x) and 2 sinh(x) of x > 0, without cancellation.
+  pure subroutine exponentials(x, growth, chord)
+    real(wp), intent(in) :: x(:)
+    real(wp), intent(out) :: growth(:), chord(:)
+    real(wp), dimension(size(x)) :: square
+    integer :: k
+
+    growth = exp(x)
+    square = x**2
+    chord = 1
+    do k = 15, 3, -2
+      chord = 1 + chord*square/(k*(k - 1))
+    end do
+    chord = merge(2*x*chord, growth - 1/growth, x < small)
+  end subroutine exponentials
 
   !> Along offset = d sinh(z) from z0 by delta > 0: distances d (sinh(z0 + delta) - sinh(z0)) and,
   !> as weights, the map's derivative by z; of exp(z0), exp(delta/2) and 2 sinh(delta/2), so that
@@ -136,12 +195,5 @@ contains
     points%distance = abs(by)*points%t/(1 - s)
     points%weight = weight*panel%begin**2*left**(panel%decay - 3)
   end function points_of_tail
-
-  pure function reversed(values)
-    real(wp), intent(in) :: values(:)
-    real(wp) :: reversed(size(values))
-
-    reversed = values(size(values):1:-1)
-  end function reversed
 
 end module mapped_kernel

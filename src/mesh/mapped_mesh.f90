@@ -84,7 +84,7 @@ contains
     allocate (grid%kernel(size(target), grid%nodes))
     do k = 1, size(grid%panel)
       associate (first => grid%first(k), panel => grid%panel(k), local => grid%local(k))
-        rule = new_graded_rule(local%node, local%barycentric, panel%z_length, shape%digits)
+        rule = new_graded_rule(local%node, local%weight, panel%z_length, shape%digits)
         call add_panel(panel, rule, grid%centre, target, first_node - 1 + first, &
           grid%kernel(:, first:first + rule%order - 1))
       end associate

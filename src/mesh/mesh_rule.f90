@@ -5,7 +5,7 @@ module mesh_rule
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
   use shape, only: shape_t
-  use dimensionless_problem, only: problem_t, calm_gap
+  use dimensionless_problem, only: problem_t, calm_gap, neck_width
   use contact_scales, only: smallest_feature
   use law_panels, only: fitting_panels, longest, about_axis, about_front, about_edge
   use step_front, only: front_leads, first_front, front_width
@@ -103,6 +103,10 @@ contains
     end if
     reach = max(nearest_tail, beyond_poles*problem%shape%position_of(0.5_wp*calm_gap(problem)))
     outer = density
+    ! As long as a contact is smaller than its neck, the pressure around it is that before contact;
+    ! where the neck is wider than the force reaches, this is smooth enough.
+    if (problem%law%adhesion > 0 .and. neck_width(problem) < 1) &
+      outer = density*(1 + 0.5_wp/(1 + 3*(low/neck_width(problem))**2))
     call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)
     reach = max(tail_of_contact, reach/low)
     shape%centre = 1

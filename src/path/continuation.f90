@@ -1,70 +1,91 @@
-!> Follows the equilibrium path from afar into contact, stable and unstable, in coordinates in which
-!> it has no folds: the gap on the axis before contact, the contact radius in contact
-!> (`edge_locked`). Each step is
-!> extrapolated from the last states and corrected by the accelerated iteration.
+!> Follows the equilibrium path from afar into contact, stable and unstable, in the coordinate in
+!> which it has no folds (`path_coordinate`). Each step is extrapolated from the last states and
+!> their tangents, and corrected by the accelerated iteration; how far the correction goes decides
+!> how long the next step is.
 module continuation
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use interpolation, only: polynomial_weights
-  use equilibrium, only: control_t, state_t, equations_t, at_axis_gap, at_edge_radius, &
-    radius_of_gap
+  use equilibrium, only: state_t, equations_t, radius_of_gap
   use solver_options, only: solver_options_t
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
   use edge_locked, only: approach
   use regridding, only: regrid
+  use path_coordinate, only: path_control, coordinate_of, inward
+  use path_tangent, only: tangent_t
+  use arc, only: arc_t, tangent_along
   implicit none
   private
-  public :: arc_t, continuation_t, new_continuation, path_control, coordinate_of, state_at, &
-    between, most_states
+  public :: continuation_t
 
-  !> States of an arc; of them those kept for the extrapolation; and limits of a step (relative
-  !> change of the coordinate).
-  integer, parameter :: most_states = 6, memory = 4
-  real(wp), parameter :: smallest_step = 1.0e-6_wp
-  !> The least contact radius over that of a passage for a state to be taken to the next mesh.
-  real(wp), parameter :: nearly_passed = 0.5_wp
-
-  !> Some states of the path on one mesh and their coordinates, in order.
-  type :: arc_t
-    integer :: mesh = approach, held = 0
-    real(wp) :: coordinate(most_states) = 0
-    type(state_t) :: state(most_states)
-  end type arc_t
+  !> States kept for the extrapolation; the first step, the shortest and the longest (changes of the
+  !> coordinate).
+  integer, parameter :: memory = 3
+  real(wp), parameter :: first_step = 0.04_wp, shortest_step = 1.0e-6_wp, longest_step = 0.5_wp
+  !> How far a guess may be from the state, relative or in the law's lengths, for two or three
+  !> iterations to correct it; the power of the step that an extrapolation from three states with
+  !> tangents misses by; limits of the change of a step, and its ladder.
+  real(wp), parameter :: wanted_miss = 3.0e-4_wp, growth = 1.7_wp, shrinkage = 0.3_wp, &
+    rung = 1.2_wp
+  integer, parameter :: order = 6
+  !> The same of a path whose points are to make a smooth curve, and its longest step.
+  real(wp), parameter :: miss_of_curve = 1.0e-6_wp, step_of_curve = 0.12_wp
+  !> The least contact radius over that of a passage for a state to be taken to the next mesh; the
+  !> largest that a step may lead to on a mesh, which is no good beyond, and how short it is made
+  !> for that.
+  real(wp), parameter :: nearly_passed = 0.8_wp, beyond_passage = 1.1_wp, shortest_passage = 0.05_wp
 
   !> The last states on the mesh in use, newest last.
   type, extends(arc_t) :: continuation_t
-    real(wp) :: step = 0.05_wp, largest_step = 0.15_wp
+    real(wp) :: step = first_step, longest_step = longest_step, wanted_miss = wanted_miss
     type(frozen_jacobian_t) :: frozen
   contains
+    procedure :: follow_closely
+    procedure :: begin_with
     procedure :: advance
-    procedure, private :: remember
     procedure :: change_mesh
+    procedure, private :: next_step
+    procedure, private :: step_past_step
   end type continuation_t
 
 contains
 
-  !> A tracer that starts from an equilibrium on one of the meshes.
-  function new_continuation(problem, state, mesh, largest_step) result(tracer)
-    type(problem_t), intent(in) :: problem
+  !> Lets the points of the path make a curve that is exact between them to many digits.
+  pure subroutine follow_closely(self)
+    class(continuation_t), intent(inout) :: self
+
+    self%longest_step = step_of_curve
+    self%wanted_miss = miss_of_curve
+  end subroutine follow_closely
+
+  !> Begins with an equilibrium on a mesh. lost: it has no tangent.
+  subroutine begin_with(self, equations, state, mesh, lost)
+    class(continuation_t), intent(inout) :: self
+    type(equations_t), intent(inout) :: equations
     type(state_t), intent(in) :: state
     integer, intent(in) :: mesh
-    real(wp), intent(in) :: largest_step
-    type(continuation_t) :: tracer
+    logical, intent(out) :: lost
 
-    tracer%mesh = mesh
-    tracer%largest_step = largest_step
-    tracer%step = 0.3_wp*largest_step
-    call tracer%remember(problem, state)
-  end function new_continuation
+    self%mesh = mesh
+    call add_with_tangent(equations, self%frozen, state, self%arc_t, lost)
+  end subroutine begin_with
 
-  !> Whether the coordinate grows along the way towards contact: the gap on the axis shrinks, the
-  !> contact radius grows.
-  pure integer function sense_of(self)
-    class(continuation_t), intent(in) :: self
+  !> Adds a state to an arc of its mesh. lost: it has no tangent.
+  subroutine add_with_tangent(equations, frozen, state, arc, lost)
+    type(equations_t), intent(inout) :: equations
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(state_t), intent(in) :: state
+    type(arc_t), intent(inout) :: arc
+    logical, intent(out) :: lost
+    type(tangent_t) :: tangent
+    real(wp) :: s
+    logical :: found
 
-    sense_of = merge(-1, 1, self%mesh == approach)
-  end function sense_of
+    s = coordinate_of(equations%problem, arc%mesh, state)
+    call tangent_along(equations, arc%mesh, s, state, frozen, tangent, found)
+    lost = .not. found
+    if (found) call arc%add(s, state, tangent)
+  end subroutine add_with_tangent
 
   !> The next state of the path, on the same mesh. lost: no step, however small, converged.
   subroutine advance(self, equations, options, lost)
@@ -72,74 +93,115 @@ contains
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
-    type(state_t) :: trial
-    real(wp) :: s
+    type(state_t) :: state
+    type(tangent_t) :: tangent
+    real(wp) :: s, miss
     logical :: converged
 
     lost = .false.
-    self%step = min(self%step, longest_step(equations%problem, self))
     do
-      s = self%coordinate(self%held) + sense_of(self)*self%step
-      call state_at(equations, options, self%frozen, self%arc_t, s, trial, converged)
+      s = self%coordinate(self%held) + inward(self%mesh)*self%next_step(equations)
+      ! A step is so long that factors made before it are of no use.
+      self%frozen%factors%valid = .false.
+      call self%state_at(equations, options, self%frozen, s, state, tangent, converged, miss)
       if (converged) exit
       equations%cost%rejected_steps = equations%cost%rejected_steps + 1
-      self%frozen%factors%valid = .false.
-      self%step = 0.3_wp*self%step
-      lost = self%step < smallest_step
+      self%step = shrinkage*self%step
+      lost = self%step < shortest_step
       if (lost) return
     end do
-    if (trial%iterations <= 6) self%step = min(1.4_wp*self%step, self%largest_step)
-    if (trial%iterations > 12) self%step = 0.7_wp*self%step
-    call self%remember(equations%problem, trial)
+    self%step = min(self%longest_step, abs(s - self%coordinate(self%held))* &
+      factor_for(self%wanted_miss/max(miss, tiny(1.0_wp))))
+    if (self%held == memory) call self%drop_first()
+    call self%add(s, state, tangent)
   end subroutine advance
 
-  !> The longest step of the path's coordinate. Where the axis passes a step of the pressure all
-  !> changes over the width of it, and h0 may turn several times.
-  pure real(wp) function longest_step(problem, self) result(longest)
-    type(problem_t), intent(in) :: problem
+  !> By how much the next step is longer, where the miss may be so many times what it was: in steps
+  !> of a ladder, so that rounding does not show in where the path has its points.
+  pure real(wp) function factor_for(ratio) result(factor)
+    real(wp), intent(in) :: ratio
+
+    factor = rung**floor(log(ratio)/(order*log(rung)))
+    factor = min(growth, max(shrinkage, factor))
+  end function factor_for
+
+  !> The step that is due, or the longest that the mesh in use is good for.
+  pure real(wp) function next_step(self, equations) result(step)
     class(continuation_t), intent(in) :: self
+    type(equations_t), intent(in) :: equations
+    real(wp) :: s
+
+    step = min(self%step, self%step_past_step(equations%problem))
+    if (.not. equations%problem%law%edge_gap > 0) return
+    s = self%coordinate(self%held)
+    associate (passage => equations%meshes%passage(self%mesh)*beyond_passage)
+      if (locked_alike(equations, self%mesh, self%mesh + 1)) then
+        step = min(step, max(log(passage) - s, shortest_passage))
+        return
+      end if
+      do while (step > shortest_passage)
+        if (radius_for(equations, self%mesh, self%mesh + 1, &
+          self%guess(s + inward(self%mesh)*step)) <= passage) exit
+        step = 0.6_wp*step
+      end do
+    end associate
+  end function next_step
+
+  !> The longest step where the axis passes a step of the pressure: all changes over the width of
+  !> that, and h0 may turn several times.
+  pure real(wp) function step_past_step(self, problem) result(longest)
+    class(continuation_t), intent(in) :: self
+    type(problem_t), intent(in) :: problem
     !> Parts of the step's width that are passed at once, and reach of the step in its widths.
     real(wp), parameter :: at_once = 0.25_wp, reach = 4
 
-    longest = self%largest_step
+    longest = huge(longest)
     if (self%mesh /= approach .or. .not. problem%law%step_width > 0) return
     associate (law => problem%law, gap => self%state(self%held)%axis_gap)
-      longest = min(longest, max(at_once*law%step_width, &
-        0.5_wp*(abs(gap - law%step_at) - reach*law%step_width))/(gap - 0.9_wp*law%rest_gap))
+      longest = max(at_once*law%step_width, &
+        0.5_wp*(abs(gap - law%step_at) - reach*law%step_width))/(gap - 0.9_wp*law%rest_gap)
     end associate
-  end function longest_step
+  end function step_past_step
 
-  !> The control that prescribes the path's coordinate s on a mesh: the logarithm of the gap on the
-  !> axis above nine tenths of the gap at rest, or of the contact radius.
-  pure function path_control(problem, mesh, s) result(control)
-    type(problem_t), intent(in) :: problem
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: s
-    type(control_t) :: control
+  !> Passes to the next mesh once the contact radius has crossed the passage to it (to be called
+  !> after each `advance`), taking the last two states along: what is between them is known on the
+  !> next mesh too. That mesh must not be too coarse for the first of the two, and both meshes must
+  !> agree there on which way h0 and load go, or an extremum would be seen twice or not at all.
+  subroutine change_mesh(self, equations, options, lost)
+    class(continuation_t), intent(inout) :: self
+    type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
+    logical, intent(out) :: lost
+    type(arc_t) :: next
+    type(state_t) :: state
+    integer :: j
+    logical :: done
 
-    control%mesh = mesh
-    if (mesh == approach) then
-      control%kind = at_axis_gap
-      control%value = exp(s) + 0.9_wp*problem%law%rest_gap
-    else
-      control%kind = at_edge_radius
-      control%value = exp(s)
-    end if
-  end function path_control
-
-  !> Inverse of `path_control` for a state.
-  pure real(wp) function coordinate_of(problem, mesh, state) result(s)
-    type(problem_t), intent(in) :: problem
-    integer, intent(in) :: mesh
-    type(state_t), intent(in) :: state
-
-    if (mesh == approach) then
-      ! Nearer than nine tenths no state is on this mesh, but one may be asked about.
-      s = log(max(state%axis_gap - 0.9_wp*problem%law%rest_gap, tiny(1.0_wp)))
-    else
-      s = log(state%scale)
-    end if
-  end function coordinate_of
+    lost = .false.
+    if (self%held < 2) return
+    associate (meshes => equations%meshes)
+      if (.not. equations%problem%law%edge_gap > 0 .or. self%mesh == size(meshes%grid)) return
+      if (radius_for(equations, self%mesh, self%mesh + 1, self%state(self%held)) < &
+        meshes%passage(self%mesh)) return
+      if (radius_for(equations, self%mesh, self%mesh + 1, self%state(self%held - 1)) < &
+        nearly_passed*meshes%passage(self%mesh)) return
+    end associate
+    next%mesh = self%mesh + 1
+    self%frozen%factors%valid = .false.
+    do j = self%held - 1, self%held
+      state = self%state(j)
+      call move_to_mesh(equations, options, self%frozen, self%mesh, next%mesh, state, done)
+      lost = .not. done
+      if (done) call add_with_tangent(equations, self%frozen, state, next, lost)
+      if (lost) return
+    end do
+    associate (here => self%tangent(self%held - 1), there => next%tangent(1), &
+      turned => inward(self%mesh)*inward(next%mesh))
+      if (.not. (turned*here%h0*there%h0 > 0 .and. turned*here%load*there%load > 0)) return
+    end associate
+    self%arc_t = next
+    self%step = 0.5_wp*self%step
+  end subroutine change_mesh
 
   !> Solves a state of one mesh again on the other, at the same contact radius or axis gap.
   !> done = .false. where it has no contact edge to lock to, or did not converge.
@@ -162,100 +224,6 @@ contains
     end associate
   end subroutine move_to_mesh
 
-  !> State at the coordinate s: interpolated or extrapolated from those of an arc and corrected.
-  subroutine state_at(equations, options, frozen, arc, s, state, converged)
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
-    type(frozen_jacobian_t), intent(inout) :: frozen
-    type(arc_t), intent(in) :: arc
-    real(wp), intent(in) :: s
-    type(state_t), intent(out) :: state
-    logical, intent(out) :: converged
-
-    state = between(arc%coordinate(:arc%held), arc%state(:arc%held), s)
-    call solve_anderson(equations, options, frozen, path_control(equations%problem, arc%mesh, s), &
-      state, converged)
-  end subroutine state_at
-
-  !> The polynomial through states of one mesh at the given coordinates, evaluated at s.
-  pure function between(coordinate, states, s) result(guess)
-    real(wp), intent(in) :: coordinate(:), s
-    type(state_t), intent(in) :: states(:)
-    type(state_t) :: guess
-    real(wp) :: weight(size(states)), h0, scale
-    real(wp) :: gap(size(states(1)%gap))
-    integer :: j
-
-    gap = 0
-    h0 = 0
-    scale = 0
-    weight = polynomial_weights(coordinate, s)
-    do j = 1, size(states)
-      gap = gap + weight(j)*states(j)%gap
-      h0 = h0 + weight(j)*states(j)%h0
-      scale = scale + weight(j)*states(j)%scale
-    end do
-    ! An extrapolation that leaves the law's domain is worth less than the nearest state.
-    guess = states(minloc(abs(coordinate - s), 1))
-    guess%pressure = 0*gap
-    if (minval(gap) < 0.5_wp*minval(guess%gap) .and. minval(guess%gap) > 0) return
-    guess%gap = gap
-    guess%h0 = h0
-    if (scale > 0.5_wp*guess%scale) guess%scale = scale
-  end function between
-
-  !> Makes a state the newest.
-  subroutine remember(self, problem, state)
-    class(continuation_t), intent(inout) :: self
-    type(problem_t), intent(in) :: problem
-    type(state_t), intent(in) :: state
-
-    if (self%held == memory) then
-      self%state(:memory - 1) = self%state(2:memory)
-      self%coordinate(:memory - 1) = self%coordinate(2:memory)
-    else
-      self%held = self%held + 1
-    end if
-    self%state(self%held) = state
-    self%coordinate(self%held) = coordinate_of(problem, self%mesh, state)
-  end subroutine remember
-
-  !> Passes to the next mesh once the contact radius has crossed the passage to it (to be called
-  !> after each `advance`), taking the last two states along, so that three neighbours on one mesh
-  !> surround every fold. That mesh must not be too coarse for the first of the two.
-  subroutine change_mesh(self, equations, options, lost)
-    class(continuation_t), intent(inout) :: self
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
-    logical, intent(out) :: lost
-    type(state_t) :: taken(2)
-    integer :: j
-    logical :: done(2)
-
-    lost = .false.
-    associate (meshes => equations%meshes, next => self%mesh + 1)
-      if (.not. equations%problem%law%edge_gap > 0 .or. self%mesh == size(meshes%grid)) return
-      if (radius_for(equations, self%mesh, next, self%state(self%held)) < &
-        meshes%passage(self%mesh)) return
-      if (radius_for(equations, self%mesh, next, self%state(max(1, self%held - 1))) < &
-        nearly_passed*meshes%passage(self%mesh)) return
-    end associate
-    self%frozen%factors%valid = .false.
-    done(1) = .false.
-    do j = max(1, self%held - 1), self%held
-      taken(2 - self%held + j) = self%state(j)
-      call move_to_mesh(equations, options, self%frozen, self%mesh, self%mesh + 1, &
-        taken(2 - self%held + j), done(2 - self%held + j))
-    end do
-    lost = .not. done(2)
-    self%mesh = self%mesh + 1
-    self%held = 0
-    do j = 1, 2
-      if (done(j)) call self%remember(equations%problem, taken(j))
-    end do
-    self%step = 0.5_wp*self%step
-  end subroutine change_mesh
-
   !> Radius, lateral units, of what one mesh is locked to for a state on another; 0 where the state
   !> has none.
   pure real(wp) function radius_for(equations, from, to, state) result(c)
@@ -263,13 +231,21 @@ contains
     integer, intent(in) :: from, to
     type(state_t), intent(in) :: state
 
+    c = state%scale
+    if (locked_alike(equations, from, to)) return
     associate (problem => equations%problem, meshes => equations%meshes)
-      c = state%scale
-      associate (gap => meshes%locked_gap(problem%law, to))
-        if (from > approach .and. .not. abs(gap - meshes%locked_gap(problem%law, from)) > 0) return
-        c = radius_of_gap(problem%shape, gap, meshes%grid(from), state)
-      end associate
+      c = radius_of_gap(problem%shape, meshes%locked_gap(problem%law, to), meshes%grid(from), state)
     end associate
   end function radius_for
+
+  !> Whether two meshes are locked to the same: both to the contact edge, or to the front of a step.
+  pure logical function locked_alike(equations, from, to)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: from, to
+
+    locked_alike = min(from, to) > approach
+    if (locked_alike) locked_alike = equations%meshes%in_contact(from) .eqv. &
+      equations%meshes%in_contact(to)
+  end function locked_alike
 
 end module continuation

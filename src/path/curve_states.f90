@@ -5,15 +5,15 @@ module curve_states
   use kinds, only: wp
   use root_finding, only: bracket_t
   use equilibrium, only: state_t, equations_t, radius_of_gap
-  use solver_options, only: solver_options_t, tightened
+  use solver_options, only: solver_options_t
   use frozen_jacobian, only: frozen_jacobian_t
-  use edge_locked, only: approach
-  use continuation, only: state_at
+  use path_coordinate, only: inward
+  use path_tangent, only: tangent_t
   use solve_at_h0, only: neighbours_t, neighbours_of
   use known_path, only: known_path_t
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
-  use path_curve, only: curve_t, along_curve, no_mesh
+  use path_curve, only: curve_t, no_mesh
   implicit none
   private
   public :: curve_state_t, curve_solver_t, place_t, coordinate_at
@@ -62,29 +62,28 @@ contains
     type(curve_t), intent(in) :: curve
     class(place_t), intent(in) :: place
 
-    s = place%x
     associate (node => curve%begin_of(place%interval))
-      if (node%mesh == approach) s = -s
+      s = inward(node%mesh)*place%x
     end associate
   end function coordinate_at
 
-  !> The equilibrium at a place that is on a mesh.
-  subroutine equilibrium_at(self, equations, known, place, state, converged)
+  !> The equilibrium at a place that is on a mesh, with its tangent by the path's coordinate.
+  subroutine equilibrium_at(self, equations, known, place, state, tangent, converged)
     class(curve_solver_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
     type(known_path_t), intent(in) :: known
     class(place_t), intent(in) :: place
     type(state_t), intent(out) :: state
+    type(tangent_t), intent(out) :: tangent
     logical, intent(out) :: converged
     type(neighbours_t) :: near
 
     associate (node => self%curve%begin_of(place%interval))
       near = neighbours_of(known%path, node%point)
     end associate
-    call state_at(equations, tightened(self%options), self%frozen, near%arc_t, &
-      coordinate_at(self%curve, place), state, converged)
+    call near%exact_state_at(equations, self%options, self%frozen, &
+      coordinate_at(self%curve, place), state, tangent, converged)
     self%solved = self%solved + 1
-    converged = converged .or. state%residual <= self%options%tolerance
   end subroutine equilibrium_at
 
   !> What is reported of the equilibrium at a place.
@@ -95,6 +94,7 @@ contains
     type(place_t), intent(in) :: place
     type(curve_state_t), intent(out) :: found
     type(state_t) :: state
+    type(tangent_t) :: tangent
 
     found%interval = place%interval
     found%x = place%x
@@ -109,7 +109,7 @@ contains
         found%converged = .true.
         return
       end if
-      call self%equilibrium_at(equations, known, place, state, found%converged)
+      call self%equilibrium_at(equations, known, place, state, tangent, found%converged)
       found%h0 = state%h0
       found%load = state%load
       found%axis_gap = state%axis_gap
@@ -118,8 +118,7 @@ contains
       found%radius = radius_of_gap(problem%shape, self%curve%contact_gap, &
         equations%meshes%grid(node%mesh), state)
       call energy_of(equations, node%mesh, state, found%energy, found%uncertainty)
-      call along_curve(equations, node%mesh, coordinate_at(self%curve, place), state, self%frozen, &
-        found%slopes, found%converged)
+      found%slopes = inward(node%mesh)*[tangent%h0, tangent%load]
     end associate
   end subroutine state_of
 

@@ -8,7 +8,8 @@ module known_path
   use solver_options, only: solver_options_t
   use edge_locked, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
-  use continuation, only: continuation_t, new_continuation
+  use path_coordinate, only: inward
+  use continuation, only: continuation_t
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
   use traced_path, only: traced_path_t, extend, collapsed
   use reported, only: error_t, measure_t
@@ -48,9 +49,7 @@ module known_path
     logical :: fallen = .false.
   end type known_path_t
 
-  !> Relative change of the path's coordinate in a step; small enough for a smooth curve. Most
-  !> points of a path before it is given up as going nowhere.
-  real(wp), parameter :: path_step = 0.12_wp
+  !> Most points of a path before it is given up as going nowhere.
   integer, parameter :: longest = 5000
   !> Residual, in the law's lengths, that the points of the path have at most, whatever the deck
   !> allows the experiment's states.
@@ -59,13 +58,14 @@ module known_path
 contains
 
   !> Traces the path from a state far from contact, on the mesh for the approach, until it is stable
-  !> at h0_low; into_contact: until it is also on the mesh for contact.
-  subroutine trace(equations, options, start, h0_low, into_contact, listener, known)
+  !> at h0_low; into_contact: until it is also on the mesh for contact; closely: with points enough
+  !> for a smooth curve (`path_curve`).
+  subroutine trace(equations, options, start, h0_low, into_contact, closely, listener, known)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     type(state_t), intent(in) :: start
     real(wp), intent(in) :: h0_low
-    logical, intent(in) :: into_contact
+    logical, intent(in) :: into_contact, closely
     class(listener_t), intent(inout) :: listener
     type(known_path_t), intent(inout) :: known
     type(continuation_t) :: walker
@@ -79,8 +79,10 @@ contains
       largest_radius(equations%problem, h0_low, equations%meshes%level))
     for_path = options
     for_path%tolerance = min(options%tolerance, path_tolerance)
-    walker = new_continuation(equations%problem, start, approach, path_step)
     finished = .false.
+    if (closely) call walker%follow_closely()
+    call walker%begin_with(equations, start, approach, lost)
+    if (lost) known%ending%cause = path_lost
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, equations, for_path, lost)
       write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
@@ -93,12 +95,10 @@ contains
       else if (blind .and. any(known%path%point(:known%path%held)%fold)) then
         known%ending%cause = beyond_rounding
       end if
-      ! What lies before the last point but one is final.
-      associate (n => known%path%held)
-        associate (last => known%path%point(n), before => known%path%point(n - 1))
-          finished = last%modes == 0 .and. max(last%state%h0, before%state%h0) <= h0_low .and. &
-            (equations%meshes%in_contact(last%mesh) .or. .not. into_contact)
-        end associate
+      associate (last => known%path%point(known%path%held))
+        finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
+          last%tangent%h0*inward(last%mesh) < 0 .and. &
+          (equations%meshes%in_contact(last%mesh) .or. .not. into_contact)
       end associate
     end do
     known%piece = pieces_of(known%path)

@@ -4,17 +4,15 @@
 !> path something happens, and the state there is then solved (`curve_states`).
 module path_curve
   use kinds, only: wp
-  use interpolation, only: hermite_value, hermite_slope
+  use interpolation, only: hermite_t, hermite_through
   use equilibrium, only: state_t, equations_t, radius_of_gap
-  use frozen_jacobian, only: frozen_jacobian_t
-  use edge_locked, only: approach
-  use continuation, only: path_control
-  use path_slopes, only: slopes_along_path
+  use path_coordinate, only: inward
+  use arc, only: arc_t
   use known_path, only: known_path_t
   use undeformed, only: load_undeformed, load_slope_undeformed
   implicit none
   private
-  public :: curve_t, curve_node_t, curve_interval_t, new_curve, along_curve, no_mesh
+  public :: curve_t, curve_node_t, curve_interval_t, new_curve, no_mesh
 
   !> A node that no mesh knows: the bodies are undeformed.
   integer, parameter :: no_mesh = 0
@@ -23,7 +21,7 @@ module path_curve
   !> A neighbour nearer to an interval than this part of its width makes the polynomial worse.
   real(wp), parameter :: well_apart = 0.1_wp
 
-  !> An equilibrium of the path. x is the path's coordinate (`continuation`) with the sign that
+  !> An equilibrium of the path. x is the path's coordinate (`path_coordinate`) with the sign that
   !> makes it grow from afar inward, for undeformed bodies -log(h0); slopes are by x.
   type :: curve_node_t
     integer :: mesh = no_mesh
@@ -50,20 +48,19 @@ module path_curve
     procedure :: slope
     procedure :: begin_of
     procedure :: end_of
-    procedure, private :: support
+    procedure, private :: polynomial, support
   end type curve_t
 
 contains
 
   !> The curve of a path, with undeformed bodies from h0 = `farthest` inward if that is beyond its
-  !> first point. found = .false.: the slopes at some point do not exist.
+  !> first point. found = .false.: of a path of one point there is none.
   subroutine new_curve(equations, known, farthest, contact_gap, curve, found)
-    type(equations_t), intent(inout) :: equations
+    type(equations_t), intent(in) :: equations
     type(known_path_t), intent(in) :: known
     real(wp), intent(in) :: farthest, contact_gap
     type(curve_t), intent(out) :: curve
     logical, intent(out) :: found
-    type(frozen_jacobian_t) :: frozen
     type(curve_node_t) :: node
     integer :: mesh, i, last
 
@@ -77,8 +74,7 @@ contains
     if (size(known%piece) > 0) last = maxval(known%piece%last)
     do mesh = 1, size(equations%meshes%grid)
       do i = 1, last
-        call node_of_point(equations, known, i, mesh, contact_gap, frozen, node, found)
-        if (.not. found) return
+        node = node_of_point(equations, known, i, mesh, contact_gap)
         if (node%point > 0) curve%node = [curve%node, node]
       end do
     end do
@@ -113,60 +109,34 @@ contains
   end subroutine add_undeformed
 
   !> The node of point i of the path on a mesh; its `point` is 0 where the path has none there.
-  subroutine node_of_point(equations, known, i, mesh, contact_gap, frozen, node, found)
-    type(equations_t), intent(inout) :: equations
+  pure function node_of_point(equations, known, i, mesh, contact_gap) result(node)
+    type(equations_t), intent(in) :: equations
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: i, mesh
     real(wp), intent(in) :: contact_gap
-    type(frozen_jacobian_t), intent(inout) :: frozen
-    type(curve_node_t), intent(out) :: node
-    logical, intent(out) :: found
-    type(state_t) :: state
-    real(wp) :: s, slopes(2)
-    logical :: there
+    type(curve_node_t) :: node
+    type(arc_t) :: only
 
-    found = .true.
-    call known%path%seen_on(i, mesh, state, s, there)
-    if (.not. there) return
-    call along_curve(equations, mesh, s, state, frozen, slopes, found)
-    node = curve_node_t(mesh, inward(mesh)*s, state%h0, state%load, slopes(1), slopes(2), &
-      radius_of_gap(equations%problem%shape, contact_gap, equations%meshes%grid(mesh), state), &
-      state%axis_gap, i)
-  end subroutine node_of_point
-
-  !> Derivatives of h0 and load by x at an equilibrium with the coordinate s on a mesh.
-  subroutine along_curve(equations, mesh, s, state, frozen, slopes, found)
-    type(equations_t), intent(inout) :: equations
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: s
-    type(state_t), intent(in) :: state
-    type(frozen_jacobian_t), intent(inout) :: frozen
-    real(wp), intent(out) :: slopes(2)
-    logical, intent(out) :: found
-
-    call slopes_along_path(equations, path_control(equations%problem, mesh, s), state, frozen, &
-      slopes(1), slopes(2), found)
-    ! The control's value is exp(s) and a constant.
-    slopes = inward(mesh)*exp(s)*slopes
-  end subroutine along_curve
-
-  !> The sign that makes the coordinate of a mesh grow inward.
-  elemental integer function inward(mesh)
-    integer, intent(in) :: mesh
-
-    inward = merge(-1, 1, mesh == approach)
-  end function inward
+    only%mesh = mesh
+    call known%path%add_to(i, only)
+    if (only%held == 0) return
+    associate (state => only%state(1), tangent => only%tangent(1))
+      node = curve_node_t(mesh, inward(mesh)*only%coordinate(1), state%h0, state%load, &
+        inward(mesh)*tangent%h0, inward(mesh)*tangent%load, &
+        radius_of_gap(equations%problem%shape, contact_gap, equations%meshes%grid(mesh), state), &
+        state%axis_gap, i)
+    end associate
+  end function node_of_point
 
   !> weights(1) h0 + weights(2) load at x in interval i.
   pure real(wp) function value(self, i, weights, x)
     class(curve_t), intent(in) :: self
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2), x
+    type(hermite_t) :: polynomial
 
-    associate (node => self%node(self%support(i)))
-      value = hermite_value(node%x, weights(1)*node%h0 + weights(2)*node%load, &
-        weights(1)*node%h0_slope + weights(2)*node%load_slope, x)
-    end associate
+    polynomial = self%polynomial(i, weights)
+    value = polynomial%value(x)
   end function value
 
   !> Its derivative by x.
@@ -174,12 +144,23 @@ contains
     class(curve_t), intent(in) :: self
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2), x
+    type(hermite_t) :: polynomial
+
+    polynomial = self%polynomial(i, weights)
+    slope = polynomial%slope(x)
+  end function slope
+
+  !> weights(1) h0 + weights(2) load in interval i.
+  pure type(hermite_t) function polynomial(self, i, weights)
+    class(curve_t), intent(in) :: self
+    integer, intent(in) :: i
+    real(wp), intent(in) :: weights(2)
 
     associate (node => self%node(self%support(i)))
-      slope = hermite_slope(node%x, weights(1)*node%h0 + weights(2)*node%load, &
-        weights(1)*node%h0_slope + weights(2)*node%load_slope, x)
+      polynomial = hermite_through(node%x, weights(1)*node%h0 + weights(2)*node%load, &
+        weights(1)*node%h0_slope + weights(2)*node%load_slope)
     end associate
-  end function slope
+  end function polynomial
 
   !> The nodes that the polynomial of interval i fits: its ends and, on the same mesh, the nearest
   !> on either side that is well apart.

@@ -1,93 +1,236 @@
-!> Extrema of h0 or of the load along the equilibrium path, to the solver's tolerance.
+!> Extrema of h0 or of the load between neighbouring states of the equilibrium path. The slopes of
+!> the states, which are exact, and the curve through them show them: one where the slopes have
+!> opposite signs, and where they have the same, perhaps two. Near the adhesion strength at which
+!> jumps begin two folds are so close that steps pass over both; wherever the curve leaves a doubt,
+!> a state is solved and joins it.
 module path_extremum
   use kinds, only: wp
   use equilibrium, only: state_t, equations_t
   use solver_options, only: solver_options_t
   use frozen_jacobian, only: frozen_jacobian_t
-  use path_slopes, only: slopes_along_path
-  use interpolation, only: interpolated_maximum
+  use interpolation, only: hermite_t
   use root_finding, only: bracket_t, secant_root
-  use continuation, only: arc_t, state_at, path_control
+  use path_coordinate, only: inward
+  use path_tangent, only: tangent_t
+  use arc, only: arc_t, most_states, of_h0
   implicit none
   private
-  public :: extremum_t, polish_extremum, of_h0, of_load
+  public :: extremum_t, find_extrema
 
-  !> The quantities that have extrema.
-  integer, parameter :: of_h0 = 1, of_load = 2
-  !> Secants for an extremum, and the change of the path's coordinate below which it is found; below
-  !> which rounding may keep the derivative from falling.
+  !> Places of an interval at which the curve's slope is looked at; part of the mean slope to which
+  !> it has to fall somewhere for two extrema to be looked for; of the slope's own error, how much
+  !> leaves a doubt.
+  integer, parameter :: places = 16
+  real(wp), parameter :: suspicious = 0.15_wp, doubtful = 2
+  !> Steps of the search for the least slope; part of an interval that is its end.
+  integer, parameter :: golden_steps = 30
+  real(wp), parameter :: at_end = 1.0e-5_wp
+  !> Corrections of an extremum's place, and the one below which it is found; below which rounding
+  !> may keep the slope from falling.
   integer, parameter :: most_rounds = 60
   real(wp), parameter :: root_tolerance = 1.0e-10_wp, rounding_rules = 1.0e-6_wp
+  !> The part of an interval over which a tangent tells a state better than the curve does.
+  real(wp), parameter :: near_enough = 1.0e-3_wp
 
-  !> An extremum on one of the meshes: its place on the path and its state; 1 for a maximum, -1 for
-  !> a minimum; the derivative of the load by the path's coordinate there, up to a positive factor.
+  !> An extremum on one of the meshes: its place on the path, its state and tangent; 1 for a maximum
+  !> along the way inward, -1 for a minimum.
   type :: extremum_t
     real(wp) :: coordinate = 0
     type(state_t) :: state
+    type(tangent_t) :: tangent
     integer :: sense = 1
-    real(wp) :: load_slope = 0
   end type extremum_t
 
 contains
 
-  !> The extremum of h0 or load that the last three states of an arc surround: a root of its exact
-  !> derivative along the path, begun at the extremum of the polynomial through the states and found
-  !> by secants, and by bisection where these do not come nearer, as under a force that changes by
-  !> orders of magnitude. lost: a solve failed.
-  subroutine polish_extremum(equations, options, arc, quantity, found, lost)
+  !> The extrema of h0 or load between the last two states of an arc, in order. lost: a solve
+  !> failed.
+  subroutine find_extrema(equations, options, arc, quantity, extrema, lost)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     type(arc_t), intent(in) :: arc
     integer, intent(in) :: quantity
+    type(extremum_t), allocatable, intent(out) :: extrema(:)
+    logical, intent(out) :: lost
+    type(arc_t) :: near
+    type(extremum_t) :: found
+    type(frozen_jacobian_t) :: frozen
+    type(state_t) :: state
+    type(tangent_t) :: tangent
+    real(wp) :: s, expected, error
+    integer :: i
+    logical :: turns, doubt, solved
+
+    allocate (extrema(0))
+    lost = .false.
+    near = arc
+    i = near%held - 1
+    error = huge(1.0_wp)
+    do while (i >= 1 .and. i < near%held)
+      call look(near, quantity, i, error, turns, doubt, s)
+      if (doubt .and. near%held < most_states) then
+        expected = near%slope(quantity, s)
+        call near%exact_state_at(equations, options, frozen, s, state, tangent, solved)
+        lost = .not. solved
+        if (lost) return
+        error = abs(slope_of(quantity, tangent) - expected)
+        call near%add(s, state, tangent)
+        cycle
+      end if
+      if (turns) then
+        call polish(equations, options, near, i, quantity, found, lost)
+        if (lost) return
+        extrema = [extrema, found]
+      end if
+      i = i + 1
+    end do
+  end subroutine find_extrema
+
+  !> What is between state i of an arc and the next: `turns`, an extremum; `doubt`, perhaps two
+  !> more, which a state at s would show. error: of the curve's slope; huge where it is not known.
+  pure subroutine look(near, quantity, i, error, turns, doubt, s)
+    type(arc_t), intent(in) :: near
+    integer, intent(in) :: quantity, i
+    real(wp), intent(in) :: error
+    logical, intent(out) :: turns, doubt
+    real(wp), intent(out) :: s
+    type(hermite_t) :: curve
+    real(wp) :: course, mean, least, slope, step
+    integer :: k
+
+    associate (x => near%coordinate(i:i + 1), ends => slope_of(quantity, near%tangent(i:i + 1)))
+      turns = ends(1)*ends(2) < 0
+      doubt = .false.
+      ! In the sense of its course the slope is above zero but between two extrema; where the ends
+      ! differ, up to the first and, turned round, beyond it.
+      course = sign(1.0_wp, ends(1))
+      step = (x(2) - x(1))/places
+      curve = near%curve(quantity, x(1) + 0.5_wp*(x(2) - x(1)))
+      mean = abs(curve%value(x(2)) - curve%value(x(1)))/abs(x(2) - x(1))
+      least = merge(0.0_wp, minval(abs(ends)), turns)
+      s = x(1)
+      do k = 1, places - 1
+        slope = course*curve%slope(x(1) + k*step)
+        if (turns .and. slope < 0 .and. course*ends(1) > 0) then
+          course = -course
+          slope = -slope
+        end if
+        if (.not. slope < least) cycle
+        least = slope
+        s = x(1) + k*step
+      end do
+      if (turns) then
+        doubt = least < 0
+        return
+      end if
+      if (.not. least < suspicious*mean) return
+      call descend(curve, course, [max(s - abs(step), minval(x)), &
+        min(s + abs(step), maxval(x))], s, least)
+      doubt = minval(abs(s - x)) > at_end*abs(x(2) - x(1)) .and. &
+        (least < doubtful*error .or. .not. error < huge(1.0_wp))
+    end associate
+  end subroutine look
+
+  !> The least slope of the curve in the sense of its course, and its place, between two places.
+  pure subroutine descend(curve, course, ends, s, least)
+    type(hermite_t), intent(in) :: curve
+    real(wp), intent(in) :: course, ends(2)
+    real(wp), intent(out) :: s, least
+    type(bracket_t) :: bracket
+    integer :: step
+
+    bracket = bracket_t(ends(1), ends(2))
+    do step = 1, golden_steps
+      associate (points => bracket%golden_points())
+        call bracket%keep_larger(-course*[curve%slope(points(1)), curve%slope(points(2))])
+      end associate
+    end do
+    s = bracket%middle()
+    least = course*curve%slope(s)
+  end subroutine descend
+
+  !> The extremum between state i of an arc and the next: a root of the exact slope, begun at that
+  !> of the curve and found by secants, and by bisection where these do not come nearer, as under a
+  !> force that changes by orders of magnitude.
+  subroutine polish(equations, options, near, i, quantity, found, lost)
+    type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
+    type(arc_t), intent(in) :: near
+    integer, intent(in) :: i, quantity
     type(extremum_t), intent(out) :: found
     logical, intent(out) :: lost
-    type(state_t) :: trial
-    type(frozen_jacobian_t) :: frozen
     type(bracket_t) :: bracket
-    real(wp) :: slopes(2), slope, slope_size, slope_before, s, s_before, s_next
+    type(hermite_t) :: curve
+    type(arc_t) :: beside
+    ! Factors made where the curve has the extremum serve all of its corrections.
+    type(frozen_jacobian_t) :: frozen
+    type(extremum_t) :: tried
+    real(wp) :: slope, least, slope_before, s_before, s, width
     integer :: round
-    logical :: solved, fell
+    logical :: solved, rising
 
-    associate (n => arc%held)
-      associate (value => merge(arc%state(:n)%h0, arc%state(:n)%load, quantity == of_h0))
-        found%sense = merge(1, -1, value(n - 1) > value(n))
-        bracket = bracket_t(minval(arc%coordinate(n - 2:n)), maxval(arc%coordinate(n - 2:n)))
-        s = interpolated_maximum(arc%coordinate(:n), found%sense*value, bracket%low, bracket%high)
-      end associate
+    associate (x => near%coordinate(i:i + 1))
+      rising = slope_of(quantity, near%tangent(merge(i, i + 1, x(1) < x(2)))) > 0
+      bracket = bracket_t(minval(x), maxval(x))
+      width = abs(x(2) - x(1))
+      curve = near%curve(quantity, x(1) + 0.5_wp*(x(2) - x(1)))
     end associate
-    slope_size = huge(1.0_wp)
+    s = root_of_curve()
+    beside = near
+    least = huge(1.0_wp)
     do round = 1, most_rounds
-      call state_at(equations, options, frozen, arc, s, trial, solved)
-      if (solved) call slopes_along_path(equations, path_control(equations%problem, arc%mesh, s), &
-        trial, frozen, slopes(1), slopes(2), solved)
+      call beside%exact_state_at(equations, options, frozen, s, tried%state, tried%tangent, &
+        solved)
       lost = .not. solved
       if (lost) return
-      slope = slopes(quantity)
-      fell = abs(slope) < slope_size
-      if (fell) then
-        slope_size = abs(slope)
-        found%state = trial
-        found%coordinate = s
-        found%load_slope = slopes(2)
+      tried%coordinate = s
+      slope = slope_of(quantity, tried%tangent)
+      call bracket%narrow((slope > 0) .eqv. rising, s)
+      if (.not. abs(slope) < least) then
+        if (abs(s - found%coordinate) < rounding_rules) exit
+        s = bracket%middle()
+        beside = near
+        cycle
       end if
-      ! A maximum has its rising side before it.
-      call bracket%narrow((slope > 0) .eqv. (found%sense > 0), s)
-      if (.not. fell .and. round > 2) then
-        if (abs(s - s_before) < rounding_rules) exit
-        s_next = bracket%middle()
-      else if (round == 1) then
-        s_next = s + sign(1.0e-4_wp*(bracket%high - bracket%low) + 1.0e-7_wp, found%sense*slope)
-      else if (abs(slope - slope_before) > tiny(slope)) then
-        s_next = secant_root(s, slope, s_before, slope_before)
-      else
-        exit
+      least = abs(slope)
+      found = tried
+      if (round == 1) then
+        s_before = s + 1.0e-4_wp*width
+        slope_before = slope + curve%slope(s_before) - curve%slope(s)
       end if
-      s_next = bracket%within(s_next)
-      if (abs(s_next - s) < root_tolerance) exit
-      s_before = s
+      if (.not. abs(slope - slope_before) > tiny(slope)) exit
+      s = bracket%within(secant_root(s, slope, s_before, slope_before))
+      if (abs(s - found%coordinate) < root_tolerance) exit
+      s_before = found%coordinate
       slope_before = slope
-      s = s_next
+      ! So near, the tangent alone tells the next state.
+      if (abs(s - s_before) < near_enough*width) then
+        beside%held = 0
+        call beside%add(s_before, found%state, found%tangent)
+      end if
     end do
-  end subroutine polish_extremum
+    found%sense = merge(1, -1, slope_of(quantity, near%tangent(i))*inward(near%mesh) > 0)
+
+  contains
+
+    real(wp) function root_of_curve() result(root)
+      type(bracket_t) :: halves
+
+      halves = bracket
+      do while (halves%is_open() .and. abs(halves%high - halves%low) > root_tolerance)
+        call halves%narrow((curve%slope(halves%middle()) > 0) .eqv. rising)
+      end do
+      root = halves%middle()
+    end function root_of_curve
+
+  end subroutine polish
+
+  !> The derivative of h0 or load by the path's coordinate.
+  elemental real(wp) function slope_of(quantity, tangent)
+    integer, intent(in) :: quantity
+    type(tangent_t), intent(in) :: tangent
+
+    slope_of = merge(tangent%h0, tangent%load, quantity == of_h0)
+  end function slope_of
 
 end module path_extremum

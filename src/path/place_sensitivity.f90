@@ -13,7 +13,7 @@ module place_sensitivity
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
   use edge_locked, only: approach
-  use continuation, only: path_control
+  use path_coordinate, only: path_control
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   use variation, only: variation_t

@@ -2,18 +2,19 @@
 !> that h0 is met by moving along it, however near a fold is.
 module solve_at_h0
   use kinds, only: wp
-  use interpolation, only: polynomial_value
   use root_finding, only: bracket_t
   use equilibrium, only: control_t, state_t, equations_t, holds, residual_floor, at_h0_with_edge
-  use solver_options, only: solver_options_t, tightened
+  use solver_options, only: solver_options_t
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
   use edge_locked, only: contact
-  use continuation, only: arc_t, state_at, between, coordinate_of, most_states
-  use traced_path, only: traced_path_t
+  use path_tangent, only: tangent_t
+  use path_coordinate, only: coordinate_of
+  use arc, only: arc_t, of_h0, most_states
+  use traced_path, only: traced_path_t, either_side
   implicit none
   private
-  public :: neighbours_t, neighbours_of, coordinate_at_h0, guess_at_h0, solve_between
+  public :: neighbours_t, neighbours_of, coordinate_at_h0, solve_between
 
   !> How near to the wanted h0 a state has to be, relative or in the law's lengths: rounding leaves
   !> no more. What is that near to an end of the piece is the end.
@@ -22,8 +23,8 @@ module solve_at_h0
   !> Change of the coordinate over which a state is the same one but for rounding.
   real(wp), parameter :: same_place = 1.0e-8_wp
 
-  !> The arc about a piece of the path: from the point numbered `lower` to the next, and one or two
-  !> on either side.
+  !> The arc about a piece of the path: from the state numbered `lower` to the next, with some on
+  !> either side.
   type, extends(arc_t) :: neighbours_t
     integer :: lower = 0
   end type neighbours_t
@@ -35,52 +36,43 @@ contains
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     type(neighbours_t) :: near
-    type(state_t) :: state
-    real(wp) :: s
     integer :: j
-    logical :: there
 
     near%mesh = path%mesh_between(i)
-    do j = max(1, i - 1), min(path%held, i + 2)
-      call path%seen_on(j, near%mesh, state, s, there)
-      if (.not. there) cycle
-      near%held = near%held + 1
-      near%coordinate(near%held) = s
-      near%state(near%held) = state
+    do j = max(1, i - either_side), min(path%held, i + 1 + either_side)
+      call path%add_to(j, near)
       if (j == i) near%lower = near%held
     end do
   end function neighbours_of
 
-  !> Where between the ends of the piece the polynomial through the neighbours is at h0.
+  !> Where between the ends of the piece the curve through the neighbours is at h0: by Newton's
+  !> method, kept between the ends by halving.
   pure real(wp) function coordinate_at_h0(near, h0) result(s)
     type(neighbours_t), intent(in) :: near
     real(wp), intent(in) :: h0
     type(bracket_t) :: bracket
+    real(wp) :: missing, before
+    logical :: rising
 
-    associate (n => near%held, k => near%lower)
-      bracket = bracket_t(near%coordinate(k), near%coordinate(k + 1))
-      do while (bracket%is_open())
-        s = bracket%middle()
-        call bracket%narrow((polynomial_value(near%coordinate(:n), near%state(:n)%h0, s) - h0)* &
-          (near%state(k)%h0 - h0) > 0)
-      end do
+    associate (x => near%coordinate(near%lower:near%lower + 1), &
+      ends => near%state(near%lower:near%lower + 1)%h0)
+      bracket = bracket_t(minval(x), maxval(x))
+      rising = (ends(2) - ends(1))*(x(2) - x(1)) > 0
+      s = bracket%within(x(1) + (x(2) - x(1))*(h0 - ends(1))/(ends(2) - ends(1)))
     end associate
-    s = bracket%middle()
+    do while (bracket%is_open())
+      missing = h0 - near%value(of_h0, s)
+      call bracket%narrow((missing > 0) .eqv. rising, s)
+      before = s
+      s = bracket%within(s + missing/near%slope(of_h0, s))
+      if (abs(s - before) <= spacing(s)) exit
+    end do
   end function coordinate_at_h0
 
-  !> The state that the neighbours let expect at the coordinate s.
-  pure function guess_at_h0(near, s) result(guess)
-    type(neighbours_t), intent(in) :: near
-    real(wp), intent(in) :: s
-    type(state_t) :: guess
-
-    guess = between(near%coordinate(:near%held), near%state(:near%held), s)
-  end function guess_at_h0
-
-  !> The state at h0 on the piece, on which h0 goes one way: the polynomial through the neighbours
-  !> says where, the state there is solved and joins them, and so on; every other round halves the
-  !> piece where that gains little. s: its coordinate. Outside the piece, which is what rounding may
-  !> ask for, it is the nearer end.
+  !> The state at h0 on the piece, on which h0 goes one way: the curve through the neighbours says
+  !> where, the state there is solved and joins them, and so on; some rounds halve the piece where
+  !> that gains little. s: its coordinate. Outside the piece, which is what rounding may ask for, it
+  !> is the nearer end.
   subroutine solve_between(equations, options, near, h0, s, state, converged)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
@@ -91,6 +83,7 @@ contains
     logical, intent(out) :: converged
     type(frozen_jacobian_t) :: frozen
     type(state_t) :: trial
+    type(tangent_t) :: tangent
     real(wp) :: width
     integer :: round
     logical :: inside
@@ -104,10 +97,10 @@ contains
       if (abs(state%h0 - h0) <= near_enough*max(1.0_wp, abs(h0))) exit
       call choose_next(near, h0, round, width, s, inside)
       if (.not. inside) exit
-      call state_at(equations, tightened(options), frozen, near%arc_t, s, trial, converged)
-      if (.not. (converged .or. trial%residual <= options%tolerance)) exit
+      call near%exact_state_at(equations, options, frozen, s, trial, tangent, converged)
+      if (.not. converged) exit
       if (abs(trial%h0 - h0) < abs(state%h0 - h0)) state = trial
-      call join(near, s, trial, (trial%h0 - h0)*(near%state(near%lower)%h0 - h0) > 0)
+      call join(near, s, trial, tangent, (trial%h0 - h0)*(near%state(near%lower)%h0 - h0) > 0)
     end do
     s = coordinate_of(equations%problem, near%mesh, state)
     associate (accepted => max(options%tolerance, residual_floor(equations%problem, state)))
@@ -138,7 +131,7 @@ contains
       if (.not. inside) return
       s = coordinate_at_h0(near, h0)
       ! Interpolation approaches from one side; halving brings the other end nearer.
-      if (mod(round, 2) == 0 .and. abs(at(2) - at(1)) > 0.5_wp*width) s = 0.5_wp*(at(1) + at(2))
+      if (mod(round, 4) == 0 .and. abs(at(2) - at(1)) > 0.5_wp*width) s = 0.5_wp*(at(1) + at(2))
       width = abs(at(2) - at(1))
       inside = abs(s - at(1)) > 0 .and. abs(s - at(2)) > 0
     end associate
@@ -168,28 +161,22 @@ contains
 
   !> Adds a state inside the piece; with_lower: it takes the place of the piece's lower end, else of
   !> the upper. The farthest neighbour makes room.
-  subroutine join(near, s, state, with_lower)
+  subroutine join(near, s, state, tangent, with_lower)
     type(neighbours_t), intent(inout) :: near
     real(wp), intent(in) :: s
     type(state_t), intent(in) :: state
+    type(tangent_t), intent(in) :: tangent
     logical, intent(in) :: with_lower
-    integer :: j
 
     if (near%held == most_states) then
       if (near%lower > most_states/2) then
-        near%coordinate(:most_states - 1) = near%coordinate(2:)
-        near%state(:most_states - 1) = near%state(2:)
+        call near%drop_first()
         near%lower = near%lower - 1
+      else
+        near%held = near%held - 1
       end if
-      near%held = most_states - 1
     end if
-    do j = near%held, near%lower + 1, -1
-      near%coordinate(j + 1) = near%coordinate(j)
-      near%state(j + 1) = near%state(j)
-    end do
-    near%held = near%held + 1
-    near%coordinate(near%lower + 1) = s
-    near%state(near%lower + 1) = state
+    call near%add(s, state, tangent)
     if (with_lower) near%lower = near%lower + 1
   end subroutine join
 

@@ -12,7 +12,7 @@ module state_sensitivity
   use equilibrium, only: control_t, state_t, equations_t, residual, at_edge_radius, far_gap
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: solve
-  use continuation, only: path_control
+  use path_coordinate, only: path_control
   use variation, only: variation_t
   implicit none
   private

@@ -12,20 +12,24 @@ module traced_path
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use equilibrium, only: state_t, equations_t
-  use solver_options, only: solver_options_t, tightened
+  use solver_options, only: solver_options_t
   use edge_locked, only: approach
   use reported, only: error_t, measure_t
-  use path_extremum, only: extremum_t, polish_extremum, of_h0, of_load
+  use path_tangent, only: tangent_t
+  use path_coordinate, only: inward
+  use arc, only: arc_t, of_h0, of_load
+  use path_extremum, only: extremum_t, find_extrema
   use continuation, only: continuation_t
-  use hidden_folds, only: find_hidden_folds
   implicit none
   private
-  public :: traced_path_t, path_point_t, extend, collapsed
+  public :: traced_path_t, path_point_t, extend, collapsed, either_side
 
   !> One equilibrium of the path.
   type :: path_point_t
     type(state_t) :: state
-    !> The mesh that it was solved on and its coordinate there (`continuation`).
+    !> Its derivatives by the path's coordinate.
+    type(tangent_t) :: tangent
+    !> The mesh that it was solved on and its coordinate there (`path_coordinate`).
     integer :: mesh = approach
     real(wp) :: coordinate = 0
     !> Unstable modes from here to the next point.
@@ -35,6 +39,7 @@ module traced_path
     !> The last two equilibria before the mesh changes, on the next mesh too: every piece of
     !> the path has both its ends on one mesh.
     type(state_t), allocatable :: twin
+    type(tangent_t), allocatable :: twin_tangent
     !> What it is on a finer mesh, and its errors: once they were estimated.
     type(measure_t), allocatable :: fine
     type(error_t), allocatable :: error
@@ -45,9 +50,16 @@ module traced_path
     type(path_point_t), allocatable :: point(:)
   contains
     procedure :: modes_at
+    procedure :: add_to
     procedure :: seen_on
+    procedure :: arc_about
+    procedure, private :: is_behind
     procedure :: mesh_between
   end type traced_path_t
+
+  !> Points on either side of a piece of the path that tell about it: of folds and extrema one may
+  !> be too near to tell anything.
+  integer, parameter :: either_side = 2
 
   !> Without repulsion the bodies fall onto each other once they have jumped, and the path goes on
   !> to no gap at all. What is left of the gap at the first fold when it is followed no farther,
@@ -82,27 +94,69 @@ contains
     if (self%point(i)%fold .and. i > 1) modes_at = max(modes_at, self%point(i - 1)%modes)
   end function modes_at
 
-  !> The i-th point on a mesh: its state and coordinate there. there = .false.: it has none.
+  !> Adds the i-th point to an arc, if it is known on the arc's mesh.
+  pure subroutine add_to(self, i, arc)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: i
+    class(arc_t), intent(inout) :: arc
+
+    associate (point => self%point(i))
+      if (point%mesh == arc%mesh) then
+        call arc%add(point%coordinate, point%state, point%tangent)
+      else if (arc%mesh == point%mesh + 1 .and. allocated(point%twin)) then
+        call arc%add(log(point%twin%scale), point%twin, point%twin_tangent)
+      end if
+    end associate
+  end subroutine add_to
+
+  !> The i-th point as a mesh has it; there = .false. if that does not know it.
   pure subroutine seen_on(self, i, mesh, state, coordinate, there)
     class(traced_path_t), intent(in) :: self
     integer, intent(in) :: i, mesh
     type(state_t), intent(out) :: state
     real(wp), intent(out) :: coordinate
     logical, intent(out) :: there
+    type(arc_t) :: alone
 
-    coordinate = 0
+    alone%mesh = mesh
+    call self%add_to(i, alone)
+    there = alone%held > 0
+    state = alone%state(1)
+    coordinate = alone%coordinate(1)
+  end subroutine seen_on
+
+  !> The arc of the points about s on a mesh.
+  pure function arc_about(self, mesh, s) result(arc)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    type(arc_t) :: arc
+    integer :: i, j
+
+    do i = self%held, 1, -1
+      if (self%point(i)%mesh <= mesh .and. .not. self%is_behind(i, mesh, s)) exit
+    end do
+    arc%mesh = mesh
+    do j = max(1, i - either_side), min(self%held, i + 1 + either_side)
+      call self%add_to(j, arc)
+    end do
+  end function arc_about
+
+  !> Whether the i-th point is known on a mesh and lies farther along the path than s there.
+  pure logical function is_behind(self, i, mesh, s)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: i, mesh
+    real(wp), intent(in) :: s
+
+    is_behind = .false.
     associate (point => self%point(i))
-      there = point%mesh == mesh
-      if (there) then
-        state = point%state
-        coordinate = point%coordinate
+      if (point%mesh == mesh) then
+        is_behind = (point%coordinate - s)*inward(mesh) > 0
       else if (mesh == point%mesh + 1 .and. allocated(point%twin)) then
-        there = .true.
-        state = point%twin
-        coordinate = log(point%twin%scale)
+        is_behind = log(point%twin%scale) > s
       end if
     end associate
-  end subroutine seen_on
+  end function is_behind
 
   !> The mesh on which the piece from point i to point i + 1 is known.
   pure integer function mesh_between(self, i)
@@ -112,42 +166,34 @@ contains
     mesh_between = max(self%point(i)%mesh, self%point(i + 1)%mesh)
   end function mesh_between
 
-  !> Advances the tracer by a step and appends the new point, and the extrema if some have been
-  !> passed. An extremum between the two newest points is seen only with the next one, so what lies
-  !> before the newest but one is final. A new path begins with the tracer's own newest state. lost:
-  !> no step, however small, converged.
+  !> Advances the tracer by a step and appends the new point, and before it the extrema that have
+  !> been passed. A new path begins with the tracer's own newest state. lost: no step, however
+  !> small, converged.
   subroutine extend(path, walker, equations, options, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
-    integer :: n
+    type(extremum_t), allocatable :: extrema(:)
+    integer :: quantity, n, k
 
     if (path%held == 0) call append(path, walker)
     call walker%advance(equations, options, lost)
     if (lost) return
     call append(path, walker)
-    n = walker%held
-    if (n >= 3) then
-      if (surrounded(walker%state(n - 2:n)%h0)) then
-        call insert_extremum(path, walker, of_h0, equations, options, lost)
-      else if (.not. any(path%point(max(1, path%held - 4):path%held)%fold)) then
-        call insert_hidden(path, walker, equations, options)
-      end if
-      if (.not. lost .and. surrounded(walker%state(n - 2:n)%load) .and. &
-        any(abs(walker%state(n - 2:n)%load) > no_load*equations%problem%law%adhesion)) &
-        call insert_extremum(path, walker, of_load, equations, options, lost)
-    end if
-    if (.not. lost) call change_mesh(path, walker, equations, options, lost)
+    call change_mesh(path, walker, equations, options, lost)
+    do quantity = of_h0, of_load
+      if (lost) return
+      n = walker%held
+      if (quantity == of_load .and. .not. any(abs(walker%state(max(1, n - 1):n)%load) > &
+        no_load*equations%problem%law%adhesion)) cycle
+      call find_extrema(equations, options, walker%arc_t, quantity, extrema, lost)
+      do k = 1, size(extrema)
+        call put(path, walker, quantity, extrema(k))
+      end do
+    end do
   end subroutine extend
-
-  !> Whether the middle one of three values is an extremum.
-  pure logical function surrounded(value)
-    real(wp), intent(in) :: value(3)
-
-    surrounded = (value(2) - value(1))*(value(3) - value(2)) < 0
-  end function surrounded
 
   !> Makes the tracer's newest state the last point.
   subroutine append(path, walker)
@@ -157,6 +203,7 @@ contains
 
     if (path%held > 0) point%modes = path%point(path%held)%modes
     point%state = walker%state(walker%held)
+    point%tangent = walker%tangent(walker%held)
     point%mesh = walker%mesh
     point%coordinate = walker%coordinate(walker%held)
     call insert(path, path%held + 1, point)
@@ -170,52 +217,21 @@ contains
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
     real(wp) :: before(2)
-    integer :: mesh, n, i, k, taken
+    integer :: mesh, i, k
 
     mesh = walker%mesh
-    n = walker%held
-    before = walker%coordinate([max(1, n - 1), n])
+    before = walker%coordinate(walker%held - 1:walker%held)
     call walker%change_mesh(equations, options, lost)
     if (lost .or. walker%mesh == mesh) return
-    ! One or both of the last two, the newest last.
-    taken = walker%held
-    do k = 3 - taken, 2
+    do k = 1, 2
       do i = path%held, 1, -1
         if (path%point(i)%mesh == mesh .and. abs(path%point(i)%coordinate - before(k)) <= 0) exit
       end do
-      if (i > 0) path%point(i)%twin = walker%state(k - 2 + taken)
+      if (i == 0) cycle
+      path%point(i)%twin = walker%state(k)
+      path%point(i)%twin_tangent = walker%tangent(k)
     end do
   end subroutine change_mesh
-
-  !> Polishes the extremum that the walker's last three states surround and puts it in its place.
-  subroutine insert_extremum(path, walker, quantity, equations, options, lost)
-    type(traced_path_t), intent(inout) :: path
-    type(continuation_t), intent(in) :: walker
-    integer, intent(in) :: quantity
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
-    logical, intent(out) :: lost
-    type(extremum_t) :: found
-
-    call polish_extremum(equations, tightened(options), walker%arc_t, quantity, found, lost)
-    if (lost) return
-    call put(path, walker, quantity, found)
-  end subroutine insert_extremum
-
-  !> Puts folds that the walker's last three states pass over in their places.
-  subroutine insert_hidden(path, walker, equations, options)
-    type(traced_path_t), intent(inout) :: path
-    type(continuation_t), intent(in) :: walker
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
-    type(extremum_t), allocatable :: folds(:)
-    integer :: i
-
-    call find_hidden_folds(equations, tightened(options), walker%arc_t, folds)
-    do i = 1, size(folds)
-      call put(path, walker, of_h0, folds(i))
-    end do
-  end subroutine insert_hidden
 
   !> Puts an extremum among the last points, by its coordinate on the walker's mesh.
   subroutine put(path, walker, quantity, found)
@@ -224,21 +240,17 @@ contains
     integer, intent(in) :: quantity
     type(extremum_t), intent(in) :: found
     type(path_point_t) :: point
-    type(state_t) :: state
-    real(wp) :: travel, coordinate
     integer :: place, change
-    logical :: there
 
-    travel = sign(1.0_wp, walker%coordinate(walker%held) - walker%coordinate(walker%held - 1))
     place = path%held
     do while (place > 1)
-      call path%seen_on(place - 1, walker%mesh, state, coordinate, there)
-      if (.not. there .or. (coordinate - found%coordinate)*travel <= 0) exit
+      if (.not. path%is_behind(place - 1, walker%mesh, found%coordinate)) exit
       place = place - 1
     end do
     ! Before the first point of all nothing is known.
     if (place < 2) return
     point%state = found%state
+    point%tangent = found%tangent
     point%mesh = walker%mesh
     point%coordinate = found%coordinate
     point%fold = quantity == of_h0
@@ -247,7 +259,7 @@ contains
     call insert(path, place, point)
     if (quantity /= of_h0) return
     ! At a maximum of h0 its second derivative is negative.
-    change = merge(-1, 1, -found%sense*found%load_slope*travel > 0)
+    change = merge(-1, 1, -found%sense*found%tangent%load*inward(walker%mesh) > 0)
     path%point(place:path%held)%modes = path%point(place:path%held)%modes + change
   end subroutine put
 

@@ -25,14 +25,16 @@ def measured(snapin, folder, name, deck):
     found["load at the end"] = curve["load"][rows[-1]]
     if curve["branch"][rows[0]] == "loading":
         found["load at the start"] = curve["load"][rows[0]]
-    # Displacements too, which the estimate sees: at folds and extrema of a path; of a cycle at some
-    # rows, here at all of them.
+    # What the estimate sees too: folds and extrema of a path, and displacements there; of a cycle
+    # displacements at some rows, here at all of them.
     beside = {}
     same = range(len(curve["h0"]))
     if curve["branch"][rows[0]] == "path":
         keys = ("folds_h0", "load_folds_h0")
         points = [h0 for key in keys for h0 in several(summary.get(key, []))]
         same = [int(abs(curve["h0"] - h0).argmin()) for h0 in points]
+        for key in ("folds_h0", "folds_load", "load_folds_h0", "load_folds_load"):
+            beside.update({f"{key} {k}": x for k, x in enumerate(several(summary.get(key, [])))})
     for k, row in enumerate(same):
         beside[f"displacement {k}"] = curve["displacement"][row]
     return found, beside, summary["error_estimate"]

@@ -91,9 +91,9 @@ GUARDS = {
     ),
     "hidden_folds": Guard(
         "folds that a step passes over are looked for",
-        "path/hidden_folds.f90",
-        "if (arc%held < 4) return",
-        "if (arc%held > 0) return",
+        "path/path_extremum.f90",
+        "if (doubt .and. near%held < most_states) then",
+        "if (doubt .and. near%held < 0) then",
         ("path/test_close_folds.py::test_folds_however_close_are_found",),
     ),
     "converged_column": Guard(

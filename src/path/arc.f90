@@ -1,0 +1,291 @@
+!> Neighbouring states of the equilibrium path, and what they tell of others: with their tangents
+!> they make a state a Hermite polynomial of the path's coordinate, node by node.
+module arc
+  use kinds, only: wp
+  use interpolation, only: polynomial_weights, hermite_weights, hermite_t, hermite_through, &
+    most_hermite_nodes
+  use equilibrium, only: state_t, equations_t
+  use solver_options, only: solver_options_t, tightened
+  use anderson, only: solve_anderson
+  use frozen_jacobian, only: frozen_jacobian_t
+  use edge_locked, only: approach
+  use path_coordinate, only: path_control, inward
+  use path_tangent, only: tangent_t, tangent_at, scaled
+  implicit none
+  private
+  public :: arc_t, tangent_along, between, of_h0, of_load, most_states
+
+  integer, parameter :: most_states = 8
+  !> What the path is asked about: h0 or the load.
+  integer, parameter :: of_h0 = 1, of_load = 2
+  !> States that a state beyond an end is extrapolated from.
+  integer, parameter :: extrapolated_from = 3
+  !> A neighbour nearer to an interval than this part of its width makes its polynomial worse.
+  real(wp), parameter :: well_apart = 0.1_wp
+
+  !> Some states of the path on one mesh with their coordinates and tangents (by the coordinate), in
+  !> order along it.
+  type :: arc_t
+    integer :: mesh = approach, held = 0
+    real(wp) :: coordinate(most_states) = 0
+    type(state_t) :: state(most_states)
+    type(tangent_t) :: tangent(most_states)
+  contains
+    procedure :: add
+    procedure :: drop_first
+    procedure :: guess
+    procedure :: curve
+    procedure :: value
+    procedure :: slope
+    procedure :: curvature
+    procedure :: state_at
+    procedure :: exact_state_at
+    procedure, private :: support
+  end type arc_t
+
+  !> Difference of s for a second derivative.
+  real(wp), parameter :: nearby = 1.0e-5_wp
+
+contains
+
+  !> Derivatives by the coordinate s at the equilibrium there; found = .false. where the Jacobian is
+  !> singular.
+  subroutine tangent_along(equations, mesh, s, state, frozen, tangent, found)
+    type(equations_t), intent(inout) :: equations
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    type(state_t), intent(in) :: state
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(tangent_t), intent(out) :: tangent
+    logical, intent(out) :: found
+
+    call tangent_at(equations, path_control(equations%problem, mesh, s), state, frozen, tangent, &
+      found)
+    ! The control's value is exp(s) and a constant.
+    if (found) tangent = scaled(tangent, exp(s))
+  end subroutine tangent_along
+
+  !> The state at the coordinate s, with its tangent: guessed from those of the arc and corrected.
+  !> miss: the largest change of a gap that corrected the guess, relative or in the law's lengths.
+  subroutine state_at(self, equations, options, frozen, s, state, tangent, converged, miss)
+    class(arc_t), intent(in) :: self
+    type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    real(wp), intent(in) :: s
+    type(state_t), intent(out) :: state
+    type(tangent_t), intent(out) :: tangent
+    logical, intent(out) :: converged
+    real(wp), intent(out), optional :: miss
+    real(wp), allocatable :: guessed(:)
+
+    state = self%guess(s)
+    guessed = state%gap
+    call solve_anderson(equations, options, frozen, path_control(equations%problem, self%mesh, s), &
+      state, converged)
+    if (present(miss)) miss = maxval(abs(state%gap - guessed)/(1 + abs(guessed)))
+    if (converged) call tangent_along(equations, self%mesh, s, state, frozen, tangent, converged)
+  end subroutine state_at
+
+  !> The same to rounding or, where that is not reached, to the tolerance of the options: for states
+  !> whose place on the path, not only whose load, must be exact.
+  subroutine exact_state_at(self, equations, options, frozen, s, state, tangent, converged)
+    class(arc_t), intent(in) :: self
+    type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    real(wp), intent(in) :: s
+    type(state_t), intent(out) :: state
+    type(tangent_t), intent(out) :: tangent
+    logical, intent(out) :: converged
+
+    call self%state_at(equations, tightened(options), frozen, s, state, tangent, converged)
+    if (converged .or. .not. state%residual <= options%tolerance) return
+    call tangent_along(equations, self%mesh, s, state, frozen, tangent, converged)
+  end subroutine exact_state_at
+
+  !> Puts a state in its place, in the order of the arc; where there is no room, or it is one of the
+  !> arc already, nothing is done.
+  pure subroutine add(self, s, state, tangent)
+    class(arc_t), intent(inout) :: self
+    real(wp), intent(in) :: s
+    type(state_t), intent(in) :: state
+    type(tangent_t), intent(in) :: tangent
+    integer :: j, place
+
+    if (self%held == most_states .or. any(abs(self%coordinate(:self%held) - s) <= 0)) return
+    place = count((self%coordinate(:self%held) - s)*inward(self%mesh) < 0) + 1
+    do j = self%held, place, -1
+      self%coordinate(j + 1) = self%coordinate(j)
+      self%state(j + 1) = self%state(j)
+      self%tangent(j + 1) = self%tangent(j)
+    end do
+    self%held = self%held + 1
+    self%coordinate(place) = s
+    self%state(place) = state
+    self%tangent(place) = tangent
+  end subroutine add
+
+  !> Makes room by dropping the first state.
+  pure subroutine drop_first(self)
+    class(arc_t), intent(inout) :: self
+
+    associate (n => self%held)
+      self%coordinate(:n - 1) = self%coordinate(2:n)
+      self%state(:n - 1) = self%state(2:n)
+      self%tangent(:n - 1) = self%tangent(2:n)
+    end associate
+    self%held = self%held - 1
+  end subroutine drop_first
+
+  !> The states whose polynomial tells about s: the ends of the interval that it is in, with the
+  !> nearest on either side that is well apart; beyond an end, the nearest few.
+  pure subroutine support(self, s, nodes, n)
+    class(arc_t), intent(in) :: self
+    real(wp), intent(in) :: s
+    integer, intent(out) :: nodes(most_hermite_nodes), n
+    real(wp) :: least
+    integer :: i, j
+
+    n = 0
+    associate (x => self%coordinate, last => self%held)
+      do i = 1, last - 1
+        if ((x(i) - s)*(x(i + 1) - s) <= 0) exit
+      end do
+      if (i >= last) then
+        i = 1
+        if (abs(x(1) - s) > abs(x(last) - s)) i = max(1, last + 1 - extrapolated_from)
+        n = min(last, i - 1 + extrapolated_from) + 1 - i
+        nodes(:n) = [(j, j=i, i - 1 + n)]
+        return
+      end if
+      least = well_apart*abs(x(i + 1) - x(i))
+      do j = i - 1, 1, -1
+        if (abs(x(j) - x(i)) < least) cycle
+        n = 1
+        nodes(1) = j
+        exit
+      end do
+      nodes(n + 1:n + 2) = [i, i + 1]
+      n = n + 2
+      do j = i + 2, last
+        if (abs(x(j) - x(i + 1)) < least) cycle
+        n = n + 1
+        nodes(n) = j
+        exit
+      end do
+    end associate
+  end subroutine support
+
+  !> The state that the arc lets expect at s.
+  pure function guess(self, s) result(expected)
+    class(arc_t), intent(in) :: self
+    real(wp), intent(in) :: s
+    type(state_t) :: expected
+    real(wp), dimension(most_hermite_nodes) :: at, of_value, of_slope
+    real(wp), allocatable :: gap(:)
+    real(wp) :: h0, scale
+    integer :: nodes(most_hermite_nodes), n, j
+
+    call self%support(s, nodes, n)
+    at(:n) = self%coordinate(nodes(:n))
+    call hermite_weights(at(:n), s, of_value(:n), of_slope(:n))
+    expected = self%state(nodes(minloc(abs(at(:n) - s), 1)))
+    allocate (gap(size(expected%gap)), source=0.0_wp)
+    h0 = 0
+    scale = 0
+    do j = 1, n
+      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
+        gap = gap + of_value(j)*state%gap + of_slope(j)*tangent%gap
+        h0 = h0 + of_value(j)*state%h0 + of_slope(j)*tangent%h0
+        scale = scale + of_value(j)*state%scale + of_slope(j)*tangent%scale
+      end associate
+    end do
+    call take_if_sound(gap, h0, scale, expected)
+  end function guess
+
+  !> The polynomial through states at the given values of some coordinate, evaluated at s.
+  pure function between(coordinate, states, s) result(expected)
+    real(wp), intent(in) :: coordinate(:), s
+    type(state_t), intent(in) :: states(:)
+    type(state_t) :: expected
+    real(wp) :: weight(size(states)), gap(size(states(1)%gap)), h0, scale
+    integer :: j
+
+    gap = 0
+    h0 = 0
+    scale = 0
+    weight = polynomial_weights(coordinate, s)
+    do j = 1, size(states)
+      gap = gap + weight(j)*states(j)%gap
+      h0 = h0 + weight(j)*states(j)%h0
+      scale = scale + weight(j)*states(j)%scale
+    end do
+    expected = states(minloc(abs(coordinate - s), 1))
+    call take_if_sound(gap, h0, scale, expected)
+  end function between
+
+  !> Gives an expected state, now the nearest one that is known, gaps, H0 and scale that were
+  !> extrapolated, unless these leave the law's domain: then they are worth less.
+  pure subroutine take_if_sound(gap, h0, scale, expected)
+    real(wp), intent(in) :: gap(:), h0, scale
+    type(state_t), intent(inout) :: expected
+
+    expected%pressure = 0*gap
+    if (minval(gap) < 0.5_wp*minval(expected%gap) .and. minval(expected%gap) > 0) return
+    expected%gap = gap
+    expected%h0 = h0
+    if (scale > 0.5_wp*expected%scale) expected%scale = scale
+  end subroutine take_if_sound
+
+  !> The polynomial that h0 or load is about s.
+  pure type(hermite_t) function curve(self, quantity, s)
+    class(arc_t), intent(in) :: self
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: s
+    real(wp), dimension(most_hermite_nodes) :: at, value, slope
+    integer :: nodes(most_hermite_nodes), n, j
+
+    call self%support(s, nodes, n)
+    do j = 1, n
+      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
+        at(j) = self%coordinate(nodes(j))
+        value(j) = merge(state%h0, state%load, quantity == of_h0)
+        slope(j) = merge(tangent%h0, tangent%load, quantity == of_h0)
+      end associate
+    end do
+    curve = hermite_through(at(:n), value(:n), slope(:n))
+  end function curve
+
+  !> h0 or load at s, as the arc lets expect it.
+  pure real(wp) function value(self, quantity, s)
+    class(arc_t), intent(in) :: self
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: s
+    type(hermite_t) :: about
+
+    about = self%curve(quantity, s)
+    value = about%value(s)
+  end function value
+
+  !> Its derivative by s.
+  pure real(wp) function slope(self, quantity, s)
+    class(arc_t), intent(in) :: self
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: s
+    type(hermite_t) :: about
+
+    about = self%curve(quantity, s)
+    slope = about%slope(s)
+  end function slope
+
+  !> Its second derivative by s; where a state is in the way, the mean of those on either side.
+  pure real(wp) function curvature(self, quantity, s)
+    class(arc_t), intent(in) :: self
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: s
+
+    curvature = (self%slope(quantity, s + nearby) - self%slope(quantity, s - nearby))/(2*nearby)
+  end function curvature
+
+end module arc

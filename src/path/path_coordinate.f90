@@ -1,0 +1,54 @@
+!> The coordinate s of the equilibrium path, in which it has no folds: before contact the logarithm
+!> of the gap on the axis, above nine tenths of the gap at rest, in contact of the contact radius
+!> (`edge_locked`).
+module path_coordinate
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use equilibrium, only: control_t, state_t, at_axis_gap, at_edge_radius
+  use edge_locked, only: approach
+  implicit none
+  private
+  public :: path_control, coordinate_of, inward
+
+contains
+
+  !> The control that prescribes the coordinate s on a mesh.
+  pure function path_control(problem, mesh, s) result(control)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    type(control_t) :: control
+
+    control%mesh = mesh
+    if (mesh == approach) then
+      control%kind = at_axis_gap
+      control%value = exp(s) + 0.9_wp*problem%law%rest_gap
+    else
+      control%kind = at_edge_radius
+      control%value = exp(s)
+    end if
+  end function path_control
+
+  !> Inverse of `path_control` for a state.
+  pure real(wp) function coordinate_of(problem, mesh, state) result(s)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+
+    if (mesh == approach) then
+      ! Nearer than nine tenths no state is on this mesh, but one may be asked about.
+      s = log(max(state%axis_gap - 0.9_wp*problem%law%rest_gap, tiny(1.0_wp)))
+    else
+      s = log(state%scale)
+    end if
+  end function coordinate_of
+
+  !> The sign that makes the coordinate of a mesh grow from afar inward: the gap on the axis
+  !> shrinks, the contact radius grows.
+  elemental integer function inward(mesh)
+    integer, intent(in) :: mesh
+
+    inward = merge(-1, 1, mesh == approach)
+  end function inward
+
+end module path_coordinate

@@ -1,0 +1,143 @@
+!> The tangent of the equilibrium path: derivatives of a state by the value of its control, exact to
+!> the solver's tolerance. The factors that corrected the state serve: refinement brings their
+!> solution to the tangent's own equations.
+module path_tangent
+  use kinds, only: wp, pi
+  use beyond_mesh, only: load_slope_beyond
+  use equilibrium, only: control_t, state_t, equations_t, at_axis_gap, at_edge_radius, &
+    load_reach, gap_at_end
+  use jacobian, only: control_derivative, jacobian_times
+  use linear_algebra, only: solve
+  use frozen_jacobian, only: frozen_jacobian_t, freeze
+  implicit none
+  private
+  public :: tangent_t, tangent_at, scaled
+
+  !> Derivatives of a state: of its gaps (nodes), H0, scale, the gap on the axis and the load.
+  type :: tangent_t
+    real(wp), allocatable :: gap(:)
+    real(wp) :: h0 = 0, scale = 0, axis_gap = 0, load = 0
+  end type tangent_t
+
+  !> The last correction of a tangent, relative; how much smaller than the one before it each has to
+  !> be, and how many there may be, for factors to be worth keeping.
+  real(wp), parameter :: refined = 1.0e-11_wp, shrinking = 0.3_wp
+  integer, parameter :: most_corrections = 12
+
+contains
+
+  !> The derivatives by the value of the control at an equilibrium under it; found = .false. where
+  !> the Jacobian is singular. Factors that are too far from those of the state are renewed.
+  subroutine tangent_at(equations, control, state, frozen, tangent, found)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(tangent_t), intent(out) :: tangent
+    logical, intent(out) :: found
+    real(wp), allocatable :: right(:), dz(:)
+    integer :: n
+
+    n = size(state%gap)
+    right = -control_derivative(equations, control, state)
+    found = frozen%serves(control, size(right))
+    if (found) call refine(equations, control, state, frozen, right, dz, found)
+    if (.not. found) then
+      call freeze(equations, control, state, frozen)
+      found = frozen%factors%valid
+      if (.not. found) return
+      dz = right
+      call solve(frozen%factors, dz)
+    end if
+    tangent%gap = dz(:n)
+    tangent%h0 = dz(n + 1)
+    if (control%kind == at_edge_radius) tangent%scale = 1
+    associate (grid => equations%meshes%grid(control%mesh))
+      if (control%kind == at_axis_gap) then
+        tangent%axis_gap = 1
+      else
+        tangent%axis_gap = dot_product(grid%at_axis, tangent%gap)
+      end if
+    end associate
+    tangent%load = load_slope(equations, control, state, tangent)
+  end subroutine tangent_at
+
+  !> Solves J dz = right with factors of a neighbouring J; done = .false. where these do not bring
+  !> it near fast.
+  subroutine refine(equations, control, state, frozen, right, dz, done)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    type(frozen_jacobian_t), intent(in) :: frozen
+    real(wp), intent(in) :: right(:)
+    real(wp), allocatable, intent(out) :: dz(:)
+    logical, intent(out) :: done
+    real(wp) :: correction(size(right)), size_now, size_before
+    integer :: step
+
+    dz = right
+    call solve(frozen%factors, dz)
+    size_before = relative(dz)
+    do step = 1, most_corrections
+      correction = right - jacobian_times(equations, control, state, dz)
+      call solve(frozen%factors, correction)
+      dz = dz + correction
+      size_now = relative(correction)
+      done = size_now <= refined*relative(dz)
+      if (done .or. .not. size_now <= shrinking*size_before) return
+      size_before = size_now
+    end do
+
+  contains
+
+    !> The largest change, relative to the gaps: far out they are large, and so are their changes.
+    pure real(wp) function relative(change)
+      real(wp), intent(in) :: change(:)
+
+      relative = max(maxval(abs(change(:size(state%gap)))/(1 + abs(state%gap))), &
+        abs(change(size(change)))/(1 + abs(state%h0)))
+    end function relative
+
+  end subroutine refine
+
+  !> The derivative of the load that follows from those of gaps and scale.
+  function load_slope(equations, control, state, tangent) result(slope)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    type(tangent_t), intent(in) :: tangent
+    real(wp) :: slope, reach, last, of_end(2)
+
+    associate (grid => equations%meshes%grid(control%mesh), n => size(state%gap), &
+      law => equations%problem%law, shape => equations%problem%shape)
+      slope = 2*pi*(2*state%scale*tangent%scale*dot_product(grid%weight, state%pressure) + &
+        state%scale**2*sum(grid%weight*law%slope(state%gap)*tangent%gap))
+      equations%cost%pressure_evaluations = equations%cost%pressure_evaluations + &
+        n*law%terms
+      if (.not. grid%is_bounded()) return
+      ! What is beyond a bounded mesh depends on the position of its end and on the gap there; this
+      ! moves with the last node's and with the end itself.
+      reach = load_reach(grid, state)
+      last = state%scale*grid%x(n)
+      of_end = load_slope_beyond(equations%problem, gap_at_end(shape, grid, state), reach)
+      slope = slope + 2*pi*(of_end(1)*(tangent%gap(n) + tangent%scale/state%scale* &
+        (reach*shape%slope(reach) - last*shape%slope(last))) + &
+        of_end(2)*reach*tangent%scale/state%scale)
+    end associate
+  end function load_slope
+
+  !> A tangent by another measure of the way: times the derivative of the control's value by it.
+  pure function scaled(tangent, rate) result(by_other)
+    type(tangent_t), intent(in) :: tangent
+    real(wp), intent(in) :: rate
+    type(tangent_t) :: by_other
+
+    by_other = tangent
+    by_other%gap = rate*tangent%gap
+    by_other%h0 = rate*tangent%h0
+    by_other%scale = rate*tangent%scale
+    by_other%axis_gap = rate*tangent%axis_gap
+    by_other%load = rate*tangent%load
+  end function scaled
+
+end module path_tangent
