@@ -13,7 +13,7 @@ module dimensionless_problem
   implicit none
   private
   public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
-    surface_energy, largest_tension, calm_gap, yielding_gap
+    surface_energy, largest_tension, calm_gap, yielding_gap, contact_level_of
 
   type :: problem_t
     class(force_law_t), allocatable :: law
@@ -28,6 +28,8 @@ module dimensionless_problem
     real(wp) :: share(2) = 1
   end type problem_t
 
+  !> In contact is, as in the paper's Fig. 6, what is nearer than this many gaps at rest.
+  real(wp), parameter :: contact_gap = 1.1_wp
   !> Width of the neck times sigma, lateral units.
   real(wp), parameter :: neck = 0.375_wp
 
@@ -88,11 +90,15 @@ contains
 
   !> A gap beyond which bodies hardly deform: twice that of the jump of parabolas into contact under
   !> an r^-3 attraction, (37); for any shape and law that attracts, where about a tenth of what a
-  !> jump takes is left.
+  !> jump takes is left. Outside a step of the law.
   pure real(wp) function calm_gap(problem) result(gap)
     type(problem_t), intent(in) :: problem
+    !> Widths of a step outside it at which erfc(x) is below rounding.
+    real(wp), parameter :: outside = 6
 
     gap = max(5.0_wp, yielding_gap(problem, 1.0_wp/8))
+    if (problem%law%step_width > 0) &
+      gap = max(gap, problem%law%step_at + outside*problem%law%step_width)
     if (problem%shape%parabolic) &
       gap = max(gap, 2*(27*problem%coupling*problem%law%adhesion)**(2.0_wp/7))
   end function calm_gap
@@ -137,5 +143,13 @@ contains
     pressure = problem%law%pressure([problem%law%edge_gap])
     largest_tension = -pressure(1)*problem%pressure
   end function largest_tension
+
+  !> The gap up to which bodies are in contact, law's lengths; below any where nothing says so.
+  pure real(wp) function contact_level_of(problem) result(level)
+    type(problem_t), intent(in) :: problem
+
+    level = -huge(1.0_wp)
+    if (problem%law%rest_gap > 0) level = contact_gap*problem%law%rest_gap
+  end function contact_level_of
 
 end module dimensionless_problem

@@ -4,6 +4,7 @@
 !> how long the next step is.
 module continuation
   use kinds, only: wp
+  use dimensionless_problem, only: problem_t
   use equilibrium, only: state_t, equations_t, radius_of_gap
   use solver_options, only: solver_options_t
   use anderson, only: solve_anderson
@@ -44,7 +45,7 @@ module continuation
     procedure :: advance
     procedure :: change_mesh
     procedure, private :: next_step
-    procedure, private :: contact_radius
+    procedure, private :: step_past_step
   end type continuation_t
 
 contains
@@ -130,21 +131,37 @@ contains
     type(equations_t), intent(in) :: equations
     real(wp) :: s
 
-    step = self%step
-    associate (problem => equations%problem, meshes => equations%meshes)
-      if (.not. problem%law%edge_gap > 0) return
-      s = self%coordinate(self%held)
-      if (self%mesh /= approach) then
-        step = min(step, max(log(meshes%passage(self%mesh)*beyond_passage) - s, shortest_passage))
+    step = min(self%step, self%step_past_step(equations%problem))
+    if (.not. equations%problem%law%edge_gap > 0) return
+    s = self%coordinate(self%held)
+    associate (passage => equations%meshes%passage(self%mesh)*beyond_passage)
+      if (locked_alike(equations, self%mesh, self%mesh + 1)) then
+        step = min(step, max(log(passage) - s, shortest_passage))
         return
       end if
       do while (step > shortest_passage)
-        if (radius_of_gap(problem%shape, problem%law%edge_gap, meshes%grid(approach), &
-          self%guess(s - step)) <= beyond_passage*meshes%passage(approach)) exit
+        if (radius_for(equations, self%mesh, self%mesh + 1, &
+          self%guess(s + inward(self%mesh)*step)) <= passage) exit
         step = 0.6_wp*step
       end do
     end associate
   end function next_step
+
+  !> The longest step where the axis passes a step of the pressure: all changes over the width of
+  !> that, and h0 may turn several times.
+  pure real(wp) function step_past_step(self, problem) result(longest)
+    class(continuation_t), intent(in) :: self
+    type(problem_t), intent(in) :: problem
+    !> Parts of the step's width that are passed at once, and reach of the step in its widths.
+    real(wp), parameter :: at_once = 0.25_wp, reach = 4
+
+    longest = huge(longest)
+    if (self%mesh /= approach .or. .not. problem%law%step_width > 0) return
+    associate (law => problem%law, gap => self%state(self%held)%axis_gap)
+      longest = max(at_once*law%step_width, &
+        0.5_wp*(abs(gap - law%step_at) - reach*law%step_width))/(gap - 0.9_wp*law%rest_gap)
+    end associate
+  end function step_past_step
 
   !> Passes to the next mesh once the contact radius has crossed the passage to it (to be called
   !> after each `advance`), taking the last two states along: what is between them is known on the
@@ -164,8 +181,9 @@ contains
     if (self%held < 2) return
     associate (meshes => equations%meshes)
       if (.not. equations%problem%law%edge_gap > 0 .or. self%mesh == size(meshes%grid)) return
-      if (self%contact_radius(equations, self%held) < meshes%passage(self%mesh)) return
-      if (self%contact_radius(equations, self%held - 1) < &
+      if (radius_for(equations, self%mesh, self%mesh + 1, self%state(self%held)) < &
+        meshes%passage(self%mesh)) return
+      if (radius_for(equations, self%mesh, self%mesh + 1, self%state(self%held - 1)) < &
         nearly_passed*meshes%passage(self%mesh)) return
     end associate
     next%mesh = self%mesh + 1
@@ -197,9 +215,7 @@ contains
     real(wp) :: c
 
     associate (problem => equations%problem, meshes => equations%meshes)
-      c = state%scale
-      if (from == approach) c = radius_of_gap(problem%shape, problem%law%edge_gap, &
-        meshes%grid(from), state)
+      c = radius_for(equations, from, to, state)
       done = c > 0
       if (.not. done) return
       state = regrid(problem%shape, state, meshes%grid(from), meshes%grid(to), c)
@@ -208,15 +224,28 @@ contains
     end associate
   end subroutine move_to_mesh
 
-  !> Contact radius of the j-th state that is held, lateral units; 0 without a contact.
-  pure real(wp) function contact_radius(self, equations, j) result(c)
-    class(continuation_t), intent(in) :: self
+  !> Radius, lateral units, of what one mesh is locked to for a state on another; 0 where the state
+  !> has none.
+  pure real(wp) function radius_for(equations, from, to, state) result(c)
     type(equations_t), intent(in) :: equations
-    integer, intent(in) :: j
+    integer, intent(in) :: from, to
+    type(state_t), intent(in) :: state
 
-    c = self%state(j)%scale
-    if (self%mesh == approach) c = radius_of_gap(equations%problem%shape, &
-      equations%problem%law%edge_gap, equations%meshes%grid(approach), self%state(j))
-  end function contact_radius
+    c = state%scale
+    if (locked_alike(equations, from, to)) return
+    associate (problem => equations%problem, meshes => equations%meshes)
+      c = radius_of_gap(problem%shape, meshes%locked_gap(problem%law, to), meshes%grid(from), state)
+    end associate
+  end function radius_for
+
+  !> Whether two meshes are locked to the same: both to the contact edge, or to the front of a step.
+  pure logical function locked_alike(equations, from, to)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: from, to
+
+    locked_alike = min(from, to) > approach
+    if (locked_alike) locked_alike = equations%meshes%in_contact(from) .eqv. &
+      equations%meshes%in_contact(to)
+  end function locked_alike
 
 end module continuation

@@ -16,7 +16,7 @@ module curve_states
   use path_curve, only: curve_t, no_mesh
   implicit none
   private
-  public :: curve_state_t, curve_solver_t, place_t
+  public :: curve_state_t, curve_solver_t, place_t, coordinate_at
 
   !> A place on a curve.
   type :: place_t
@@ -32,6 +32,9 @@ module curve_states
     real(wp) :: slopes(2) = 0, residual = 0
     integer :: modes = 0
     logical :: converged = .false.
+    !> Derivatives of what is reported of it by each parameter of &sensitivity
+    !> (`place_sensitivity`).
+    real(wp), allocatable :: rate(:, :)
   end type curve_state_t
 
   !> A curve, and what solves states on it.
@@ -41,6 +44,7 @@ module curve_states
     type(frozen_jacobian_t) :: frozen
     integer :: solved = 0
   contains
+    procedure :: equilibrium_at
     procedure :: state_of
     procedure :: root_of
   end type curve_solver_t
@@ -53,7 +57,36 @@ module curve_states
 
 contains
 
-  !> The equilibrium at a place.
+  !> The path's coordinate (`continuation`) at a place that is on a mesh.
+  pure real(wp) function coordinate_at(curve, place) result(s)
+    type(curve_t), intent(in) :: curve
+    class(place_t), intent(in) :: place
+
+    associate (node => curve%begin_of(place%interval))
+      s = inward(node%mesh)*place%x
+    end associate
+  end function coordinate_at
+
+  !> The equilibrium at a place that is on a mesh, with its tangent by the path's coordinate.
+  subroutine equilibrium_at(self, equations, known, place, state, tangent, converged)
+    class(curve_solver_t), intent(inout) :: self
+    type(equations_t), intent(inout) :: equations
+    type(known_path_t), intent(in) :: known
+    class(place_t), intent(in) :: place
+    type(state_t), intent(out) :: state
+    type(tangent_t), intent(out) :: tangent
+    logical, intent(out) :: converged
+    type(neighbours_t) :: near
+
+    associate (node => self%curve%begin_of(place%interval))
+      near = neighbours_of(known%path, node%point)
+    end associate
+    call near%exact_state_at(equations, self%options, self%frozen, &
+      coordinate_at(self%curve, place), state, tangent, converged)
+    self%solved = self%solved + 1
+  end subroutine equilibrium_at
+
+  !> What is reported of the equilibrium at a place.
   subroutine state_of(self, equations, known, place, found)
     class(curve_solver_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
@@ -62,8 +95,6 @@ contains
     type(curve_state_t), intent(out) :: found
     type(state_t) :: state
     type(tangent_t) :: tangent
-    type(neighbours_t) :: near
-    real(wp) :: s
 
     found%interval = place%interval
     found%x = place%x
@@ -78,11 +109,7 @@ contains
         found%converged = .true.
         return
       end if
-      s = inward(node%mesh)*place%x
-      near = neighbours_of(known%path, node%point)
-      call near%exact_state_at(equations, self%options, self%frozen, s, state, tangent, &
-        found%converged)
-      self%solved = self%solved + 1
+      call self%equilibrium_at(equations, known, place, state, tangent, found%converged)
       found%h0 = state%h0
       found%load = state%load
       found%axis_gap = state%axis_gap

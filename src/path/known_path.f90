@@ -6,7 +6,7 @@ module known_path
   use listener, only: listener_t
   use equilibrium, only: state_t, equations_t
   use solver_options, only: solver_options_t
-  use edge_locked, only: approach, contact
+  use edge_locked, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
   use path_coordinate, only: inward
   use continuation, only: continuation_t
@@ -98,7 +98,7 @@ contains
       associate (last => known%path%point(known%path%held))
         finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
           last%tangent%h0*inward(last%mesh) < 0 .and. &
-          (last%mesh >= contact .or. .not. into_contact)
+          (equations%meshes%in_contact(last%mesh) .or. .not. into_contact)
       end associate
     end do
     known%piece = pieces_of(known%path)

@@ -25,9 +25,10 @@ module path_extremum
   !> Steps of the search for the least slope; part of an interval that is its end.
   integer, parameter :: golden_steps = 30
   real(wp), parameter :: at_end = 1.0e-5_wp
-  !> Corrections of an extremum's place, and the one below which it is found.
-  integer, parameter :: most_rounds = 12
-  real(wp), parameter :: root_tolerance = 1.0e-10_wp
+  !> Corrections of an extremum's place, and the one below which it is found; below which rounding
+  !> may keep the slope from falling.
+  integer, parameter :: most_rounds = 60
+  real(wp), parameter :: root_tolerance = 1.0e-10_wp, rounding_rules = 1.0e-6_wp
   !> The part of an interval over which a tangent tells a state better than the curve does.
   real(wp), parameter :: near_enough = 1.0e-3_wp
 
@@ -149,7 +150,8 @@ contains
   end subroutine descend
 
   !> The extremum between state i of an arc and the next: a root of the exact slope, begun at that
-  !> of the curve.
+  !> of the curve and found by secants, and by bisection where these do not come nearer, as under a
+  !> force that changes by orders of magnitude.
   subroutine polish(equations, options, near, i, quantity, found, lost)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
@@ -183,11 +185,15 @@ contains
       if (lost) return
       tried%coordinate = s
       slope = slope_of(quantity, tried%tangent)
-      ! Rounding rules once the slope no longer falls.
-      if (.not. abs(slope) < least) exit
+      call bracket%narrow((slope > 0) .eqv. rising, s)
+      if (.not. abs(slope) < least) then
+        if (abs(s - found%coordinate) < rounding_rules) exit
+        s = bracket%middle()
+        beside = near
+        cycle
+      end if
       least = abs(slope)
       found = tried
-      call bracket%narrow((slope > 0) .eqv. rising, s)
       if (round == 1) then
         s_before = s + 1.0e-4_wp*width
         slope_before = slope + curve%slope(s_before) - curve%slope(s)

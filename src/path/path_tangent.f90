@@ -112,7 +112,8 @@ contains
       law => equations%problem%law, shape => equations%problem%shape)
       slope = 2*pi*(2*state%scale*tangent%scale*dot_product(grid%weight, state%pressure) + &
         state%scale**2*sum(grid%weight*law%slope(state%gap)*tangent%gap))
-      equations%cost%pressure_evaluations = equations%cost%pressure_evaluations + n
+      equations%cost%pressure_evaluations = equations%cost%pressure_evaluations + &
+        n*law%terms
       if (.not. grid%is_bounded()) return
       ! What is beyond a bounded mesh depends on the position of its end and on the gap there; this
       ! moves with the last node's and with the end itself.

@@ -51,6 +51,7 @@ module traced_path
   contains
     procedure :: modes_at
     procedure :: add_to
+    procedure :: seen_on
     procedure :: arc_about
     procedure, private :: is_behind
     procedure :: mesh_between
@@ -64,6 +65,8 @@ module traced_path
   !> to no gap at all. What is left of the gap at the first fold when it is followed no farther,
   !> and if there is no fold, how many of the law's lengths.
   real(wp), parameter :: collapse = 0.3_wp
+  !> A load over the law's adhesion below which it is none: its extrema are of no consequence.
+  real(wp), parameter :: no_load = 1.0e-16_wp
 
 contains
 
@@ -105,6 +108,22 @@ contains
       end if
     end associate
   end subroutine add_to
+
+  !> The i-th point as a mesh has it; there = .false. if that does not know it.
+  pure subroutine seen_on(self, i, mesh, state, coordinate, there)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: i, mesh
+    type(state_t), intent(out) :: state
+    real(wp), intent(out) :: coordinate
+    logical, intent(out) :: there
+    type(arc_t) :: alone
+
+    alone%mesh = mesh
+    call self%add_to(i, alone)
+    there = alone%held > 0
+    state = alone%state(1)
+    coordinate = alone%coordinate(1)
+  end subroutine seen_on
 
   !> The arc of the points about s on a mesh.
   pure function arc_about(self, mesh, s) result(arc)
@@ -157,7 +176,7 @@ contains
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
     type(extremum_t), allocatable :: extrema(:)
-    integer :: quantity, k
+    integer :: quantity, n, k
 
     if (path%held == 0) call append(path, walker)
     call walker%advance(equations, options, lost)
@@ -166,6 +185,9 @@ contains
     call change_mesh(path, walker, equations, options, lost)
     do quantity = of_h0, of_load
       if (lost) return
+      n = walker%held
+      if (quantity == of_load .and. .not. any(abs(walker%state(max(1, n - 1):n)%load) > &
+        no_load*equations%problem%law%adhesion)) cycle
       call find_extrema(equations, options, walker%arc_t, quantity, extrema, lost)
       do k = 1, size(extrema)
         call put(path, walker, quantity, extrema(k))

@@ -8,6 +8,7 @@ module result_listing
   use device_rows, only: device_columns, jump_columns
   use fixed_load_rows, only: fixed_load_columns
   use table_rows, only: table_columns
+  use sensitivity_rows, only: sensitivity_columns, curve_sensitivity_columns
   use profiles, only: profile_columns, unlike_columns
   implicit none
   private
@@ -53,6 +54,13 @@ contains
       case ('table.csv')
         call heading('with &table', 'One row for each stable state, in and out.')
         call list_columns(unit, table_columns, '')
+      case ('sensitivity.csv')
+        call heading('with &sensitivity', 'One row for each number that is differentiated ' // &
+          'and each parameter.')
+        call list_columns(unit, sensitivity_columns, '')
+      case ('curve_sensitivity.csv')
+        call heading('with &sensitivity', 'One row for each equilibrium, parameter and stiffness.')
+        call list_columns(unit, curve_sensitivity_columns, '')
       case ('sweep.csv')
         call heading('with &sweep', 'One row for each value of the key: the value, then the ' // &
           'entries of &summary marked "in sweep.csv".')

@@ -1,0 +1,89 @@
+!> A problem with one of its parameters varied, and the rule that makes derivatives by it out of
+!> values at the varied problems: differences of sixth order, so that laws, shapes and bodies need
+!> no derivatives of their own.
+module variation
+  use kinds, only: wp
+  use failure, only: failure_t
+  use dimensionless_problem, only: problem_t
+  use interpolation, only: polynomial_slope
+  use problem_family, only: problem_family_t, parameter_t
+  implicit none
+  private
+  public :: variation_t, vary, along_path
+
+  !> Problems on either side of the one in hand, and the step between two as a part of the
+  !> parameter's scale. What differences of sixth order leave out, for h^-n about n^7/140 step^6, is
+  !> below what rounding makes of them, about 1e-16/step.
+  integer, parameter :: aside = 3
+  real(wp), parameter :: step = 1.0e-3_wp
+
+  type :: variation_t
+    type(parameter_t) :: parameter
+    !> By how much the parameter differs in each problem, SI units.
+    real(wp) :: offset(2*aside + 1) = 0
+    !> dQ/dp = sum(weight*Q); and by the five points in the middle, whose difference from it says
+    !> how good it is.
+    real(wp), dimension(2*aside + 1) :: weight = 0, coarser = 0
+    type(problem_t) :: problem(2*aside + 1)
+    !> By how much the place on the path differs (`continuation`); it is what is varied then.
+    real(wp) :: shift(2*aside + 1) = 0
+  end type variation_t
+
+contains
+
+  !> Varies parameter i. Where its range ends nearby, the problems are all on one side of it. Fails
+  !> where it can be varied on neither.
+  subroutine vary(family, i, varied, error)
+    class(problem_family_t), intent(in) :: family
+    integer, intent(in) :: i
+    type(variation_t), intent(out) :: varied
+    type(failure_t), allocatable, intent(out) :: error
+    real(wp) :: value(size(family%parameter))
+    integer :: shift, k
+
+    varied%parameter = family%parameter(i)
+    do shift = 0, 2
+      varied%offset = step*varied%parameter%scale*[(k + aside*merge(-1, shift, shift == 2), &
+        k=-aside, aside)]
+      do k = 1, size(varied%offset)
+        value = family%parameter%value
+        value(i) = value(i) + varied%offset(k)
+        call family%pose(value, varied%problem(k), error)
+        if (allocated(error)) exit
+      end do
+      if (.not. allocated(error)) exit
+    end do
+    if (allocated(error)) return
+    call find_rule(varied)
+  end subroutine vary
+
+  !> The path's coordinate varied, and not the problem.
+  type(variation_t) function along_path(problem) result(varied)
+    type(problem_t), intent(in) :: problem
+    integer :: k
+
+    varied%parameter%name = 'coordinate'
+    varied%offset = step*[(k, k=-aside, aside)]
+    varied%shift = varied%offset
+    do k = 1, size(varied%problem)
+      varied%problem(k) = problem
+    end do
+    call find_rule(varied)
+  end function along_path
+
+  !> The weights that belong to the offsets.
+  subroutine find_rule(varied)
+    type(variation_t), intent(inout) :: varied
+    real(wp) :: one(2*aside + 1)
+    integer :: k
+
+    do k = 1, size(one)
+      one = 0
+      one(k) = 1
+      varied%weight(k) = polynomial_slope(varied%offset, one, 0.0_wp)
+      if (k > 1 .and. k < size(one)) varied%coarser(k) = &
+        polynomial_slope(varied%offset(2:size(one) - 1), one(2:size(one) - 1), 0.0_wp)
+    end do
+  end subroutine find_rule
+
+end module variation

@@ -1,0 +1,181 @@
+!> How an equilibrium changes with a parameter of the problem, in SI units, at a fixed place on the
+!> path: at a fixed separation on the axis before contact, at a fixed contact radius in contact,
+!> where the separation at the edge is kept too. The place can be what is varied.
+!>
+!> The equations of the varied problems are evaluated at states that move with the parameter along a
+!> straight line, positions and separations being those of space. Along the right line the
+!> derivative of the equations vanishes; the Jacobian's factors correct the line until it does. So
+!> nothing is solved again but linear equations, and what is left is known.
+module state_sensitivity
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use equilibrium, only: control_t, state_t, equations_t, residual, at_edge_radius, far_gap
+  use frozen_jacobian, only: frozen_jacobian_t, freeze
+  use linear_algebra, only: solve
+  use path_coordinate, only: path_control
+  use variation, only: variation_t
+  implicit none
+  private
+  public :: change_t, place_on_path_t, differentiate, move
+
+  !> An equilibrium of the path, its mesh and its coordinate there (`continuation`).
+  type :: place_on_path_t
+    integer :: mesh = 1
+    real(wp) :: s = 0
+    type(state_t) :: state
+  end type place_on_path_t
+
+  !> Derivatives by a parameter in SI units: of the separations at the mesh's nodes and of h0 behind
+  !> them, and of the load.
+  type :: change_t
+    real(wp), allocatable :: separation(:)
+    real(wp) :: load = 0
+    !> What is left of the derivative of the equations, in the law's lengths for a change of the
+    !> parameter as large as itself.
+    real(wp) :: left = 0
+    !> By how much differences of lower order change the load's derivative.
+    real(wp) :: uncertainty = 0
+  end type change_t
+
+  !> Corrections. They end when they gain less than this factor: rounding rules then.
+  integer, parameter :: most_corrections = 5
+  real(wp), parameter :: gain = 0.1_wp
+
+contains
+
+  !> The derivatives of the equilibrium at a place by each varied parameter. found = .false.: the
+  !> Jacobian is singular, or a varied problem is not defined at the state. Renews the
+  !> factorisation.
+  subroutine differentiate(equations, place, frozen, varied, change, found)
+    type(equations_t), intent(inout) :: equations
+    type(place_on_path_t), intent(in) :: place
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(variation_t), intent(in) :: varied(:)
+    type(change_t), intent(out) :: change(:)
+    logical, intent(out) :: found
+    integer :: i
+
+    call freeze(equations, path_control(equations%problem, place%mesh, place%s), place%state, &
+      frozen)
+    found = frozen%factors%valid
+    do i = 1, size(varied)
+      if (.not. found) return
+      call find_line(equations, place, frozen, varied(i), change(i), found)
+    end do
+  end subroutine differentiate
+
+  !> The line of states along which the equations go on to hold.
+  subroutine find_line(equations, place, frozen, varied, change, found)
+    type(equations_t), intent(inout) :: equations
+    type(place_on_path_t), intent(in) :: place
+    type(frozen_jacobian_t), intent(in) :: frozen
+    type(variation_t), intent(in) :: varied
+    type(change_t), intent(out) :: change
+    logical, intent(out) :: found
+    type(change_t) :: trial
+    real(wp), allocatable :: defect(:)
+    integer :: round
+    logical :: finished
+
+    allocate (defect(size(place%state%gap) + 1))
+    allocate (trial%separation(size(defect)), source=0.0_wp)
+    do round = 0, most_corrections
+      call follow_line(equations, place, varied, trial, defect, found)
+      if (.not. found) return
+      trial%left = largest(defect, place%state)*varied%parameter%scale/equations%problem%length
+      if (round > 0 .and. .not. trial%left < change%left) exit
+      finished = round > 0 .and. .not. trial%left < gain*change%left
+      change = trial
+      if (finished) exit
+      call solve(frozen%factors, defect)
+      trial%separation = trial%separation - defect
+    end do
+  end subroutine find_line
+
+  !> The largest derivative of an equation; where gaps are far, as a part of them, since there is
+  !> rounding and no force.
+  pure real(wp) function largest(defect, state)
+    real(wp), intent(in) :: defect(:)
+    type(state_t), intent(in) :: state
+
+    largest = maxval(abs(defect)/max(1.0_wp, [state%gap, state%axis_gap]/far_gap))
+  end function largest
+
+  !> Derivatives, along a line of states, of the equations (lengths) and of the load.
+  subroutine follow_line(equations, place, varied, line, defect, found)
+    type(equations_t), intent(inout) :: equations
+    type(place_on_path_t), intent(in) :: place
+    type(variation_t), intent(in) :: varied
+    type(change_t), intent(inout) :: line
+    real(wp), intent(out) :: defect(:)
+    logical, intent(out) :: found
+    type(problem_t) :: own
+    type(state_t) :: moved
+    real(wp), dimension(size(defect)) :: left
+    real(wp) :: coarser
+    integer :: k
+
+    own = equations%problem
+    defect = 0
+    line%load = 0
+    coarser = 0
+    found = .true.
+    do k = 1, size(varied%offset)
+      if (.not. abs(varied%weight(k)) > 0) cycle
+      call move(equations, own, place, varied, k, line, moved, left)
+      found = found .and. moved%residual < huge(1.0_wp)
+      defect = defect + varied%weight(k)*left
+      associate (load => moved%load*varied%problem(k)%load)
+        line%load = line%load + varied%weight(k)*load
+        coarser = coarser + varied%coarser(k)*load
+      end associate
+    end do
+    line%uncertainty = abs(line%load - coarser)
+    equations%problem = own
+  end subroutine follow_line
+
+  !> The state on a line that belongs to the k-th varied problem, which becomes that of the
+  !> equations, and what is left of these [m]. own: the problem of the place.
+  subroutine move(equations, own, place, varied, k, line, moved, left)
+    type(equations_t), intent(inout) :: equations
+    type(problem_t), intent(in) :: own
+    type(place_on_path_t), intent(in) :: place
+    type(variation_t), intent(in) :: varied
+    integer, intent(in) :: k
+    type(change_t), intent(in) :: line
+    type(state_t), intent(inout) :: moved
+    real(wp), intent(out) :: left(:)
+    type(control_t) :: control
+    integer :: n
+
+    n = size(place%state%gap)
+    equations%problem = varied%problem(k)
+    associate (problem => varied%problem(k), law => varied%problem(k)%law)
+      control = control_of(own, problem, place%mesh, place%s + varied%shift(k))
+      call residual(equations, control, law%gap_of(own%law%separation_of([place%state%gap, &
+        place%state%h0]) + varied%offset(k)*line%separation), left, moved)
+      if (control%kind == at_edge_radius) then
+        ! In the equation of the edge the separation there stays.
+        left(n + 1) = left(n + 1) + law%edge_gap - law%gap_of(own%law%separation_of( &
+          own%law%edge_gap))
+      end if
+      left = problem%length*left
+    end associate
+  end subroutine move
+
+  !> The control that prescribes a coordinate of the path of a problem, in the units of another.
+  pure type(control_t) function control_of(own, other, mesh, s) result(control)
+    type(problem_t), intent(in) :: own, other
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+
+    control = path_control(own, mesh, s)
+    if (control%kind == at_edge_radius) then
+      control%value = control%value*own%lateral/other%lateral
+    else
+      control%value = other%law%gap_of(own%law%separation_of(control%value))
+      control%scale = control%scale*own%lateral/other%lateral
+    end if
+  end function control_of
+
+end module state_sensitivity
