@@ -7,7 +7,7 @@ module number_columns
   use deck_source, only: source_t, load_source
   implicit none
   private
-  public :: columns_t, read_columns
+  public :: columns_t, read_columns, uncommented, between
 
   !> The file; its numbers, and where in its text each row stands.
   type :: columns_t

@@ -1,0 +1,128 @@
+!> The noise of a signal, from samples that would be a straight line without it. Neighbours are
+!> correlated where an instrument filters: a sample is then foretold from some before it, and what is
+!> left of it is white (autoregression; Levinson, 1947, and Durbin, 1960).
+module noise
+  use kinds, only: wp
+  implicit none
+  private
+  public :: noise_t, white_noise, noise_of, whiten
+
+  !> Most samples from which another is foretold.
+  integer, parameter :: longest = 8
+
+  !> Standard deviation; correlation of samples so many apart; how many of those before a sample tell
+  !> something of it, by what weights (of the nearest first, column k where there are k), and what
+  !> then is left of the standard deviation.
+  type :: noise_t
+    real(wp) :: deviation = 0, correlation(0:longest) = 0
+    integer :: order = 0
+    real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
+  end type noise_t
+
+contains
+
+  !> Noise without correlation.
+  pure type(noise_t) function white_noise(deviation) result(noise)
+    real(wp), intent(in) :: deviation
+
+    noise%deviation = deviation
+    noise%correlation(0) = 1
+    noise%left = deviation
+  end function white_noise
+
+  !> The noise of a signal at equal steps, of which each run of samples is a straight line in z;
+  !> run(i) is the number of the run of sample i.
+  pure function noise_of(z, signal, run) result(noise)
+    real(wp), intent(in) :: z(:), signal(:)
+    integer, intent(in) :: run(:)
+    type(noise_t) :: noise
+    real(wp) :: r(size(z)), covariance(0:longest)
+    integer :: k, i, n
+
+    do i = minval(run), maxval(run)
+      where (run == i) r = off_line(z, signal, run == i)
+    end do
+    n = size(r)
+    do k = 0, longest
+      covariance(k) = sum(r(1 + k:)*r(:n - k), run(1 + k:) == run(:n - k))/n
+    end do
+    ! Each line took two unknowns.
+    noise = white_noise(sqrt(covariance(0)*n/max(1, n - 2*(maxval(run) - minval(run) + 1))))
+    if (.not. covariance(0) > 0) return
+    noise%correlation = covariance/covariance(0)
+    call find_weights(noise, n)
+  end function noise_of
+
+  !> What is left of the samples in `mask` beside their straight line.
+  pure function off_line(z, signal, mask) result(r)
+    real(wp), intent(in) :: z(:), signal(:)
+    logical, intent(in) :: mask(:)
+    real(wp) :: r(size(z)), middle(2)
+
+    middle = [sum(z, mask), sum(signal, mask)]/max(1, count(mask))
+    r = signal - middle(2)
+    r = r - (z - middle(1))*sum((z - middle(1))*r, mask)/ &
+      max(sum((z - middle(1))**2, mask), tiny(1.0_wp))
+  end function off_line
+
+  !> The weights of all orders from the correlations, and the order that is worth its unknowns: the
+  !> one with the least n ln(left^2) + 2 order (Akaike, 1974).
+  pure subroutine find_weights(noise, n)
+    type(noise_t), intent(inout) :: noise
+    integer, intent(in) :: n
+    real(wp) :: reflection, left, gain, best
+    integer :: k
+
+    left = 1
+    best = 0
+    associate (weight => noise%weight, rho => noise%correlation)
+      do k = 1, longest
+        reflection = rho(k)
+        if (k > 1) reflection = rho(k) - dot_product(weight(:k - 1, k - 1), rho(k - 1:1:-1))
+        reflection = reflection/left
+        if (k > 1) weight(:k - 1, k) = weight(:k - 1, k - 1) - reflection*weight(k - 1:1:-1, k - 1)
+        weight(k, k) = reflection
+        left = left*(1 - reflection**2)
+        noise%left(k) = noise%deviation*sqrt(left)
+        gain = n*log(left) + 2*k
+        if (gain >= best) cycle
+        best = gain
+        noise%order = k
+      end do
+    end associate
+  end subroutine find_weights
+
+  !> Makes columns of numbers, one a sample, such that noise in them is white and of deviation 1;
+  !> samples of different runs are not correlated.
+  pure subroutine whiten(noise, run, column)
+    type(noise_t), intent(in) :: noise
+    integer, intent(in) :: run(:)
+    real(wp), intent(inout) :: column(:, :)
+    real(wp) :: before(noise%order, size(column, 2))
+    integer :: i, j, k, known
+
+    known = 0
+    do i = 1, size(run)
+      if (i > 1) then
+        if (run(i) /= run(i - 1)) known = 0
+      end if
+      associate (w => noise%weight)
+        do j = 1, size(column, 2)
+          block
+            real(wp) :: raw
+            raw = column(i, j)
+            column(i, j) = raw
+            do k = 1, known
+              column(i, j) = column(i, j) - w(k, known)*before(k, j)
+            end do
+            column(i, j) = column(i, j)/noise%left(known)
+            before(2:, j) = before(:noise%order - 1, j)
+            if (noise%order > 0) before(1, j) = raw
+          end block
+        end do
+      end associate
+      known = min(known + 1, noise%order)
+    end do
+  end subroutine whiten
+
+end module noise
