@@ -196,18 +196,20 @@ contains
     self%values(row)%status = assumed
   end subroutine assume_text
 
-  !> Row of the key `path` ("force.hamaker"). Fails where the table has no such key, the key does
-  !> not hold numbers or the deck lacks its group; `error` then says so without a place in the file,
-  !> which is the caller's to add.
-  subroutine find_number(self, path, row, error)
+  !> Row of the key `path` ("force.hamaker"), and the term that it names of a list
+  !> ("hydration.pressure(2)"); 0: none. Fails where the table has no such key, the key does not hold
+  !> numbers or so many, or the deck lacks its group; `error` then says so without a place in the
+  !> file, which is the caller's to add.
+  subroutine find_number(self, path, row, term, error)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: path
-    integer, intent(out) :: row
+    integer, intent(out) :: row, term
     type(failure_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: name, group
     integer :: dot
 
     name = trim(lower(path))
+    call take_off_term(name, term)
     dot = index(name // '.', '.')
     group = name(:dot - 1)
     row = 0
@@ -221,8 +223,32 @@ contains
                 listing(numbers_of(self), '', ''))
     else if (.not. in_use(self, group)) then
       call fail(error, bad_input, 'the deck has no &' // group // ' for ' // quoted(name))
+    else if (term > terms_in(self%values(row))) then
+      call fail(error, bad_input, quoted(name) // ' has no such term as ' // quoted(clip(path)))
     end if
   end subroutine find_number
+
+  !> Takes "(2)" off the end of a name; 0 where there is none.
+  subroutine take_off_term(name, term)
+    character(len=:), allocatable, intent(inout) :: name
+    integer, intent(out) :: term
+    integer :: opens, status
+
+    term = 0
+    opens = index(name, '(')
+    if (opens < 2 .or. index(name, ')') /= len(name)) return
+    read (name(opens + 1:len(name) - 1), '(i9)', iostat=status) term
+    if (status /= 0 .or. term < 1) term = huge(term)
+    name = name(:opens - 1)
+  end subroutine take_off_term
+
+  !> How many numbers a key holds.
+  pure integer function terms_in(value)
+    type(value_t), intent(in) :: value
+
+    terms_in = 0
+    if (allocated(value%reals)) terms_in = size(value%reals)
+  end function terms_in
 
   !> Whether the deck has a group or its defaults always hold.
   pure logical function in_use(self, group)
@@ -246,17 +272,17 @@ contains
     end do
   end function numbers_of
 
-  !> Gives the key `path` another value (a list: this one value), as if the deck said so. Fails as
-  !> `find_number` does and where the value is out of range.
+  !> Gives the key `path` another value (a list: this one value, or one of its terms), as if the deck
+  !> said so. Fails as `find_number` does and where the value is out of range.
   subroutine set_real(self, path, value, error)
     class(deck_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     real(wp), intent(in) :: value
     type(failure_t), allocatable, intent(out) :: error
-    integer :: row
+    integer :: row, term
     logical :: refused
 
-    call self%find_number(path, row, error)
+    call self%find_number(path, row, term, error)
     if (allocated(error)) return
     associate (spec => self%specs(row), stored => self%values(row))
       refused = outside(spec, value)
@@ -269,7 +295,11 @@ contains
         return
       end if
       if (spec%kind == integer_value) stored%whole = nint(value)
-      if (spec%kind /= integer_value) stored%reals = [value]
+      if (term > 0) then
+        stored%reals(term) = value
+      else if (spec%kind /= integer_value) then
+        stored%reals = [value]
+      end if
       stored%status = given
     end associate
   end subroutine set_real

@@ -4,11 +4,9 @@ module scene
   use failure, only: failure_t
   use text, only: brief, listing
   use deck, only: deck_t, read_deck
-  use laws, only: read_laws
-  use shapes, only: read_shapes
   use scene_keys, only: keys_of_scene
   use scene_groups, only: scene_t
-  use bodies_group, only: take_bodies
+  use scene_problem, only: take_model
   use cycle_groups, only: take_loading, take_unloading
   use path_group, only: take_path
   use device_group, only: take_device
@@ -59,10 +57,7 @@ contains
     scene%deck = deck
     call deck%get('scene', 'title', scene%title)
     if (allocated(error)) return
-    call take_bodies(scene, error)
-    call read_laws(scene%deck, scene%law, error)
-    if (allocated(scene%law)) &
-      call read_shapes(scene%deck, scene%law%length, scene%shape, error)
+    call take_model(scene, error)
     call take_loading(scene, error)
     ! The groups below take their defaults from &loading and are checked against it.
     if (allocated(error)) return
@@ -110,11 +105,11 @@ contains
     type(scene_t) :: variant
     character(len=:), allocatable :: key
     real(wp) :: ends(2)
-    integer :: i, row
+    integer :: i, row, term
 
     trial = scene%deck
     call trial%drop_group('sweep')
-    call trial%find_number(scene%sweep%key, row, trouble)
+    call trial%find_number(scene%sweep%key, row, term, trouble)
     if (allocated(trouble)) then
       call scene%deck%mistake('sweep', 'key', trouble%message, error)
       return

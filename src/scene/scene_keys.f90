@@ -3,9 +3,7 @@
 !> where it is read.
 module scene_keys
   use deck_keys, only: key_spec, group, text_key
-  use laws, only: keys_of_laws
-  use shapes, only: keys_of_shapes
-  use bodies_group, only: bodies_keys
+  use scene_problem, only: keys_of_model
   use cycle_groups, only: cycle_keys
   use path_group, only: path_keys
   use device_group, only: device_keys
@@ -31,9 +29,7 @@ contains
       group('scene', 'What the calculation is called.'), &
       text_key('scene', 'title', 200, 'Title, repeated in every file of results.', &
                otherwise='none'), &
-      bodies_keys(), &
-      keys_of_shapes(), &
-      keys_of_laws(), &
+      keys_of_model(), &
       cycle_keys(), &
       path_keys(), &
       device_keys(), &

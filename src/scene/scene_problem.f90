@@ -1,12 +1,35 @@
-!> The problem without units that a scene poses.
+!> The problem without units that a scene poses: bodies, forces and shape of its deck.
 module scene_problem
+  use failure, only: failure_t
   use dimensionless_problem, only: problem_t, new_problem
+  use deck_keys, only: key_spec
+  use laws, only: keys_of_laws, read_laws
+  use shapes, only: keys_of_shapes, read_shapes
+  use bodies_group, only: bodies_keys, take_bodies
   use scene_groups, only: scene_t
   implicit none
   private
-  public :: problem_of
+  public :: keys_of_model, take_model, problem_of
 
 contains
+
+  !> The rows of bodies, shapes and forces in the table of keys.
+  pure function keys_of_model() result(specs)
+    type(key_spec), allocatable :: specs(:)
+
+    specs = [bodies_keys(), keys_of_shapes(), keys_of_laws()]
+  end function keys_of_model
+
+  !> Bodies, forces and shape of the scene's deck.
+  subroutine take_model(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+
+    call take_bodies(scene, error)
+    call read_laws(scene%deck, scene%law, error)
+    if (allocated(scene%law)) &
+      call read_shapes(scene%deck, scene%law%length, scene%shape, error)
+  end subroutine take_model
 
   !> The problem that a scene poses.
   function problem_of(scene) result(problem)

@@ -1,0 +1,29 @@
+!> Problems that differ in the values of some parameters: what a derivative by these needs, or a fit.
+module problem_family
+  use kinds, only: wp
+  use failure, only: failure_t
+  use dimensionless_problem, only: problem_t
+  implicit none
+  private
+  public :: problem_family_t
+
+  type, abstract :: problem_family_t
+    !> The parameters in SI units where they belong to the problem in hand, and how large a change
+    !> of each is one of its own size: where it is not zero, that is its value.
+    real(wp), allocatable :: value(:), scale(:)
+  contains
+    !> The problem with other values of the parameters; fails where one is not allowed.
+    procedure(pose_problem), deferred :: pose
+  end type problem_family_t
+
+  abstract interface
+    subroutine pose_problem(self, value, problem, error)
+      import :: problem_family_t, problem_t, failure_t, wp
+      class(problem_family_t), intent(in) :: self
+      real(wp), intent(in) :: value(:)
+      type(problem_t), intent(out) :: problem
+      type(failure_t), allocatable, intent(out) :: error
+    end subroutine pose_problem
+  end interface
+
+end module problem_family

@@ -1,0 +1,63 @@
+!> A problem with one of its parameters varied, and the rule that makes derivatives by it out of
+!> values at the varied problems: differences of sixth order, so that laws, shapes and bodies need
+!> no derivatives of their own.
+module variation
+  use kinds, only: wp
+  use failure, only: failure_t
+  use dimensionless_problem, only: problem_t
+  use interpolation, only: polynomial_slope
+  use problem_family, only: problem_family_t
+  implicit none
+  private
+  public :: variation_t, vary
+
+  !> Problems on either side of the one in hand, and the step between two as a part of the
+  !> parameter's scale. What differences of sixth order leave out, for h^-n about n^7/140 step^6, is
+  !> below what rounding makes of them, about 1e-16/step.
+  integer, parameter :: aside = 3
+  real(wp), parameter :: step = 1.0e-3_wp
+
+  type :: variation_t
+    !> The parameter's scale, and by how much the parameter differs in each problem, SI units.
+    real(wp) :: scale = 1, offset(2*aside + 1) = 0
+    !> dQ/dp = sum(weight*Q); and by the five points in the middle, whose difference from it says
+    !> how good it is.
+    real(wp), dimension(2*aside + 1) :: weight = 0, coarser = 0
+    type(problem_t) :: problem(2*aside + 1)
+  end type variation_t
+
+contains
+
+  !> Varies parameter i. Where its range ends nearby, the problems are all on one side of it. Fails
+  !> where it can be varied on neither.
+  subroutine vary(family, i, varied, error)
+    class(problem_family_t), intent(in) :: family
+    integer, intent(in) :: i
+    type(variation_t), intent(out) :: varied
+    type(failure_t), allocatable, intent(out) :: error
+    real(wp) :: value(size(family%value)), one(2*aside + 1)
+    integer :: shift, k
+
+    varied%scale = family%scale(i)
+    do shift = 0, 2
+      varied%offset = step*family%scale(i)*[(k + aside*merge(-1, shift, shift == 2), &
+        k=-aside, aside)]
+      do k = 1, size(varied%offset)
+        value = family%value
+        value(i) = value(i) + varied%offset(k)
+        call family%pose(value, varied%problem(k), error)
+        if (allocated(error)) exit
+      end do
+      if (.not. allocated(error)) exit
+    end do
+    if (allocated(error)) return
+    do k = 1, size(one)
+      one = 0
+      one(k) = 1
+      varied%weight(k) = polynomial_slope(varied%offset, one, 0.0_wp)
+      if (k > 1 .and. k < size(one)) varied%coarser(k) = &
+        polynomial_slope(varied%offset(2:size(one) - 1), one(2:size(one) - 1), 0.0_wp)
+    end do
+  end subroutine vary
+
+end module variation

@@ -1,0 +1,96 @@
+!> How the curve of all equilibria changes with parameters of the problem: derivatives of h0 and load
+!> at every node of the curve (`path_curve`) at a fixed place x on it, in SI units. At a fixed h0, or
+!> position of a drive, the place moves; `held` takes that into account.
+module path_sensitivity
+  use kinds, only: wp
+  use equilibrium, only: state_t, equations_t
+  use frozen_jacobian, only: frozen_jacobian_t
+  use known_path, only: known_path_t
+  use path_curve, only: curve_t, curve_node_t, no_mesh
+  use undeformed, only: load_undeformed
+  use variation, only: variation_t
+  use state_sensitivity, only: change_t, differentiate
+  implicit none
+  private
+  public :: rate_t, rates_along, held
+
+  !> Derivatives of h0 [m] and load [N] by a parameter; what is left of the equations' derivative
+  !> (`state_sensitivity`); by how much a coarser rule changes that of the load.
+  type :: rate_t
+    real(wp) :: h0 = 0, load = 0, left = 0, uncertainty = 0
+  end type rate_t
+
+contains
+
+  !> rate(i, j): by parameter i at node j of the curve, at fixed x. found = .false.: at some node
+  !> they do not exist.
+  subroutine rates_along(equations, known, curve, varied, rate, found)
+    type(equations_t), intent(inout) :: equations
+    type(known_path_t), intent(in) :: known
+    type(curve_t), intent(in) :: curve
+    type(variation_t), intent(in) :: varied(:)
+    type(rate_t), allocatable, intent(out) :: rate(:, :)
+    logical, intent(out) :: found
+    type(frozen_jacobian_t) :: frozen
+    type(change_t) :: change(size(varied))
+    type(state_t) :: state
+    real(wp) :: s
+    integer :: i, j
+
+    allocate (rate(size(varied), size(curve%node)))
+    found = .true.
+    do j = 1, size(curve%node)
+      associate (node => curve%node(j))
+        if (node%mesh == no_mesh) then
+          do i = 1, size(varied)
+            rate(i, j) = rate_undeformed(equations, varied(i), node%h0)
+          end do
+          cycle
+        end if
+        call known%path%seen_on(node%point, node%mesh, state, s, found)
+        if (found) call differentiate(equations, node%mesh, s, state, frozen, varied, change, found)
+        if (.not. found) return
+        do i = 1, size(varied)
+          rate(i, j) = rate_t(change(i)%separation(size(state%gap) + 1), change(i)%load, &
+            change(i)%left, change(i)%uncertainty)
+        end do
+      end associate
+    end do
+  end subroutine rates_along
+
+  !> Of bodies that do not deform, at a fixed h0.
+  type(rate_t) function rate_undeformed(equations, varied, h0) result(rate)
+    type(equations_t), intent(in) :: equations
+    type(variation_t), intent(in) :: varied
+    real(wp), intent(in) :: h0
+    real(wp) :: load(size(varied%offset))
+    integer :: k
+
+    do k = 1, size(load)
+      associate (problem => varied%problem(k))
+        load(k) = problem%load*load_undeformed(problem, &
+          problem%law%gap_of(equations%problem%law%separation_of(h0)))
+      end associate
+    end do
+    rate%load = sum(varied%weight*load)
+    rate%uncertainty = abs(rate%load - sum(varied%coarser*load))
+  end function rate_undeformed
+
+  !> The rate at a fixed value of weights(1) h0 + weights(2) load, SI units, in place of a fixed x:
+  !> at h0 with 1, 0; at the position of a drive of stiffness k with 1, -1/k; under a load with 0, 1.
+  !> Infinite where that value turns round along the path.
+  pure type(rate_t) function held(equations, node, rate, weights)
+    type(equations_t), intent(in) :: equations
+    type(curve_node_t), intent(in) :: node
+    type(rate_t), intent(in) :: rate
+    real(wp), intent(in) :: weights(2)
+    real(wp) :: slope(2), shift
+
+    slope = [node%h0_slope*equations%problem%length, node%load_slope*equations%problem%load]
+    shift = -dot_product(weights, [rate%h0, rate%load])/dot_product(weights, slope)
+    held = rate
+    held%h0 = rate%h0 + shift*slope(1)
+    held%load = rate%load + shift*slope(2)
+  end function held
+
+end module path_sensitivity

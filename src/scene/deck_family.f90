@@ -1,0 +1,119 @@
+!> The problems of a deck in which some numbers are replaced. The deck is read again with each, so
+!> that every law, shape and unit takes part without code of its own.
+module deck_family
+  use kinds, only: wp
+  use failure, only: failure_t, fail, bad_input
+  use text, only: quoted, listing
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, real_value, real_list
+  use dimensionless_problem, only: problem_t
+  use problem_family, only: problem_family_t
+  use scene_groups, only: scene_t
+  use scene_problem, only: keys_of_model, take_model, problem_of
+  implicit none
+  private
+  public :: deck_family_t, key_name_t, new_deck_family
+
+  !> A key as 'group.key', a term of a list as 'group.key(2)'.
+  type :: key_name_t
+    character(len=:), allocatable :: text
+  end type key_name_t
+
+  type, extends(problem_family_t) :: deck_family_t
+    type(deck_t) :: deck
+    type(key_name_t), allocatable :: key(:)
+  contains
+    procedure :: pose
+  end type deck_family_t
+
+contains
+
+  !> The problems of a deck with other values of the keys. Fails, with a message that has no place in
+  !> the file, where a key is no number of bodies, shape or forces, or has no value in the deck.
+  subroutine new_deck_family(deck, key, family, error)
+    type(deck_t), intent(in) :: deck
+    type(key_name_t), intent(in) :: key(:)
+    type(deck_family_t), intent(out) :: family
+    type(failure_t), allocatable, intent(out) :: error
+    integer :: i
+
+    family%deck = deck
+    family%key = key
+    allocate (family%value(size(key)), family%scale(size(key)))
+    do i = 1, size(key)
+      call take_parameter(deck, key(i)%text, family%value(i), family%scale(i), error)
+      if (allocated(error)) return
+    end do
+  end subroutine new_deck_family
+
+  !> The problem of the deck with these values.
+  subroutine pose(self, value, problem, error)
+    class(deck_family_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    type(problem_t), intent(out) :: problem
+    type(failure_t), allocatable, intent(out) :: error
+    type(scene_t) :: scene
+    integer :: i
+
+    scene%deck = self%deck
+    do i = 1, size(value)
+      call scene%deck%set_real(self%key(i)%text, value(i), error)
+      if (allocated(error)) return
+    end do
+    call take_model(scene, error)
+    if (.not. allocated(error)) problem = problem_of(scene)
+  end subroutine pose
+
+  !> The value of a parameter, and the size of a change: itself or, of a pure number that is 0, one.
+  subroutine take_parameter(deck, key, value, scale, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: key
+    real(wp), intent(out) :: value, scale
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: names
+    integer :: row, term
+
+    value = 0
+    scale = 1
+    names = parameters_of(deck)
+    if (index(names // ' ', ' ' // key // ' ') == 0) then
+      call fail(error, bad_input, quoted(key) // ' is not a number of bodies, shape or forces ' // &
+        'that this deck has; allowed: ' // listing(names, '', ''))
+      return
+    end if
+    call deck%find_number(key, row, term, error)
+    if (allocated(error)) return
+    value = deck%values(row)%reals(max(1, term))
+    if (abs(value) > 0) then
+      scale = abs(value)
+    else if (deck%specs(row)%unit /= '') then
+      call fail(error, bad_input, quoted(key) // ' is 0: it has no size of which a change would ' // &
+        'be a part')
+    end if
+  end subroutine take_parameter
+
+  !> Blank-separated names of all numbers of bodies, shape and forces that a deck has.
+  function parameters_of(deck) result(names)
+    type(deck_t), intent(in) :: deck
+    character(len=:), allocatable :: names
+    type(key_spec), allocatable :: specs(:)
+    character(len=12) :: term
+    integer :: row, i, k
+
+    names = ''
+    specs = keys_of_model()
+    do i = 1, size(specs)
+      if (all(specs(i)%kind /= [real_value, real_list])) cycle
+      if (.not. deck%has_group(trim(specs(i)%group))) cycle
+      row = deck%row_of(trim(specs(i)%group), trim(specs(i)%key))
+      if (.not. allocated(deck%values(row)%reals)) cycle
+      do k = 1, size(deck%values(row)%reals)
+        names = names // ' ' // trim(specs(i)%group) // '.' // trim(specs(i)%key)
+        if (size(deck%values(row)%reals) == 1) cycle
+        write (term, '(a, i0, a)') '(', k, ')'
+        names = names // trim(term)
+      end do
+    end do
+  end function parameters_of
+
+end module deck_family
