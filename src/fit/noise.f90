@@ -16,7 +16,7 @@ module noise
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
-    real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
+    real(wp) :: weight(0:longest, 0:longest) = 0, left(0:longest) = 1
   end type noise_t
 
 contains
@@ -77,10 +77,8 @@ contains
     best = 0
     associate (weight => noise%weight, rho => noise%correlation)
       do k = 1, longest
-        reflection = rho(k)
-        if (k > 1) reflection = rho(k) - dot_product(weight(:k - 1, k - 1), rho(k - 1:1:-1))
-        reflection = reflection/left
-        if (k > 1) weight(:k - 1, k) = weight(:k - 1, k - 1) - reflection*weight(k - 1:1:-1, k - 1)
+        reflection = (rho(k) - dot_product(weight(1:k - 1, k - 1), rho(k - 1:1:-1)))/left
+        weight(1:k - 1, k) = weight(1:k - 1, k - 1) - reflection*weight(k - 1:1:-1, k - 1)
         weight(k, k) = reflection
         left = left*(1 - reflection**2)
         noise%left(k) = noise%deviation*sqrt(left)
@@ -98,30 +96,17 @@ contains
     type(noise_t), intent(in) :: noise
     integer, intent(in) :: run(:)
     real(wp), intent(inout) :: column(:, :)
-    real(wp) :: before(noise%order, size(column, 2))
-    integer :: i, j, k, known
+    real(wp) :: raw(size(column, 2), 0:longest)
+    integer :: i, known
 
     known = 0
+    raw = 0
     do i = 1, size(run)
-      if (i > 1) then
-        if (run(i) /= run(i - 1)) known = 0
-      end if
-      associate (w => noise%weight)
-        do j = 1, size(column, 2)
-          block
-            real(wp) :: raw
-            raw = column(i, j)
-            column(i, j) = raw
-            do k = 1, known
-              column(i, j) = column(i, j) - w(k, known)*before(k, j)
-            end do
-            column(i, j) = column(i, j)/noise%left(known)
-            before(2:, j) = before(:noise%order - 1, j)
-            if (noise%order > 0) before(1, j) = raw
-          end block
-        end do
-      end associate
-      known = min(known + 1, noise%order)
+      if (i > 1) known = merge(min(known + 1, noise%order), 0, run(i) == run(i - 1))
+      raw(:, 1:) = raw(:, :longest - 1)
+      raw(:, 0) = column(i, :)
+      column(i, :) = (raw(:, 0) - matmul(raw(:, 1:known), noise%weight(1:known, known)))/ &
+        noise%left(known)
     end do
   end subroutine whiten
 

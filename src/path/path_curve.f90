@@ -50,7 +50,7 @@ module path_curve
     procedure :: slope
     procedure :: begin_of
     procedure :: end_of
-    procedure, private :: support
+    procedure :: support
   end type curve_t
 
 contains

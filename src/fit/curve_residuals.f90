@@ -1,0 +1,384 @@
+!> What a model with given unknowns leaves of a measured curve:
+!>
+!>     signal = F(Z)/(k s) + baseline of the way + slope z ,   Z = facing (z - contact point) ,
+!>
+!> k the spring's stiffness, s the detector's sensitivity. Baselines and slope enter linearly: the
+!> residuals are what is left when the best ones are taken off (variable projection; Golub and
+!> Pereyra, 1973), and since no unknown changes their columns the derivatives are projected as well.
+!> Samples are made white first. Where a jump starts is a datum of its own, and so is what is known of
+!> an unknown before; no sample within a jump counts.
+module curve_residuals
+  use kinds, only: wp
+  use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring
+  use measured_curve, only: measured_t
+  use measured_jumps, only: measured_jump_t
+  use noise, only: noise_t, whiten
+  use force_model, only: force_model_t, response_t, inward, outward
+  use force_branch, only: load_at_t
+  use least_squares, only: residuals_t
+  use unknowns, only: value_of, value_by_free, value_by_fitted, fitted_of
+  implicit none
+  private
+  public :: curve_residuals_t
+
+  !> What a jump that the model does not have counts, in standard deviations.
+  real(wp), parameter :: missed = 10
+
+  type, extends(residuals_t) :: curve_residuals_t
+    class(force_model_t), pointer :: model => null()
+    type(measured_t) :: measured
+    type(noise_t) :: noise
+    type(measured_jump_t) :: jump(2)
+    type(unknown_t), allocatable :: unknown(:)
+    !> Spring, detector and contact point where they are no unknowns; the force in the file is that
+    !> of a spring of `file_spring`, and then the sensitivity is 1/file_spring.
+    real(wp) :: spring = 1, sensitivity = 1, contact_point = 0
+    !> The samples that count; the run that each is of, and the side of its jump; see `load_on`.
+    integer, allocatable :: sample(:), run(:), side(:), way(:)
+    !> Columns of baselines and slope, of all samples, and, white and orthonormal, of those that
+    !> count; the triangle that leads from the latter to the former.
+    real(wp), allocatable :: column(:, :), orthonormal(:, :), triangle(:, :)
+    !> Loads up to this are wanted of the model [N].
+    real(wp) :: largest = 0
+    type(response_t), private :: response
+    real(wp), allocatable, private :: asked(:)
+    logical, private :: has_rates = .false.
+  contains
+    procedure :: take_samples
+    procedure :: rows
+    procedure :: values
+    procedure :: residuals_of
+    procedure :: reach
+    procedure :: evaluate
+    procedure :: differentiate
+    procedure :: jacobian_of
+    procedure :: split
+    procedure, private :: ask, number_of, signal_of
+  end type curve_residuals_t
+
+contains
+
+  !> Which samples count, every `every`-th, and the columns that are linear in them.
+  subroutine take_samples(self, every)
+    class(curve_residuals_t), intent(inout) :: self
+    integer, intent(in) :: every
+    integer :: i, n, k
+
+    associate (data => self%measured)
+      n = size(data%z)
+      self%way = merge(inward, outward, data%inward)
+      allocate (self%side(n), self%run(n), source=0)
+      do i = 1, n
+        associate (jump => self%jump(self%way(i)))
+          if (jump%before == 0) cycle
+          if (i <= jump%before) self%side(i) = 1
+          if (i >= jump%after) self%side(i) = 2
+          if (i > jump%before .and. i < jump%after) self%side(i) = -1
+        end associate
+      end do
+      self%run = 3*self%way + self%side
+      self%sample = pack([(i, i=1, n)], self%side >= 0 .and. [(mod(i, every) == 0, i=1, n)])
+      k = count([any(data%inward), .not. all(data%inward)])
+      allocate (self%column(n, k + 1))
+      self%column(:, 1) = merge(1.0_wp, 0.0_wp, data%inward .eqv. data%inward(1))
+      self%column(:, k) = merge(1.0_wp, 0.0_wp, data%inward .eqv. data%inward(n))
+      self%column(:, k + 1) = data%z - sum(data%z)/n
+      self%column(:, k + 1) = self%column(:, k + 1)/maxval(abs(self%column(:, k + 1)))
+    end associate
+    self%orthonormal = self%column(self%sample, :)
+    call whiten(self%noise, self%run(self%sample), self%orthonormal)
+    call orthonormalise(self%orthonormal, self%triangle)
+  end subroutine take_samples
+
+  !> Gram and Schmidt, twice, so that rounding does not count: a = q r.
+  pure subroutine orthonormalise(q, r)
+    real(wp), intent(inout) :: q(:, :)
+    real(wp), allocatable, intent(out) :: r(:, :)
+    real(wp) :: part
+    integer :: i, j, pass
+
+    allocate (r(size(q, 2), size(q, 2)), source=0.0_wp)
+    do j = 1, size(q, 2)
+      do pass = 1, 2
+        do i = 1, j - 1
+          part = dot_product(q(:, i), q(:, j))
+          q(:, j) = q(:, j) - part*q(:, i)
+          r(i, j) = r(i, j) + part
+        end do
+      end do
+      r(j, j) = norm2(q(:, j))
+      q(:, j) = q(:, j)/r(j, j)
+    end do
+  end subroutine orthonormalise
+
+  !> Number of residuals: samples, jumps that the theory speaks of, what was known before.
+  pure integer function rows(self)
+    class(curve_residuals_t), intent(in) :: self
+
+    rows = size(self%sample) + count(self%jump%before > 0) + count(self%unknown%prior > 0)
+  end function rows
+
+  !> The values of the unknowns.
+  pure function values(self, x) result(value)
+    class(curve_residuals_t), intent(in) :: self
+    real(wp), intent(in) :: x(:)
+    real(wp) :: value(size(x))
+    integer :: i
+
+    value = [(value_of(self%unknown(i), x(i)), i=1, size(x))]
+  end function values
+
+  subroutine evaluate(self, x, residual, found)
+    class(curve_residuals_t), intent(inout) :: self
+    real(wp), intent(in) :: x(:)
+    real(wp), intent(out) :: residual(:)
+    logical, intent(out) :: found
+
+    call self%residuals_of(self%values(x), residual, found)
+  end subroutine evaluate
+
+  !> The residuals at values of the unknowns.
+  subroutine residuals_of(self, value, residual, found)
+    class(curve_residuals_t), intent(inout) :: self
+    real(wp), intent(in) :: value(:)
+    real(wp), intent(out) :: residual(:)
+    logical, intent(out) :: found
+    real(wp) :: left(size(self%sample), 1)
+    integer :: i, n
+
+    call self%ask(value, .false., found)
+    if (.not. found) return
+    associate (s => self%sample)
+      left(:, 1) = self%measured%signal(s) - self%signal_of(value, s)
+      call whiten(self%noise, self%run(s), left)
+    end associate
+    n = size(self%sample)
+    residual(:n) = left(:, 1) - matmul(self%orthonormal, &
+      matmul(left(:, 1), self%orthonormal))
+    do i = 1, 2
+      if (self%jump(i)%before == 0) cycle
+      n = n + 1
+      residual(n) = jump_residual(self, value, i)
+    end do
+    do i = 1, size(value)
+      if (.not. self%unknown(i)%prior > 0) cycle
+      n = n + 1
+      residual(n) = (fitted_of(self%unknown(i), value(i)) - &
+        fitted_of(self%unknown(i), self%unknown(i)%value))/prior_of(self%unknown(i))
+    end do
+  end subroutine residuals_of
+
+  subroutine differentiate(self, x, jacobian, found)
+    class(curve_residuals_t), intent(inout) :: self
+    real(wp), intent(in) :: x(:)
+    real(wp), intent(out) :: jacobian(:, :)
+    logical, intent(out) :: found
+    integer :: i
+
+    call self%jacobian_of(self%values(x), jacobian, found)
+    if (.not. found) return
+    do i = 1, size(x)
+      jacobian(:, i) = jacobian(:, i)*value_by_free(self%unknown(i), x(i))
+    end do
+  end subroutine differentiate
+
+  !> Derivatives of the residuals by the values of the unknowns.
+  subroutine jacobian_of(self, value, jacobian, found)
+    class(curve_residuals_t), intent(inout) :: self
+    real(wp), intent(in) :: value(:)
+    real(wp), intent(out) :: jacobian(:, :)
+    logical, intent(out) :: found
+    type(load_at_t) :: load
+    real(wp) :: by(size(self%sample), size(value)), k
+    integer :: i, j, n
+
+    call self%ask(value, .true., found)
+    if (.not. found) return
+    k = self%number_of(value, of_spring, self%spring)
+    associate (facing => self%measured%facing, s => self%number_of(value, of_sensitivity, &
+      self%sensitivity))
+      do n = 1, size(self%sample)
+        i = self%sample(n)
+        load = self%response%load_on(self%way(i), self%side(i), position_of(self, value, i))
+        by(n, :) = -unfolded(self%unknown%role, load%rate/(k*s), -facing*load%slope/(k*s), &
+          -load%load/(k*s**2), -(load%slope*load%load/k**2 + load%load/k)/(k*s))
+      end do
+      call whiten(self%noise, self%run(self%sample), by)
+      n = size(self%sample)
+      jacobian(:n, :) = by - matmul(self%orthonormal, matmul(transpose(self%orthonormal), by))
+      do i = 1, 2
+        if (self%jump(i)%before == 0) cycle
+        n = n + 1
+        jacobian(n, :) = jump_rates(self, i, k, facing)
+      end do
+    end associate
+    do j = 1, size(value)
+      if (.not. self%unknown(j)%prior > 0) cycle
+      n = n + 1
+      jacobian(n, :) = 0
+      jacobian(n, j) = 1/(prior_of(self%unknown(j))*value_by_fitted(self%unknown(j), value(j)))
+    end do
+  end subroutine jacobian_of
+
+  !> What is known before of an unknown, as a deviation of its fitted number.
+  pure real(wp) function prior_of(unknown) result(deviation)
+    type(unknown_t), intent(in) :: unknown
+
+    deviation = unknown%prior/value_by_fitted(unknown, unknown%value)
+  end function prior_of
+
+  !> Where the model's jump starts, less where the measured one does, over its uncertainty.
+  real(wp) function jump_residual(self, value, way) result(residual)
+    class(curve_residuals_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    integer, intent(in) :: way
+    real(wp) :: position, load
+    real(wp), allocatable :: rate(:)
+
+    residual = 0
+    if (.not. self%response%way(way)%foretold) return
+    residual = missed
+    if (self%response%way(way)%main == 0) return
+    call self%response%jump_from(way, position, rate, load)
+    residual = (position - self%measured%facing*(self%jump(way)%z - &
+      self%number_of(value, of_contact_point, self%contact_point)))/self%jump(way)%uncertainty
+  end function jump_residual
+
+  !> Its derivatives.
+  function jump_rates(self, way, k, facing) result(by)
+    class(curve_residuals_t), intent(in) :: self
+    integer, intent(in) :: way
+    real(wp), intent(in) :: k, facing
+    real(wp) :: by(size(self%unknown))
+    real(wp) :: position, load
+    real(wp), allocatable :: rate(:)
+
+    by = 0
+    if (.not. self%response%way(way)%foretold .or. self%response%way(way)%main == 0) return
+    call self%response%jump_from(way, position, rate, load)
+    by = unfolded(self%unknown%role, rate, facing, 0.0_wp, load/k**2)/self%jump(way)%uncertainty
+  end function jump_rates
+
+  !> Derivatives by the unknowns in their order, from those by the model's and by the others.
+  pure function unfolded(role, by_model, by_contact_point, by_sensitivity, by_spring) result(by)
+    integer, intent(in) :: role(:)
+    real(wp), intent(in) :: by_model(:), by_contact_point, by_sensitivity, by_spring
+    real(wp) :: by(size(role))
+
+    by = unpack(by_model, role == of_model, 0.0_wp)
+    where (role == of_contact_point) by = by_contact_point
+    where (role == of_sensitivity) by = by_sensitivity
+    where (role == of_spring) by = by_spring
+  end function unfolded
+
+  !> The model's part of the signal at samples, for the values asked for last.
+  function signal_of(self, value, sample) result(signal)
+    class(curve_residuals_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    integer, intent(in) :: sample(:)
+    real(wp) :: signal(size(sample))
+    type(load_at_t) :: load
+    integer :: i, n
+
+    do n = 1, size(sample)
+      i = sample(n)
+      load = self%response%load_on(self%way(i), max(self%side(i), 0), position_of(self, value, i))
+      signal(n) = load%load
+    end do
+    signal = signal/(self%number_of(value, of_spring, self%spring)* &
+      self%number_of(value, of_sensitivity, self%sensitivity))
+  end function signal_of
+
+  !> The model with its baseline at all samples, and the baseline alone.
+  subroutine split(self, value, model, baseline)
+    class(curve_residuals_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    real(wp), allocatable, intent(out) :: model(:), baseline(:)
+    real(wp) :: left(size(self%sample), 1), part(size(self%column, 2))
+    integer :: i, n
+
+    n = size(part)
+    model = self%signal_of(value, [(i, i=1, size(self%way))])
+    left(:, 1) = self%measured%signal(self%sample) - model(self%sample)
+    call whiten(self%noise, self%run(self%sample), left)
+    part = matmul(left(:, 1), self%orthonormal)
+    do i = n, 1, -1
+      part(i) = (part(i) - dot_product(self%triangle(i, i + 1:), part(i + 1:)))/self%triangle(i, i)
+    end do
+    baseline = matmul(self%column, part)
+    model = model + baseline
+  end subroutine split
+
+  !> The contact points with which the nearest sample is anywhere from the end of what the model knows
+  !> of the contact out to where nothing holds the bodies together.
+  subroutine reach(self, value, ends, found)
+    class(curve_residuals_t), intent(inout) :: self
+    real(wp), intent(in) :: value(:)
+    real(wp), intent(out) :: ends(2)
+    logical, intent(out) :: found
+    real(wp) :: nearest, inner, outer
+    integer :: i
+
+    ends = 0
+    call self%ask(value, .false., found)
+    if (.not. found) return
+    nearest = minval(self%measured%facing*self%measured%z)
+    inner = huge(inner)
+    outer = 0
+    do i = 1, size(self%response%branch)
+      associate (position => self%response%branch(i)%position)
+        inner = min(inner, minval(position))
+        if (i > 1) outer = max(outer, maxval(position))
+      end associate
+    end do
+    ! Z = facing z - facing (contact point).
+    ends = self%measured%facing*(nearest - [inner, outer])
+  end subroutine reach
+
+  !> Position of the drive at a sample.
+  pure real(wp) function position_of(self, value, i) result(position)
+    class(curve_residuals_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    integer, intent(in) :: i
+
+    position = self%measured%facing*(self%measured%z(i) - &
+      self%number_of(value, of_contact_point, self%contact_point))
+  end function position_of
+
+  !> The value of the unknown with a role; `otherwise` where there is none.
+  pure real(wp) function number_of(self, value, role, otherwise) result(number)
+    class(curve_residuals_t), intent(in) :: self
+    real(wp), intent(in) :: value(:), otherwise
+    integer, intent(in) :: role
+    integer :: i
+
+    number = otherwise
+    i = findloc(self%unknown%role, role, 1)
+    if (i > 0) number = value(i)
+  end function number_of
+
+  !> Has the model answer for these values, unless it has.
+  subroutine ask(self, value, with_rates, found)
+    class(curve_residuals_t), intent(inout) :: self
+    real(wp), intent(in) :: value(:)
+    logical, intent(in) :: with_rates
+    logical, intent(out) :: found
+    real(wp), allocatable :: asked(:)
+    real(wp) :: k, scale
+
+    k = self%number_of(value, of_spring, self%spring)
+    asked = [pack(value, self%unknown%role == of_model), k]
+    found = allocated(self%asked)
+    if (found) found = all(abs(asked - self%asked) <= 0) .and. &
+      (self%has_rates .or. .not. with_rates)
+    if (found) return
+    if (allocated(self%asked)) deallocate (self%asked)
+    scale = k*self%number_of(value, of_sensitivity, self%sensitivity)
+    call self%model%respond(asked(:size(asked) - 1), k, self%largest*scale, with_rates, &
+      self%response, found)
+    if (.not. found) return
+    self%asked = asked
+    self%has_rates = with_rates
+  end subroutine ask
+
+end module curve_residuals
