@@ -3,7 +3,8 @@ module text
   use kinds, only: wp
   implicit none
   private
-  public :: lower, quoted, unquoted, brief, full, guess, clip, listing, printable
+  public :: lower, quoted, unquoted, brief, full, guess, clip, listing, printable, &
+    word_count, word_of
 
 contains
 

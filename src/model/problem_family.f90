@@ -5,12 +5,17 @@ module problem_family
   use dimensionless_problem, only: problem_t
   implicit none
   private
-  public :: problem_family_t
+  public :: problem_family_t, parameter_t
+
+  !> A parameter; its value in the problem in hand, SI units; and the change that counts as one of
+  !> its own size, which for what is not zero is that value.
+  type :: parameter_t
+    character(len=:), allocatable :: name
+    real(wp) :: value = 0, scale = 1
+  end type parameter_t
 
   type, abstract :: problem_family_t
-    !> The parameters in SI units where they belong to the problem in hand, and how large a change
-    !> of each is one of its own size: where it is not zero, that is its value.
-    real(wp), allocatable :: value(:), scale(:)
+    type(parameter_t), allocatable :: parameter(:)
   contains
     !> The problem with other values of the parameters; fails where one is not allowed.
     procedure(pose_problem), deferred :: pose

@@ -6,7 +6,7 @@ module variation
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t
   use interpolation, only: polynomial_slope
-  use problem_family, only: problem_family_t
+  use problem_family, only: problem_family_t, parameter_t
   implicit none
   private
   public :: variation_t, vary
@@ -18,8 +18,9 @@ module variation
   real(wp), parameter :: step = 1.0e-3_wp
 
   type :: variation_t
-    !> The parameter's scale, and by how much the parameter differs in each problem, SI units.
-    real(wp) :: scale = 1, offset(2*aside + 1) = 0
+    type(parameter_t) :: parameter
+    !> By how much the parameter differs in each problem, SI units.
+    real(wp) :: offset(2*aside + 1) = 0
     !> dQ/dp = sum(weight*Q); and by the five points in the middle, whose difference from it says
     !> how good it is.
     real(wp), dimension(2*aside + 1) :: weight = 0, coarser = 0
@@ -35,15 +36,15 @@ contains
     integer, intent(in) :: i
     type(variation_t), intent(out) :: varied
     type(failure_t), allocatable, intent(out) :: error
-    real(wp) :: value(size(family%value)), one(2*aside + 1)
+    real(wp) :: value(size(family%parameter)), one(2*aside + 1)
     integer :: shift, k
 
-    varied%scale = family%scale(i)
+    varied%parameter = family%parameter(i)
     do shift = 0, 2
-      varied%offset = step*family%scale(i)*[(k + aside*merge(-1, shift, shift == 2), &
+      varied%offset = step*varied%parameter%scale*[(k + aside*merge(-1, shift, shift == 2), &
         k=-aside, aside)]
       do k = 1, size(varied%offset)
-        value = family%value
+        value = family%parameter%value
         value(i) = value(i) + varied%offset(k)
         call family%pose(value, varied%problem(k), error)
         if (allocated(error)) exit

@@ -6,13 +6,15 @@ module deck_keys
   private
   public :: key_spec, group_row, ignored_group
   public :: real_value, real_list, integer_value, logical_value, word_value, text_value
-  public :: group, real_key, list_key, integer_key, logical_key, word_key, text_key
+  public :: names_value
+  public :: group, real_key, list_key, integer_key, logical_key, word_key, text_key, names_key
   public :: allowed, names_of, write_keys
 
-  !> Kinds of row: a group, a group that is skipped when met, and six kinds of key.
+  !> Kinds of row: a group, a group that is skipped when met, and seven kinds of key.
   integer, parameter :: group_row = 0, ignored_group = 1
   integer, parameter :: real_value = 2, real_list = 3, integer_value = 4
   integer, parameter :: logical_value = 5, word_value = 6, text_value = 7
+  integer, parameter :: names_value = 8
 
   !> One row of the table. The row of a group stands before those of its keys.
   type :: key_spec
@@ -32,7 +34,7 @@ module deck_keys
     !> Whether the bound itself is excluded.
     logical :: low_open = .false.
     logical :: high_open = .false.
-    !> Most values of a list, most characters of a text.
+    !> Most values of a list, of numbers or names; most characters of a text.
     integer :: most = 1
     logical :: required = .false.
     !> For a group: its defaults hold, and are written out, even where the deck does not name it.
@@ -142,6 +144,18 @@ contains
     spec%most = most
   end function text_key
 
+  !> Row of a list of at most `most` names, without blanks in them.
+  pure function names_key(group, key, most, meaning, default, otherwise, required) result(spec)
+    character(len=*), intent(in) :: group, key, meaning
+    integer, intent(in) :: most
+    character(len=*), intent(in), optional :: default, otherwise
+    logical, intent(in), optional :: required
+    type(key_spec) :: spec
+
+    spec = key_row(group, key, names_value, meaning, default, otherwise, required)
+    spec%most = most
+  end function names_key
+
   !> What the rows of all keys have in common.
   pure function key_row(group, key, kind, meaning, default, otherwise, required) result(spec)
     character(len=*), intent(in) :: group, key, meaning
@@ -179,6 +193,8 @@ contains
       text = 'one of ' // listing(spec%choices, "'", "'")
     case (text_value)
       text = 'text in quotes, at most ' // trim(most) // ' characters'
+    case (names_value)
+      text = 'up to ' // trim(most) // ' names in quotes'
     case default
       text = ''
     end select

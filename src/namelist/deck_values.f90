@@ -2,20 +2,20 @@
 !> table, and written again.
 module deck_values
   use kinds, only: wp
-  use text, only: lower, quoted, unquoted, full, guess, clip
+  use text, only: lower, quoted, unquoted, full, guess, clip, word_count, word_of
   use deck_number, only: parse_real, parse_integer, parse_logical
   use deck_source, only: source_t
   use deck_scan, only: span_t
   use deck_keys, only: key_spec, real_value, real_list, integer_value, logical_value, word_value, &
-                       text_value
+                       text_value, names_value
   implicit none
   private
   public :: value_t, unset, assumed, given, interpret, convert, outside, assignment_text
 
   !> Where a value comes from: nowhere, the table or the program, the deck.
   integer, parameter :: unset = 0, assumed = 1, given = 2
-  !> What one key holds; only the component of the key's kind is used. For the row of a group, `at`
-  !> is where the deck opens it.
+  !> What one key holds; only the component of the key's kind is used, for names `text` with blanks
+  !> between them. For the row of a group, `at` is where the deck opens it.
   type :: value_t
     integer :: status = unset
     integer :: at = 0
@@ -38,24 +38,27 @@ contains
     character(len=:), allocatable, intent(out) :: what
     character(len=:), allocatable :: token
     character(len=12) :: count
-    logical :: literal
+    logical :: literal, wanted
     integer :: i
 
     if (spec%kind == real_list) then
       allocate (value%reals(0))
+    else if (spec%kind == names_value) then
+      value%text = ''
     else if (size(items) > 1) then
       at = items(2)%first
       write (count, '(i0)') size(items)
       what = trim(count) // ' values where one is expected'
       return
     end if
+    wanted = any(spec%kind == [word_value, text_value, names_value])
     do i = 1, size(items)
       at = items(i)%first
       token = source%part(items(i)%first, items(i)%last)
       literal = token(1:1) == '''' .or. token(1:1) == '"'
-      if (literal .and. spec%kind /= word_value .and. spec%kind /= text_value) then
+      if (literal .and. .not. wanted) then
         what = clip(token) // ' is text in quotes'
-      else if (.not. literal .and. (spec%kind == word_value .or. spec%kind == text_value)) then
+      else if (wanted .and. .not. literal) then
         what = clip(token) // ' is not in quotes'
       else
         if (literal) token = unquoted(token)
@@ -65,8 +68,8 @@ contains
     end do
   end subroutine interpret
 
-  !> Converts one token, without quotes, and checks it against the bounds of `spec`; list elements
-  !> are appended.
+  !> Converts one token, without quotes, and checks it against the bounds of `spec`; elements of a
+  !> list, and names, are appended.
   subroutine convert(spec, token, value, what)
     type(key_spec), intent(in) :: spec
     character(len=*), intent(in) :: token
@@ -114,6 +117,14 @@ contains
     case (text_value)
       value%text = trim(token)
       if (len(value%text) > spec%most) what = 'the text is too long'
+    case (names_value)
+      if (word_count(token) /= 1) then
+        what = quoted(clip(token)) // ' is not one name'
+      else if (word_count(value%text) == spec%most) then
+        what = 'too many values'
+      else
+        value%text = value%text // ' ' // trim(adjustl(token))
+      end if
     end select
   end subroutine convert
 
@@ -149,6 +160,11 @@ contains
       text = text // trim(number)
     case (logical_value)
       text = text // trim(merge('.true. ', '.false.', value%flag))
+    case (names_value)
+      do i = 1, word_count(value%text)
+        if (i > 1) text = text // ', '
+        text = text // quoted(word_of(value%text, i))
+      end do
     case default
       text = text // quoted(value%text)
     end select

@@ -79,7 +79,7 @@ contains
     do round = 0, most_corrections
       call follow_line(equations, control, state, varied, trial, defect, found)
       if (.not. found) return
-      trial%left = largest(defect, state)*varied%scale/equations%problem%length
+      trial%left = largest(defect, state)*varied%parameter%scale/equations%problem%length
       if (round > 0 .and. .not. trial%left < change%left) exit
       finished = round > 0 .and. .not. trial%left < gain*change%left
       change = trial

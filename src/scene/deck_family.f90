@@ -3,45 +3,40 @@
 module deck_family
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
-  use text, only: quoted, listing
+  use text, only: lower, quoted, clip, listing, word_count, word_of
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, real_list
   use dimensionless_problem, only: problem_t
-  use problem_family, only: problem_family_t
+  use problem_family, only: problem_family_t, parameter_t
   use scene_groups, only: scene_t
   use scene_problem, only: keys_of_model, take_model, problem_of
   implicit none
   private
-  public :: deck_family_t, key_name_t, new_deck_family
-
-  !> A key as 'group.key', a term of a list as 'group.key(2)'.
-  type :: key_name_t
-    character(len=:), allocatable :: text
-  end type key_name_t
+  public :: deck_family_t, new_deck_family
 
   type, extends(problem_family_t) :: deck_family_t
     type(deck_t) :: deck
-    type(key_name_t), allocatable :: key(:)
   contains
     procedure :: pose
   end type deck_family_t
 
 contains
 
-  !> The problems of a deck with other values of the keys. Fails, with a message that has no place in
-  !> the file, where a key is no number of bodies, shape or forces, or has no value in the deck.
-  subroutine new_deck_family(deck, key, family, error)
+  !> The problems of a deck with other values of keys: blank-separated names as 'group.key', a term
+  !> of a list as 'group.key(2)'. Fails, with a message that has no place in the file, where a key is
+  !> no number of bodies, shape or forces, or has no value in the deck.
+  subroutine new_deck_family(deck, keys, family, error)
     type(deck_t), intent(in) :: deck
-    type(key_name_t), intent(in) :: key(:)
+    character(len=*), intent(in) :: keys
     type(deck_family_t), intent(out) :: family
     type(failure_t), allocatable, intent(out) :: error
     integer :: i
 
     family%deck = deck
-    family%key = key
-    allocate (family%value(size(key)), family%scale(size(key)))
-    do i = 1, size(key)
-      call take_parameter(deck, key(i)%text, family%value(i), family%scale(i), error)
+    allocate (family%parameter(word_count(keys)))
+    do i = 1, size(family%parameter)
+      family%parameter(i)%name = lower(word_of(keys, i))
+      call take_value(deck, family%parameter(i), error)
       if (allocated(error)) return
     end do
   end subroutine new_deck_family
@@ -57,40 +52,37 @@ contains
 
     scene%deck = self%deck
     do i = 1, size(value)
-      call scene%deck%set_real(self%key(i)%text, value(i), error)
+      call scene%deck%set_real(self%parameter(i)%name, value(i), error)
       if (allocated(error)) return
     end do
     call take_model(scene, error)
     if (.not. allocated(error)) problem = problem_of(scene)
   end subroutine pose
 
-  !> The value of a parameter, and the size of a change: itself or, of a pure number that is 0, one.
-  subroutine take_parameter(deck, key, value, scale, error)
+  !> Value and scale of a parameter; the scale of a pure number that is 0 is one.
+  subroutine take_value(deck, parameter, error)
     type(deck_t), intent(in) :: deck
-    character(len=*), intent(in) :: key
-    real(wp), intent(out) :: value, scale
+    type(parameter_t), intent(inout) :: parameter
     type(failure_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: names
     integer :: row, term
 
-    value = 0
-    scale = 1
     names = parameters_of(deck)
-    if (index(names // ' ', ' ' // key // ' ') == 0) then
-      call fail(error, bad_input, quoted(key) // ' is not a number of bodies, shape or forces ' // &
-        'that this deck has; allowed: ' // listing(names, '', ''))
+    if (index(names // ' ', ' ' // parameter%name // ' ') == 0) then
+      call fail(error, bad_input, quoted(clip(parameter%name)) // ' is not a number of bodies, ' // &
+        'shape or forces that this deck has; allowed: ' // listing(names, '', ''))
       return
     end if
-    call deck%find_number(key, row, term, error)
+    call deck%find_number(parameter%name, row, term, error)
     if (allocated(error)) return
-    value = deck%values(row)%reals(max(1, term))
-    if (abs(value) > 0) then
-      scale = abs(value)
+    parameter%value = deck%values(row)%reals(max(1, term))
+    if (abs(parameter%value) > 0) then
+      parameter%scale = abs(parameter%value)
     else if (deck%specs(row)%unit /= '') then
-      call fail(error, bad_input, quoted(key) // ' is 0: it has no size of which a change would ' // &
-        'be a part')
+      call fail(error, bad_input, quoted(parameter%name) // ' is 0: it has no size of which a ' // &
+        'change would be a part')
     end if
-  end subroutine take_parameter
+  end subroutine take_value
 
   !> Blank-separated names of all numbers of bodies, shape and forces that a deck has.
   function parameters_of(deck) result(names)
