@@ -33,9 +33,9 @@ module classical_model
 
 contains
 
-  subroutine respond(self, value, stiffness, largest, with_rates, response, found)
+  subroutine respond(self, value, stiffness, farthest, largest, with_rates, response, found)
     class(classical_model_t), intent(inout) :: self
-    real(wp), intent(in) :: value(:), stiffness, largest
+    real(wp), intent(in) :: value(:), stiffness, farthest, largest
     logical, intent(in) :: with_rates
     type(response_t), intent(out) :: response
     logical, intent(out) :: found

@@ -3,7 +3,7 @@
 module curve_fit
   use kinds, only: wp
   use linear_algebra, only: singular_values
-  use fit_request, only: of_contact_point
+  use fit_request, only: unknown_t, of_contact_point
   use least_squares, only: minimise
   use unknowns, only: free_of, value_by_fitted
   use curve_residuals, only: curve_residuals_t
@@ -31,6 +31,10 @@ module curve_fit
     integer :: freedom = 0
     !> Of all samples: model with baseline, and what is left.
     real(wp), allocatable :: model(:), residual(:), baseline(:)
+    !> Where the base is when the model jumps in and out; NaN where it does not.
+    real(wp) :: jump_z(2) = 0
+  contains
+    procedure :: end_of
   end type fitted_t
 
 contains
@@ -113,6 +117,21 @@ contains
     end do
     call residuals%split(fitted%value, fitted%model, fitted%baseline)
     fitted%residual = residuals%measured%signal - fitted%model
+    fitted%jump_z = [residuals%jump_of(fitted%value, 1), residuals%jump_of(fitted%value, 2)]
   end subroutine judge
+
+  !> The end of the interval of `sign` standard deviations about unknown i; that of what is positive
+  !> is even in the logarithm.
+  pure real(wp) function end_of(self, i, unknown, sign) result(value)
+    class(fitted_t), intent(in) :: self
+    integer, intent(in) :: i
+    type(unknown_t), intent(in) :: unknown
+    real(wp), intent(in) :: sign
+    real(wp), parameter :: largest = 100
+
+    value = self%value(i) + sign*self%deviation(i)
+    if (unknown%in_log) value = self%value(i)* &
+      exp(sign*min(self%fitted_deviation(i), largest))
+  end function end_of
 
 end module curve_fit

@@ -8,6 +8,7 @@
 !> Samples are made white first. Where a jump starts is a datum of its own, and so is what is known of
 !> an unknown before; no sample within a jump counts.
 module curve_residuals
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring
   use measured_curve, only: measured_t
@@ -38,7 +39,7 @@ module curve_residuals
     !> Columns of baselines and slope, of all samples, and, white and orthonormal, of those that
     !> count; the triangle that leads from the latter to the former.
     real(wp), allocatable :: column(:, :), orthonormal(:, :), triangle(:, :)
-    !> Loads up to this are wanted of the model [N].
+    !> Signals up to this are wanted of the model, less their baseline.
     real(wp) :: largest = 0
     type(response_t), private :: response
     real(wp), allocatable, private :: asked(:)
@@ -53,6 +54,7 @@ module curve_residuals
     procedure :: differentiate
     procedure :: jacobian_of
     procedure :: split
+    procedure :: jump_of
     procedure, private :: ask, number_of, signal_of
   end type curve_residuals_t
 
@@ -67,7 +69,7 @@ contains
     associate (data => self%measured)
       n = size(data%z)
       self%way = merge(inward, outward, data%inward)
-      allocate (self%side(n), self%run(n), source=0)
+      self%side = [(0, i=1, n)]
       do i = 1, n
         associate (jump => self%jump(self%way(i)))
           if (jump%before == 0) cycle
@@ -79,6 +81,7 @@ contains
       self%run = 3*self%way + self%side
       self%sample = pack([(i, i=1, n)], self%side >= 0 .and. [(mod(i, every) == 0, i=1, n)])
       k = count([any(data%inward), .not. all(data%inward)])
+      if (allocated(self%column)) deallocate (self%column)
       allocate (self%column(n, k + 1))
       self%column(:, 1) = merge(1.0_wp, 0.0_wp, data%inward .eqv. data%inward(1))
       self%column(:, k) = merge(1.0_wp, 0.0_wp, data%inward .eqv. data%inward(n))
@@ -232,17 +235,29 @@ contains
     class(curve_residuals_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
     integer, intent(in) :: way
-    real(wp) :: position, load
-    real(wp), allocatable :: rate(:)
 
     residual = 0
     if (.not. self%response%way(way)%foretold) return
     residual = missed
     if (self%response%way(way)%main == 0) return
-    call self%response%jump_from(way, position, rate, load)
-    residual = (position - self%measured%facing*(self%jump(way)%z - &
-      self%number_of(value, of_contact_point, self%contact_point)))/self%jump(way)%uncertainty
+    residual = self%measured%facing*(self%jump_of(value, way) - self%jump(way)%z)/ &
+      self%jump(way)%uncertainty
   end function jump_residual
+
+  !> Where the base is when the model's main jump on a way starts; NaN without one.
+  real(wp) function jump_of(self, value, way) result(z)
+    class(curve_residuals_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    integer, intent(in) :: way
+    real(wp) :: position, load
+    real(wp), allocatable :: rate(:)
+
+    z = ieee_value(z, ieee_quiet_nan)
+    if (self%response%way(way)%main == 0 .or. .not. self%response%way(way)%foretold) return
+    call self%response%jump_from(way, position, rate, load)
+    z = self%number_of(value, of_contact_point, self%contact_point) + &
+      self%measured%facing*position
+  end function jump_of
 
   !> Its derivatives.
   function jump_rates(self, way, k, facing) result(by)
@@ -364,7 +379,7 @@ contains
     logical, intent(in) :: with_rates
     logical, intent(out) :: found
     real(wp), allocatable :: asked(:)
-    real(wp) :: k, scale
+    real(wp) :: k, farthest, largest
 
     k = self%number_of(value, of_spring, self%spring)
     asked = [pack(value, self%unknown%role == of_model), k]
@@ -373,8 +388,10 @@ contains
       (self%has_rates .or. .not. with_rates)
     if (found) return
     if (allocated(self%asked)) deallocate (self%asked)
-    scale = k*self%number_of(value, of_sensitivity, self%sensitivity)
-    call self%model%respond(asked(:size(asked) - 1), k, self%largest*scale, with_rates, &
+    largest = self%largest*k*self%number_of(value, of_sensitivity, self%sensitivity)
+    ! From twice the travel, wherever the contact point is.
+    farthest = 2*(maxval(self%measured%z) - minval(self%measured%z))
+    call self%model%respond(asked(:size(asked) - 1), k, farthest, largest, with_rates, &
       self%response, found)
     if (.not. found) return
     self%asked = asked

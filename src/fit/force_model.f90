@@ -30,17 +30,17 @@ module force_model
   !> A model of the force between the bodies, with unknowns.
   type, abstract :: force_model_t
   contains
-    !> Its response with these values of the unknowns behind a spring of `stiffness`, as far into
-    !> contact as to the load `largest` [N] at least. with_rates: derivatives by the unknowns too.
-    !> found = .false.: there is none.
+    !> Its response with these values of the unknowns behind a spring of `stiffness`, from the position
+    !> `farthest` [m] as far into contact as to the load `largest` [N] at least. with_rates:
+    !> derivatives by the unknowns too. found = .false.: there is none.
     procedure(respond_to), deferred :: respond
   end type force_model_t
 
   abstract interface
-    subroutine respond_to(self, value, stiffness, largest, with_rates, response, found)
+    subroutine respond_to(self, value, stiffness, farthest, largest, with_rates, response, found)
       import :: force_model_t, response_t, wp
       class(force_model_t), intent(inout) :: self
-      real(wp), intent(in) :: value(:), stiffness, largest
+      real(wp), intent(in) :: value(:), stiffness, farthest, largest
       logical, intent(in) :: with_rates
       type(response_t), intent(out) :: response
       logical, intent(out) :: found

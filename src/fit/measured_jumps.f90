@@ -1,6 +1,5 @@
-!> Jumps in a measured curve. Behind a spring of stiffness k no stable state lets the force grow by
-!> more than k over the way that the base moves; what falls or rises faster, and against the way that
-!> springs push, is a jump.
+!> Jumps in a measured curve. In a jump inward the force falls, in one outward it rises, over less of
+!> the base's travel than the spring alone would take for it.
 module measured_jumps
   use kinds, only: wp
   use measured_curve, only: measured_t
@@ -16,8 +15,8 @@ module measured_jumps
     real(wp) :: z = 0, uncertainty = 0, change = 0
   end type measured_jump_t
 
-  !> Slope over k in some step of a jump; change over the noise; most steps that one takes in a
-  !> record that an amplifier has smoothed.
+  !> Change in the first step of a jump over what the spring makes of it; change over the noise; most steps
+  !> that a jump takes in a record that an amplifier has smoothed.
   real(wp), parameter :: steep = 3, seen = 12
   integer, parameter :: most_steps = 6
 
@@ -29,30 +28,29 @@ contains
     type(noise_t), intent(in) :: noise
     real(wp), intent(in) :: stiffness
     logical, intent(in) :: inward
-    real(wp) :: steepest, change
-    integer :: i, first, last, n
+    real(wp) :: change
+    integer :: i, first, last
 
-    n = size(measured%z)
     first = findloc(measured%inward, inward, 1)
     if (first == 0) return
     last = findloc(measured%inward, inward, 1, back=.true.)
     i = first
     do while (i < last)
-      steepest = 0
       first = i
+      i = i + 1
+      if (.not. exceeds(first, steep)) cycle
+      ! What goes on slower but the same way is still the flight, or the amplifier.
       do while (i < last)
-        if (.not. slope_after(i) > stiffness) exit
-        steepest = max(steepest, slope_after(i))
+        if (.not. exceeds(i, 1.0_wp)) exit
         i = i + 1
       end do
-      change = abs(measured%signal(i) - measured%signal(first))
-      if (steepest > steep*stiffness .and. i - first <= most_steps .and. &
-        change > max(seen*noise%deviation, abs(jump%change))) then
+      change = measured%signal(i) - measured%signal(first)
+      if (i - first <= most_steps .and. &
+        abs(change) > max(seen*noise%deviation, abs(jump%change))) then
         jump%before = first
         jump%after = i
-        jump%change = measured%signal(i) - measured%signal(first)
+        jump%change = change
       end if
-      i = max(i, first + 1)
     end do
     if (jump%before == 0) return
     associate (z => measured%z(jump%before:jump%before + 1))
@@ -63,15 +61,17 @@ contains
 
   contains
 
-    !> Change of the signal over that of the position, to the next sample.
-    pure real(wp) function slope_after(k) result(slope)
+    !> Whether the signal goes the way of a jump by more than `times` what the spring makes of the step
+    !> to the next sample.
+    pure logical function exceeds(k, times)
       integer, intent(in) :: k
+      real(wp), intent(in) :: times
+      real(wp) :: change
 
-      slope = (measured%signal(k + 1) - measured%signal(k))*measured%facing
-      associate (step => measured%z(k + 1) - measured%z(k))
-        slope = slope*step/max(step**2, tiny(1.0_wp))
-      end associate
-    end function slope_after
+      change = measured%signal(k + 1) - measured%signal(k)
+      exceeds = merge(-change, change, inward) > times*stiffness*abs(measured%z(k + 1) - &
+        measured%z(k))
+    end function exceeds
 
     pure real(wp) function typical_step()
       typical_step = (maxval(measured%z) - minval(measured%z))/ &

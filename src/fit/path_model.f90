@@ -40,7 +40,7 @@ module path_model
     type(path_stepper_t), private :: steps
     type(curve_t), private :: curve
     type(driven_t), private :: driven
-    real(wp), private :: stiffness = 0, largest = 0
+    real(wp), private :: stiffness = 0, farthest = 0, largest = 0
     logical, private :: solved = .false.
   contains
     procedure :: respond
@@ -49,17 +49,17 @@ module path_model
 
 contains
 
-  subroutine respond(self, value, stiffness, largest, with_rates, response, found)
+  subroutine respond(self, value, stiffness, farthest, largest, with_rates, response, found)
     class(path_model_t), intent(inout) :: self
-    real(wp), intent(in) :: value(:), stiffness, largest
+    real(wp), intent(in) :: value(:), stiffness, farthest, largest
     logical, intent(in) :: with_rates
     type(response_t), intent(out) :: response
     logical, intent(out) :: found
     type(rate_t), allocatable :: rate(:, :)
     integer :: i
 
-    if (.not. is_known(self, value, stiffness, largest)) &
-      call self%solve_trial(value, stiffness, largest)
+    if (.not. is_known(self, value, stiffness, farthest, largest)) &
+      call self%solve_trial(value, stiffness, farthest, largest)
     found = self%solved
     if (.not. found) return
     allocate (rate(merge(size(value), 0, with_rates), size(self%curve%node)))
@@ -75,19 +75,20 @@ contains
   end subroutine respond
 
   !> Whether the trial solved last is of these values, and goes as far.
-  pure logical function is_known(self, value, stiffness, largest)
+  pure logical function is_known(self, value, stiffness, farthest, largest)
     class(path_model_t), intent(in) :: self
-    real(wp), intent(in) :: value(:), stiffness, largest
+    real(wp), intent(in) :: value(:), stiffness, farthest, largest
 
-    is_known = allocated(self%value) .and. largest <= self%largest
+    is_known = allocated(self%value) .and. largest <= self%largest .and. &
+      farthest <= self%farthest
     if (is_known) is_known = all(abs(value - self%value) <= 0) .and. &
       abs(stiffness - self%stiffness) <= 0
   end function is_known
 
   !> Traces the path of a trial and drives the bodies along it.
-  subroutine solve_trial(self, value, stiffness, largest)
+  subroutine solve_trial(self, value, stiffness, farthest, largest)
     class(path_model_t), intent(inout) :: self
-    real(wp), intent(in) :: value(:), stiffness, largest
+    real(wp), intent(in) :: value(:), stiffness, farthest, largest
     type(path_stepper_t) :: fresh
     type(request_t) :: request
     type(problem_t) :: problem
@@ -101,6 +102,7 @@ contains
     self%value = value
     self%stiffness = stiffness
     self%largest = largest
+    self%farthest = farthest
     self%solved = .false.
     self%steps = fresh
     call self%family%pose(value, problem, error)
@@ -110,6 +112,7 @@ contains
     allocate (request%path, request%device, request%fixed_load)
     request%path%h0_end = problem%law%separation_of(problem%law%rest_gap)
     request%device%stiffness = [stiffness]
+    request%device%z_start = farthest
     request%fixed_load%load = [largest]
     call range_of(request, problem, low, high)
     chosen = choose(self%numerics, problem, low)
@@ -137,7 +140,8 @@ contains
     type(failure_t), allocatable :: error
     integer :: i
 
-    self%family%value = self%value
+    self%family%parameter%value = self%value
+    where (abs(self%value) > 0) self%family%parameter%scale = abs(self%value)
     found = .true.
     do i = 1, size(varied)
       call vary(self%family, i, varied(i), error)

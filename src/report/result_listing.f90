@@ -8,6 +8,7 @@ module result_listing
   use device_rows, only: device_columns, jump_columns
   use fixed_load_rows, only: fixed_load_columns
   use table_rows, only: table_columns
+  use fit_rows, only: fit_columns
   use profiles, only: profile_columns, unlike_columns
   implicit none
   private
@@ -52,6 +53,12 @@ contains
       case ('table.csv')
         call heading('with &table', 'One row for each stable state, in and out.')
         call list_columns(unit, table_columns, '')
+      case ('fit.csv')
+        call heading('with &fit', 'One row for each sample of the measured curve.')
+        call list_columns(unit, fit_columns, '')
+      case ('fit.nml')
+        call heading('with &fit', 'A namelist: &fit, the values found, and a group for each ' // &
+          'classical theory, fitted to the same samples.')
       case ('sweep.csv')
         call heading('with &sweep', 'One row for each value of the key: the value, then the ' // &
           'entries of &summary marked "in sweep.csv".')
