@@ -44,7 +44,7 @@ contains
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: start(:)
     type(fitted_t), intent(out) :: fitted
-    real(wp), allocatable :: starts(:), x(:), best(:), residual(:)
+    real(wp), allocatable :: starts(:), x(:), residual(:)
     real(wp) :: value(size(start)), least
     logical :: found
     integer :: i, role
@@ -58,20 +58,21 @@ contains
       starts = [0.0_wp]
     end if
     if (.not. fitted%has_curve) return
-    allocate (x(size(start)), best(size(start)))
+    allocate (x(size(start)))
     residual = [(0.0_wp, i=1, residuals%rows())]
     least = huge(least)
     do i = 1, size(starts)
       value = start
       if (role > 0) value(role) = starts(i)
+      if (role > 0) residuals%unknown(role)%origin = starts(i)
       x = free_of(residuals%unknown, value)
       call minimise(residuals, x, residual, found)
       if (.not. sum(residual**2) < least) cycle
       least = sum(residual**2)
-      best = x
+      fitted%value = residuals%values(x)
       fitted%found = found
     end do
-    fitted%value = residuals%values(best)
+    if (.not. allocated(fitted%value)) return
     call judge(residuals, fitted)
   end subroutine fit_curve
 
@@ -91,7 +92,7 @@ contains
     fitted%found = fitted%found .and. found
     if (.not. found) return
     fitted%chi_squared = sum(residual**2)
-    fitted%freedom = size(residual) - n - size(residuals%column, 2)
+    fitted%freedom = size(residual) - n - residuals%baseline%unknowns()
     do j = 1, n
       jacobian(:, j) = jacobian(:, j)*value_by_fitted(residuals%unknown(j), fitted%value(j))
     end do

@@ -4,8 +4,7 @@
 !>
 !> k the spring's stiffness, s the detector's sensitivity. Baselines and slope enter linearly: the
 !> residuals are what is left when the best ones are taken off (variable projection; Golub and
-!> Pereyra, 1973), and since no unknown changes their columns the derivatives are projected as well.
-!> Samples are made white first. Where a jump starts is a datum of its own, and so is what is known of
+!> Pereyra, 1973; `baseline`). Samples are made white first. Where a jump starts is a datum of its own, and so is what is known of
 !> an unknown before; no sample within a jump counts.
 module curve_residuals
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
@@ -14,6 +13,7 @@ module curve_residuals
   use measured_curve, only: measured_t
   use measured_jumps, only: measured_jump_t
   use noise, only: noise_t, whiten
+  use baseline, only: baseline_t, new_baseline
   use force_model, only: force_model_t, response_t, inward, outward
   use force_branch, only: load_at_t
   use least_squares, only: residuals_t
@@ -26,7 +26,7 @@ module curve_residuals
   real(wp), parameter :: missed = 10
 
   type, extends(residuals_t) :: curve_residuals_t
-    class(force_model_t), pointer :: model => null()
+    class(force_model_t), pointer, private :: model => null()
     type(measured_t) :: measured
     type(noise_t) :: noise
     type(measured_jump_t) :: jump(2)
@@ -36,15 +36,14 @@ module curve_residuals
     real(wp) :: spring = 1, sensitivity = 1, contact_point = 0
     !> The samples that count; the run that each is of, and the side of its jump; see `load_on`.
     integer, allocatable :: sample(:), run(:), side(:), way(:)
-    !> Columns of baselines and slope, of all samples, and, white and orthonormal, of those that
-    !> count; the triangle that leads from the latter to the former.
-    real(wp), allocatable :: column(:, :), orthonormal(:, :), triangle(:, :)
+    type(baseline_t) :: baseline
     !> Signals up to this are wanted of the model, less their baseline.
     real(wp) :: largest = 0
     type(response_t), private :: response
     real(wp), allocatable, private :: asked(:)
     logical, private :: has_rates = .false.
   contains
+    procedure :: set_model
     procedure :: take_samples
     procedure :: rows
     procedure :: values
@@ -60,11 +59,21 @@ module curve_residuals
 
 contains
 
+  !> Sets the model, which is to live as long as it is asked, or none.
+  subroutine set_model(self, model)
+    class(curve_residuals_t), intent(inout) :: self
+    class(force_model_t), intent(in), target, optional :: model
+
+    nullify (self%model)
+    if (present(model)) self%model => model
+    if (allocated(self%asked)) deallocate (self%asked)
+  end subroutine set_model
+
   !> Which samples count, every `every`-th, and the columns that are linear in them.
   subroutine take_samples(self, every)
     class(curve_residuals_t), intent(inout) :: self
     integer, intent(in) :: every
-    integer :: i, n, k
+    integer :: i, n
 
     associate (data => self%measured)
       n = size(data%z)
@@ -78,41 +87,13 @@ contains
           if (i > jump%before .and. i < jump%after) self%side(i) = -1
         end associate
       end do
+      ! Of one way and one side of its jump.
       self%run = 3*self%way + self%side
       self%sample = pack([(i, i=1, n)], self%side >= 0 .and. [(mod(i, every) == 0, i=1, n)])
-      k = count([any(data%inward), .not. all(data%inward)])
-      if (allocated(self%column)) deallocate (self%column)
-      allocate (self%column(n, k + 1))
-      self%column(:, 1) = merge(1.0_wp, 0.0_wp, data%inward .eqv. data%inward(1))
-      self%column(:, k) = merge(1.0_wp, 0.0_wp, data%inward .eqv. data%inward(n))
-      self%column(:, k + 1) = data%z - sum(data%z)/n
-      self%column(:, k + 1) = self%column(:, k + 1)/maxval(abs(self%column(:, k + 1)))
+      self%baseline = new_baseline(data%z, data%inward, self%sample, self%run(self%sample), &
+        self%noise)
     end associate
-    self%orthonormal = self%column(self%sample, :)
-    call whiten(self%noise, self%run(self%sample), self%orthonormal)
-    call orthonormalise(self%orthonormal, self%triangle)
   end subroutine take_samples
-
-  !> Gram and Schmidt, twice, so that rounding does not count: a = q r.
-  pure subroutine orthonormalise(q, r)
-    real(wp), intent(inout) :: q(:, :)
-    real(wp), allocatable, intent(out) :: r(:, :)
-    real(wp) :: part
-    integer :: i, j, pass
-
-    allocate (r(size(q, 2), size(q, 2)), source=0.0_wp)
-    do j = 1, size(q, 2)
-      do pass = 1, 2
-        do i = 1, j - 1
-          part = dot_product(q(:, i), q(:, j))
-          q(:, j) = q(:, j) - part*q(:, i)
-          r(i, j) = r(i, j) + part
-        end do
-      end do
-      r(j, j) = norm2(q(:, j))
-      q(:, j) = q(:, j)/r(j, j)
-    end do
-  end subroutine orthonormalise
 
   !> Number of residuals: samples, jumps that the theory speaks of, what was known before.
   pure integer function rows(self)
@@ -156,8 +137,8 @@ contains
       call whiten(self%noise, self%run(s), left)
     end associate
     n = size(self%sample)
-    residual(:n) = left(:, 1) - matmul(self%orthonormal, &
-      matmul(left(:, 1), self%orthonormal))
+    call self%baseline%take_off(left)
+    residual(:n) = left(:, 1)
     do i = 1, 2
       if (self%jump(i)%before == 0) cycle
       n = n + 1
@@ -208,7 +189,8 @@ contains
       end do
       call whiten(self%noise, self%run(self%sample), by)
       n = size(self%sample)
-      jacobian(:n, :) = by - matmul(self%orthonormal, matmul(transpose(self%orthonormal), by))
+      call self%baseline%take_off(by)
+      jacobian(:n, :) = by
       do i = 1, 2
         if (self%jump(i)%before == 0) cycle
         n = n + 1
@@ -309,18 +291,13 @@ contains
     class(curve_residuals_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
     real(wp), allocatable, intent(out) :: model(:), baseline(:)
-    real(wp) :: left(size(self%sample), 1), part(size(self%column, 2))
-    integer :: i, n
+    real(wp) :: left(size(self%sample), 1)
+    integer :: i
 
-    n = size(part)
     model = self%signal_of(value, [(i, i=1, size(self%way))])
     left(:, 1) = self%measured%signal(self%sample) - model(self%sample)
     call whiten(self%noise, self%run(self%sample), left)
-    part = matmul(left(:, 1), self%orthonormal)
-    do i = n, 1, -1
-      part(i) = (part(i) - dot_product(self%triangle(i, i + 1:), part(i + 1:)))/self%triangle(i, i)
-    end do
-    baseline = matmul(self%column, part)
+    baseline = self%baseline%of(left(:, 1))
     model = model + baseline
   end subroutine split
 

@@ -64,9 +64,9 @@ contains
     call listener%hear('fitting the path')
     allocate (model%family, source=family)
     model%numerics = numerics
-    curve%model => model
+    call curve%set_model(model)
     call fit_curve(curve, curve%unknown%value, outcome%fitted)
-    nullify (curve%model)
+    call curve%set_model()
     outcome%curve = curve
     if (.not. outcome%fitted%has_curve) then
       outcome%trouble = 'with the values of the deck the path could not be solved as far as the ' // &
@@ -147,6 +147,7 @@ contains
     type(problem_t) :: final
     type(failure_t), allocatable :: error
     type(unknown_t) :: unknown(2)
+    real(wp), allocatable :: start(:)
     logical :: elastic(size(family%parameter))
     integer :: i
 
@@ -170,12 +171,14 @@ contains
       pack(outcome%curve%unknown, outcome%curve%unknown%role /= of_model)]
     deallocate (outcome%theory)
     allocate (outcome%theory(size(theories)))
-    curve%model => model
+    start = [pack(unknown%value, [model%finds_work, model%finds_stiffness]), &
+      pack(outcome%fitted%value, outcome%curve%unknown%role /= of_model)]
     do i = 1, size(theories)
       model%theory = theories(i)
+      call curve%set_model(model)
       outcome%theory(i)%theory = theories(i)
       outcome%theory(i)%unknown = curve%unknown
-      call fit_curve(curve, curve%unknown%value, outcome%theory(i)%fitted)
+      call fit_curve(curve, start, outcome%theory(i)%fitted)
     end do
   end subroutine fit_theories
 

@@ -51,17 +51,17 @@ module least_squares
     end subroutine lmder
   end interface
 
-  !> Relative change of the sum of squares, or of x, below which the search ends; evaluations after
-  !> which it is given up; and the first step over the size of x (lmder's own advice is 100, from
-  !> where the residuals may not exist).
-  real(wp), parameter :: good_enough = 1.0e-10_wp, first_step = 0.1_wp
-  integer, parameter :: most_evaluations = 60
+  !> Relative change of the sum of squares, and of x, below which the search ends: of the former a
+  !> ten millionth is far below what noise makes of it. Evaluations after which it is given up.
+  real(wp), parameter :: less = 1.0e-7_wp, nearer = 1.0e-10_wp
+  integer, parameter :: most_evaluations = 80
   !> Instead of residuals that do not exist: lmder then makes a shorter step.
   real(wp), parameter :: nowhere = 1.0e8_wp
 
 contains
 
-  !> Moves x to where the sum of the squares of the residuals is least. found = .false.: it was not
+  !> Moves x to where the sum of the squares of the residuals is least. A change of x by 1 is to be a
+  !> large one: the first step is no longer. found = .false.: it was not
   !> found within so many evaluations, or there are no residuals at x to begin with.
   subroutine minimise(residuals, x, residual, found)
     class(residuals_t), intent(inout), target :: residuals
@@ -76,7 +76,7 @@ contains
     carrier%residuals => residuals
     diag = 1
     call lmder(evaluate_for_lmder, c_loc(carrier), size(residual), size(x), x, residual, jacobian, &
-      size(residual), good_enough, good_enough, 0.0_wp, most_evaluations, diag, 1, first_step, 0, &
+      size(residual), less, nearer, 0.0_wp, most_evaluations, diag, 2, 1.0_wp, 0, &
       info, evaluations, jacobians, pivot, qtf, wa1, wa2, wa3, wa4)
     ! 6 to 8: nothing more can be gained in this arithmetic.
     found = any(info == [1, 2, 3, 4, 6, 7, 8])

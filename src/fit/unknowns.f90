@@ -10,13 +10,13 @@ module unknowns
 
 contains
 
-  !> The fitted number of a value: ln(value/scale), or value/scale.
+  !> The fitted number of a value: ln(value/scale), or (value - origin)/scale.
   elemental real(wp) function fitted_of(unknown, value) result(u)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: value
 
-    u = value/unknown%scale
-    if (unknown%in_log) u = log(u)
+    u = (value - unknown%origin)/unknown%scale
+    if (unknown%in_log) u = log(value/unknown%scale)
   end function fitted_of
 
   !> The free number of a value; of one at its bound or beyond, that of one a little within.
@@ -55,7 +55,7 @@ contains
     else if (allocated(unknown%upper)) then
       u = high + 1 - sqrt(x**2 + 1)
     end if
-    value = unknown%scale*u
+    value = unknown%origin + unknown%scale*u
     if (unknown%in_log) value = unknown%scale*exp(u)
   end function value_of
 

@@ -152,6 +152,7 @@ contains
           unknown%scale = family%parameter(own)%scale
           call scene%deck%find_number(unknown%name, row, term, trouble)
           unknown%in_log = unknown%value > 0 .and. scene%deck%specs(row)%low >= 0
+          unknown%origin = unknown%value
         end if
       end associate
       do k = 1, i - 1
