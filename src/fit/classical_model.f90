@@ -43,8 +43,8 @@ contains
 
     number = [self%work, self%stiffness]
     number(pack([1, 2], [self%finds_work, self%finds_stiffness])) = value
-    ! Loads and displacements are those of Hertz and more where adhesion acts.
-    widest = (1.5_wp*self%radius*(2*max(largest, 0.0_wp) + 20*number(1)*self%radius)/ &
+    ! The contact that Hertz foretells under the load and under more adhesion than there is.
+    widest = (1.5_wp*self%radius*(2*max(largest, 0.0_wp) + 100*number(1)*self%radius)/ &
       number(2))**(1.0_wp/3)
     turn = turning_radius(self, number, 1/stiffness, widest)
     found = turn < 0.5_wp*widest
