@@ -18,6 +18,7 @@ module simulation
   use equilibrium, only: cost_t
   use derived_tables, only: write_derived_tables, write_path_tables
   use stability_records, only: stability_recorder_t
+  use sensitivity_rows, only: sensitivity_columns, sensitivity_lines
   use summarise, only: summary_of
   use summary, only: summary_t
   use results, only: results_t, journal_of
@@ -201,6 +202,8 @@ contains
     call write_path_tables(problem, outcome, results)
     summary = summary_of(scene, problem, outcome)
     call recorder%warn(summary)
+    if (allocated(scene%sensitivity)) call results%write_table('sensitivity.csv', &
+      sensitivity_columns, sensitivity_lines(scene%sensitivity%varied, summary))
     cost = outcome%cost
     cost%factorisations = cost%factorisations + recorder%cost%factorisations
   end subroutine run_observed

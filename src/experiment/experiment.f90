@@ -17,6 +17,7 @@ module experiment
   use h0_schedule, only: schedule_of
   use experiment_result, only: experiment_result_t
   use result_errors, only: judge_locked, judge_fixed
+  use result_sensitivities, only: find_sensitivities
   use path, only: follow_path
   use path_demand, only: widen_path
   use path_readings, only: read_path
@@ -100,6 +101,12 @@ contains
     call observer%hear('estimating errors')
     call judge_locked(steps, high, low, outcome)
     steps%cost%estimate_seconds = seconds() - began
+    if (allocated(request%sensitivity)) then
+      select type (steps)
+      class is (path_stepper_t)
+        call find_sensitivities(request%sensitivity, steps, observer, outcome)
+      end select
+    end if
     outcome%cost = steps%cost
   end subroutine run_locked
 

@@ -4,10 +4,11 @@
 !> In the same way a value without a default is allocated only where there is one. All SI.
 module experiment_request
   use kinds, only: wp
+  use variation, only: variation_t
   implicit none
   private
   public :: request_t, loading_t, unloading_t, path_range_t, profiles_t, numerics_t, device_t, &
-    fixed_load_t
+    fixed_load_t, sensitivity_t
 
   !> &loading [m]: h0_start > h0_end, h0_step > 0.
   type :: loading_t
@@ -43,6 +44,11 @@ module experiment_request
     real(wp), allocatable :: load(:)
   end type fixed_load_t
 
+  !> &sensitivity: the parameters, each with the problem varied by it.
+  type :: sensitivity_t
+    type(variation_t), allocatable :: varied(:)
+  end type sensitivity_t
+
   !> &numerics; what is unallocated follows from the accuracy.
   type :: numerics_t
     character(len=:), allocatable :: method, grid, convergence
@@ -59,6 +65,7 @@ module experiment_request
     type(profiles_t), allocatable :: profiles
     type(device_t), allocatable :: device
     type(fixed_load_t), allocatable :: fixed_load
+    type(sensitivity_t), allocatable :: sensitivity
     !> &table has no keys.
     logical :: table = .false.
     type(numerics_t) :: numerics
@@ -80,7 +87,8 @@ contains
   pure logical function reads_path(self)
     class(request_t), intent(in) :: self
 
-    reads_path = allocated(self%device) .or. allocated(self%fixed_load) .or. self%table
+    reads_path = allocated(self%device) .or. allocated(self%fixed_load) .or. &
+      allocated(self%sensitivity) .or. self%table
   end function reads_path
 
 end module experiment_request

@@ -17,6 +17,11 @@ module experiment_result
     type(branch_t), allocatable :: stepped_path, loading, unloading(:)
     !> Lost in a cycle of approach and separation, and how well that is known.
     real(wp), allocatable :: energy_lost, energy_uncertainty
+    !> The folds of the path that its jumps start from; derivatives by each parameter, SI units.
+    integer, allocatable :: jumps(:)
+    real(wp), allocatable :: energy_rate(:)
+    !> Whether all derivatives exist that were asked for.
+    logical :: differentiated = .true.
     !> Largest estimated relative error of what is reported.
     real(wp), allocatable :: error_estimate
     type(cost_t) :: cost

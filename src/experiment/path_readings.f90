@@ -12,7 +12,7 @@ module path_readings
   use fixed_loads, only: loaded_state_t, find_loaded
   use path_demand, only: farthest_wanted
   use path_stepper, only: path_stepper_t
-  use records, only: contact_level_of
+  use dimensionless_problem, only: contact_level_of
   implicit none
   private
   public :: path_readings_t, read_path

@@ -2,18 +2,16 @@
 module records
   use kinds, only: wp
   use listener, only: listener_t
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: problem_t, contact_level_of
   use discretisation, only: discretisation_t
   use equilibrium, only: state_t, radius_of_gap
   implicit none
   private
-  public :: record_t, observer_t, silent_observer_t, theory_row_t, record_of, contact_level_of
+  public :: record_t, observer_t, silent_observer_t, theory_row_t, record_of
   public :: stable_yes, stable_no, stable_unasked
 
   !> The column `stable`.
   integer, parameter :: stable_yes = 1, stable_no = 0, stable_unasked = -1
-  !> In contact is, as in the paper's Fig. 6, what is nearer than this many gaps at rest.
-  real(wp), parameter :: contact_gap = 1.1_wp
 
   type :: record_t
     character(len=:), allocatable :: branch
@@ -95,13 +93,5 @@ contains
     record%iterations = state%iterations
     record%converged = converged
   end function record_of
-
-  !> The gap up to which bodies are in contact, law's lengths; below any where nothing says so.
-  pure real(wp) function contact_level_of(problem) result(level)
-    type(problem_t), intent(in) :: problem
-
-    level = -huge(1.0_wp)
-    if (problem%law%rest_gap > 0) level = contact_gap*problem%law%rest_gap
-  end function contact_level_of
 
 end module records

@@ -219,6 +219,7 @@ contains
     if (whole) call energy_lost(steps%equations_t, steps%known, turned, 1, lowest, lost, whole)
     if (.not. whole) return
     outcome%energy_lost = lost%energy
+    outcome%jumps = lost%fold
     outcome%energy_uncertainty = judge%fine%margin*abs(lost%energy - lost%fine_energy) + &
       lost%rounding
 

@@ -20,7 +20,7 @@ module path_model
   use path_demand, only: farthest_wanted
   use path_stepper, only: path_stepper_t
   use locked_stepper, only: has_path
-  use records, only: contact_level_of
+  use dimensionless_problem, only: contact_level_of
   use force_branch, only: branch_t
   use force_model, only: force_model_t, response_t, inward, outward
   implicit none

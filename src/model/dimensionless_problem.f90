@@ -13,7 +13,7 @@ module dimensionless_problem
   implicit none
   private
   public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
-    surface_energy, largest_tension, calm_gap, yielding_gap
+    surface_energy, largest_tension, calm_gap, yielding_gap, contact_level_of
 
   type :: problem_t
     class(force_law_t), allocatable :: law
@@ -28,6 +28,8 @@ module dimensionless_problem
     real(wp) :: share(2) = 1
   end type problem_t
 
+  !> In contact is, as in the paper's Fig. 6, what is nearer than this many gaps at rest.
+  real(wp), parameter :: contact_gap = 1.1_wp
   !> Width of the neck times sigma, lateral units.
   real(wp), parameter :: neck = 0.375_wp
 
@@ -137,5 +139,13 @@ contains
     pressure = problem%law%pressure([problem%law%edge_gap])
     largest_tension = -pressure(1)*problem%pressure
   end function largest_tension
+
+  !> The gap up to which bodies are in contact, law's lengths; below any where nothing says so.
+  pure real(wp) function contact_level_of(problem) result(level)
+    type(problem_t), intent(in) :: problem
+
+    level = -huge(1.0_wp)
+    if (problem%law%rest_gap > 0) level = contact_gap*problem%law%rest_gap
+  end function contact_level_of
 
 end module dimensionless_problem

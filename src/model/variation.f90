@@ -9,7 +9,7 @@ module variation
   use problem_family, only: problem_family_t, parameter_t
   implicit none
   private
-  public :: variation_t, vary
+  public :: variation_t, vary, along_path
 
   !> Problems on either side of the one in hand, and the step between two as a part of the
   !> parameter's scale. What differences of sixth order leave out, for h^-n about n^7/140 step^6, is
@@ -25,6 +25,8 @@ module variation
     !> how good it is.
     real(wp), dimension(2*aside + 1) :: weight = 0, coarser = 0
     type(problem_t) :: problem(2*aside + 1)
+    !> By how much the place on the path differs (`continuation`); it is what is varied then.
+    real(wp) :: shift(2*aside + 1) = 0
   end type variation_t
 
 contains
@@ -36,7 +38,7 @@ contains
     integer, intent(in) :: i
     type(variation_t), intent(out) :: varied
     type(failure_t), allocatable, intent(out) :: error
-    real(wp) :: value(size(family%parameter)), one(2*aside + 1)
+    real(wp) :: value(size(family%parameter))
     integer :: shift, k
 
     varied%parameter = family%parameter(i)
@@ -52,6 +54,29 @@ contains
       if (.not. allocated(error)) exit
     end do
     if (allocated(error)) return
+    call find_rule(varied)
+  end subroutine vary
+
+  !> The path's coordinate varied, and not the problem.
+  type(variation_t) function along_path(problem) result(varied)
+    type(problem_t), intent(in) :: problem
+    integer :: k
+
+    varied%parameter%name = 'coordinate'
+    varied%offset = step*[(k, k=-aside, aside)]
+    varied%shift = varied%offset
+    do k = 1, size(varied%problem)
+      varied%problem(k) = problem
+    end do
+    call find_rule(varied)
+  end function along_path
+
+  !> The weights that belong to the offsets.
+  subroutine find_rule(varied)
+    type(variation_t), intent(inout) :: varied
+    real(wp) :: one(2*aside + 1)
+    integer :: k
+
     do k = 1, size(one)
       one = 0
       one(k) = 1
@@ -59,6 +84,6 @@ contains
       if (k > 1 .and. k < size(one)) varied%coarser(k) = &
         polynomial_slope(varied%offset(2:size(one) - 1), one(2:size(one) - 1), 0.0_wp)
     end do
-  end subroutine vary
+  end subroutine find_rule
 
 end module variation

@@ -11,9 +11,10 @@ module hysteresis
   public :: lost_energy_t, energy_lost
 
   !> Lost energy, the same on the finer mesh of the error estimate, and what rounding leaves; in
-  !> units of load times length.
+  !> units of load times length. The folds that the jumps start from.
   type :: lost_energy_t
     real(wp) :: energy = 0, fine_energy = 0, rounding = 0
+    integer, allocatable :: fold(:)
   end type lost_energy_t
 
 contains
@@ -29,6 +30,7 @@ contains
     logical, intent(out) :: whole
     integer :: k
 
+    if (.not. allocated(lost%fold)) allocate (lost%fold(0))
     k = from
     do while (k /= to)
       if (to > k) then
@@ -58,6 +60,7 @@ contains
         if (allocated(fold%fine) .and. allocated(landing%fine)) &
           lost%fine_energy = lost%fine_energy + (fold%fine%energy - landing%fine%energy)
         lost%rounding = lost%rounding + sum(uncertainty)
+        lost%fold = [lost%fold, landing%fold]
       end associate
       k = landing%piece
     end subroutine add

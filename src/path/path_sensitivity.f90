@@ -3,13 +3,13 @@
 !> position of a drive, the place moves; `held` takes that into account.
 module path_sensitivity
   use kinds, only: wp
-  use equilibrium, only: state_t, equations_t
+  use equilibrium, only: equations_t
   use frozen_jacobian, only: frozen_jacobian_t
   use known_path, only: known_path_t
   use path_curve, only: curve_t, curve_node_t, no_mesh
   use undeformed, only: load_undeformed
   use variation, only: variation_t
-  use state_sensitivity, only: change_t, differentiate
+  use state_sensitivity, only: change_t, place_on_path_t, differentiate
   implicit none
   private
   public :: rate_t, rates_along, held
@@ -33,8 +33,7 @@ contains
     logical, intent(out) :: found
     type(frozen_jacobian_t) :: frozen
     type(change_t) :: change(size(varied))
-    type(state_t) :: state
-    real(wp) :: s
+    type(place_on_path_t) :: place
     integer :: i, j
 
     allocate (rate(size(varied), size(curve%node)))
@@ -47,11 +46,12 @@ contains
           end do
           cycle
         end if
-        call known%path%seen_on(node%point, node%mesh, state, s, found)
-        if (found) call differentiate(equations, node%mesh, s, state, frozen, varied, change, found)
+        place%mesh = node%mesh
+        call known%path%seen_on(node%point, node%mesh, place%state, place%s, found)
+        if (found) call differentiate(equations, place, frozen, varied, change, found)
         if (.not. found) return
         do i = 1, size(varied)
-          rate(i, j) = rate_t(change(i)%separation(size(state%gap) + 1), change(i)%load, &
+          rate(i, j) = rate_t(change(i)%separation(size(change(i)%separation)), change(i)%load, &
             change(i)%left, change(i)%uncertainty)
         end do
       end associate

@@ -36,6 +36,8 @@ module reported
     logical :: searched = .false.
     type(error_probe_t), allocatable :: witness
     type(error_t), allocatable :: error
+    !> Derivatives by each parameter of &sensitivity, SI units.
+    type(measure_t), allocatable :: rate(:)
   end type reported_t
 
   !> An error that says that nothing is known.

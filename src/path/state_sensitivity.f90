@@ -1,6 +1,6 @@
 !> How an equilibrium changes with a parameter of the problem, in SI units, at a fixed place on the
 !> path: at a fixed separation on the axis before contact, at a fixed contact radius in contact,
-!> where the separation at the edge is kept too.
+!> where the separation at the edge is kept too. The place can be what is varied.
 !>
 !> The equations of the varied problems are evaluated at states that move with the parameter along a
 !> straight line, positions and separations being those of space. Along the right line the
@@ -9,15 +9,21 @@
 module state_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use equilibrium, only: control_t, state_t, equations_t, residual, at_axis_gap, at_edge_radius, &
-    far_gap
+  use equilibrium, only: control_t, state_t, equations_t, residual, at_edge_radius, far_gap
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: solve
   use continuation, only: path_control
   use variation, only: variation_t
   implicit none
   private
-  public :: change_t, differentiate
+  public :: change_t, place_on_path_t, differentiate, move
+
+  !> An equilibrium of the path, its mesh and its coordinate there (`continuation`).
+  type :: place_on_path_t
+    integer :: mesh = 1
+    real(wp) :: s = 0
+    type(state_t) :: state
+  end type place_on_path_t
 
   !> Derivatives by a parameter in SI units: of the separations at the mesh's nodes and of h0 behind
   !> them, and of the load.
@@ -37,35 +43,30 @@ module state_sensitivity
 
 contains
 
-  !> The derivatives of an equilibrium with the coordinate s on a mesh (`continuation`) by each
-  !> varied parameter. found = .false.: the Jacobian is singular, or a varied problem is not defined
-  !> at the state. Renews the factorisation.
-  subroutine differentiate(equations, mesh, s, state, frozen, varied, change, found)
+  !> The derivatives of the equilibrium at a place by each varied parameter. found = .false.: the
+  !> Jacobian is singular, or a varied problem is not defined at the state. Renews the
+  !> factorisation.
+  subroutine differentiate(equations, place, frozen, varied, change, found)
     type(equations_t), intent(inout) :: equations
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: s
-    type(state_t), intent(in) :: state
+    type(place_on_path_t), intent(in) :: place
     type(frozen_jacobian_t), intent(inout) :: frozen
     type(variation_t), intent(in) :: varied(:)
     type(change_t), intent(out) :: change(:)
     logical, intent(out) :: found
-    type(control_t) :: control
     integer :: i
 
-    control = path_control(equations%problem, mesh, s)
-    call freeze(equations, control, state, frozen)
+    call freeze(equations, path_control(equations%problem, place%mesh, place%s), place%state, frozen)
     found = frozen%factors%valid
     do i = 1, size(varied)
       if (.not. found) return
-      call find_line(equations, control, state, frozen, varied(i), change(i), found)
+      call find_line(equations, place, frozen, varied(i), change(i), found)
     end do
   end subroutine differentiate
 
   !> The line of states along which the equations go on to hold.
-  subroutine find_line(equations, control, state, frozen, varied, change, found)
+  subroutine find_line(equations, place, frozen, varied, change, found)
     type(equations_t), intent(inout) :: equations
-    type(control_t), intent(in) :: control
-    type(state_t), intent(in) :: state
+    type(place_on_path_t), intent(in) :: place
     type(frozen_jacobian_t), intent(in) :: frozen
     type(variation_t), intent(in) :: varied
     type(change_t), intent(out) :: change
@@ -75,11 +76,12 @@ contains
     integer :: round
     logical :: finished
 
-    allocate (trial%separation(size(state%gap) + 1), defect(size(state%gap) + 1), source=0.0_wp)
+    allocate (defect(size(place%state%gap) + 1))
+    allocate (trial%separation(size(defect)), source=0.0_wp)
     do round = 0, most_corrections
-      call follow_line(equations, control, state, varied, trial, defect, found)
+      call follow_line(equations, place, varied, trial, defect, found)
       if (.not. found) return
-      trial%left = largest(defect, state)*varied%parameter%scale/equations%problem%length
+      trial%left = largest(defect, place%state)*varied%parameter%scale/equations%problem%length
       if (round > 0 .and. .not. trial%left < change%left) exit
       finished = round > 0 .and. .not. trial%left < gain*change%left
       change = trial
@@ -99,62 +101,80 @@ contains
   end function largest
 
   !> Derivatives, along a line of states, of the equations (lengths) and of the load.
-  subroutine follow_line(equations, control, state, varied, line, defect, found)
+  subroutine follow_line(equations, place, varied, line, defect, found)
     type(equations_t), intent(inout) :: equations
-    type(control_t), intent(in) :: control
-    type(state_t), intent(in) :: state
+    type(place_on_path_t), intent(in) :: place
     type(variation_t), intent(in) :: varied
     type(change_t), intent(inout) :: line
     real(wp), intent(out) :: defect(:)
     logical, intent(out) :: found
     type(problem_t) :: own
     type(state_t) :: moved
-    type(control_t) :: there
-    real(wp), dimension(size(defect)) :: at, g
+    real(wp), dimension(size(defect)) :: left
     real(wp) :: coarser
-    integer :: k, n
+    integer :: k
 
-    n = size(state%gap)
     own = equations%problem
-    at = own%law%separation_of([state%gap, state%h0])
     defect = 0
     line%load = 0
     coarser = 0
     found = .true.
     do k = 1, size(varied%offset)
       if (.not. abs(varied%weight(k)) > 0) cycle
-      equations%problem = varied%problem(k)
-      associate (problem => varied%problem(k), law => varied%problem(k)%law)
-        there = moved_control(control, own, problem)
-        call residual(equations, there, law%gap_of(at + varied%offset(k)*line%separation), g, moved)
-        found = found .and. moved%residual < huge(1.0_wp)
-        g(:n) = problem%length*g(:n)
-        ! The equation of the axis or the edge, as the separation there.
-        if (control%kind == at_edge_radius) g(n + 1) = g(n + 1) + law%edge_gap
-        g(n + 1) = law%separation_of(g(n + 1))
-        defect = defect + varied%weight(k)*g
-        line%load = line%load + varied%weight(k)*moved%load*problem%load
-        coarser = coarser + varied%coarser(k)*moved%load*problem%load
+      call move(equations, own, place, varied, k, line, moved, left)
+      found = found .and. moved%residual < huge(1.0_wp)
+      defect = defect + varied%weight(k)*left
+      associate (load => moved%load*varied%problem(k)%load)
+        line%load = line%load + varied%weight(k)*load
+        coarser = coarser + varied%coarser(k)*load
       end associate
     end do
     line%uncertainty = abs(line%load - coarser)
     equations%problem = own
   end subroutine follow_line
 
-  !> The control that prescribes the same in another problem's units; of the separation on the axis
-  !> its own is left.
-  pure type(control_t) function moved_control(control, own, other) result(there)
-    type(control_t), intent(in) :: control
-    type(problem_t), intent(in) :: own, other
+  !> The state on a line that belongs to the k-th varied problem, which becomes that of the
+  !> equations, and what is left of these [m]. own: the problem of the place.
+  subroutine move(equations, own, place, varied, k, line, moved, left)
+    type(equations_t), intent(inout) :: equations
+    type(problem_t), intent(in) :: own
+    type(place_on_path_t), intent(in) :: place
+    type(variation_t), intent(in) :: varied
+    integer, intent(in) :: k
+    type(change_t), intent(in) :: line
+    type(state_t), intent(inout) :: moved
+    real(wp), intent(out) :: left(:)
+    type(control_t) :: control
+    integer :: n
 
-    there = control
-    select case (control%kind)
-    case (at_axis_gap)
-      there%value = 0
-      there%scale = control%scale*own%lateral/other%lateral
-    case (at_edge_radius)
-      there%value = control%value*own%lateral/other%lateral
-    end select
-  end function moved_control
+    n = size(place%state%gap)
+    equations%problem = varied%problem(k)
+    associate (problem => varied%problem(k), law => varied%problem(k)%law)
+      control = control_of(own, problem, place%mesh, place%s + varied%shift(k))
+      call residual(equations, control, law%gap_of(own%law%separation_of([place%state%gap, &
+        place%state%h0]) + varied%offset(k)*line%separation), left, moved)
+      if (control%kind == at_edge_radius) then
+        ! In the equation of the edge the separation there stays.
+        left(n + 1) = left(n + 1) + law%edge_gap - law%gap_of(own%law%separation_of( &
+          own%law%edge_gap))
+      end if
+      left = problem%length*left
+    end associate
+  end subroutine move
+
+  !> The control that prescribes a coordinate of the path of a problem, in the units of another.
+  pure type(control_t) function control_of(own, other, mesh, s) result(control)
+    type(problem_t), intent(in) :: own, other
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+
+    control = path_control(own, mesh, s)
+    if (control%kind == at_edge_radius) then
+      control%value = control%value*own%lateral/other%lateral
+    else
+      control%value = other%law%gap_of(own%law%separation_of(control%value))
+      control%scale = control%scale*own%lateral/other%lateral
+    end if
+  end function control_of
 
 end module state_sensitivity

@@ -5,11 +5,12 @@ module branch_summary
   use scene_groups, only: scene_t
   use text, only: brief
   use experiment_result, only: experiment_result_t
+  use reported, only: reported_t
   use stepped_branch, only: branch_t
   use ending_text, only: text_of
   use summary, only: summary_t
   use summary_entries, only: take_jump, take_profiles, raise_tension, widen_spacing, &
-    h0_of, load_of, h0_error_of, load_error_of
+    h0_of, load_of, h0_error_of, load_error_of, rates_of
   use quality_warnings, only: short_number
   implicit none
   private
@@ -69,6 +70,7 @@ contains
     type(summary_t), intent(inout) :: summary
     real(wp), dimension(size(branches)) :: tension, tension_h0, tension_error, tension_h0_error, &
       jump_h0, jump_h0_error
+    type(reported_t), dimension(size(branches)) :: lowest, jump
     integer :: k
 
     do k = 1, size(branches)
@@ -78,6 +80,8 @@ contains
       tension_h0_error(k) = h0_error_of(problem, branches(k)%lowest)
       jump_h0(k) = h0_of(problem, branches(k)%jump)
       jump_h0_error(k) = h0_error_of(problem, branches(k)%jump)
+      if (allocated(branches(k)%lowest)) lowest(k) = branches(k)%lowest
+      if (allocated(branches(k)%jump)) jump(k) = branches(k)%jump
       if (.not. allocated(branches(k)%jump) .or. summary%has('jump_out_h0')) cycle
       call take_jump(problem, 'jump_out', branches(k)%jump, branches(k)%jump_uncertainty, summary)
     end do
@@ -85,6 +89,11 @@ contains
     call summary%set('unload_max_tension', tension)
     call summary%set('unload_max_tension_h0', tension_h0)
     call summary%set('unload_jump_out_h0', jump_h0)
+    associate (of_tension => rates_of(lowest), of_jump => rates_of(jump))
+      call summary%set_rate('unload_max_tension', -of_tension%load)
+      call summary%set_rate('unload_max_tension_h0', of_tension%h0)
+      call summary%set_rate('unload_jump_out_h0', of_jump%h0)
+    end associate
     call summary%set('unload_max_tension_error', tension_error)
     call summary%set('unload_max_tension_h0_error', tension_h0_error)
     call summary%set('unload_jump_out_h0_error', jump_h0_error)

@@ -7,7 +7,7 @@ module path_summary
   use ending_text, only: text_of
   use summary, only: summary_t
   use summary_entries, only: take_jump, take_profiles, raise_tension, widen_spacing, h0_of, &
-    load_of, h0_error_of, load_error_of
+    load_of, h0_error_of, load_error_of, rates_of
   implicit none
   private
   public :: summarise_path
@@ -51,6 +51,10 @@ contains
 
     call summary%set(name//'_h0', [(h0_of(problem, list(k)), k=1, size(list))])
     call summary%set(name//'_load', [(load_of(problem, list(k)), k=1, size(list))])
+    associate (rates => rates_of(list))
+      call summary%set_rate(name//'_h0', rates%h0)
+      call summary%set_rate(name//'_load', rates%load)
+    end associate
     call summary%set(name//'_h0_error', [(h0_error_of(problem, list(k)), k=1, size(list))])
     call summary%set(name//'_load_error', [(load_error_of(problem, list(k)), k=1, size(list))])
   end subroutine take_list

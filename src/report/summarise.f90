@@ -9,8 +9,9 @@ module summarise
   use experiment_result, only: experiment_result_t
   use reported, only: reported_t
   use force_entries, only: take_forces
+  use result_rows, only: rows
   use summary, only: summary_t
-  use summary_entries, only: h0_of, load_of, load_error_of
+  use summary_entries, only: h0_of, load_of, load_error_of, rates_of_one
   use branch_summary, only: summarise_branches
   use path_summary, only: summarise_path
   use classical_rows, only: summarise_classical
@@ -35,6 +36,7 @@ contains
     call summary%set('title', scene%title)
     call summary%set('converged', .true.)
     call describe_problem(scene, problem, summary)
+    if (allocated(scene%sensitivity)) call rate_description(scene, summary)
     if (allocated(scene%classical)) call summarise_classical(problem, summary)
     if (allocated(scene%approximations)) call summarise_approximations(problem, summary)
     if (.not. allocated(outcome%chosen%grid)) return
@@ -45,6 +47,8 @@ contains
     if (allocated(scene%regime)) call summarise_regime(problem, outcome, summary)
     call take_energy(problem, outcome, summary)
     call take_end(problem, outcome, summary)
+    if (.not. outcome%differentiated) &
+      call summary%fail_with('not all derivatives of &sensitivity were found')
     if (.not. problem%rigid) call judge_resolution(summary)
     call judge_accuracy(scene, outcome, summary)
     call judge_stopping(outcome, ended_as_planned(outcome), summary)
@@ -98,6 +102,35 @@ contains
     if (.not. problem%law%of_paper) call take_forces(problem, summary)
   end subroutine describe_problem
 
+  !> Derivatives of what follows from the deck alone, by differences.
+  subroutine rate_description(scene, summary)
+    type(scene_t), intent(in) :: scene
+    type(summary_t), intent(inout) :: summary
+    type(summary_t) :: trial
+    real(wp), allocatable :: rate(:, :), all_rates(:, :)
+    integer :: i, j, k
+
+    associate (varied => scene%sensitivity%varied)
+      allocate (all_rates(size(varied), size(rows)), source=0.0_wp)
+      do j = 1, size(varied)
+        do k = 1, size(varied(j)%problem)
+          trial = summary_t()
+          call describe_problem(scene, varied(j)%problem(k), trial)
+          do i = 1, size(rows)
+            ! Of differences, so that what does not depend on a parameter has no derivative.
+            all_rates(j, i) = all_rates(j, i) + varied(j)%weight(k)* &
+              (trial%number(trim(rows(i)%key)) - summary%number(trim(rows(i)%key)))
+          end do
+        end do
+      end do
+    end associate
+    do i = 1, size(rows)
+      if (size(summary%numbers(trim(rows(i)%key))) /= 1) cycle
+      rate = all_rates(:, i:i)
+      call summary%set_rate(trim(rows(i)%key), rate)
+    end do
+  end subroutine rate_description
+
   !> What was read from the path.
   subroutine take_readings(scene, problem, outcome, summary)
     type(scene_t), intent(in) :: scene
@@ -141,6 +174,8 @@ contains
     call summary%set('energy_lost', outcome%energy_lost*problem%load*problem%length)
     call summary%set('energy_lost_uncertainty', &
       outcome%energy_uncertainty*problem%load*problem%length)
+    if (allocated(outcome%energy_rate)) call summary%set_rate('energy_lost', &
+      reshape(outcome%energy_rate, [size(outcome%energy_rate), 1]))
   end subroutine take_energy
 
   !> Where the loading ends or, without one, the path.
@@ -161,6 +196,10 @@ contains
     call summary%set('end_h0', h0_of(problem, at))
     call summary%set('end_displacement', at%displacement*problem%length)
     call summary%set('end_load', load_of(problem, at))
+    associate (rates => rates_of_one(at))
+      call summary%set_rate('end_displacement', rates%displacement)
+      call summary%set_rate('end_load', rates%load)
+    end associate
     if (.not. allocated(at%error)) return
     call summary%set('end_displacement_error', at%error%displacement*problem%length)
     call summary%set('end_load_error', load_error_of(problem, at))

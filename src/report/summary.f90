@@ -18,6 +18,8 @@ module summary
     integer(long), allocatable :: count(:)
     logical, allocatable :: truth
     character(len=:), allocatable :: text
+    !> Derivatives of the numbers by each parameter of &sensitivity, (parameters, numbers).
+    real(wp), allocatable :: rate(:, :)
   end type value_t
 
   !> What has no value is absent from the file. Where one value of an array does not exist, such as
@@ -31,6 +33,8 @@ module summary
     procedure :: warn
     procedure :: fail_with
     generic :: set => set_number, set_numbers, set_count, set_counts, set_truth, set_text
+    procedure :: set_rate
+    procedure :: rate
     procedure :: drop
     procedure :: has
     procedure :: number
@@ -53,6 +57,31 @@ contains
     if (.not. allocated(self%value)) allocate (self%value(size(rows)))
     i = row_of(key)
   end subroutine find
+
+  !> Derivatives of the numbers that a key has, (parameters, numbers); with no parameters, none.
+  subroutine set_rate(self, key, rate)
+    class(summary_t), intent(inout) :: self
+    character(len=*), intent(in) :: key
+    real(wp), intent(in) :: rate(:, :)
+    integer :: i
+
+    call self%find(key, i)
+    if (allocated(self%value(i)%rate)) deallocate (self%value(i)%rate)
+    if (size(rate, 1) > 0) self%value(i)%rate = rate
+  end subroutine set_rate
+
+  !> The derivatives of a key's numbers; none where it has none.
+  pure function rate(self, key)
+    class(summary_t), intent(in) :: self
+    character(len=*), intent(in) :: key
+    real(wp), allocatable :: rate(:, :)
+
+    allocate (rate(0, 0))
+    if (.not. allocated(self%value)) return
+    associate (value => self%value(row_of(key)))
+      if (allocated(value%rate)) rate = value%rate
+    end associate
+  end function rate
 
   subroutine set_number(self, key, value)
     class(summary_t), intent(inout) :: self
@@ -122,6 +151,7 @@ contains
     if (allocated(self%value(i)%count)) deallocate (self%value(i)%count)
     if (allocated(self%value(i)%truth)) deallocate (self%value(i)%truth)
     if (allocated(self%value(i)%text)) deallocate (self%value(i)%text)
+    if (allocated(self%value(i)%rate)) deallocate (self%value(i)%rate)
   end subroutine drop
 
   !> Whether a key has a value.

@@ -3,12 +3,12 @@ module summary_entries
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use reported, only: reported_t
+  use reported, only: reported_t, measure_t
   use summary, only: summary_t
   implicit none
   private
   public :: take_jump, take_profiles, raise_tension, widen_spacing
-  public :: h0_of, load_of, h0_error_of, load_error_of
+  public :: h0_of, load_of, h0_error_of, load_error_of, rates_of, rates_of_one
 
 contains
 
@@ -20,9 +20,13 @@ contains
     type(reported_t), intent(in) :: jump
     real(wp), intent(in) :: uncertainty
     type(summary_t), intent(inout) :: summary
+    type(measure_t), allocatable :: rates(:, :)
 
     call summary%set(name//'_h0', h0_of(problem, jump))
     call summary%set(name//'_load', load_of(problem, jump))
+    rates = rates_of_one(jump)
+    call summary%set_rate(name//'_h0', rates%h0)
+    call summary%set_rate(name//'_load', rates%load)
     call summary%drop(name//'_uncertainty')
     if (uncertainty > 0) call summary%set(name//'_uncertainty', uncertainty*problem%length)
     if (.not. allocated(jump%error)) return
@@ -49,6 +53,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(reported_t), intent(in) :: lowest
     type(summary_t), intent(inout) :: summary
+    type(measure_t), allocatable :: rates(:, :)
 
     if (summary%has('max_tension')) then
       if (-load_of(problem, lowest) <= summary%number('max_tension')) return
@@ -57,6 +62,9 @@ contains
     end if
     call summary%set('max_tension', -load_of(problem, lowest))
     call summary%set('max_tension_h0', h0_of(problem, lowest))
+    rates = rates_of_one(lowest)
+    call summary%set_rate('max_tension', -rates%load)
+    call summary%set_rate('max_tension_h0', rates%h0)
     if (.not. allocated(lowest%error)) return
     call summary%set('max_tension_error', load_error_of(problem, lowest))
     if (.not. lowest%searched) &
@@ -110,5 +118,34 @@ contains
     if (.not. present(item)) return
     if (allocated(item%error)) load_error_of = item%error%load*problem%load
   end function load_error_of
+
+  !> Derivatives of states by each parameter, (parameters, states), SI units: NaN where a state has
+  !> none, and no parameters where none has.
+  pure function rates_of(list) result(rates)
+    type(reported_t), intent(in) :: list(:)
+    type(measure_t), allocatable :: rates(:, :)
+    real(wp) :: none
+    integer :: parameters, k
+
+    parameters = 0
+    do k = 1, size(list)
+      if (allocated(list(k)%rate)) parameters = size(list(k)%rate)
+    end do
+    none = ieee_value(none, ieee_quiet_nan)
+    allocate (rates(parameters, size(list)), source=measure_t(none, none, none, none))
+    do k = 1, size(list)
+      if (allocated(list(k)%rate)) rates(:, k) = list(k)%rate
+    end do
+  end function rates_of
+
+  !> The same of one state.
+  pure function rates_of_one(item) result(rates)
+    type(reported_t), intent(in) :: item
+    type(measure_t), allocatable :: rates(:, :)
+    type(reported_t) :: list(1)
+
+    list(1) = item
+    rates = rates_of(list)
+  end function rates_of_one
 
 end module summary_entries

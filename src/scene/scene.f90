@@ -12,6 +12,7 @@ module scene
   use device_group, only: take_device
   use fixed_load_group, only: take_fixed_load
   use table_group, only: take_table
+  use sensitivity_group, only: take_sensitivity
   use regime_group, only: take_regime
   use profiles_group, only: take_profiles
   use theory_groups, only: take_theories
@@ -68,6 +69,7 @@ contains
     call take_device(scene, error)
     call take_fixed_load(scene, error)
     call take_table(scene, error)
+    call take_sensitivity(scene, error)
     call take_regime(scene, error)
     call take_profiles(scene, error)
     call take_theories(scene, error)

@@ -9,6 +9,7 @@ module scene_keys
   use device_group, only: device_keys
   use fixed_load_group, only: fixed_load_keys
   use table_group, only: table_keys
+  use sensitivity_group, only: sensitivity_keys
   use regime_group, only: regime_keys
   use profiles_group, only: profiles_keys
   use theory_groups, only: theory_keys
@@ -36,6 +37,7 @@ contains
       device_keys(), &
       fixed_load_keys(), &
       table_keys(), &
+      sensitivity_keys(), &
       regime_keys(), &
       profiles_keys(), &
       theory_keys(), &

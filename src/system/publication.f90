@@ -19,9 +19,10 @@ module publication
   public :: publish, mend, result_files, journal_name
 
   !> The files of a folder of results, the summary last.
-  character(len=*), parameter :: result_files(*) = [character(len=18) :: 'curve.csv', &
+  character(len=*), parameter :: result_files(*) = [character(len=21) :: 'curve.csv', &
     'profiles.csv', 'approximations.csv', 'classical.csv', 'device.csv', &
-    'device_jumps.csv', 'fixed_load.csv', 'table.csv', 'fit.csv', 'fit.nml', 'sweep.csv', 'summary.nml']
+    'device_jumps.csv', 'fixed_load.csv', 'table.csv', 'sensitivity.csv', 'fit.csv', 'fit.nml', &
+    'sweep.csv', 'summary.nml']
   character(len=*), parameter :: journal_name = 'journal' // partial
 
   character(len=*), parameter :: intent_name = 'INCOMPLETE.txt', set_aside = '.old' // partial

@@ -1,0 +1,171 @@
+!> How what is reported of an equilibrium changes with the parameters: where it stays at its place on
+!> the path, and where it is defined by an h0, a position of a drive or a load, or as an extremum of
+!> one of these. SI units throughout.
+!>
+!> With s the path's coordinate and p a parameter, dQ/dp = Q_p + Q_s s_p. A given value of
+!> D = a h0 + b F asks for s_p = (dD/dp - D_p)/D_s, an extremum of D for s_p = -D_sp/D_ss; D itself
+!> then changes by D_p alone.
+module place_sensitivity
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t, contact_level_of
+  use equilibrium, only: state_t, equations_t, gap_at, radius_of_gap
+  use solver_options, only: solver_options_t, tightened
+  use anderson, only: solve_anderson
+  use frozen_jacobian, only: frozen_jacobian_t
+  use edge_locked, only: approach
+  use continuation, only: path_control
+  use potential_energy, only: energy_of
+  use variation, only: variation_t
+  use state_sensitivity, only: change_t, place_on_path_t, differentiate, move
+  implicit none
+  private
+  public :: local_t, find_local, at_fixed, at_extremum
+  public :: quantities, of_h0, of_load, of_displacement, of_energy, of_radius
+
+  !> What is reported of a state: h0 [m], load [N], displacement [m], potential energy [J], contact
+  !> radius [m].
+  integer, parameter :: quantities = 5
+  integer, parameter :: of_h0 = 1, of_load = 2, of_displacement = 3, of_energy = 4, of_radius = 5
+
+  !> rate(:, i): derivatives of the quantities by parameter i at a fixed place; slope: by s.
+  type :: local_t
+    real(wp) :: slope(quantities) = 0
+    real(wp), allocatable :: rate(:, :)
+  end type local_t
+
+  !> Difference of positions, relative, over which the gap's slope is taken.
+  real(wp), parameter :: close = 1.0e-4_wp
+
+contains
+
+  !> The derivatives at a place. The first of the varied is the path's coordinate.
+  subroutine find_local(equations, place, frozen, varied, local, found)
+    type(equations_t), intent(inout) :: equations
+    type(place_on_path_t), intent(in) :: place
+    type(frozen_jacobian_t), intent(inout) :: frozen
+    type(variation_t), intent(in) :: varied(:)
+    type(local_t), intent(out) :: local
+    logical, intent(out) :: found
+    type(change_t) :: change(size(varied))
+    real(wp) :: radius
+    integer :: i
+
+    allocate (local%rate(quantities, size(varied) - 1))
+    call differentiate(equations, place, frozen, varied, change, found)
+    if (.not. found) return
+    radius = radius_of_gap(equations%problem%shape, contact_level_of(equations%problem), &
+      equations%meshes%grid(place%mesh), place%state)
+    call measure(equations, place, varied(1), change(1), radius, local%slope)
+    do i = 2, size(varied)
+      call measure(equations, place, varied(i), change(i), radius, local%rate(:, i - 1))
+    end do
+  end subroutine find_local
+
+  !> Derivatives of the quantities along a line of equilibria; radius: of the contact.
+  subroutine measure(equations, place, varied, line, radius, rate)
+    type(equations_t), intent(inout) :: equations
+    type(place_on_path_t), intent(in) :: place
+    type(variation_t), intent(in) :: varied
+    type(change_t), intent(in) :: line
+    real(wp), intent(in) :: radius
+    real(wp), intent(out) :: rate(quantities)
+    type(problem_t) :: own
+    type(state_t) :: moved
+    real(wp) :: left(size(line%separation)), value(quantities), energy, uncertainty, x
+    integer :: k
+
+    own = equations%problem
+    x = radius/place%state%scale
+    rate = 0
+    do k = 1, size(varied%offset)
+      if (.not. abs(varied%weight(k)) > 0) cycle
+      call move(equations, own, place, varied, k, line, moved, left)
+      call energy_of(equations, place%mesh, moved, energy, uncertainty)
+      associate (problem => varied%problem(k), grid => equations%meshes%grid(place%mesh))
+        value = 0
+        value(of_load) = moved%load*problem%load
+        value(of_displacement) = (moved%axis_gap - moved%h0)*problem%length
+        value(of_energy) = energy*problem%load*problem%length
+        ! How far the separation at the contact's end is from its level.
+        if (radius > 0) value(of_radius) = (gap_at(problem%shape, grid, moved, x) - &
+          contact_level_of(problem))*problem%length
+      end associate
+      rate = rate + varied%weight(k)*value
+    end do
+    equations%problem = own
+    rate(of_h0) = line%separation(size(left))
+    if (.not. radius > 0) return
+    rate(of_radius) = -rate(of_radius)/steepness(equations, place, x)
+    ! With the path's coordinate the mesh grows.
+    if (place%mesh /= approach) rate(of_radius) = rate(of_radius) + &
+      radius*own%lateral*sum(varied%weight*varied%shift)
+  end subroutine measure
+
+  !> Derivative of the separation by the position, at x on the mesh of a place.
+  pure real(wp) function steepness(equations, place, x)
+    type(equations_t), intent(in) :: equations
+    type(place_on_path_t), intent(in) :: place
+    real(wp), intent(in) :: x
+
+    associate (problem => equations%problem, grid => equations%meshes%grid(place%mesh))
+      steepness = (gap_at(problem%shape, grid, place%state, x*(1 + close)) - &
+        gap_at(problem%shape, grid, place%state, x*(1 - close)))*problem%length/ &
+        (2*close*x*place%state%scale*problem%lateral)
+    end associate
+  end function steepness
+
+  !> Derivatives of the quantities where weights(1) h0 + weights(2) load changes as `wanted` says.
+  pure function at_fixed(local, weights, wanted) result(rate)
+    type(local_t), intent(in) :: local
+    real(wp), intent(in) :: weights(2), wanted(:)
+    real(wp) :: rate(quantities, size(wanted))
+    integer :: i
+
+    do i = 1, size(wanted)
+      rate(:, i) = local%rate(:, i) + local%slope* &
+        (wanted(i) - dot_product(weights, local%rate(:2, i)))/dot_product(weights, local%slope(:2))
+    end do
+  end function at_fixed
+
+  !> Derivatives of the quantities at an extremum of weights(1) h0 + weights(2) load. The second
+  !> derivatives are differences over places that are `apart` in s. found = .false.: a state there was
+  !> not solved.
+  subroutine at_extremum(equations, options, place, weights, apart, varied, rate, found)
+    type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
+    type(place_on_path_t), intent(in) :: place
+    real(wp), intent(in) :: weights(2), apart
+    type(variation_t), intent(in) :: varied(:)
+    real(wp), allocatable, intent(out) :: rate(:, :)
+    logical, intent(out) :: found
+    integer, parameter :: steps(4) = [-2, -1, 1, 2]
+    real(wp), parameter :: rule(4) = [1, -8, 8, -1]/12.0_wp
+    type(frozen_jacobian_t) :: frozen
+    type(place_on_path_t) :: near
+    type(local_t) :: local, there
+    ! Second derivatives of D, by s and by s and each parameter.
+    real(wp) :: bend, cross(size(varied) - 1)
+    integer :: k, i
+
+    call find_local(equations, place, frozen, varied, local, found)
+    bend = 0
+    cross = 0
+    do k = 1, size(steps)
+      if (.not. found) return
+      near = place
+      near%s = place%s + steps(k)*apart
+      call solve_anderson(equations, tightened(options), frozen, &
+        path_control(equations%problem, near%mesh, near%s), near%state, found)
+      found = found .or. near%state%residual <= options%tolerance
+      if (found) call find_local(equations, near, frozen, varied, there, found)
+      if (.not. found) return
+      bend = bend + rule(k)/apart*dot_product(weights, there%slope(:2))
+      cross = cross + rule(k)/apart*matmul(weights, there%rate(:2, :))
+    end do
+    allocate (rate, source=local%rate)
+    do i = 1, size(cross)
+      rate(:, i) = rate(:, i) - local%slope*cross(i)/bend
+    end do
+  end subroutine at_extremum
+
+end module place_sensitivity
