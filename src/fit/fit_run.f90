@@ -11,7 +11,8 @@ module fit_run
   use measured_curve, only: measured_t, read_measured
   use measured_jumps, only: find_jump
   use measured_checks, only: check_measured
-  use noise, only: noise_t, noise_of, white_noise
+  use noise, only: white_noise
+  use far_samples, only: find_far, fewest_far
   use path_model, only: path_model_t
   use classical_model, only: classical_model_t, theories
   use curve_residuals, only: curve_residuals_t
@@ -35,9 +36,7 @@ module fit_run
     type(theory_fit_t), allocatable :: theory(:)
   end type fit_outcome_t
 
-  !> Samples of a baseline; a signal whose noise is smaller than this part of it is one that was
-  !> computed.
-  integer, parameter :: fewest = 12
+  !> A signal whose noise is smaller than this part of it is one that was computed.
   real(wp), parameter :: least_noise = 1.0e-9_wp
   !> An unknown whose fitted number (`unknowns`) changes by 1 is seen by this many standard deviations
   !> of all data, or it has no effect.
@@ -95,9 +94,7 @@ contains
     type(curve_residuals_t), intent(inout) :: curve
     character(len=:), allocatable, intent(out) :: trouble
     type(failure_t), allocatable :: error
-    logical, allocatable :: far(:)
     real(wp) :: slope
-    integer :: i
 
     call read_measured(measurement, curve%measured, error)
     if (allocated(error)) then
@@ -110,26 +107,22 @@ contains
     curve%sensitivity = 1/measurement%spring_constant
     if (allocated(measurement%sensitivity)) curve%sensitivity = measurement%sensitivity
     if (allocated(measurement%contact_point)) curve%contact_point = measurement%contact_point
+    slope = 1/curve%sensitivity
     associate (data => curve%measured)
-      far = data%baseline_of(.true.) .or. data%baseline_of(.false.)
-      if (count(far) < fewest .and. .not. allocated(fit%noise)) then
+      call find_far(data, slope, curve%noise)
+      if (allocated(fit%noise)) then
+        curve%noise = white_noise(fit%noise)
+      else if (count(data%far) < fewest_far) then
         trouble = 'fewer than 12 samples far from contact, too few to see the noise; give noise'
         return
       end if
-      if (allocated(fit%noise)) then
-        curve%noise = white_noise(fit%noise)
-      else
-        curve%noise = noise_of(pack(data%z, far), pack(data%signal, far), &
-          pack(merge([(1, i=1, size(far))], 2, data%inward), far))
-        if (curve%noise%deviation < least_noise*maxval(abs(data%signal))) &
-          curve%noise = white_noise(least_noise*maxval(abs(data%signal)))
-      end if
-      slope = 1/curve%sensitivity
+      if (curve%noise%deviation < least_noise*maxval(abs(data%signal))) &
+        curve%noise = white_noise(least_noise*maxval(abs(data%signal)))
       call check_measured(data, curve%noise, slope, trouble)
       if (allocated(trouble)) return
       curve%jump = [find_jump(data, curve%noise, slope, .true.), &
         find_jump(data, curve%noise, slope, .false.)]
-      curve%largest = 1.2_wp*(maxval(data%signal) - sum(data%signal, far)/max(1, count(far)))
+      curve%largest = 1.2_wp*(maxval(data%signal) - sum(data%signal, data%far)/max(1, count(data%far)))
     end associate
     call curve%take_samples(1)
     if (size(curve%sample) < 2*size(curve%unknown) + 4) &

@@ -53,7 +53,7 @@ contains
 
     left = 0
     do way = 1, 2
-      far = measured%baseline_of(way == 1)
+      far = measured%far .and. (measured%inward .eqv. way == 1)
       if (.not. any(far)) cycle
       associate (z => measured%z, s => measured%signal)
         middle = [sum(z, far), sum(s, far)]/count(far)

@@ -16,8 +16,8 @@ module measured_curve
     real(wp), allocatable :: z(:), signal(:)
     logical, allocatable :: inward(:)
     real(wp) :: facing = 1
-  contains
-    procedure :: baseline_of
+    !> Samples so far from contact that they are the baseline, once that is known.
+    logical, allocatable :: far(:)
   end type measured_t
 
   !> Samples of a way, fewer of which are no curve.
@@ -25,8 +25,6 @@ module measured_curve
   !> A way begins and ends with this part of its samples; a turn that is nearer to the first or the
   !> last sample than that is none.
   real(wp), parameter :: end_part = 0.1_wp
-  !> The part of the travel that is taken as the baseline.
-  real(wp), parameter :: far_part = 1.0_wp/3
 
 contains
 
@@ -115,19 +113,5 @@ contains
     part = max(1, nint(end_part*size(z)))
     travel = (sum(z(size(z) - part + 1:)) - sum(z(:part)))/part
   end function travel_of
-
-  !> The samples of a way that are farthest from the other body, where the force is taken as small.
-  pure function baseline_of(self, inward) result(far)
-    class(measured_t), intent(in) :: self
-    logical, intent(in) :: inward
-    logical :: far(size(self%z))
-    real(wp), allocatable :: position(:)
-
-    far = .false.
-    position = pack(self%facing*self%z, self%inward .eqv. inward)
-    if (size(position) == 0) return
-    far = self%facing*self%z > maxval(position) - far_part*(maxval(position) - minval(position)) &
-      .and. (self%inward .eqv. inward)
-  end function baseline_of
 
 end module measured_curve
