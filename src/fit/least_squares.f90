@@ -52,8 +52,9 @@ module least_squares
   end interface
 
   !> Relative change of the sum of squares, and of x, below which the search ends: of the former a
-  !> ten millionth is far below what noise makes of it. Evaluations after which it is given up.
-  real(wp), parameter :: less = 1.0e-7_wp, nearer = 1.0e-10_wp
+  !> ten millionth is far below what noise makes of it. Evaluations after which it is given up; and the
+  !> length of the first step.
+  real(wp), parameter :: less = 1.0e-7_wp, nearer = 1.0e-10_wp, first_step = 0.3_wp
   integer, parameter :: most_evaluations = 80
   !> Instead of residuals that do not exist: lmder then makes a shorter step.
   real(wp), parameter :: nowhere = 1.0e8_wp
@@ -61,7 +62,7 @@ module least_squares
 contains
 
   !> Moves x to where the sum of the squares of the residuals is least. A change of x by 1 is to be a
-  !> large one: the first step is no longer. found = .false.: it was not
+  !> large one: the first step is shorter. found = .false.: it was not
   !> found within so many evaluations, or there are no residuals at x to begin with.
   subroutine minimise(residuals, x, residual, found)
     class(residuals_t), intent(inout), target :: residuals
@@ -76,7 +77,7 @@ contains
     carrier%residuals => residuals
     diag = 1
     call lmder(evaluate_for_lmder, c_loc(carrier), size(residual), size(x), x, residual, jacobian, &
-      size(residual), less, nearer, 0.0_wp, most_evaluations, diag, 2, 1.0_wp, 0, &
+      size(residual), less, nearer, 0.0_wp, most_evaluations, diag, 2, first_step, 0, &
       info, evaluations, jacobians, pivot, qtf, wa1, wa2, wa3, wa4)
     ! 6 to 8: nothing more can be gained in this arithmetic.
     found = any(info == [1, 2, 3, 4, 6, 7, 8])
