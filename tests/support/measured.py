@@ -10,7 +10,7 @@ SPRING = 1.2
 CONTACT_POINT = 3e-6
 
 
-def states_of_device(groups, spring=SPRING, start=40e-9, h0_end=-1e-9):
+def states_of_device(groups, spring=SPRING, start=40e-9, h0_end=-2e-9):
     """Return position, load and segment of the states of a device, each solved: no two evenly apart."""
     table = snapin.run({
         **groups,
