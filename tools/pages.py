@@ -33,8 +33,8 @@ _NO_NUMBERS = (
     "namelist_writer", "clock", "command_line", "c_library", "deck", "deck_keys", "deck_number",
     "deck_scan", "deck_source", "deck_store", "text", "deck_token", "deck_values", "failure",
     "files", "finished_run", "folder_lock", "forecast", "journal", "memory", "preflight",
-    "result_listing", "result_rows",
-    "state_records", "byte_record", "progress", "publication", "run_identity", "snapin", "text_file",
+    "result_listing", "result_rows", "state_records", "byte_record", "progress", "publication",
+    "run_identity", "snapin", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")
 

@@ -54,7 +54,8 @@ def keys_as_markdown(sections):
         required = "Required. " if group.note == "required" else ""
         text += f"### `{group.name}`\n\n{required}{_cell(group.meaning)}\n\n"
         rows = [(f"`{key}`", value.strip(), meaning)
-                for (key, _, value), meaning in ((line.partition(" "), m) for line, m in group.items)]
+                for line, meaning in group.items
+                for key, _, value in [line.partition(" ")]]
         text += _table(["key", "value", "meaning"], rows)
     return text
 
@@ -113,7 +114,9 @@ def _cell(text):
 
 def main():
     for page, option in PAGES.items():
-        output = subprocess.run([PROGRAM, option], check=True, capture_output=True, text=True).stdout
+        output = subprocess.run(
+            [PROGRAM, option], check=True, capture_output=True, text=True
+        ).stdout
         (ROOT / page).write_text(page_with(page, block_of(page, output)), encoding="utf-8")
 
 

@@ -34,7 +34,9 @@ _THEORIES = {
     "hertz": ("Hertz", {"color": GREY, "linestyle": (0, (1, 1.5))}),
     "jkr": ("JKR", {"color": VERMILION, "linestyle": (0, (6, 2))}),
     "dmt": ("DMT", {"color": GREEN, "linestyle": (0, (6, 2, 1, 2))}),
-    "maugis_dugdale": ("Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}),
+    "maugis_dugdale": (
+        "Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}
+    ),
 }
 # In points: a piece of curve shorter than this gets no arrow for its direction.
 _LONG_ENOUGH = 45

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The forces of a deck: pressure and energy against separation, with what the program found in them.
+"""The forces of a deck: pressure and energy against separation, and what the program found there.
 
     .venv/bin/python pywrap/plots/force_law.py inputs/examples/hydration.nml
 """
@@ -48,7 +48,8 @@ def draw_force_law(deck, title=""):
         factor, short = scale([highest], unit)
         dress(panel, f"separation $h$ [{lengths[1]}]", f"{name} [{short}]")
         panel.plot(gap / lengths[0], quantity / factor, color=BLUE, linewidth=1.6)
-        panel.set_ylim(-1.15 * deepest / factor if quantity.min() < 0 else None, 1.3 * highest / factor)
+        lowest = -1.15 * deepest / factor if quantity.min() < 0 else None
+        panel.set_ylim(lowest, 1.3 * highest / factor)
         for mark in marks:
             panel.plot(mark.gap / lengths[0], getattr(mark, name) / factor, "o", color=mark.colour,
                        markersize=6, label=mark.name, zorder=5)
@@ -60,10 +61,11 @@ def draw_force_law(deck, title=""):
 
 
 def _separations(deck, numbers):
-    """Return separations from the repulsion of contact to where a thousandth of the tension is left."""
+    """Return separations from the repulsion of contact to a thousandth of the largest tension."""
     low = numbers.origin + numbers.length * np.linspace(0.01, 1, 400)
     pressure = snapin.force_law(deck, low).pressure
-    unit = np.max(abs(snapin.force_law(deck, numbers.origin + numbers.length * np.linspace(1, 3, 200)).pressure))
+    near = numbers.origin + numbers.length * np.linspace(1, 3, 200)
+    unit = np.max(abs(snapin.force_law(deck, near).pressure))
     near = low[np.argmax(pressure < 20 * unit)]
     far = numbers.origin + numbers.length * np.geomspace(1, 1e4, 400)
     left = np.flatnonzero(abs(snapin.force_law(deck, far).pressure) > 3e-3 * unit)
@@ -89,9 +91,9 @@ def _marks(numbers, gap, values):
         return marks
     outside = np.flatnonzero(gap > marks[-1].gap)
     tops = [i for i in outside[1:-1]
-            if values.energy[i] > values.energy[i - 1] and values.energy[i] >= values.energy[i + 1]]
+            if values.energy[i - 1] < values.energy[i] >= values.energy[i + 1]]
     wells = [i for i in outside[1:-1]
-             if values.energy[i] < values.energy[i - 1] and values.energy[i] <= values.energy[i + 1]]
+             if values.energy[i - 1] > values.energy[i] <= values.energy[i + 1]]
     if tops:
         top = max(tops, key=lambda i: values.energy[i])
         marks.append(_Mark("barrier", PURPLE, gap[top], values, top))
@@ -104,7 +106,9 @@ def _marks(numbers, gap, values):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("deck", nargs="+", type=pathlib.Path)
-    parser.add_argument("--out", type=pathlib.Path, help="folder for the pictures; the deck's if left out")
+    parser.add_argument(
+        "--out", type=pathlib.Path, help="folder for the pictures; the deck's if left out"
+    )
     options = parser.parse_args()
     for deck in options.deck:
         try:

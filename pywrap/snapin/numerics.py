@@ -31,6 +31,8 @@ _flat = _snapin.flat_numerics
 METHODS = ("mixing", "anderson", "newton")
 
 _LARGEST_ORDER = 64
+# What only mapped meshes have; users get none of these.
+_UNMAPPED = (0.0, 0.0, 0.0)
 # As in src/scene/scene_keys.f90.
 _MOST_NODES = 20000
 _MOST_DEPTH = 1000
@@ -53,7 +55,7 @@ def _sum_and_distance(total, distance):
 
 
 def kernel(total, distance):
-    """Return k(r, t) for arrays of r + t and |r - t|, both positive (src/mesh/elastic_kernel.f90)."""
+    """Return k(r, t) for arrays of r + t and |r - t|, both positive."""
     return _flat.kernel_values(*_sum_and_distance(total, distance))[0]
 
 
@@ -187,7 +189,7 @@ class Mesh:
         for key, value in {"kind": str(self.kind), "centre": centre, "ends": ends}.items():
             object.__setattr__(self, key, value)
         object.__setattr__(self, "order", order)
-        values = _flat.mesh_nodes(*self._description)
+        values = _flat.mesh_nodes(*self._description, order * (ends.size - 1))
         for key, value in zip(("x", "weight", "spacing"), values):
             if isinstance(value, np.ndarray):
                 value.flags.writeable = False
@@ -195,12 +197,12 @@ class Mesh:
 
     @property
     def _description(self):
-        return self.kind, self.centre, self.ends, self.order
+        return self.kind, self.centre, self.ends, [self.order], _UNMAPPED
 
     def matrix(self):
         """Return the `KernelMatrix`; computed anew at every call."""
         room_for("mesh", bytes_for(self.x.size))
-        rows = _flat.mesh_matrix(*self._description)
+        rows = _flat.mesh_matrix(*self._description, self.x.size)
         return KernelMatrix(rows[0], rows[1], rows[2:])
 
     def interpolate(self, values, at):

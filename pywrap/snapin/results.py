@@ -21,7 +21,8 @@ class Result:
 
     Each table is an attribute, a structured array: `curve`, `profiles`, `approximations`,
     `classical`, `sweep`, whatever the deck asked for. `summary` and `cost` are dictionaries of the
-    groups of summary.nml; lists of numbers in them are arrays. `converged` says that every state was found.
+    groups of summary.nml; lists of numbers in them are arrays. `converged` says that every
+    state was found.
     `fitted` has the groups of fit.nml by name, each a dictionary whose values are arrays; of a deck
     without &fit it is empty.
     """

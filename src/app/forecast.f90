@@ -6,7 +6,7 @@ module forecast
   use numerics_choice, only: choice_t, choose, companion
   use edge_locked, only: mesh_family_t, new_mesh_family
   use contact_scales, only: largest_radius, contact_level, smallest_feature, lost_in_rounding
-  use experiment, only: range_of
+  use h0_range, only: range_of
   use scene_problem, only: problem_of
   use locked_stepper, only: has_path
   use h0_schedule, only: states_planned

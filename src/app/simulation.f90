@@ -51,7 +51,7 @@ contains
   !> Computes a scene and writes its results into the folder `out_dir`. converged: false where a
   !> calculation failed; what was computed is kept and the summary says what failed. error: there
   !> are no results, or they could not be written. resume: what an interrupted run has left in the
-  !> folder is gone on with, and finished results are left as they are.
+  !> folder is continued, and finished results are left as they are.
   subroutine run_scene(scene, out_dir, quiet, resume, converged, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: out_dir
@@ -137,7 +137,7 @@ contains
       call destination%say('going on with what was interrupted after '// &
         duration(results%journal%earlier))
     else if (left_over) then
-      call destination%say('starting over; --resume would have gone on with what was interrupted')
+      call destination%say('starting over; --resume would have continued what was interrupted')
     end if
   end subroutine open_folder
 

@@ -176,14 +176,15 @@ contains
     error = huge(1.0_wp)
     spent = a
     allocate (vectors, mold=a)
-    call dgeev('n', 'v', n, spent, n, real_part, imaginary_part, left, 1, vectors, n, best, -1, info)
+    call dgeev('n', 'v', n, spent, n, real_part, imaginary_part, left, 1, vectors, n, best, -1, &
+      info)
     allocate (work(nint(best(1))))
     call dgeev('n', 'v', n, spent, n, real_part, imaginary_part, left, 1, vectors, n, work, &
       size(work), info)
     found = info == 0
     if (.not. found) return
-    ! A pair of complex vectors is held as its real and its imaginary part; B has a 2 x 2 block then,
-    ! and is still normal.
+    ! A pair of complex vectors is held as its real and its imaginary part; B has a 2 x 2 block
+    ! then, and is still normal.
     defect = -matmul(a, vectors)
     do j = 1, n
       defect(:, j) = defect(:, j) + real_part(j)*vectors(:, j)

@@ -115,8 +115,8 @@ contains
       end if
       g(:n) = state%gap - state%h0 - problem%shape%height(state%scale*grid%x(:n)) - &
         raised(first_node:)
-      ! In a stiff contact the equation for the axis, which is no node, is off by many times what the
-      ! polynomials lack of the pressure between the nodes; their gaps tell it better.
+      ! In a stiff contact the equation for the axis, which is no node, is off by many times what
+      ! the polynomials lack of the pressure between the nodes; their gaps tell it better.
       state%axis_gap = state%h0 + raised(axis_row)
       if (grid%centre > 0) state%axis_gap = dot_product(grid%at_axis, state%gap)
       select case (control%kind)

@@ -35,8 +35,8 @@ module error_estimate
 
 contains
 
-  !> Solves the same problem as `steps` on the meshes that self%meshes is to be, and goes on counting
-  !> what they have cost.
+  !> Solves the same problem as `steps` on the meshes that self%meshes is to be, and goes on
+  !> counting what they have cost.
   subroutine take_over(self, steps)
     class(finer_t), intent(inout) :: self
     class(solver_t), intent(in) :: steps

@@ -6,7 +6,6 @@ module experiment
   use experiment_request, only: request_t
   use numerics_choice, only: choice_t, choose, fixed_mesh
   use edge_locked, only: new_mesh_family
-  use contact_scales, only: beyond_contact
   use ending, only: turn_not_reached
   use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
   use locked_stepper, only: locked_stepper_t, has_path
@@ -14,19 +13,19 @@ module experiment
   use unique_stepper, only: unique_stepper_t
   use fixed_stepper, only: fixed_stepper_t
   use stepped_branch, only: h0_schedule_t, run_branch
+  use h0_range, only: path_start, range_of
   use h0_schedule, only: schedule_of
   use experiment_result, only: experiment_result_t
   use result_errors, only: judge_locked, judge_fixed
   use result_sensitivities, only: find_sensitivities
   use path, only: follow_path
-  use path_demand, only: widen_path
   use path_readings, only: read_path
   use records, only: observer_t
   use clock, only: seconds
   use blas_threads, only: use_threads_for
   implicit none
   private
-  public :: run_experiment, path_start, prepare, range_of
+  public :: run_experiment, prepare
 
   !> States of a stepped path.
   integer, parameter :: path_states = 100
@@ -179,17 +178,6 @@ contains
     end associate
   end subroutine run_path
 
-  !> The h0 [m] from which a path is shown: beyond any contact, or as the scene says.
-  function path_start(request, problem) result(start)
-    class(request_t), intent(in) :: request
-    type(problem_t), intent(in) :: problem
-    real(wp) :: start
-
-    start = problem%law%separation_of(beyond_contact(problem))
-    if (.not. allocated(request%path)) return
-    if (allocated(request%path%h0_start)) start = request%path%h0_start
-  end function path_start
-
   !> The path of a law that does not attract, or of rigid bodies: one state for every h0, so that
   !> stepping h0 gives it.
   subroutine run_stepped_path(request, steps, observer, outcome)
@@ -272,30 +260,5 @@ contains
       end do
     end if
   end subroutine run_cycle
-
-  !> The range of H0, in the law's lengths, that the scene covers.
-  subroutine range_of(request, problem, low, high)
-    class(request_t), intent(in) :: request
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(out) :: low, high
-
-    low = huge(1.0_wp)
-    high = -huge(1.0_wp)
-    if (allocated(request%loading)) then
-      low = request%loading%h0_end
-      high = request%loading%h0_start
-    end if
-    if (allocated(request%unloading)) high = max(high, request%unloading%h0_end)
-    if (allocated(request%path)) then
-      low = min(low, request%path%h0_end)
-      high = max(high, request%path%h0_end)
-      ! Where the last jump apart leads belongs to the path too.
-      high = max(high, path_start(request, problem), &
-        problem%law%separation_of(beyond_contact(problem)))
-    end if
-    low = problem%law%gap_of(low)
-    high = problem%law%gap_of(high)
-    if (request%reads_path()) call widen_path(request, problem, low, high)
-  end subroutine range_of
 
 end module experiment

@@ -137,7 +137,7 @@ contains
     if (arrived) return
     if (stalled) then
       ! The iteration does not follow the branch, and no jump has been seen: whether what is found
-      ! at h0 is on this branch nobody knows.
+      ! at h0 is on this branch is not known.
       call self%land(h0, position%state, landed, event)
       event%converged = .false.
       call remember(position, landed, 1, .true.)

@@ -1,5 +1,5 @@
-!> Lateral sizes of a contact that meshes and searches have to know beforehand: how wide it gets, how
-!> fine the pressure varies, where it begins.
+!> Lateral sizes of a contact that meshes and searches have to know beforehand: how wide it gets,
+!> how fine the pressure varies, where it begins.
 module contact_scales
   use kinds, only: wp, pi
   use root_finding, only: bracket_t

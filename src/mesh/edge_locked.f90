@@ -1,9 +1,9 @@
 !> The meshes on which the whole equilibrium path is resolved at any adhesion strength.
 !>
 !> Before contact the mesh is mapped to the axis and the gap there is the coordinate of the path. In
-!> contact meshes are locked to the contact edge: positions are in units of the contact radius c, the
-!> edge stays at 1, and c is the coordinate. Both coordinates are monotone along the path. A mesh
-!> serves a band of contact radii; the path passes from one to the next.
+!> contact meshes are locked to the contact edge: positions are in units of the contact radius c,
+!> the edge stays at 1, and c is the coordinate. Both coordinates are monotone along the path. A
+!> mesh serves a band of contact radii; the path passes from one to the next.
 module edge_locked
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, neck_width, calm_gap
@@ -26,8 +26,8 @@ module edge_locked
   type :: mesh_family_t
     !> The meshes in the order of the path.
     type(discretisation_t), allocatable :: grid(:)
-    !> Contact radius at which the path passes from a mesh to the next, lateral units; of the last it
-    !> is the largest that is expected.
+    !> Contact radius at which the path passes from a mesh to the next, lateral units; of the last
+    !> it is the largest that is expected.
     real(wp), allocatable :: passage(:)
     !> Whether the path can be traced: the law attracts, or the bodies are rigid and it is trivial.
     !> If not, there is one mesh for contact, and its scale is prescribed by `hertz_scale`.

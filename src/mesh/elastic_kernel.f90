@@ -9,7 +9,7 @@ module elastic_kernel
   use kinds, only: wp, pi
   implicit none
   private
-  public :: kernel, kernel_log_coefficient, agm
+  public :: kernel, kernel_log_coefficient
 
 contains
 
@@ -31,9 +31,9 @@ contains
     a = 4/(pi*total*agm(sqrt((1 - x)*(1 + x))))
   end function kernel_log_coefficient
 
-  !> Arithmetic-geometric means of 1 and x, 0 < x <= 1, to rounding. The number of steps is fixed, and
-  !> steps are taken for all at once, so that the loops vectorise: seven reach double precision from
-  !> x = 1e-14 upward.
+  !> Arithmetic-geometric means of 1 and x, 0 < x <= 1, to rounding. The number of steps is fixed,
+  !> and steps are taken for all at once, so that the loops vectorise: seven reach double precision
+  !> from x = 1e-14 upward.
   pure function agm(x) result(mean)
     real(wp), intent(in) :: x(:)
     real(wp), dimension(size(x)) :: mean, g, next

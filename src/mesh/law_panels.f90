@@ -2,8 +2,8 @@
 !> somewhere between the edge and infinity, where no general rule can know of them.
 !>
 !> The pressure is tried over gaps as bodies have them: undeformed before contact, in contact the
-!> gap outside a JKR contact. Panels in z on which the last Legendre coefficients of that pressure are
-!> not small are halved.
+!> gap outside a JKR contact. Panels in z on which the last Legendre coefficients of that pressure
+!> are not small are halved.
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap
@@ -12,7 +12,8 @@ module law_panels
   private
   public :: fitting_panels, longest
 
-  !> Longest panel in z; how often one is halved; gaps on the axis, or contact radii, that are tried.
+  !> Longest panel in z; how often one is halved; gaps on the axis, or contact radii, that are
+  !> tried.
   real(wp), parameter :: longest = 0.7_wp
   integer, parameter :: most_halvings = 6, tried = 9
 

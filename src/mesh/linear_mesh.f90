@@ -1,5 +1,5 @@
-!> Meshes of many equal-order panels whose nodes are not mapped: the paper's grid, and panels that are
-!> fixed in space.
+!> Meshes of many equal-order panels whose nodes are not mapped: the paper's grid, and panels that
+!> are fixed in space.
 module linear_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node

@@ -1,10 +1,10 @@
-!> Meshes mapped to the contact edge or the axis: distance = d sinh(z) from it, Gauss-Legendre panels
-!> in z, and from some position on an algebraic panel to infinity on which pressures are a power
-!> tail. Every scale from d up to the mesh's length has the same number of nodes to a factor.
+!> Meshes mapped to the contact edge or the axis: distance = d sinh(z) from it, Gauss-Legendre
+!> panels in z, and from some position on an algebraic panel to infinity on which pressures are a
+!> power tail. Every scale from d up to the mesh's length has the same number of nodes to a factor.
 module mapped_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t, gauss_nodes, axis_row, centre_row, first_node
-  use panel_map, only: panel_map_t, sinh_panel, algebraic_panel
+  use panel_map, only: sinh_panel, algebraic_panel
   use graded_rule, only: graded_rule_t, new_graded_rule
   use mapped_kernel, only: add_panel
   implicit none

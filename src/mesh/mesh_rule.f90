@@ -43,9 +43,9 @@ module mesh_rule
 contains
 
   !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy:
-  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, which feel every
-  !> error of the edge's place, are more sensitive. widest: the largest contact radius. No more than
-  !> rounding leaves of the deformation.
+  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, which feel
+  !> every error of the edge's place, are more sensitive. widest: the largest contact radius. No
+  !> more than rounding leaves of the deformation.
   pure real(wp) function digits_for(problem, widest, accuracy) result(digits)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
@@ -154,10 +154,10 @@ contains
   end function fading_gap
 
   !> Adds sinh panels over z_length: one for the paper's laws, which are powers of the gap or one
-  !> exponential, and bodies that are parabolas near the axis: the density was fitted to these. Other
-  !> laws have lengths of their own anywhere within their reach: short panels follow them, outside
-  !> the edge those that fit the law. So they do other shapes. low, high: contact radii; absent
-  !> inside the edge.
+  !> exponential, and bodies that are parabolas near the axis: the density was fitted to these.
+  !> Other laws have lengths of their own anywhere within their reach: short panels follow them,
+  !> outside the edge those that fit the law. So they do other shapes. low, high: contact radii;
+  !> absent inside the edge.
   subroutine add_panels(problem, shape, z_length, density, digits, low, high)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -189,8 +189,8 @@ contains
   end subroutine add_panels
 
   !> Halves the panel on the axis of shapes that are not smooth there. The pressure of a contact is
-  !> there r^(n-1), with a logarithm if n is odd, and what the panel cannot resolve is a part r^(n+1)
-  !> of the load: `beyond` n is 1. Before contact it is two powers more.
+  !> there r^(n-1), with a logarithm if n is odd, and what the panel cannot resolve is a part
+  !> r^(n+1) of the load: `beyond` n is 1. Before contact it is two powers more.
   pure subroutine refine_axis(problem, digits, beyond, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, beyond

@@ -5,8 +5,8 @@
 !>     sinh       offset = d sinh(z), z = z_left + z_length s
 !>     algebraic  position = begin/(1 - s), out to infinity
 !>
-!> The second resolves every scale from d up to the panel's length with the same number of nodes to a
-!> factor in the distance from the centre. On the third a pressure is (1 - s)**decay times a
+!> The second resolves every scale from d up to the panel's length with the same number of nodes to
+!> a factor in the distance from the centre. On the third a pressure is (1 - s)**decay times a
 !> polynomial, which is a power tail position**(-decay) times one in the inverse position.
 module panel_map
   use kinds, only: wp

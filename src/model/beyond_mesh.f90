@@ -72,9 +72,10 @@ contains
     end if
   end function energy_beyond
 
-  !> The energy of the surface force per area, at gaps and positions. Between shapes that open slowly
-  !> it falls so slowly, under gap^-3 between cones as r^-2, that its integral has hardly a limit, or
-  !> none. Only differences of energies count: that of undeformed bodies at H0 = 1 is taken off.
+  !> The energy of the surface force per area, at gaps and positions. Between shapes that open
+  !> slowly it falls so slowly, under gap^-3 between cones as r^-2, that its integral has hardly a
+  !> limit, or none. Only differences of energies count: that of undeformed bodies at H0 = 1 is
+  !> taken off.
   elemental real(wp) function energy_density(problem, gap, r) result(energy)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap, r

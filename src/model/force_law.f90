@@ -32,8 +32,8 @@ module force_law
     !> Whether `length` is the z0 of a law of powers, in which the field gives sigma and Tabor's
     !> parameter; else it is the range, surface energy over largest tension.
     logical :: has_z0 = .false.
-    !> Period of gap in which the pressure oscillates, and the gap of a step of it and its width, for
-    !> meshes; 0: none.
+    !> Period of gap in which the pressure oscillates, and the gap of a step of it and its width,
+    !> for meshes; 0: none.
     real(wp) :: period = 0, step_at = 0, step_width = 0
     !> Whether the law is one of the paper's own, of which the summary says no more than its
     !> parameters.
@@ -47,9 +47,9 @@ module force_law
 
     !> The scan of the law sets these (`law_scan`), or the law where it knows closed forms.
     !> Tension integrated from the gap at rest to the next zero of the pressure, in units of
-    !> length*pressure_unit: what contact has to overcome, the scale of everything at its edge; 0 for
-    !> a law that does not attract. And the work of adhesion, from rest to infinity: less where a
-    !> barrier lies outside, negative where contact is only metastable.
+    !> length*pressure_unit: what contact has to overcome, the scale of everything at its edge; 0
+    !> for a law that does not attract. And the work of adhesion, from rest to infinity: less where
+    !> a barrier lies outside, negative where contact is only metastable.
     real(wp) :: adhesion = 0, work = 0
     !> Gap of maximum tension, which defines the contact edge; 0 where there is no such gap.
     real(wp) :: edge_gap = 0

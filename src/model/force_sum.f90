@@ -8,10 +8,13 @@ module force_sum
   private
   public :: add_term, settle
 
-  !> One of the forces, and the units of the sum in its own: its gap is stretch*gap + shift.
+  !> One of the forces, and the units of the sum in its own: its gap is stretch*gap + shift, and its
+  !> pressure counts `weight` times.
   type :: term_t
     class(force_law_t), allocatable :: law
-    real(wp) :: stretch = 1, shift = 0
+    real(wp) :: stretch = 1, shift = 0, weight = 1
+  contains
+    procedure :: own
   end type term_t
 
   type, extends(force_law_t) :: force_sum_t
@@ -142,6 +145,7 @@ contains
       associate (term => law%term(i), part => law%term(i)%law)
         term%stretch = length/part%length
         term%shift = (origin - part%origin)/part%length
+        term%weight = part%pressure_unit/unit
         law%smallest_gap = max(law%smallest_gap, (part%smallest_gap - term%shift)/term%stretch)
         law%repulsion_length = min(law%repulsion_length, part%repulsion_length/term%stretch)
         law%tail_power = min(law%tail_power, part%tail_power)
@@ -156,6 +160,14 @@ contains
     law%strength_key = law%term(1)%law%strength_key
     law%length_key = law%term(1)%law%length_key
   end subroutine take_units
+
+  !> Gaps of the sum as those of a term.
+  elemental real(wp) function own(self, gap)
+    class(term_t), intent(in) :: self
+    real(wp), intent(in) :: gap
+
+    own = self%stretch*gap + self%shift
+  end function own
 
   pure function lengths(law)
     type(force_sum_t), intent(in) :: law
@@ -185,9 +197,8 @@ contains
 
     value = 0
     do i = 1, size(self%term)
-      associate (term => self%term(i), part => self%term(i)%law)
-        value = value + part%pressure_unit/self%pressure_unit* &
-          part%pressure(term%stretch*gap + term%shift)
+      associate (term => self%term(i))
+        value = value + term%weight*term%law%pressure(term%own(gap))
       end associate
     end do
   end function pressure
@@ -200,9 +211,8 @@ contains
 
     value = 0
     do i = 1, size(self%term)
-      associate (term => self%term(i), part => self%term(i)%law)
-        value = value + part%pressure_unit/self%pressure_unit*term%stretch* &
-          part%slope(term%stretch*gap + term%shift)
+      associate (term => self%term(i))
+        value = value + term%weight*term%stretch*term%law%slope(term%own(gap))
       end associate
     end do
   end function slope
@@ -215,9 +225,8 @@ contains
 
     value = 0
     do i = 1, size(self%term)
-      associate (term => self%term(i), part => self%term(i)%law)
-        value = value + part%pressure_unit/self%pressure_unit/term%stretch* &
-          part%energy(term%stretch*gap + term%shift)
+      associate (term => self%term(i))
+        value = value + term%weight/term%stretch*term%law%energy(term%own(gap))
       end associate
     end do
   end function energy
@@ -230,9 +239,8 @@ contains
 
     value = 0
     do i = 1, size(self%term)
-      associate (term => self%term(i), part => self%term(i)%law)
-        value = value + part%pressure_unit/self%pressure_unit/term%stretch* &
-          part%table_error(term%stretch*gap + term%shift)
+      associate (term => self%term(i))
+        value = value + term%weight/term%stretch*term%law%table_error(term%own(gap))
       end associate
     end do
   end function table_error
@@ -246,8 +254,8 @@ contains
 
     most = huge(1.0_wp)
     do i = 1, size(self%term)
-      associate (term => self%term(i), part => self%term(i)%law)
-        most = min(most, part%closure(term%stretch*gap + term%shift)/term%stretch)
+      associate (term => self%term(i))
+        most = min(most, term%law%closure(term%own(gap))/term%stretch)
       end associate
     end do
   end function closure

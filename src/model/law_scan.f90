@@ -7,8 +7,8 @@ module law_scan
   private
   public :: find_scales, surroundings_t, surroundings_of
 
-  !> What a law has outside the well of contact, law's units: the highest barrier of energy, with the
-  !> largest pressure on its far side, and the deepest of the outer wells.
+  !> What a law has outside the well of contact, law's units: the highest barrier of energy, with
+  !> the largest pressure on its far side, and the deepest of the outer wells.
   type :: surroundings_t
     logical :: has_barrier = .false., has_well = .false.
     real(wp) :: barrier_pressure = 0, barrier_energy = 0, well_gap = 0, well_energy = 0
@@ -62,8 +62,8 @@ contains
       law%work = law%adhesion
     end if
     if (law%tail_power < huge(1.0_wp)) then
-      i = findloc(abs(gap*law%slope(gap) + law%tail_power*pressure) > settled*abs(pressure), .true., &
-        1, back=.true.)
+      i = findloc(abs(gap*law%slope(gap) + law%tail_power*pressure) > settled*abs(pressure), &
+        .true., 1, back=.true.)
       if (i > 0) law%power_from = gap(i)
     end if
     law%range = law%rest_gap + longest

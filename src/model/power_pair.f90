@@ -1,6 +1,6 @@
 !> Repulsion and attraction of two powers of the gap: with the surface energy w
-!> p = (w/z0) C [(z0/h)^n - (z0/h)^m], C = (n - 1)(m - 1)/(n - m), whole or either part alone. n, m = 9, 3
-!> is the Lennard-Jones law between half-spaces.
+!> p = (w/z0) C [(z0/h)^n - (z0/h)^m], C = (n - 1)(m - 1)/(n - m), whole or either part alone. n, m
+!> = 9, 3 is the Lennard-Jones law between half-spaces.
 module power_pair
   use kinds, only: wp
   use force_law, only: force_law_t

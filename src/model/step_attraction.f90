@@ -1,6 +1,6 @@
-!> An attraction that is constant up to some separation and then ends: p = -stress erfc((h - range)/s)/2.
-!> A jump of the pressure would have no Jacobian, hence the smoothing length s. Dugdale's law, the
-!> depletion force and a capillary bridge at equilibrium are of this kind.
+!> An attraction that is constant up to some separation and then ends: p = -stress erfc((h -
+!> range)/s)/2. A jump of the pressure would have no Jacobian, hence the smoothing length s.
+!> Dugdale's law, the depletion force and a capillary bridge at equilibrium are of this kind.
 module step_attraction
   use kinds, only: wp, pi
   use failure, only: failure_t
@@ -10,7 +10,7 @@ module step_attraction
   use law_reading, only: check_decades
   implicit none
   private
-  public :: new_step, smoothing_key
+  public :: new_step, read_step, smoothing_key
 
   !> In units of its range and stress.
   type, extends(force_law_t) :: step_t
@@ -35,6 +35,21 @@ contains
     row = real_key(group, 'smoothing', 'm', 'Length over which the attraction ends.', &
       above=0.0_wp, otherwise='0.02 of its range')
   end function smoothing_key
+
+  !> The law of a group whose keys `strength_key` [Pa] and `length_key` [m] are stress and range, if
+  !> the deck has that group.
+  subroutine read_step(deck, group, strength_key, length_key, law, error)
+    type(deck_t), intent(inout) :: deck
+    character(len=*), intent(in) :: group, strength_key, length_key
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: stress, range
+
+    if (.not. deck%has_group(group)) return
+    call deck%get(group, strength_key, stress)
+    call deck%get(group, length_key, range)
+    call new_step(deck, group, strength_key, length_key, stress, range, law, error)
+  end subroutine read_step
 
   !> stress [Pa], range [m]; `group` and its keys for messages. The key `smoothing` is read.
   subroutine new_step(deck, group, strength_key, length_key, stress, range, law, error)

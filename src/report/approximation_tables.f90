@@ -12,7 +12,7 @@ module approximation_tables
   use summary, only: summary_t
   implicit none
   private
-  public :: approximation_rows, summarise_approximations, jump_t, jumps_t, jumps_of
+  public :: approximation_rows, summarise_approximations, jump_t
 
   !> A state at which approaching bodies jump, by some criterion [m], [m], [m], [N]; `theory` is the
   !> name of its row in the table.

@@ -1,7 +1,7 @@
 !> The tables beside the curve, in `write_derived_tables` one statement each.
 module derived_tables
   use dimensionless_problem, only: problem_t
-  use experiment, only: path_start
+  use h0_range, only: path_start
   use scene_groups, only: scene_t
   use experiment_result, only: experiment_result_t
   use records, only: theory_row_t

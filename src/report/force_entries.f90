@@ -24,8 +24,9 @@ contains
       call summary%set('work_of_adhesion', surface_energy(problem))
       call take_table_error(problem, summary)
       call summary%set('rest_gap', law%separation_of(law%rest_gap))
-      if (.not. surface_energy(problem) > 0) call summary%warn('contact is only metastable: the '// &
-        'bodies have less energy apart, and no classical theory applies')
+      if (.not. surface_energy(problem) > 0) &
+        call summary%warn('contact is only metastable: the bodies have less energy apart, '// &
+        'and no classical theory applies')
       if (law%edge_gap > 0) then
         call summary%set('edge_gap', law%separation_of(law%edge_gap))
         call summary%set('cohesive_stress', largest_tension(problem))

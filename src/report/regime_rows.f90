@@ -124,7 +124,8 @@ contains
     real(wp), intent(in) :: errors(:, :)
     type(summary_t), intent(inout) :: summary
     real(wp) :: worst(size(theories))
-    character(len=200) :: reason
+    character(len=*), parameter :: none_is_near = 'no theory is within 10 %; '
+    character(len=160) :: nearest
     character(len=16) :: percent
     integer :: i, best, where_worst
 
@@ -136,15 +137,15 @@ contains
     best = minloc(worst, 1)
     where_worst = maxloc(abs(errors(:, best)), 1)
     write (percent, '(f16.1)') 100*min(worst(best), 1.0e6_wp)
-    reason = 'nearest is '//trim(theories(best))//', off by at most '//trim(adjustl(percent))// &
+    nearest = 'nearest is '//trim(theories(best))//', off by at most '//trim(adjustl(percent))// &
       ' % ('//trim(numbers(where_worst))//')'
     if (worst(best) <= acceptable) then
       call summary%set('regime_recommended', trim(theories(best)))
+      call summary%set('regime_reason', trim(nearest))
     else
       call summary%set('regime_recommended', 'none')
-      reason = 'no theory is within 10 %; ' // reason
+      call summary%set('regime_reason', none_is_near//trim(nearest))
     end if
-    call summary%set('regime_reason', trim(reason))
   end subroutine recommend
 
 end module regime_rows

@@ -15,7 +15,8 @@ module result_listing
   private
   public :: write_result_listing
 
-  character(len=*), parameter :: theories = 'One row for each theory and each h0 at which it has a state.'
+  character(len=*), parameter :: theories = &
+    'One row for each theory and each h0 at which it has a state.'
 
 contains
 

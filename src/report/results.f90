@@ -65,7 +65,7 @@ contains
   !> Makes the folder, which from then on is this run's alone, opens its journal and begins the
   !> curve and the profiles where the scene has them, so that a place where nothing can be written
   !> shows before anything is computed. `owner` is the run's identity; resume: the journal that an
-  !> interrupted run has left, if there is one, is gone on with.
+  !> interrupted run has left, if there is one, is continued.
   subroutine open_results(self, folder, scene, version, problem, owner, resume, error)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: folder, version, owner

@@ -187,8 +187,7 @@ contains
   end subroutine reject
 
   !> Adds a record and hands it to the system, so that it survives this process, and now and then to
-  !> the disk. Not before `next`
-  !> has handed out all there were.
+  !> the disk. Not before `next` has handed out all there were.
   subroutine append(self, record)
     class(journal_t), intent(inout) :: self
     type(byte_record_t), intent(in) :: record
@@ -204,9 +203,11 @@ contains
     words(2) = checksum(words)
     bytes = transfer(words, bytes)
     status = c_write(self%descriptor, bytes, size(bytes, kind=c_long))
-    if (status == 0 .and. seconds() - self%synced > sync_interval) then
-      status = c_sync(self%descriptor)
-      self%synced = seconds()
+    if (status == 0) then
+      if (seconds() - self%synced > sync_interval) then
+        status = c_sync(self%descriptor)
+        self%synced = seconds()
+      end if
     end if
     if (status == 0) return
     call system_failure('cannot write ' // self%path, status, self%trouble)

@@ -75,7 +75,7 @@ contains
   end subroutine step_to
 
   !> Takes a step from `before` to h0 out of the journal. .false. where it has no more: then the
-  !> step is to be solved. A journal that cannot be gone on with ends the experiment.
+  !> step is to be solved. A journal that cannot be continued ends the experiment.
   logical function recall(self, h0, before, position, event) result(known)
     class(resumable_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0

@@ -1,5 +1,5 @@
 !> What a run's numbers depend on, as a text, and what differs between two of them: an interrupted
-!> run can only be gone on with by one that would have done the same.
+!> run can only be continued by one that would have done the same.
 module run_identity
   use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp, long
@@ -73,8 +73,8 @@ contains
     a = index(old, ' = ')
     b = index(new, ' = ')
     if (a > 0 .and. b > 0 .and. old(:max(a, 1)) == new(:max(b, 1))) then
-      text = group // ' ' // trim(adjustl(old(:a))) // ' = ' // value(old(a + 3:)) // ' instead of ' // &
-        value(new(b + 3:))
+      text = group // ' ' // trim(adjustl(old(:a))) // ' = ' // value(old(a + 3:)) // &
+        ' instead of ' // value(new(b + 3:))
     else if (index(old, '&') == 1 .and. index(now, nl // old // nl) == 0) then
       text = 'one with ' // old
     else if (index(new, '&') == 1) then

@@ -2,7 +2,7 @@
 module regime_group
   use failure, only: failure_t
   use deck_keys, only: key_spec, group
-  use scene_groups, only: scene_t, regime_t
+  use scene_groups, only: scene_t
   use path_group, only: check_path
   implicit none
   private

@@ -4,7 +4,7 @@ module shape_checks
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t
   use contact_scales, only: largest_radius, contact_level
-  use experiment, only: range_of
+  use h0_range, only: range_of
   use scene_groups, only: scene_t
   use scene_problem, only: problem_of
   implicit none

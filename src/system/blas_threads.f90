@@ -25,8 +25,9 @@ contains
     integer(c_int) :: count, known
 
     count = 1
-    !$ if (order >= worthwhile .and. .not. omp_in_parallel()) &
-    !$   count = int(omp_get_max_threads(), c_int)
+    if (order >= worthwhile) then
+      !$ if (.not. omp_in_parallel()) count = int(omp_get_max_threads(), c_int)
+    end if
     known = c_openblas_threads(count)
   end subroutine use_threads_for
 

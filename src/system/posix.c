@@ -146,7 +146,8 @@ int snapin_is_terminal(int fd) { return isatty(fd) == 1; }
 
 /* The sort of a failure, 0 for others, and the system's words for it. */
 int snapin_explain(int status, char *reason, int size) {
-  hand_over(status == -not_regular ? "not a file but a link, a pipe or a device" : strerror(-status),
+  hand_over(status == -not_regular ? "not a file but a link, a pipe or a device"
+                                   : strerror(-status),
             reason, size);
   switch (-status) {
   case EFBIG:

@@ -1,4 +1,4 @@
-!> The classical theories of elastic contact: Hertz, JKR, DMT and Maugis-Dugdale.
+!> The classical theories of elastic contact: Hertz, JKR, DMT. `maugis` has that of Maugis-Dugdale.
 !>
 !> SI units and the paper's conventions: `radius` is R of h0(r) = h0 + r^2/(2R), `stiffness` is
 !> E/(1-nu^2) of two identical bodies (twice the composite modulus E*), `surface_energy` is gamma,

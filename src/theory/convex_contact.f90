@@ -15,7 +15,7 @@ module convex_contact
   use dimensionless_problem, only: problem_t
   implicit none
   private
-  public :: hertz_like_load, jkr_like_load, jkr_like_displacement, jkr_like_radius
+  public :: hertz_like_load, jkr_like_load, jkr_like_radius
   public :: jkr_like_pull_off, jkr_like_detachment
 
   !> A contact on which the adhesion is as large as what it works against is this many times as wide

@@ -16,10 +16,14 @@ def run(snapin, tmp_path_factory):
 
 
 SCENES = {
-    "cycle and path": lennard_jones(8.7, loading=loading(13, -4, 0.5), unloading={}, equilibrium_path={}),
+    "cycle and path": lennard_jones(
+        8.7, loading=loading(13, -4, 0.5), unloading={}, equilibrium_path={}
+    ),
     "uniform": lennard_jones(0.87, **CYCLE, numerics={"grid": "uniform", "nodes": 200}),
     "newton": lennard_jones(1.7, **CYCLE, numerics={"method": "newton"}),
-    "mixing": lennard_jones(0.17, loading=loading(6, 0, 1), numerics={"method": "mixing", "nodes": 100}),
+    "mixing": lennard_jones(
+        0.17, loading=loading(6, 0, 1), numerics={"method": "mixing", "nodes": 100}
+    ),
     "repulsion": exponential(100, loading=loading(6, -20, 1)),
     "stability": lennard_jones(0.87, loading=loading(6, -1, 0.5), stability={}),
 }

@@ -95,5 +95,6 @@ def test_a_path_without_repulsion_says_how_it_ends(run):
 
 
 def test_repulsion_alone_that_does_not_converge_says_so(run):
-    result = run(exponential(10, loading=loading(6, -6, 1), numerics={"max_iterations": 1}), status=1)
+    starved = exponential(10, loading=loading(6, -6, 1), numerics={"max_iterations": 1})
+    result = run(starved, status=1)
     assert len(result.curve) == 0 and "after 1 iterations" in result.warnings[0]

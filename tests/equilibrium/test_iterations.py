@@ -28,7 +28,7 @@ def flat_state(start, method, stop_on_change, law, coupling=0.87):
     """Return residual and converged from the flat layer, which takes any start."""
     mesh = snapin.panel_mesh([0.0, 1.0, 3.0], 4)
     deck = problem_deck(LAW[law])
-    physics = (deck, coupling, mesh.kind, mesh.centre, mesh.ends, mesh.order, 1.0, 0.0)
+    physics = (deck, coupling, *mesh._description, 1.0, 0.0)
     options = (method, 1e-8, 50, 5, 8, 0.2, stop_on_change, 1.0)
     values = _snapin.flat_numerics.equilibrium_state(*physics, start, *options)
     (_, _, residual), (converged, *_) = values[2:4]

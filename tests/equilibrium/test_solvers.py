@@ -1,6 +1,7 @@
 """Claims about the three iterations: one equilibrium, judged by its true residual.
 
-All dimensionless (src/model/dimensionless_problem.f90), on one mesh fine enough for the necks that occur here.
+All dimensionless (src/model/dimensionless_problem.f90), on one mesh fine enough for the necks that
+occur here.
 """
 
 import functools

@@ -30,7 +30,8 @@ def measured(snapin, folder, name, deck):
     beside = {}
     same = range(len(curve["h0"]))
     if curve["branch"][rows[0]] == "path":
-        points = [h0 for key in ("folds_h0", "load_folds_h0") for h0 in several(summary.get(key, []))]
+        keys = ("folds_h0", "load_folds_h0")
+        points = [h0 for key in keys for h0 in several(summary.get(key, []))]
         same = [int(abs(curve["h0"] - h0).argmin()) for h0 in points]
     for k, row in enumerate(same):
         beside[f"displacement {k}"] = curve["displacement"][row]

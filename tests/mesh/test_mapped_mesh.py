@@ -28,8 +28,7 @@ class Mapped:
     weight: np.ndarray = field(init=False)
 
     def __post_init__(self):
-        self.inner = 1 if self.centre > 0 else 0
-        self.x, self.weight = flat.mapped_nodes(*self.shape, self.digits, self.size)
+        self.x, self.weight, _ = flat.mesh_nodes(*self.shape, self.size)
 
     @property
     def size(self):
@@ -37,10 +36,11 @@ class Mapped:
 
     @property
     def shape(self):
-        return self.centre, self.d, self.inner, self.order, self.z_length, self.tail, self.decay
+        numbers = self.d, self.decay, self.digits
+        return "mapped", self.centre, self.z_length, [*self.order, self.tail], numbers
 
     def matrix(self):
-        return flat.mapped_matrix(*self.shape, self.digits, self.size)
+        return flat.mesh_matrix(*self.shape, self.size)
 
     def columns(self):
         """Return the matrix for pressures in units of what the tail leaves of them."""
@@ -49,7 +49,7 @@ class Mapped:
         return self.matrix() * left**-self.decay
 
     def interpolate(self, values, at):
-        return flat.mapped_interpolation(*self.shape[:-1], values, np.atleast_1d(at))
+        return flat.mesh_interpolation(*self.shape, values, np.atleast_1d(at))
 
 
 def contact_mesh(d, reach, order, tail, decay, digits=DIGITS):

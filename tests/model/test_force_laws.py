@@ -29,7 +29,11 @@ LAWS = {
             "model": "nonlinear",
         }
     },
-    "tabulated": {"tabulated": {"file": str(ROOT / "inputs" / "examples" / "tabulated.txt"), "tail_exponent": 3}},
+    "tabulated": {
+        "tabulated": {
+            "file": str(ROOT / "inputs" / "examples" / "tabulated.txt"), "tail_exponent": 3,
+        },
+    },
 }
 # Separations at which a law is not smooth.
 KINKS = {"steric": [10e-9]}

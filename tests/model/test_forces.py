@@ -26,8 +26,10 @@ def claim(found, exact, size=None):
 def test_van_der_waals_and_born_make_the_lennard_jones_law():
     sum_of = snapin.force_law({"van_der_waals": {"hamaker": HAMAKER}, "born": {"z0": Z0}}, GAP)
     whole = snapin.force_law(snapin.lennard_jones(hamaker=HAMAKER, z0=Z0), GAP)
-    repulsion = snapin.force_law(snapin.lennard_jones(hamaker=HAMAKER, z0=Z0, part="repulsive"), GAP)
-    attraction = snapin.force_law(snapin.lennard_jones(hamaker=HAMAKER, z0=Z0, part="attractive"), GAP)
+    repulsion, attraction = (
+        snapin.force_law(snapin.lennard_jones(hamaker=HAMAKER, z0=Z0, part=part), GAP)
+        for part in ("repulsive", "attractive")
+    )
     for found, exact, up, down in zip(sum_of, whole, repulsion, attraction, strict=True):
         claim(found, exact, abs(up) + abs(down))
 
@@ -46,14 +48,14 @@ def test_retardation_is_gregory_s_and_far_away_an_inverse_fourth_power():
 def test_exponents_of_lennard_jones():
     w = 0.01
     for n, m in ((9, 3), (10, 4), (11, 5), (12, 6), (6, 3)):
-        groups = {"force": {"law": "lennard_jones", "surface_energy": w, "z0": Z0, "exponents": [n, m]}}
+        groups = snapin.lennard_jones(surface_energy=w, z0=Z0, exponents=[n, m])
         factor = (n - 1) * (m - 1) / (n - m) * w / Z0
         up, down = factor * (Z0 / GAP) ** n, factor * (Z0 / GAP) ** m
         claim(pressure(**groups), up - down, up + down)
         numbers = snapin.law_numbers(groups)
         assert numbers.surface_energy == pytest.approx(w, rel=1e-14)
         assert numbers.edge_gap == pytest.approx(Z0 * (n / m) ** (1 / (n - m)), rel=1e-14)
-    with_hamaker = {"force": {"law": "lennard_jones", "hamaker": HAMAKER, "z0": Z0, "exponents": [7, 3]}}
+    with_hamaker = snapin.lennard_jones(hamaker=HAMAKER, z0=Z0, exponents=[7, 3])
     far = np.array([1e-6])
     assert pressure(far, **with_hamaker) == pytest.approx(-HAMAKER / (6 * math.pi * far**3))
 
@@ -145,10 +147,12 @@ def test_a_capillary_bridge_has_the_energy_of_its_surface():
     ("&force law='lennard_jones', z0=1e-9 /", '&force: key "hamaker": missing'),
     ("&force law='lennard_jones', hamaker=1e-19, z0=1e-9, exponents=3,9 /", 'key "exponents"'),
     ("&force law='lennard_jones', hamaker=1e-19, z0=1e-9, exponents=9 /", 'key "exponents"'),
-    ("&force law='lennard_jones', hamaker=1e-19, z0=1e-9, exponents=10,4 /", 'key "surface_energy"'),
+    ("&force law='lennard_jones', hamaker=1e-19, z0=1e-9, exponents=10,4 /",
+     'key "surface_energy"'),
     ("&force law='exponential', p0=1, decay_length=1, exponents=9,3 /", 'key "exponents"'),
     ("&hydration decay_length = 1e-9 /", "give either energy or pressure"),
-    ("&hydration energy = 1, pressure = 1, decay_length = 1e-9 /", "give either energy or pressure"),
+    ("&hydration energy = 1, pressure = 1, decay_length = 1e-9 /",
+     "give either energy or pressure"),
     ("&hydration energy = 1, 2, 3, decay_length = 1e-9, 2e-9 /", "another number of values"),
     ("&capillary surface_tension = 0.07 /", "give either kelvin_radius or humidity"),
     ("&capillary humidity = 0.5, kelvin_radius = 1e-9 /", "give either kelvin_radius or humidity"),
@@ -159,6 +163,8 @@ def test_a_capillary_bridge_has_the_energy_of_its_surface():
 ])
 def test_forces_that_contradict_themselves_are_refused(check, forces, phrase):
     status, _, err = check(
-        f"&bodies radius = 1e-5, stiffness = 1e10 /\n{forces}\n&equilibrium_path h0_end = -1e-9 /\n")
+        "&bodies radius = 1e-5, stiffness = 1e10 /\n"
+        f"{forces}\n&equilibrium_path h0_end = -1e-9 /\n"
+    )
     assert status == 2
     assert phrase in err, err

@@ -2,7 +2,6 @@
 
 import math
 
-import _snapin
 import numpy as np
 import pytest
 from support.scenes import deck, runner
@@ -87,28 +86,25 @@ SHAPES = [
 ]
 
 
-def edge_state(text, c):
-    """H0 and load at a contact radius, and their derivatives by it, on panels out to 30 radii."""
-    inward = 2.0 ** -np.arange(8)
-    ends = np.r_[-inward, 0.0, inward[::-1], 2.0, 4.0, 8.0, 16.0, 30.0]
-    numbers, stat, message = _snapin.flat_numerics.edge_state(text, ends, 12, c)
-    assert stat == 0, bytes(message)
-    return numbers
-
-
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: "-".join(map(str, shape.values())))
-def test_the_derivatives_along_the_path_are_those_of_its_states(tmp_path, shape):
+def test_the_derivative_along_the_path_is_that_of_loads_at_stepped_h0(run, tmp_path, shape):
     if shape["kind"] == "profile":
         r = np.linspace(0, 6, 80)
         shape = write_profile(tmp_path, r, r**2 / 2 + r**3 / 9)
-    text = scene(
-        shape, 0.3, equilibrium_path={"h0_end": -1.0}, numerics={"accuracy": 1e-1}
-    ).encode()
-    c, step = 0.9, 1e-3
-    states = [edge_state(text, c + k * step) for k in (-2, -1, 0, 1, 2)]
-    values = np.array([state[:2] for state in states])
-    differences = (values[0] - 8 * values[1] + 8 * values[3] - values[4]) / (12 * step)
-    assert states[2][2:] == pytest.approx(differences, rel=1e-7)
+    # Bodies that end so near are refused at a smaller accuracy.
+    ends = shape["kind"] in ("sphere", "spheroid")
+    numerics = {"accuracy": 1e-3 if ends else 1e-6}
+    path = scene(shape, 0.3, equilibrium_path={"h0_end": -1.0}, table={}, numerics=numerics)
+    rows = run(path).table("table.csv").rows("retreat")
+    row, step = np.argmin(abs(rows["indentation"])), 1e-2
+    h0, stiffness = -rows["indentation"][row], rows["stiffness"][row]
+    steps = {"h0_start": h0 + 2 * step, "h0_end": h0 - 2 * step, "h0_step": step}
+    load = run(scene(shape, 0.3, loading=steps, numerics=numerics)).curve["load"]
+    difference = (8 * (load[3] - load[1]) - (load[4] - load[0])) / (12 * step)
+    # Path and steps have meshes of their own, which agree as well as the accuracy lets them. A
+    # punch's kink moves across the panels as the contact grows, and takes digits.
+    digits = 1e-5 if shape["kind"] == "rounded_punch" else 1e-7
+    assert difference == pytest.approx(stiffness, rel=1e-4 if ends else digits)
 
 
 # --- Limits

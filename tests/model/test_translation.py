@@ -1,5 +1,6 @@
-"""Claims that no solver knows where contact is: a law moved outward moves path and cycle with it and
-changes nothing else, and a law added by the recipe of CONTRIBUTING.md is computed like any other."""
+"""Claims that no solver knows where contact is: a law moved outward moves path and cycle with it
+and changes nothing else, and a law added by the recipe of CONTRIBUTING.md is computed like any
+other."""
 
 import os
 import pathlib
@@ -25,7 +26,9 @@ def scene(group, surface_energy, outward):
     """Cycle and path of a law whose well is at 0.5 nm plus `outward` [m]."""
     return deck(
         bodies=BODIES,
-        **{group: {"surface_energy": surface_energy, "z0": 0.5e-9 + outward, "decay_length": DECAY}},
+        **{group: {
+            "surface_energy": surface_energy, "z0": 0.5e-9 + outward, "decay_length": DECAY,
+        }},
         loading={"h0_start": outward + 7e-9, "h0_end": outward - 2e-9, "h0_step": 2e-10},
         unloading={},
         equilibrium_path={},
@@ -66,20 +69,25 @@ def test_the_recipe_adds_a_law_in_one_file_and_one_line(tmp_path):
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     module = re.search(r"```fortran\n(!> [^`]*?\nmodule rose\n.*?end module rose\n)", text, re.S)[1]
     tree = tmp_path / "snapin"
-    shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(".git", ".venv", "build", "build-*", "results"))
+    left_out = shutil.ignore_patterns(".git", ".venv", "build", "build-*", "results")
+    shutil.copytree(ROOT, tree, ignore=left_out)
     laws = tree / "src" / "model" / "laws"
     (laws / "rose.f90").write_text(module, encoding="utf-8")
     listed = (laws / "meson.build").read_text(encoding="utf-8")
-    (laws / "meson.build").write_text(listed.replace("law_names = [\n", "law_names = [\n  'rose',\n"))
+    listed = listed.replace("law_names = [\n", "law_names = [\n  'rose',\n")
+    (laws / "meson.build").write_text(listed)
     tools = ROOT / ".venv" / "bin"
     env = dict(os.environ, PATH=f"{tools}:{os.environ['PATH']}")
-    for command in (["meson", "setup", "build", "-Dpython=disabled"], ["meson", "compile", "-C", "build"]):
+    for command in (
+        ["meson", "setup", "build", "-Dpython=disabled"], ["meson", "compile", "-C", "build"]
+    ):
         subprocess.run(command, cwd=tree, env=env, check=True, capture_output=True, timeout=590)
 
     def added(*args, cwd=None, **kwargs):
         kwargs.setdefault("timeout", 300)
         return subprocess.run(
-            [tree / "build" / "snapin", *args], cwd=cwd, capture_output=True, text=True, check=False,
+            [tree / "build" / "snapin", *args],
+            cwd=cwd, capture_output=True, text=True, check=False,
             **kwargs)
 
     run = runner(added, tmp_path)

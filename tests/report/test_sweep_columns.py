@@ -1,4 +1,4 @@
-"""What a sweep leaves of each case: the scalars of its own summary, in columns that follow the deck."""
+"""What a sweep leaves of each case: the scalars of its summary, in columns that follow the deck."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Claims about cycles and paths that are killed and gone on with."""
+"""Claims about cycles and paths that are killed and continued."""
 
 import random
 import struct

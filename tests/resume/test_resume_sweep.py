@@ -1,4 +1,4 @@
-"""Claims about sweeps that are killed and gone on with."""
+"""Claims about sweeps that are killed and continued."""
 
 import random
 import struct

@@ -248,8 +248,8 @@ def check_run(status, stderr, folder):
         claim(len(curve) > 0, "nothing computed, and status 0")
         worst = max(curve["residual"])
         claim(summary["worst_residual"] >= worst * (1 - 1e-12), "worst_residual hides a state")
-        # Where gaps are many of the law's lengths rounding sets a floor of its own. It is never high,
-        # and whoever may mind is told.
+        # Where gaps are many of the law's lengths rounding sets a floor of its own. It is never
+        # high, and whoever may mind is told.
         told = any("rounding leaves" in text for text in warnings)
         excused = 1e-3 if told else max(1e-8, groups["numerics"]["accuracy"])
         claim(worst <= max(tolerance, excused), f"residual {worst} above {tolerance}, untold")
@@ -302,7 +302,8 @@ def main():
                 print(f"deck{number}: {result}", flush=True)
             else:
                 statuses[result] += 1
-    print(f"statuses {dict(statuses)}, broken {broken}, slowest {slowest[0]:.1f} s (deck{slowest[1]})")
+    print(f"statuses {dict(statuses)}, broken {broken}, "
+          f"slowest {slowest[0]:.1f} s (deck{slowest[1]})")
     return 1 if broken else 0
 
 

@@ -33,7 +33,6 @@ OLD = scenes.deck(**RIGID, loading=scenes.loading(6, 2, 1), profiles={"h0": [4.0
                   approximations={"count": 3})
 NEW = scenes.deck(**RIGID, loading=scenes.loading(5, 1, 0.5), profiles={"h0": [2.0]},
                   classical={"count": 3})
-ELASTIC = scenes.lennard_jones(0.2, loading=scenes.loading(4, 1, 1), classical={"count": 3})
 
 
 class Broken(AssertionError):

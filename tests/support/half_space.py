@@ -124,24 +124,9 @@ def lennard_jones(gap):
     )
 
 
-def lowest_eigenvalues(law, s, states):
-    """The two lowest eigenvalues of I - 2 s W diag(P') for (ends of the panels, gaps) of each."""
-    found = []
-    for ends, gap in states:
-        half_space = HalfSpace(ends, len(gap) // (len(ends) - 1))
-        operator = np.eye(len(gap)) - 2 * s * half_space.matrix[1:] * law(np.array(gap))[1]
-        found.append(np.sort(np.linalg.eigvals(operator).real)[:2].tolist())
-    return found
-
-
 def independent_states(law, s, h0, ends, largest=0.8):
     """Gaps on the axis and loads at each H0 on panels with the given ends."""
     return carried_out({"law": law, "s": s, "h0": list(h0), "ends": list(ends), "largest": largest})
-
-
-def independent_eigenvalues(law, s, states):
-    """`lowest_eigenvalues`, (two, states)."""
-    return carried_out({"law": law, "s": s, "states": states})
 
 
 def carried_out(task):
@@ -167,9 +152,6 @@ def main():
     """Carry out the task on standard input."""
     task = json.load(sys.stdin)
     law = {"exponential": exponential, "lennard_jones": lennard_jones}[task["law"]]
-    if "states" in task:
-        print(json.dumps(lowest_eigenvalues(law, task["s"], task["states"])))
-        return
     half_space = HalfSpace(task["ends"])
     gaps = half_space.solve(law, task["s"], task["h0"], task["largest"])
     print(json.dumps([[gap[0], half_space.load(law, task["s"], gap)] for gap in gaps]))

@@ -1,4 +1,4 @@
-"""Runs that are stopped or killed and gone on with, and their journals as bytes."""
+"""Runs that are stopped or killed and continued, and their journals as bytes."""
 
 import os
 import signal

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from support.comparison import floor
 from support.decks_in_units import report, said
 from support.reference import CUSP, Path
 
@@ -17,7 +18,8 @@ class Job(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """One run: relative error of the energy, and the error over the uncertainty reported."""
+    """One run: relative error of the energy, and the error over the uncertainty reported; 0 where
+    the reference does not know better."""
 
     sigma: float
     accuracy: float
@@ -51,7 +53,10 @@ def examined(job, true, accuracy):
         return Finding(job.sigma, accuracy, true, 1.0, 0.0, f"{said(found)}, no energy")
     error = abs(found.numbers["energy_lost"] - true)
     allowed = found.errors.get("energy_lost", 0.0)
-    ratio = error / allowed if allowed else float("inf")
+    if error <= floor("energy_lost", job.sigma) * true:
+        ratio = 0.0
+    else:
+        ratio = error / allowed if allowed else float("inf")
     return Finding(job.sigma, accuracy, true, error / true, ratio, "")
 
 

@@ -54,7 +54,8 @@ RISING = np.array([0.5, 0.75, 1.25, 2.0])
 BODIES = {"radius": (POSITIVE, 1.0), "stiffness": (POSITIVE, 2.0)}
 ADHESION = {"surface_energy": (POSITIVE, 1.5)}
 SCENE = {
-    "radius": (NUMBER, 1.0), "stiffness": (NUMBER, 2.0), "law": (LAWS, LAW), "rigid": (SWITCH, False),
+    "radius": (NUMBER, 1.0), "stiffness": (NUMBER, 2.0), "law": (LAWS, LAW),
+    "rigid": (SWITCH, False),
 }
 ONE_STATE = {
     "law": (LAWS, LAW),

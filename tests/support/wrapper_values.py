@@ -227,7 +227,7 @@ def names(good):
 
 
 def numbers(good):
-    """Cases of a number in a deck: one value may be a list, and which are in range the deck says."""
+    """Cases of a number in a deck: one value may be a list; which are in range the deck says."""
     for label, value, clean in scalars(good):
         if label in ("list", "1-d"):
             clean = good

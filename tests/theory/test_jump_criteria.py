@@ -96,8 +96,8 @@ def test_nothing_jumps_without_attraction_or_elasticity():
     ("sigma", "h0", "load"), [(0.87, 3.0886872, -1.5330549), (8.7, 5.9728350, -0.4076839)]
 )
 def test_jumps_are_near_those_of_the_exact_solution(sigma, h0, load):
-    # The exact folds are an independent solution's. Fig. 9: by (29) and (37) the tension at the jump
-    # is a tenth too small; that of the folds is within 2 %.
+    # The exact folds are an independent solution's. Fig. 9: by (29) and (37) the tension at the
+    # jump is a tenth too small; that of the folds is within 2 %.
     found = snapin.jump_estimates(**UNITS, law=lennard_jones(sigma))
     for jump, low, high in (
         (found.criterion, -0.10, -0.08),

@@ -87,7 +87,7 @@ def test_rows_are_the_stable_states_and_reach_to_the_least_displacement(run, sig
 
 
 def difference(run, sigma, theory):
-    """Largest difference of load and of contact radius from another theory, where both have rows."""
+    """Largest difference of load and of contact radius from another theory in common rows."""
     unit = unit_of(sigma)
     deck = classical(sigma, h0_start=-0.1 * unit**2, h0_end=-10 * unit**2)
     table = run(deck).table("classical.csv")

@@ -51,7 +51,8 @@ def test_pages_that_are_older_are_named(tmp_path):
         (tmp_path / page).parent.mkdir(parents=True, exist_ok=True)
         now = pages.digest(tmp_path / "src")
         (tmp_path / page).write_text(
-            "# T\n" if number == 0 else f"# T\n<!-- measured at {now if number > 1 else 'abc'} -->\n"
+            "# T\n" if number == 0
+            else f"# T\n<!-- measured at {now if number > 1 else 'abc'} -->\n"
         )
     first, second, *_ = pages.PAGES
     assert pages.old_pages(tmp_path) == [(first, None), (second, "abc")]

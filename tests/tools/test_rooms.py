@@ -1,4 +1,4 @@
-"""Claims about the rooms of src/: a module uses its own room and those above it, never one below."""
+"""Claims about the rooms of src/: a module uses its own room and those above it, none below."""
 
 import re
 

@@ -2,8 +2,8 @@
 
 Every public callable of the package is called with every value of support/wrapper_values.py for
 every argument, in a process of its own (support/wrapper_child.py). Allowed are the result of a
-clean copy, to the bit, and an exception that begins with the argument's name or, where that is a key
-of a deck, is the program's message about that key. What decks are is in test_run.py.
+clean copy, to the bit, and an exception that begins with the argument's name or, where that is a
+key of a deck, is the program's message about that key. What decks are is in test_run.py.
 """
 
 import importlib

@@ -160,8 +160,8 @@ def test_the_numerics_keep_nothing_between_calls(snapin_path):
     table = subprocess.run(["nm", str(archive)], capture_output=True, text=True, check=True).stdout
     rows = [line.split() for line in table.splitlines()]
     variables = {row[2] for row in rows if len(row) == 3 and row[1] in "bBdDsS"}
-    # Tables of types and of `select case`, and the names of files, which are a parameter; on a build
-    # that counts lines, the counts.
+    # Tables of types and of `select case`, and the names of files, which are a parameter; on a
+    # build that counts lines, the counts.
     constant = re.compile(r"___?(def_init|vtab)_|^__(def_init|vtab)_|^jumptable|^A\.|^__gcov")
     kept = {name for name in variables if not constant.search(name)}
     assert {name for name in kept if not name.startswith("slen.")} == set()

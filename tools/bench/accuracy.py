@@ -28,7 +28,8 @@ def measure(program, quick, say):
         runs = program.best_of(2 if quick else 5, decks)
         for (kind, accuracy), run in runs.items():
             rows.append(_row(problem, kind, accuracy, run, reference, problem.length))
-        say(f"{problem.label}: done; the reference is estimated to be off by {reference.estimate:.0e}")
+        say(f"{problem.label}: done; "
+            f"the reference is estimated to be off by {reference.estimate:.0e}")
     return rows
 
 

@@ -35,14 +35,14 @@ class Mesh:
         d = 1 / math.sinh(inside)
         outer = math.ceil(density * math.asinh(reach / d) + MORE_NODES)
         lengths = [inside, (outer - MORE_NODES) / density]
-        self.shape = (1.0, d, 1, [inner, outer], lengths, tail)
+        self.shape = ("mapped", 1.0, lengths, [inner, outer, tail], (d, DECAY, digits))
         self.size = inner + outer + tail
-        self.x, self.weight = flat.mapped_nodes(*self.shape, DECAY, digits, self.size)
-        matrix = flat.mapped_matrix(*self.shape, DECAY, digits, self.size)
+        self.x, self.weight, _ = flat.mesh_nodes(*self.shape, self.size)
+        matrix = flat.mesh_matrix(*self.shape, self.size)
         self.edge_row, self.matrix = matrix[1], matrix[2:]
 
     def interpolate(self, values, at):
-        return flat.mapped_interpolation(*self.shape, values, at)
+        return flat.mesh_interpolation(*self.shape, values, at)
 
 
 class State(NamedTuple):

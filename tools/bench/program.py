@@ -67,7 +67,8 @@ class Program:
         self.build = pathlib.Path(build)
         self.scratch = pathlib.Path(scratch)
         self.scratch.mkdir(parents=True, exist_ok=True)
-        # A copy, so that everything is measured with one program even if it is built anew meanwhile.
+        # A copy, so that everything is measured with one program even if it is built anew
+        # meanwhile.
         self.snapin = pathlib.Path(shutil.copy2(self.build / "snapin", self.scratch))
         self._references = {}
 

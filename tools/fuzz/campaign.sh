@@ -1,7 +1,7 @@
 #!/bin/sh
 # The deck reader under attack: tools/fuzz/campaign.sh SECONDS [FOLDER]
 #
-# AFL++ makes decks that reach ever more of the reader (deck*.f90, scene*.f90), from bytes to
+# AFL++ makes decks that reach ever more of the reader (src/namelist, src/scene), from bytes to
 # scene, and one_deck.f90 says what must hold for each. Two builds share one core ($CORE, default 0)
 # and what either finds: one traps invalid operations, overflows, bad indices and undefined reals,
 # the other has the address and undefined-behaviour sanitizers. Then f90nml reads the accepted
@@ -82,11 +82,11 @@ find "$folder/lines" -name '*.gcda' -delete
 find "$folder/found" -path '*/queue/id:*' -print0 |
   xargs -0 -n 500 "$folder/lines/snapin" --check > "$folder/check.log" 2>&1 || true
 cd "$folder/lines"
-gcov libsnapin.a.p/*deck*.gcda libsnapin.a.p/*scene*.gcda 2>/dev/null > "$folder/coverage.txt"
+gcov libsnapin.a.p/src_namelist_*.gcda libsnapin.a.p/src_scene_*.gcda 2>/dev/null > "$folder/coverage.txt"
 for name in traps sanitizers; do
   echo "$name:"
   grep -E 'run_time|execs_done|corpus_count|edges_found|saved_crashes|saved_hangs' \
     "$folder/found/$name/fuzzer_stats"
 done
 tail -n 1 "$folder/compare.txt"
-grep -A1 -E "File '.*src/(deck|scene)" "$folder/coverage.txt"
+grep -A1 -E "File '.*src/(namelist|scene)/" "$folder/coverage.txt"

@@ -1,4 +1,4 @@
-"""Reads accepted decks with f90nml too and prints what it makes of them otherwise: compare.py FOLDER
+"""Reads accepted decks with f90nml too and prints where it finds other values: compare.py FOLDER
 
 FOLDER holds decks and, where the driver accepted one, NAME.resolved beside it.
 """

@@ -4,6 +4,7 @@ module one_deck
   use failure, only: failure_t, bad_input
   use scene, only: scene_t, read_scene
   use deck, only: deck_t
+  use deck_values, only: unset
   implicit none
   private
   public :: read_one
@@ -70,8 +71,8 @@ contains
     do i = 1, size(a%values)
       associate (x => a%values(i), y => b%values(i))
         if (a%specs(i)%key == '') cycle
-        if ((x%status == 0) .neqv. (y%status == 0)) return
-        if (x%status == 0) cycle
+        if ((x%status == unset) .neqv. (y%status == unset)) return
+        if (x%status == unset) cycle
         if (allocated(x%reals) .neqv. allocated(y%reals)) return
         if (allocated(x%reals)) then
           if (size(x%reals) /= size(y%reals)) return

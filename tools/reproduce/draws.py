@@ -1,5 +1,5 @@
-"""What the paper's stopping rule gives is known to within its scatter alone: ranges over runs of one
-deck that differ in nothing but rounding.
+"""What the paper's stopping rule gives is known to within its scatter alone: ranges over runs of
+one deck that differ in nothing but rounding.
 
 Each run has the Hamaker constant changed in its twelfth digit, which changes the equations'
 solution by as little. Another build, kernel of the linear algebra or processor does the same.

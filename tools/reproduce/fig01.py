@@ -111,9 +111,11 @@ def rows(runs):
         Row("Fig. 1, largest negative load", -59, -grid["max_tension"] * factor,
             -summary["max_tension"] * 1e6, "µN",
             f"computed: nodes 50 nm apart, equations solved (fig06_uniform: the same sigma). "
-            f"Stopped by the paper's rule {len(rules)} retreats that differ in A's twelfth digit give "
+            f"Stopped by the paper's rule {len(rules)} retreats that differ in A's twelfth digit "
+            "give "
             f"{draws.ranged(stopped, 1)} µN, with residuals of "
-            f"{draws.ranged([run.summary['worst_residual'] for run in rules], 1)} z0. Stepping h0 by {_window(runs) * 1e9:.2f} nm or "
+            f"{draws.ranged([run.summary['worst_residual'] for run in rules], 1)} z0. "
+            f"Stepping h0 by {_window(runs) * 1e9:.2f} nm or "
             "more can miss the maximum and give 59"),
         Row("Fig. 1, JKR pull-off", -56, None, -summary["jkr_pull_off"] * 1e6, "µN",
             "1.5 pi gamma R"),

@@ -177,7 +177,8 @@ def rows(runs):
     found = [
         Row("Fig. 7, pull-off over JKR at small sigma", "4/3 (DMT)",
             penetrations.ranged(sweep[:1], 5), ratio[0], "",
-            f"sigma = {sweep[0][0].sigma:.2g} and {sigma[0]:.2g}. The paper is right: DMT theory is "
+            f"sigma = {sweep[0][0].sigma:.2g} and {sigma[0]:.2g}. "
+            "The paper is right: DMT theory is "
             "the better one"),
         Row("Fig. 7, pull-off over JKR, sigma = 0.87", "JKR improves for sigma up to 1",
             penetrations.ranged(near_one, 3), f"{exact[0]:.6f}", "",

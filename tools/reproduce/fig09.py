@@ -142,7 +142,8 @@ def rows(runs):
             f"Fig. 9, tension before the jump, sigma = {sigma[at]:.2f}",
             f"near (29): {estimate:.4f}", draws.ranged(rule, 4), true[at], "gamma R",
             f"(29) {100 * (estimate / true[at] - 1):+.1f} %; computed: at the last step before the "
-            f"jump, the {len(rule)} of {len(some)} runs that jump there; converged and (29): interpolated in the sweep"))
+            f"jump, the {len(rule)} of {len(some)} runs that jump there; "
+            "converged and (29): interpolated in the sweep"))
     return [
         *chosen,
         Row("Fig. 9, tension by (29) beside the exact one, large sigma", "very good approximation",

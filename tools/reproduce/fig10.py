@@ -281,7 +281,8 @@ def rows(runs):
     found += [Row(f"Fig. 10({letter}), the same above the shallowest turning point", None,
                   draws.several(zip(*map(_common, some_runs[letter]))),
                   draws.several([[ratio] for ratio in _common(runs[f"fig10{letter}_converged"])]),
-                  "", f"{len(some_runs[letter])} runs, where all retreats pass. By the paper's rule a deeper retreat has more "
+                  "", f"{len(some_runs[letter])} runs, where all retreats pass. "
+                  "By the paper's rule a deeper retreat has more "
                   "states, each stopped anywhere, to be the one of largest tension")
               for letter, *_ in _PANELS]
     return [

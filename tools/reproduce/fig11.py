@@ -196,6 +196,7 @@ def rows(runs):
             "sigma = 8.7, both in contact. Computed: nodes 200 nm apart, equations solved, median. "
             "Converged, the radii differ only between the jumps, where the loading has no contact"),
         Row("section III D, unloading tension less loading tension at the same h0, the least",
-            "greater than or equal to 0", None, f"0, to {draws.within(abs(_least_excess(converged)))}", "JKR pull-off",
+            "greater than or equal to 0", None,
+            f"0, to {draws.within(abs(_least_excess(converged)))}", "JKR pull-off",
             "sigma = 8.7. The paper is right"),
     ]

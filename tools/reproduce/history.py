@@ -136,7 +136,8 @@ def numbers(runs):
             f"runs_{letter}": len(pulls_by_rule),
             f"rule_{letter}": draws.several(pulls_by_rule[:, :, 0].T)})
     return {**found, "spread_coarse": max(coarse), "spread_two": _shown(max(two)),
-            "spread_one": _shown(max(one)), "spread_fine": _shown(max(fine)), "grows": sum(factor > 1 for factor in factors),
+            "spread_one": _shown(max(one)), "spread_fine": _shown(max(fine)),
+            "grows": sum(factor > 1 for factor in factors),
             "cases": len(factors), "factor": np.median(factors), "scatter": np.median(scatter),
             "scatter_most": max(scatter)}
 

@@ -86,7 +86,7 @@ class Runs:
     """The runs of many decks, each in `root`/<stem of the deck>/.
 
     Beside the folder lies <stem>.json: a digest of deck and program, the exit status, the time
-    taken. It is written last and removed first, so that what was interrupted is gone on with.
+    taken. It is written last and removed first, so that what was interrupted is continued.
     """
 
     def __init__(self, root, program=None, count=None, change=None):

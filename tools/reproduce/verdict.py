@@ -71,5 +71,6 @@ def rows(runs):
                 "increases with the penetration",
                 f"{draws.ranged(paper[:, 0])}; {draws.ranged(paper[:, -1])}",
                 f"{converged[0]:.6f} to {converged[-1]:.6f}", "JKR",
-                f"from h0 = 1 to -10 nm; computed: {len(paper)} runs from the one, from the other; grid "
+                f"from h0 = 1 to -10 nm; computed: {len(paper)} runs from the one, "
+                "from the other; grid "
                 "and stopping rule make the difference")]

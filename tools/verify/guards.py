@@ -73,11 +73,12 @@ GUARDS = {
     ),
     "lost_in_rounding": Guard(
         "adhesion beyond rounding is refused",
-        "equilibrium/equilibrium.f90",
+        "mesh/contact_scales.f90",
         "c > largest_floor",
         "c > huge(1.0_wp)",
         (
-            "app/test_ranges.py::test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding",
+            "app/test_ranges.py"
+            "::test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding",
         ),
     ),
     "anderson_nan": Guard(
@@ -108,7 +109,8 @@ GUARDS = {
         "if (record%converged) then",
         "if (.true.) then",
         (
-            "app/test_unconverged.py::test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable",
+            "app/test_unconverged.py"
+            "::test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable",
         ),
     ),
     "known_stability": Guard(
@@ -131,7 +133,8 @@ GUARDS = {
         "if (expected%bytes > available) then",
         "if (.false.) then",
         (
-            "app/test_ranges.py::test_matrices_larger_than_the_memory_are_refused_with_the_size_needed",
+            "app/test_ranges.py"
+            "::test_matrices_larger_than_the_memory_are_refused_with_the_size_needed",
         ),
     ),
     "under_resolved": Guard(
@@ -156,7 +159,7 @@ GUARDS = {
         ("resume/test_resume_sweep.py::test_a_damaged_record_is_computed_again",),
     ),
     "owner": Guard(
-        "a journal of another deck or program is not gone on with",
+        "a journal of another deck or program is not continued",
         "resume/journal.f90",
         "if (other /= owner) then",
         "if (.false.) then",
@@ -175,7 +178,8 @@ GUARDS = {
         "call system_failure('cannot write ' // self%path, status, self%trouble)",
         "if (status < 0) return",
         (
-            "resume/test_unwritable.py::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on",
+            "resume/test_unwritable.py"
+            "::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on",
         ),
     ),
     "table_flush": Guard(

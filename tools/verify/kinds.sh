@@ -54,7 +54,8 @@ reference() {
   folder=$top/build-lapack
   [ -f "$folder/build.ninja" ] ||
     meson setup -Dblas=lapack -Dpython=enabled "$folder" > /dev/null || return
-  meson compile -C "$folder" > "$folder/compile.log" || { tail -n 25 "$folder/compile.log"; return 1; }
+  meson compile -C "$folder" > "$folder/compile.log" ||
+    { tail -n 25 "$folder/compile.log"; return 1; }
   LD_LIBRARY_PATH=$(reference_libraries)${LD_LIBRARY_PATH-}
   export LD_LIBRARY_PATH
   if ldd "$folder/snapin" | grep -q openblas; then

@@ -30,8 +30,9 @@ from support.scenes import Run, exponential, lennard_jones, loading, several  # 
 # Of loads and displacements, over the largest value of the column. EXACT is what is promised of
 # Newton's method and of a residual_tolerance of 1e-12. Anderson acceleration stops anywhere below
 # its tolerance, 1e-10 by default, and rounding decides where: then the states agree to WITHIN
-# (between OpenBLAS's kernels they differ by 1.1e-12 at sigma 0.87 already). Mixing stops where its last change
-# of the ratio leaves it, perhaps an iteration sooner or later: to a part of the tolerance.
+# (between OpenBLAS's kernels they differ by 1.1e-12 at sigma 0.87 already). Mixing stops where its
+# last change of the ratio leaves it, perhaps an iteration sooner or later: to a part of the
+# tolerance.
 EXACT, WITHIN, STOPPED = 1e-12, 1e-11, 1e-8
 PROMISED = ("load", "displacement")
 SHOWN = ("h_centre", "displacement", "load", "contact_radius")

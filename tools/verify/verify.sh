@@ -12,7 +12,7 @@
 #   extremes   decks drawn at random from the far ends, on the build of `traps`
 #   judge      the program against an independent solution of the Lennard-Jones problem: studies of
 #              every reported number, of cycles, folds and the energy lost (tools/verify/judge.py)
-#   faults     every system call on results fails, kills the run, or is the last before the power does
+#   faults     every system call on results fails, kills the run, or is the last before a power cut
 #   guards     guards are taken out one at a time, and a test has to fail
 #   fuzz       a coverage-led search for decks that the reader misreads (needs AFL++)
 #   pages      no page has figures of older numerics than src/ (tools/pages.py says what renews it)
@@ -37,7 +37,8 @@ builds() {
   folder=$1
   shift
   [ -f "$folder/build.ninja" ] || "$meson" setup "$folder" "$@" > /dev/null || return
-  "$meson" compile -C "$folder" > "$folder/compile.log" || { tail -n 25 "$folder/compile.log"; return 1; }
+  "$meson" compile -C "$folder" > "$folder/compile.log" ||
+    { tail -n 25 "$folder/compile.log"; return 1; }
 }
 
 long() { "$python" -m pytest -q --long -n auto --dist worksteal; }
@@ -51,7 +52,8 @@ traps() {
     $(grep -l 'snapin' tests/*/test_*.py | grep -v 'wrapper')
 }
 
-# OpenBLAS reads a few lanes beyond its arguments with some of its kernels; those for Haswell do not.
+# OpenBLAS reads a few lanes beyond its arguments with some of its kernels; those for Haswell do
+# not.
 memory() {
   has valgrind || { say 'valgrind is missing: apt-get install valgrind'; return 1; }
   builds build-memory --buildtype=debugoptimized -Dpython=disabled || return

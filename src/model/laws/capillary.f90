@@ -1,6 +1,7 @@
-!> Capillary bridge at equilibrium with the vapour: the pressure in it, surface_tension/r_K, acts where
-!> the separation is below r_K (cos theta_1 + cos theta_2). r_K is Kelvin's radius, given or from the
-!> humidity: molar_volume surface_tension/(R T ln(1/humidity)). Smoothed (`step_attraction`).
+!> Capillary bridge at equilibrium with the vapour: the pressure in it, surface_tension/r_K, acts
+!> where the separation is below r_K (cos theta_1 + cos theta_2). r_K is Kelvin's radius, given or
+!> from the humidity: molar_volume surface_tension/(R T ln(1/humidity)). Smoothed
+!> (`step_attraction`).
 module capillary
   use kinds, only: wp
   use failure, only: failure_t

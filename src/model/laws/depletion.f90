@@ -6,7 +6,7 @@ module depletion
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key
   use force_law, only: force_law_t
-  use step_attraction, only: new_step, smoothing_key
+  use step_attraction, only: read_step, smoothing_key
   implicit none
   private
   public :: keys, read_law
@@ -31,12 +31,8 @@ contains
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
     type(failure_t), allocatable, intent(inout) :: error
-    real(wp) :: pressure, diameter
 
-    if (.not. deck%has_group('depletion')) return
-    call deck%get('depletion', 'osmotic_pressure', pressure)
-    call deck%get('depletion', 'diameter', diameter)
-    call new_step(deck, 'depletion', 'osmotic_pressure', 'diameter', pressure, diameter, law, error)
+    call read_step(deck, 'depletion', 'osmotic_pressure', 'diameter', law, error)
   end subroutine read_law
 
 end module depletion

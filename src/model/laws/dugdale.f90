@@ -5,7 +5,7 @@ module dugdale
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key
   use force_law, only: force_law_t
-  use step_attraction, only: new_step, smoothing_key
+  use step_attraction, only: read_step, smoothing_key
   implicit none
   private
   public :: keys, read_law
@@ -30,12 +30,8 @@ contains
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
     type(failure_t), allocatable, intent(inout) :: error
-    real(wp) :: stress, range
 
-    if (.not. deck%has_group('dugdale')) return
-    call deck%get('dugdale', 'stress', stress)
-    call deck%get('dugdale', 'range', range)
-    call new_step(deck, 'dugdale', 'stress', 'range', stress, range, law, error)
+    call read_step(deck, 'dugdale', 'stress', 'range', law, error)
   end subroutine read_law
 
 end module dugdale

@@ -10,7 +10,7 @@ module exponential
   use law_reading, only: is_law, check_parameter, check_decades
   implicit none
   private
-  public :: exponential_t, new_exponential, keys, read_law, read_exponentials
+  public :: exponential_t, keys, read_law, read_exponentials
 
   type, extends(force_law_t) :: exponential_t
     !> 1, or -1 for an attraction.
@@ -54,8 +54,8 @@ contains
     if (.not. allocated(error)) allocate (law, source=new_exponential(p0, decay_length))
   end subroutine read_law
 
-  !> The terms of a group with the lists `decay_length` and `energy` or `pressure`, of a sense: 1 for
-  !> repulsion, -1 for attraction. One value of a list stands for all.
+  !> The terms of a group with the lists `decay_length` and `energy` or `pressure`, of a sense: 1
+  !> for repulsion, -1 for attraction. One value of a list stands for all.
   subroutine read_exponentials(deck, group, sense, law, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: group
@@ -88,7 +88,8 @@ contains
     if (size(strengths) < n) strengths = spread(strengths(1), 1, n)
     do i = 1, n
       call check_decades(deck, group, key, &
-        log10(strengths(i)) - merge(log10(lengths(i)), 0.0_wp, of_energy), 'a pressure', ' Pa', error)
+        log10(strengths(i)) - merge(log10(lengths(i)), 0.0_wp, of_energy), 'a pressure', ' Pa', &
+        error)
       if (allocated(error)) return
       this = new_exponential(strengths(i)/merge(lengths(i), 1.0_wp, of_energy), lengths(i))
       this%sense = sense

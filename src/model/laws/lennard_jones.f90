@@ -11,7 +11,7 @@ module lennard_jones
   use law_reading, only: is_law, check_parameter, check_decades
   implicit none
   private
-  public :: lennard_jones_t, new_lennard_jones, keys, read_law
+  public :: lennard_jones_t, keys, read_law
 
   type, extends(force_law_t) :: lennard_jones_t
     !> Weights of the repulsive and of the attractive part: 0 or 1.

@@ -1,6 +1,6 @@
-!> Steric repulsion of polymer brushes of thickness L, which meet at h = 2 L (one brush: L). With u the
-!> gap over that: Alexander and de Gennes, p = kT Gamma^(3/2) (u^(-9/4) - u^(3/4)), or Milner, Witten and
-!> Cates, p = kT Gamma^(3/2) (1/(2 u^2) - u + u^4/2); none beyond u = 1.
+!> Steric repulsion of polymer brushes of thickness L, which meet at h = 2 L (one brush: L). With u
+!> the gap over that: Alexander and de Gennes, p = kT Gamma^(3/2) (u^(-9/4) - u^(3/4)), or Milner,
+!> Witten and Cates, p = kT Gamma^(3/2) (1/(2 u^2) - u + u^4/2); none beyond u = 1.
 module steric
   use kinds, only: wp
   use failure, only: failure_t

@@ -2,7 +2,6 @@
 module tabulated
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: quoted
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key, text_key, word_key
   use number_columns, only: columns_t, read_columns

@@ -1,6 +1,6 @@
 !> Van der Waals attraction between half-spaces: p = -A/(6 pi h^3), or retarded
-!> (Gregory, J. Colloid Interface Sci. 83, 138, 1981): the energy -A/(12 pi h^2) is divided by 1 + c h,
-!> c = 5.32/retardation_length, so that p falls as h^-4 far away.
+!> (Gregory, J. Colloid Interface Sci. 83, 138, 1981): the energy -A/(12 pi h^2) is divided by 1 + c
+!> h, c = 5.32/retardation_length, so that p falls as h^-4 far away.
 module van_der_waals
   use kinds, only: wp, pi
   use failure, only: failure_t
