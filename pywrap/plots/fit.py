@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A measured force curve with the model that was fitted to it, and what is left, from a deck with &fit.
+"""A measured force curve with the model that was fitted to it, and what is left.
 
     .venv/bin/python pywrap/plots/fit.py results/fit
 """
@@ -52,7 +52,7 @@ def draw_fit(folder, whole=False):
 
 
 def _unit_of(folder):
-    """Return the unit of the signal: newton unless the deck, which the summary repeats, has volts."""
+    """Return the unit of the signal, by the deck that the summary repeats."""
     deck = f90nml.read(pathlib.Path(folder) / "summary.nml")
     return "V" if "sensitivity" in deck["measurement"] else "N"
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""A force curve in a file of an instrument (JPK, Asylum, Bruker, NT-MDT and others) as a table of text
-for &measurement: position of the base, force, and segment.
+"""A force curve in a file of an instrument (JPK, Asylum, Bruker, NT-MDT and others) as a table of
+text for &measurement: position of the base, force, and segment.
 
     .venv/bin/python pywrap/scripts/afm_to_table.py CURVE [--number 0] > curve.csv
 
-The file is read by afmformats, which the project does not need otherwise: pip install afmformats. The
-spring constant of the file stands in the table's head.
+The file is read by afmformats, which the project does not need otherwise: pip install afmformats.
+The spring constant of the file stands in the table's head.
 """
 
 import argparse
@@ -32,7 +32,7 @@ def main():
     try:
         import afmformats
     except ImportError:
-        sys.exit(f"{parser.prog}: afmformats is missing: {sys.executable} -m pip install afmformats")
+        sys.exit(f"{parser.prog}: missing: {sys.executable} -m pip install afmformats")
     curves = afmformats.load_data(options.file)
     print("\n".join(table_of(curves[options.number])))
 

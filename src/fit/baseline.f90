@@ -1,6 +1,6 @@
 !> The baseline of a measured curve: a constant for each way, and a slope of both. The unknowns of a
-!> model do not change what it is made of, so that the best baseline is taken off residuals and their
-!> derivatives by the same projection.
+!> model do not change what it is made of, so that the best baseline is taken off residuals and
+!> their derivatives by the same projection.
 module baseline
   use kinds, only: wp
   use noise, only: noise_t, whiten
@@ -20,8 +20,8 @@ module baseline
 
 contains
 
-  !> For samples at z on the way inward or not, of which those with the numbers `sample` count; `run`
-  !> as in `whiten`.
+  !> For samples at z on the way inward or not, of which those with the numbers `sample` count;
+  !> `run` as in `whiten`.
   pure function new_baseline(z, inward, sample, run, noise) result(new)
     real(wp), intent(in) :: z(:)
     logical, intent(in) :: inward(:)

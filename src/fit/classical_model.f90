@@ -1,6 +1,6 @@
-!> The classical theories as models of a measured curve: JKR, DMT, Maugis and Dugdale. Bodies that do
-!> not touch do not attract each other; those that touch go along the theory's curve, whose order is
-!> the contact radius. Where the bodies jump into contact these theories cannot say.
+!> The classical theories as models of a measured curve: JKR, DMT, Maugis and Dugdale. Bodies that
+!> do not touch do not attract each other; those that touch go along the theory's curve, whose order
+!> is the contact radius. Where the bodies jump into contact these theories cannot say.
 module classical_model
   use kinds, only: wp
   use root_finding, only: bracket_t

@@ -1,5 +1,6 @@
-!> Where a fit may start from: contact points at which a model with the values of the deck leaves least
-!> of the measured curve. Moving the curve along needs no new solution, so that many are tried.
+!> Where a fit may start from: contact points at which a model with the values of the deck leaves
+!> least of the measured curve. Moving the curve along needs no new solution, so that many are
+!> tried.
 module contact_starts
   use kinds, only: wp
   use root_finding, only: bracket_t
@@ -16,8 +17,8 @@ module contact_starts
 contains
 
   !> Contact points from which to start, best first: where the sum of squares has its lowest minima,
-  !> and no higher than `worse` times the lowest. value: the unknowns; found = .false.: the model has
-  !> no curve there.
+  !> and no higher than `worse` times the lowest. value: the unknowns; found = .false.: the model
+  !> has no curve there.
   subroutine find_starts(residuals, value, most, worse, starts, found)
     type(curve_residuals_t), intent(in) :: residuals
     real(wp), intent(in) :: value(:), worse

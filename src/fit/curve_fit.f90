@@ -114,7 +114,8 @@ contains
       abs([(value_by_fitted(residuals%unknown(j), fitted%value(j)), j=1, n)])
     allocate (fitted%correlation(n, n))
     do j = 1, n
-      fitted%correlation(:, j) = [(covariance(i, j)/sqrt(covariance(i, i)*covariance(j, j)), i=1, n)]
+      fitted%correlation(:, j) = &
+        [(covariance(i, j)/sqrt(covariance(i, i)*covariance(j, j)), i=1, n)]
     end do
     call residuals%split(fitted%value, fitted%model, fitted%baseline)
     fitted%residual = residuals%measured%signal - fitted%model

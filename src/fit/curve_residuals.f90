@@ -4,8 +4,8 @@
 !>
 !> k the spring's stiffness, s the detector's sensitivity. Baselines and slope enter linearly: the
 !> residuals are what is left when the best ones are taken off (variable projection; Golub and
-!> Pereyra, 1973; `baseline`). Samples are made white first. Where a jump starts is a datum of its own, and so is what is known of
-!> an unknown before; no sample within a jump counts.
+!> Pereyra, 1973; `baseline`). Samples are made white first. Where a jump starts is a datum of its
+!> own, and so is what is known of an unknown before; no sample within a jump counts.
 module curve_residuals
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
@@ -31,8 +31,8 @@ module curve_residuals
     type(noise_t) :: noise
     type(measured_jump_t) :: jump(2)
     type(unknown_t), allocatable :: unknown(:)
-    !> Spring, detector and contact point where they are no unknowns; the force in the file is that
-    !> of a spring of `file_spring`, and then the sensitivity is 1/file_spring.
+    !> Spring, detector and contact point where they are no unknowns. Where the signal is the force,
+    !> it is the deflection of the deck's spring.
     real(wp) :: spring = 1, sensitivity = 1, contact_point = 0
     !> The samples that count; the run that each is of, and the side of its jump; see `load_on`.
     integer, allocatable :: sample(:), run(:), side(:), way(:)
@@ -301,8 +301,8 @@ contains
     model = model + baseline
   end subroutine split
 
-  !> The contact points with which the nearest sample is anywhere from the end of what the model knows
-  !> of the contact out to where nothing holds the bodies together.
+  !> The contact points with which the nearest sample is anywhere from the end of what the model
+  !> knows of the contact out to where nothing holds the bodies together.
   subroutine reach(self, value, ends, found)
     class(curve_residuals_t), intent(inout) :: self
     real(wp), intent(in) :: value(:)

@@ -58,8 +58,8 @@ contains
 
   end subroutine find_far
 
-  !> The deviation of white noise in a signal that otherwise is smooth: from the median of its second
-  !> differences.
+  !> The deviation of white noise in a signal that otherwise is smooth: from the median of its
+  !> second differences.
   pure real(wp) function rough_deviation(signal) result(deviation)
     real(wp), intent(in) :: signal(:)
     !> The median of a normal distribution's magnitude; the sum of the squares of 1, -2, 1.

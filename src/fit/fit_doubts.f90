@@ -1,5 +1,5 @@
-!> What speaks against a fit: a model that does not describe the data, unknowns that these cannot tell
-!> apart, bounds that decide.
+!> What speaks against a fit: a model that does not describe the data, unknowns that these cannot
+!> tell apart, bounds that decide.
 module fit_doubts
   use kinds, only: wp
   use text, only: rounded
@@ -11,8 +11,8 @@ module fit_doubts
   public :: doubts_of
 
   !> Correlation of unknowns that the data hardly tell apart; least singular value where some
-  !> combination of several is not told; error of a logarithm that is no knowledge; residual over noise
-  !> that noise cannot make; standard deviations by which jumps may differ.
+  !> combination of several is not told; error of a logarithm that is no knowledge; residual over
+  !> noise that noise cannot make; standard deviations by which jumps may differ.
   real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, poor = 1.5_wp, &
     far = 4
 

@@ -19,8 +19,8 @@ module fit_request
   integer, parameter :: of_model = 0, of_contact_point = 1, of_sensitivity = 2, of_spring = 3
 
   !> An unknown, in the unit of its key. in_log: it is positive, and its logarithm is fitted; of
-  !> others the difference from `origin` over `scale`. prior: standard deviation of what is known before of the
-  !> value in the deck; 0: nothing.
+  !> others the difference from `origin` over `scale`. prior: standard deviation of what is known
+  !> before of the value in the deck; 0: nothing.
   type :: unknown_t
     character(len=:), allocatable :: name
     integer :: role = of_model

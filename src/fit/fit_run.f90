@@ -38,14 +38,16 @@ module fit_run
 
   !> A signal whose noise is smaller than this part of it is one that was computed.
   real(wp), parameter :: least_noise = 1.0e-9_wp
-  !> An unknown whose fitted number (`unknowns`) changes by 1 is seen by this many standard deviations
-  !> of all data, or it has no effect.
+  !> Over the largest signal, up to which the model is wanted: for a trial that is too soft.
+  real(wp), parameter :: beyond = 1.2_wp
+  !> An unknown whose fitted number (`unknowns`) changes by 1 is seen by this many standard
+  !> deviations of all data, or it has no effect.
   real(wp), parameter :: least_effect = 0.1_wp
 
 contains
 
-  !> family: the problems, whose parameters are the unknowns of the model; problem: with their values
-  !> in the deck.
+  !> family: the problems, whose parameters are the unknowns of the model; problem: with their
+  !> values in the deck.
   subroutine run_fit(measurement, fit, numerics, family, problem, listener, outcome)
     type(measurement_t), intent(in) :: measurement
     type(fit_t), intent(in) :: fit
@@ -68,18 +70,19 @@ contains
     call curve%set_model()
     outcome%curve = curve
     if (.not. outcome%fitted%has_curve) then
-      outcome%trouble = 'with the values of the deck the path could not be solved as far as the ' // &
-        'data go, or does not come near them; start from others, or fit a part of the data'
+      outcome%trouble = 'with the values of the deck the path could not be solved as ' // &
+        'far as the data go, or does not come near them; start from others, or fit a part of them'
       return
     end if
     if (.not. allocated(outcome%fitted%effect)) then
-      outcome%trouble = 'the search ended where the path has no derivatives; start from other values'
+      outcome%trouble = &
+        'the search ended where the path has no derivatives; start from other values'
       return
     end if
     do i = 1, size(outcome%fitted%effect)
       if (outcome%fitted%effect(i) > least_effect) cycle
-      outcome%trouble = outcome%curve%unknown(i)%name // ' has no effect on this curve; take it ' // &
-        'out of parameters'
+      outcome%trouble = outcome%curve%unknown(i)%name // ' has no effect on this curve; ' // &
+        'take it out of parameters'
       return
     end do
     call listener%hear('fitting classical theories')
@@ -122,15 +125,17 @@ contains
       if (allocated(trouble)) return
       curve%jump = [find_jump(data, curve%noise, slope, .true.), &
         find_jump(data, curve%noise, slope, .false.)]
-      curve%largest = 1.2_wp*(maxval(data%signal) - sum(data%signal, data%far)/max(1, count(data%far)))
+      curve%largest = beyond*(maxval(data%signal) - &
+        sum(data%signal, data%far)/max(1, count(data%far)))
     end associate
     call curve%take_samples(1)
     if (size(curve%sample) < 2*size(curve%unknown) + 4) &
       trouble = 'too few samples for so many parameters'
   end subroutine take_curve
 
-  !> The same curve by JKR, DMT and Maugis-Dugdale, where the bodies are parabolas. Found is what the
-  !> deck wants to find of it: adhesion where it asks for a force, stiffness where for that of bodies.
+  !> The same curve by JKR, DMT and Maugis-Dugdale, where the bodies are parabolas. Found is what
+  !> the deck wants to find of it: adhesion where it asks for a force, stiffness where for that of
+  !> bodies.
   subroutine fit_theories(outcome, problem, family)
     type(fit_outcome_t), intent(inout), target :: outcome
     type(problem_t), intent(in) :: problem

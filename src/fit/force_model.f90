@@ -11,7 +11,8 @@ module force_model
 
   !> The branches that a way goes along, in order, and the position of the drive at which each is
   !> left. The main jump, the one with the largest change of load, starts from the end of branch
-  !> number `main` of these; 0: the way has none. foretold = .false.: the theory has no say in where.
+  !> number `main` of these; 0: the way has none. foretold = .false.: the theory has no say in
+  !> where.
   type :: way_t
     integer, allocatable :: branch(:)
     real(wp), allocatable :: leaves_at(:)
@@ -30,9 +31,9 @@ module force_model
   !> A model of the force between the bodies, with unknowns.
   type, abstract :: force_model_t
   contains
-    !> Its response with these values of the unknowns behind a spring of `stiffness`, from the position
-    !> `farthest` [m] as far into contact as to the load `largest` [N] at least. with_rates:
-    !> derivatives by the unknowns too. found = .false.: there is none.
+    !> Its response with these values of the unknowns behind a spring of `stiffness`, from the
+    !> position `farthest` [m] as far into contact as to the load `largest` [N] at least.
+    !> with_rates: derivatives by the unknowns too. found = .false.: there is none.
     procedure(respond_to), deferred :: respond
   end type force_model_t
 

@@ -52,8 +52,8 @@ module least_squares
   end interface
 
   !> Relative change of the sum of squares, and of x, below which the search ends: of the former a
-  !> ten millionth is far below what noise makes of it. Evaluations after which it is given up; and the
-  !> length of the first step.
+  !> ten millionth is far below what noise makes of it. Evaluations after which it is given up; and
+  !> the length of the first step.
   real(wp), parameter :: less = 1.0e-7_wp, nearer = 1.0e-10_wp, first_step = 0.3_wp
   integer, parameter :: most_evaluations = 80
   !> Instead of residuals that do not exist: lmder then makes a shorter step.
@@ -61,8 +61,8 @@ module least_squares
 
 contains
 
-  !> Moves x to where the sum of the squares of the residuals is least. A change of x by 1 is to be a
-  !> large one: the first step is shorter. found = .false.: it was not
+  !> Moves x to where the sum of the squares of the residuals is least. A change of x by 1 is to be
+  !> a large one: the first step is shorter. found = .false.: it was not
   !> found within so many evaluations, or there are no residuals at x to begin with.
   subroutine minimise(residuals, x, residual, found)
     class(residuals_t), intent(inout), target :: residuals

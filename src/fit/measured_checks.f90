@@ -15,8 +15,8 @@ module measured_checks
 
 contains
 
-  !> trouble is allocated where the curve cannot be fitted. stiffness: of the spring, units of signal
-  !> over z.
+  !> trouble is allocated where the curve cannot be fitted. stiffness: of the spring, units of
+  !> signal over z.
   subroutine check_measured(measured, noise, stiffness, trouble)
     type(measured_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
@@ -37,7 +37,8 @@ contains
     if (near >= 0 .or. near >= before) return
     turned = measured
     turned%signal = -measured%signal
-    jump = [find_jump(turned, noise, stiffness, .true.), find_jump(turned, noise, stiffness, .false.)]
+    jump(1) = find_jump(turned, noise, stiffness, .true.)
+    jump(2) = find_jump(turned, noise, stiffness, .false.)
     if (before - near > steep*stiffness*travel .or. any(jump%before > 0)) trouble = &
       'the force falls where the bodies are pressed together: repulsion is positive here; a ' // &
       'minus before the name of a column turns its sign'

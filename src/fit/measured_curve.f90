@@ -100,8 +100,8 @@ contains
     travel = 0
     if (n(1) > 0) travel(1) = travel_of(measured%z(:n(1)))
     if (n(2) > 0) travel(2) = -travel_of(measured%z(n(1) + 1:))
-    if (travel(1)*travel(2) < 0) call fail(error, bad_input, file // ': z goes the same way in ' // &
-      'approach and retreat; is the third column 0 for approach and 1 for retreat?')
+    if (travel(1)*travel(2) < 0) call fail(error, bad_input, file // ': z goes the same way ' // &
+      'in approach and retreat; is the third column 0 for approach and 1 for retreat?')
     measured%facing = merge(1.0_wp, -1.0_wp, sum(travel) < 0)
   end subroutine find_facing
 

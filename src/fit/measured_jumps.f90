@@ -1,5 +1,5 @@
-!> Jumps in a measured curve. In a jump inward the force falls, in one outward it rises, over less of
-!> the base's travel than the spring alone would take for it.
+!> Jumps in a measured curve. In a jump inward the force falls, in one outward it rises, over less
+!> of the base's travel than the spring alone would take for it.
 module measured_jumps
   use kinds, only: wp
   use measured_curve, only: measured_t
@@ -15,8 +15,8 @@ module measured_jumps
     real(wp) :: z = 0, uncertainty = 0, change = 0
   end type measured_jump_t
 
-  !> Change in the first step of a jump over what the spring makes of it; change over the noise; most steps
-  !> that a jump takes in a record that an amplifier has smoothed.
+  !> Change in the first step of a jump over what the spring makes of it; change over the noise;
+  !> most steps that a jump takes in a record that an amplifier has smoothed.
   real(wp), parameter :: steep = 3, seen = 12
   integer, parameter :: most_steps = 6
 
@@ -61,8 +61,8 @@ contains
 
   contains
 
-    !> Whether the signal goes the way of a jump by more than `times` what the spring makes of the step
-    !> to the next sample.
+    !> Whether the signal goes the way of a jump by more than `times` what the spring makes of the
+    !> step to the next sample.
     pure logical function exceeds(k, times)
       integer, intent(in) :: k
       real(wp), intent(in) :: times

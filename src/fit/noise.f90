@@ -1,6 +1,6 @@
 !> The noise of a signal, from samples that would be a straight line without it. Neighbours are
-!> correlated where an instrument filters: a sample is then foretold from some before it, and what is
-!> left of it is white (autoregression; Levinson, 1947, and Durbin, 1960).
+!> correlated where an instrument filters: a sample is then foretold from some before it, and what
+!> is left of it is white (autoregression; Levinson, 1947, and Durbin, 1960).
 module noise
   use kinds, only: wp
   implicit none
@@ -10,13 +10,13 @@ module noise
   !> Most samples from which another is foretold.
   integer, parameter :: longest = 8
 
-  !> Standard deviation; correlation of samples so many apart; how many of those before a sample tell
-  !> something of it, by what weights (of the nearest first, column k where there are k), and what
-  !> then is left of the standard deviation.
+  !> Standard deviation; correlation of samples so many apart; how many of those before a sample
+  !> tell something of it, by what weights (of the nearest first, column k where there are k), and
+  !> what then is left of the standard deviation.
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
-    real(wp) :: weight(0:longest, 0:longest) = 0, left(0:longest) = 1
+    real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
   end type noise_t
 
 contains
@@ -70,25 +70,33 @@ contains
   pure subroutine find_weights(noise, n)
     type(noise_t), intent(inout) :: noise
     integer, intent(in) :: n
-    real(wp) :: reflection, left, gain, best
+    real(wp) :: reflection, left, gain, best, before(longest)
     integer :: k
 
     left = 1
     best = 0
-    associate (weight => noise%weight, rho => noise%correlation)
-      do k = 1, longest
-        reflection = (rho(k) - dot_product(weight(1:k - 1, k - 1), rho(k - 1:1:-1)))/left
-        weight(1:k - 1, k) = weight(1:k - 1, k - 1) - reflection*weight(k - 1:1:-1, k - 1)
-        weight(k, k) = reflection
-        left = left*(1 - reflection**2)
-        noise%left(k) = noise%deviation*sqrt(left)
-        gain = n*log(left) + 2*k
-        if (gain >= best) cycle
-        best = gain
-        noise%order = k
-      end do
-    end associate
+    before = 0
+    do k = 1, longest
+      reflection = (noise%correlation(k) - dot_product(before(:k - 1), &
+        reversed(noise%correlation(1:k - 1))))/left
+      noise%weight(:k - 1, k) = before(:k - 1) - reflection*reversed(before(:k - 1))
+      noise%weight(k, k) = reflection
+      before = noise%weight(:, k)
+      left = left*(1 - reflection**2)
+      noise%left(k) = noise%deviation*sqrt(left)
+      gain = n*log(left) + 2*k
+      if (gain >= best) cycle
+      best = gain
+      noise%order = k
+    end do
   end subroutine find_weights
+
+  pure function reversed(a)
+    real(wp), intent(in) :: a(:)
+    real(wp) :: reversed(size(a))
+
+    reversed = a(size(a):1:-1)
+  end function reversed
 
   !> Makes columns of numbers, one a sample, such that noise in them is white and of deviation 1;
   !> samples of different runs are not correlated.
@@ -97,16 +105,21 @@ contains
     integer, intent(in) :: run(:)
     real(wp), intent(inout) :: column(:, :)
     real(wp) :: raw(size(column, 2), 0:longest)
+    logical :: begins(size(run))
     integer :: i, known
 
+    begins = .true.
+    if (size(run) > 1) begins(2:) = run(2:) /= run(:size(run) - 1)
     known = 0
     raw = 0
     do i = 1, size(run)
-      if (i > 1) known = merge(min(known + 1, noise%order), 0, run(i) == run(i - 1))
+      known = merge(0, min(known + 1, noise%order), begins(i))
       raw(:, 1:) = raw(:, :longest - 1)
       raw(:, 0) = column(i, :)
-      column(i, :) = (raw(:, 0) - matmul(raw(:, 1:known), noise%weight(1:known, known)))/ &
-        noise%left(known)
+      column(i, :) = raw(:, 0)
+      if (known > 0) column(i, :) = column(i, :) - &
+        matmul(raw(:, 1:known), noise%weight(:known, known))
+      column(i, :) = column(i, :)/noise%left(known)
     end do
   end subroutine whiten
 

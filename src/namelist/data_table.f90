@@ -29,8 +29,8 @@ module data_table
 contains
 
   !> Reads the columns `wanted` of `file`: names from its header line, in upper or lower case, or
-  !> numbers counted from 1; a minus before either turns the column's sign. error: what is wrong with
-  !> the file, with the line.
+  !> numbers counted from 1; a minus before either turns the column's sign. error: what is wrong
+  !> with the file, with the line.
   subroutine read_data_table(file, wanted, table, error)
     character(len=*), intent(in) :: file, wanted(:)
     type(data_table_t), intent(out) :: table

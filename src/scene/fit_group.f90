@@ -24,26 +24,29 @@ contains
     specs = [ &
       group('measurement', 'A measured force curve, for &fit.'), &
       text_key('measurement', 'file', 1000, 'Its file: a table of numbers, # before comments, ' // &
-               'perhaps a line of names; in the folder of the deck unless a path.', required=.true.), &
+               'perhaps a line of names; in the folder of the deck unless a path.', &
+               required=.true.), &
       names_key('measurement', 'columns', 3, 'Name or number of the columns of the base''s ' // &
-                'position [m], the signal (force [N], positive: repulsion, or [V]) and, if there ' // &
-                'is one, the segment: 0 approach, 1 retreat. A minus turns the sign.', &
+                'position [m], the signal (force [N], positive: repulsion, or [V]) and, if ' // &
+                'there is one, the segment: 0 approach, 1 retreat. A minus turns the sign.', &
                 otherwise='the first two'), &
       real_key('measurement', 'spring_constant', 'N/m', 'Stiffness of the spring.', above=zero, &
                required=.true.), &
-      real_key('measurement', 'sensitivity', 'm/V', 'Deflection of the spring for one volt; 1 for ' &
-               // 'a deflection in metres.', above=zero, otherwise='the signal is the force'), &
+      real_key('measurement', 'sensitivity', 'm/V', 'Deflection of the spring for one volt; 1 ' &
+               // 'for a deflection in metres.', above=zero, otherwise='the signal is the force'), &
       real_key('measurement', 'contact_point', 'm', 'Position of the base at which undeformed ' // &
                'bodies would touch.', otherwise='found by the fit'), &
       word_key('measurement', 'segment', 'both approach retreat', 'Which way is fitted.', &
                default='both'), &
-      group('fit', 'Keys of this deck found such that the path''s curve is that of &measurement.'), &
-      names_key('fit', 'parameters', most_unknowns, 'What is unknown, as ''group.key'': numbers ' // &
-                'of bodies, shape and forces, and measurement.contact_point, sensitivity or ' // &
-                'spring_constant.', required=.true.), &
+      group('fit', 'Keys of this deck found such that the path''s curve is that of ' // &
+            '&measurement.'), &
+      names_key('fit', 'parameters', most_unknowns, 'What is unknown, as ''group.key'': ' // &
+                'numbers of bodies, shape and forces, and measurement.contact_point, ' // &
+                'sensitivity or spring_constant.', required=.true.), &
       list_key('fit', 'lower', '', 'Least value of each, in the unit of the key.', &
                most=most_unknowns, otherwise='none'), &
-      list_key('fit', 'upper', '', 'Largest value of each.', most=most_unknowns, otherwise='none'), &
+      list_key('fit', 'upper', '', 'Largest value of each.', most=most_unknowns, &
+               otherwise='none'), &
       list_key('fit', 'prior', '', 'Standard deviation of what is known before of each, about ' // &
                'the value in the deck; 0: nothing.', most=most_unknowns, low=zero, &
                otherwise='nothing known'), &
@@ -190,8 +193,9 @@ contains
           'no sensitivity', error)
       end if
     case default
-      call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // ' cannot be fitted; ' // &
-        'of &measurement contact_point, sensitivity and spring_constant can', error)
+      call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // &
+        ' cannot be fitted; of &measurement contact_point, sensitivity and spring_constant ' // &
+        'can', error)
     end select
     unknown%in_log = unknown%role /= of_contact_point
     if (unknown%in_log .and. unknown%value > 0) unknown%scale = unknown%value

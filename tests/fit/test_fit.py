@@ -1,5 +1,5 @@
-"""Claims about fits of measured curves: what data without noise give back, what the errors mean, and
-what is said where a fit cannot work."""
+"""Claims about fits of measured curves: what data without noise give back, what the errors mean,
+and what is said where a fit cannot work."""
 
 import math
 import warnings
@@ -44,7 +44,8 @@ SCENES = {
         {"van_der_waals.hamaker": 1e-19, STIFFNESS: 1e10},
     ),
     "power": (
-        {"bodies": {"stiffness": 1e10}, "shape": {"kind": "power", "exponent": 3.0, "radius": 50e-9},
+        {"bodies": {"stiffness": 1e10},
+         "shape": {"kind": "power", "exponent": 3.0, "radius": 50e-9},
          "force": LENNARD_JONES["force"]},
         {STRENGTH: 1.0e-19, "shape.radius": 50e-9},
     ),
@@ -115,8 +116,8 @@ def test_data_without_noise_give_the_values_back(exact, name):
 
 
 def test_errors_are_those_of_the_profile_of_the_sum_of_squares(branches, tmp_path):
-    """With one value held a little off, the others found again, chi squared is the square of how many
-    standard errors it is off: the Jacobian and what is made of it are right together."""
+    """With one value held a little off, the others found again, chi squared is the square of how
+    many standard errors it is off: the Jacobian and what is made of it are right together."""
     truth = SCENES["lennard_jones"][1]
     file = write(tmp_path / "a.csv", *branches.measure(300))
     quiet = {"noise": 1e-11}
@@ -135,7 +136,7 @@ def test_errors_are_those_of_the_profile_of_the_sum_of_squares(branches, tmp_pat
 
 
 def test_conventions_do_not_matter(branches, tmp_path):
-    """z that grows or falls, force of either sign, volts, columns by number, no segments: the same."""
+    """z that grows or falls, force of either sign, volts, columns by number: the same."""
     z, force, segment = branches.measure(300, noise=2e-12)
     plain = write(tmp_path / "a.csv", z, force, segment)
     keys = [STRENGTH, STIFFNESS, POINT]
@@ -200,7 +201,7 @@ def test_correlated_noise_is_seen_and_makes_errors_larger(branches, tmp_path):
     assert fits[1]["noise_correlation"][0] == pytest.approx(0.7, abs=0.1)
     assert errors_of(results[1])[POINT] > 1.2 * errors_of(results[0])[POINT]
     for fit in fits:
-        # The noise is that of some 300 samples; of red noise so few are like 60 that are independent.
+        # The noise is that of some 300 samples; of red noise they are like 60 independent ones.
         assert fit["chi_squared"][0] == pytest.approx(fit["degrees_of_freedom"][0], rel=0.4)
 
 

@@ -11,7 +11,7 @@ CONTACT_POINT = 3e-6
 
 
 def states_of_device(groups, spring=SPRING, start=40e-9, h0_end=-2e-9):
-    """Return position, load and segment of the states of a device, each solved: no two evenly apart."""
+    """Return position, load and segment of the states of a device, each solved."""
     table = snapin.run({
         **groups,
         "equilibrium_path": {"h0_end": h0_end},
@@ -20,7 +20,8 @@ def states_of_device(groups, spring=SPRING, start=40e-9, h0_end=-2e-9):
     }).device
     ways = [table[table["direction"] == way] for way in ("approach", "retreat")]
     segment = np.repeat([0, 1], [len(way) for way in ways])
-    return np.concatenate([w["z"] for w in ways]), np.concatenate([w["load"] for w in ways]), segment
+    z, load = (np.concatenate([way[name] for way in ways]) for name in ("z", "load"))
+    return z, load, segment
 
 
 class Branches:
@@ -32,9 +33,10 @@ class Branches:
             "loading": {"h0_start": far, "h0_end": h0_end, "h0_step": step},
             "unloading": {"from": h0_end, "h0_end": far, "h0_step": step},
         })
-        branch = {name: run.curve[run.curve["branch"] == name] for name in ("loading", "unloading_1")}
-        self.outer = self._until_turn(branch["loading"], spring)
-        self.inner = self._until_turn(branch["unloading_1"], spring)
+        way_in, way_out = (run.curve[run.curve["branch"] == name]
+                           for name in ("loading", "unloading_1"))
+        self.outer = self._until_turn(way_in, spring)
+        self.inner = self._until_turn(way_out, spring)
 
     @staticmethod
     def _until_turn(rows, spring):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """How often the intervals of a fit hold the truth: many noisy force curves, each fitted.
 
-    .venv/bin/python tools/bench/coverage.py [--curves 500] [--samples 300] [--noise 1e-11] [--known]
+    .venv/bin/python tools/bench/coverage.py [--curves 500] [--samples 300] [--known]
 
-For each parameter it prints in how many of the curves the true value lies within 1.96 standard errors
-of the estimate, of which 95 % are expected, and within one, 68 %.
+For each parameter it prints in how many of the curves the true value lies within 1.96 standard
+errors of the estimate, of which 95 % are expected, and within one, 68 %.
 """
 
 import argparse
@@ -25,7 +25,7 @@ TRUTH = {"force.hamaker": 1e-19, "bodies.stiffness": 1e10, "measurement.contact_
 
 
 def deviations(curves, samples, noise, known):
-    """Return (estimate - truth)/standard error, one row a curve, and chi squared over its freedom."""
+    """Return (estimate - truth)/standard error, a row a curve, and chi squared over its freedom."""
     branches = Branches(LENNARD_JONES)
     keys = {"noise": noise} if known else {}
     rows, left = [], []
