@@ -22,6 +22,7 @@ PAGES = {
     "README.md": "./run inputs/first.nml, compared by hand; then tools/pages.py --mark README.md",
     "docs/accuracy.md": "./bench",
     "docs/asymptotics.md": "tools/asymptotics.py",
+    "docs/forces.md": "tools/law_independence.py; tools/forces.py for its pictures",
     "docs/methods.md": "inputs/first.nml with &equilibrium_path, compared by hand; then "
     "tools/pages.py --mark docs/methods.md",
     "docs/reproduction/report.md": "./reproduce --publish",
@@ -32,9 +33,9 @@ PAGES = {
 _NO_NUMBERS = (
     "namelist_writer", "clock", "command_line", "c_library", "deck", "deck_keys", "deck_number",
     "deck_scan", "deck_source", "deck_store", "text", "deck_token", "deck_values", "failure",
-    "files", "finished_run", "folder_lock", "forecast", "journal", "memory", "preflight",
-    "result_listing", "result_rows", "state_records", "byte_record", "progress", "publication",
-    "run_identity", "snapin", "text_file",
+    "checksums", "files", "finished_run", "folder_lock", "forecast", "journal", "memory",
+    "preflight", "result_listing", "result_rows", "state_records", "byte_record", "progress",
+    "publication", "run_identity", "snapin", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")
 

@@ -16,6 +16,8 @@ _PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1
 
 # Cosine of the largest turn between two steps that is drawn as a bend and not as a corner.
 _GENTLE = 0.5
+# A cubic whose slopes at its ends are within this multiple of that of its chord does not swing.
+_STEEPEST = 3
 
 
 def title_of(folder, summary):
@@ -47,7 +49,13 @@ def smooth(points):
     slope = np.diff(points, axis=0) / along[:, None]
     weight = (along[1:] / (along[1:] + along[:-1]))[:, None]
     inner = weight * slope[:-1] + (1 - weight) * slope[1:]
-    tangent = np.vstack([2 * slope[0] - inner[0], inner, 2 * slope[-1] - inner[-1]])
+    # Between steps of very different lengths a parabola swings beyond its points.
+    least = np.minimum(abs(slope[:-1]), abs(slope[1:]))
+    bound = np.where(slope[:-1] * slope[1:] > 0, _STEEPEST * least, np.inf)
+    inner = np.clip(inner, -bound, bound)
+    ends = 2 * slope[[0, -1]] - inner[[0, -1]]
+    ends = np.where(ends * slope[[0, -1]] > 0, ends, 0)
+    tangent = np.vstack([ends[:1], inner, ends[1:]])
     t = np.linspace(0, 1, 12, endpoint=False)[:, None]
     curve = []
     for i, step in enumerate(along):

@@ -38,6 +38,8 @@ _THEORIES = {
         "Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}
     ),
 }
+# What a curve may be drawn against.
+NAMES = {"displacement": "displacement $h(0) - h_0$", "h0": "$h_0$"}
 # In points: a piece of curve shorter than this gets no arrow for its direction.
 _LONG_ENOUGH = 45
 _MOST_COLUMNS = 6
@@ -45,37 +47,53 @@ _MOST_COLUMNS = 6
 
 def draw_force_curve(folder):
     """Return a figure of the curve in `folder`."""
-    summary, curve = read_summary(folder), read_table(folder, "curve.csv")
-    if curve["h0"].size == 0:
-        raise ResultsError(f"{folder}/curve.csv has no rows")
-    try:
-        theories = read_table(folder, "classical.csv")
-    except ResultsError:
-        theories = None
-    lengths = scale(np.concatenate([curve["h0"], curve["displacement"]]), "m")
-    loads = scale(curve["load"], "N")
-    branches = [_Branch(name, curve, summary) for name in dict.fromkeys(curve["branch"])]
-
+    results = Curve(folder)
     figure = Figure(figsize=(9, 4.6), layout="constrained")
-    panels = figure.subplots(1, 2, sharey=True)
-    names = {"displacement": "displacement $h(0) - h_0$", "h0": "$h_0$"}
-    for panel, (x, name) in zip(panels, names.items()):
-        dress(panel, f"{name} [{lengths[1]}]", f"load [{loads[1]}]" if x != "h0" else "")
-        for branch in branches:
-            branch.draw(panel, x, lengths[0], loads[0])
-        if theories:
-            _draw_theories(panel, theories, x, lengths[0], loads[0])
-        _frame(panel, curve, theories, x, lengths[0], loads[0])
-    figure.suptitle(title_of(folder, summary))
-    handles, labels = panels[0].get_legend_handles_labels()
+    panels = dict(zip(NAMES, figure.subplots(1, 2, sharey=True)))
+    for x, panel in panels.items():
+        results.draw(panel, x)
+    panels["h0"].set_ylabel("")
+    figure.suptitle(title_of(folder, results.summary))
+    handles, labels = panels["displacement"].get_legend_handles_labels()
     columns = -(-len(labels) // -(-len(labels) // _MOST_COLUMNS))
     figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False)
     # Arrows are placed by distances on the page, known once everything else is.
     figure.draw_without_rendering()
-    for panel, x in zip(panels, names):
-        for branch in branches:
-            branch.draw_arrows(panel, x, lengths[0], loads[0])
+    for x, panel in panels.items():
+        results.draw_arrows(panel, x)
     return figure
+
+
+class Curve:
+    """The curve in a folder of results, in short units, to be drawn against one of NAMES."""
+
+    def __init__(self, folder):
+        self.summary, self.table = read_summary(folder), read_table(folder, "curve.csv")
+        if self.table["h0"].size == 0:
+            raise ResultsError(f"{folder}/curve.csv has no rows")
+        try:
+            self.theories = read_table(folder, "classical.csv")
+        except ResultsError:
+            self.theories = None
+        self.lengths = scale(np.concatenate([self.table["h0"], self.table["displacement"]]), "m")
+        self.loads = scale(self.table["load"], "N")
+        self.branches = [_Branch(name, self.table, self.summary)
+                         for name in dict.fromkeys(self.table["branch"])]
+
+    def draw(self, panel, x):
+        """Draw everything but the arrows."""
+        length, load = self.lengths[0], self.loads[0]
+        dress(panel, f"{NAMES[x]} [{self.lengths[1]}]", f"load [{self.loads[1]}]")
+        for branch in self.branches:
+            branch.draw(panel, x, length, load)
+        if self.theories:
+            _draw_theories(panel, self.theories, x, length, load)
+        _frame(panel, self.table, self.theories, x, length, load)
+
+    def draw_arrows(self, panel, x):
+        """Draw jumps and directions, once the panel has its final size."""
+        for branch in self.branches:
+            branch.draw_arrows(panel, x, self.lengths[0], self.loads[0])
 
 
 class _Branch:

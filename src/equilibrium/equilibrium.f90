@@ -36,6 +36,8 @@ module equilibrium
 
   !> Where gaps are that large, in the law's lengths, no force depends on their last digits.
   real(wp), parameter :: far_gap = 1000
+  !> Part of what is beyond it that may close at once, as gaps under forces of powers may.
+  real(wp), parameter :: harmless = 0.3_wp
 
   type :: control_t
     integer :: kind = at_h0
@@ -104,7 +106,7 @@ contains
         return
       end if
       state%pressure = problem%law%pressure(state%gap)
-      cost%pressure_evaluations = cost%pressure_evaluations + n
+      cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
       raised = 0
       if (problem%coupling > 0) then
         columns = acting_columns(state%pressure)
@@ -169,7 +171,8 @@ contains
     pure real(wp) function limit(gap, step)
       real(wp), intent(in) :: gap(:), step(:)
 
-      limit = min(1.0_wp, minval(problem%law%closure(gap)/ &
+      ! Far out a gap may have to close by many of the law's lengths, without any effect.
+      limit = min(1.0_wp, minval(max(problem%law%closure(gap), harmless*(gap - far_gap))/ &
         max(-step, tiny(1.0_wp)*max(1.0_wp, abs(gap)))))
     end function limit
 

@@ -48,7 +48,7 @@ contains
     end if
     if (.not. allocated(factors%lu)) allocate (factors%lu(m, m))
     factor = -2*problem%coupling*state%scale*problem%law%slope(state%gap)
-    cost%pressure_evaluations = cost%pressure_evaluations + n
+    cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
     diagonal = 1
     if (present(shift)) diagonal = 1 + shift
     row = merge(axis_row, centre_row, control%kind == at_axis_gap)

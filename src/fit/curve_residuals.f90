@@ -41,6 +41,7 @@ module curve_residuals
     real(wp) :: largest = 0
     type(response_t), private :: response
     real(wp), allocatable, private :: asked(:)
+    real(wp), private :: deepest = 0
     logical, private :: has_rates = .false.
   contains
     procedure :: set_model
@@ -360,18 +361,19 @@ contains
 
     k = self%number_of(value, of_spring, self%spring)
     asked = [pack(value, self%unknown%role == of_model), k]
+    largest = self%largest*k*self%number_of(value, of_sensitivity, self%sensitivity)
     found = allocated(self%asked)
-    if (found) found = all(abs(asked - self%asked) <= 0) .and. &
+    if (found) found = all(abs(asked - self%asked) <= 0) .and. largest <= self%deepest .and. &
       (self%has_rates .or. .not. with_rates)
     if (found) return
     if (allocated(self%asked)) deallocate (self%asked)
-    largest = self%largest*k*self%number_of(value, of_sensitivity, self%sensitivity)
     ! From twice the travel, wherever the contact point is.
     farthest = 2*(maxval(self%measured%z) - minval(self%measured%z))
     call self%model%respond(asked(:size(asked) - 1), k, farthest, largest, with_rates, &
       self%response, found)
     if (.not. found) return
     self%asked = asked
+    self%deepest = largest
     self%has_rates = with_rates
   end subroutine ask
 

@@ -29,12 +29,17 @@ module force_law
     !> Whether `length` and `pressure_unit` are scales of the force; else those of its well become
     !> the units (`force_sum`).
     logical :: has_units = .true.
+    !> Whether there is a length at which the force changes; a single power has none, and its
+    !> `length` is any.
+    logical :: has_length = .true.
     !> Whether `length` is the z0 of a law of powers, in which the field gives sigma and Tabor's
     !> parameter; else it is the range, surface energy over largest tension.
     logical :: has_z0 = .false.
     !> Period of gap in which the pressure oscillates, and the gap of a step of it and its width,
     !> for meshes; 0: none.
     real(wp) :: period = 0, step_at = 0, step_width = 0
+    !> How many forces are evaluated at a gap.
+    integer :: terms = 1
     !> Whether the law is one of the paper's own, of which the summary says no more than its
     !> parameters.
     logical :: of_paper = .false.

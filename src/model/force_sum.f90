@@ -82,9 +82,9 @@ contains
   end function terms_in
 
   !> Units and scales of a law whose terms are complete. A sum is looked at in units of its shortest
-  !> term first. If it has a well its units are then those of the well: z0 of the first term that
-  !> has one, else the range, which is the depth over the largest tension; and the largest tension.
-  !> The contact is at gap 1. So are those of a law without units of its own, a sum of one.
+  !> term first, of those that have a length. If it has a well its units are then those of the well:
+  !> z0 of the first term that has one, else the range, which is the depth over the largest tension;
+  !> and the largest tension. The contact is at gap 1. So are those of a law without units of its own, a sum of one.
   subroutine settle(law)
     class(force_law_t), allocatable, intent(inout) :: law
     type(force_sum_t) :: alone
@@ -126,6 +126,7 @@ contains
     real(wp), intent(in) :: length, unit, origin
     integer :: i
 
+    law%terms = size(law%term)
     law%length = length
     law%pressure_unit = unit
     law%origin = origin
@@ -169,13 +170,20 @@ contains
     own = self%stretch*gap + self%shift
   end function own
 
+  !> Lengths of the terms; of those that have one, if any has.
   pure function lengths(law)
     type(force_sum_t), intent(in) :: law
-    real(wp) :: lengths(size(law%term))
+    real(wp), allocatable :: lengths(:)
+    logical :: any_has
     integer :: i
 
+    any_has = .false.
     do i = 1, size(law%term)
-      lengths(i) = law%term(i)%law%length
+      any_has = any_has .or. law%term(i)%law%has_length
+    end do
+    allocate (lengths(0))
+    do i = 1, size(law%term)
+      if (law%term(i)%law%has_length .or. .not. any_has) lengths = [lengths, law%term(i)%law%length]
     end do
   end function lengths
 

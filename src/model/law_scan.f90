@@ -22,6 +22,8 @@ module law_scan
   !> and the length, in lengths beyond the gap at rest, after which a tail no longer matters: where
   !> a repulsion of the ninth power is below that.
   real(wp), parameter :: ended = 1.0e-16_wp, longest = 59
+  !> What is left of a pressure, in its unit, where it is none.
+  real(wp), parameter :: vanished = 1.0e-100_wp
   !> A pressure has become a power where its local exponent is that power to this.
   real(wp), parameter :: settled = 1.0e-2_wp
   !> Pressure over the largest tension below which there is no barrier and no outer well.
@@ -42,6 +44,10 @@ contains
     end if
     gap = gaps_of(law)
     pressure = law%pressure(gap)
+    ! Where exponentials run out of numbers their signs mean nothing.
+    i = findloc(abs(pressure) > vanished, .true., 1, back=.true.)
+    gap = gap(:i)
+    pressure = pressure(:i)
     rest = next_zero(pressure, 1, falling=.true.)
     largest = 1
     if (rest > 0) then

@@ -3,6 +3,9 @@ module deck_store
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, brief, guess, listing, clip
+  use checksums, only: checksum
+  use files, only: whole_path
+  use text_file, only: plain
   use deck_source, only: source_t
   use deck_keys, only: key_spec, group_row, real_value, real_list, integer_value, allowed
   use deck_values, only: value_t, unset, assumed, given, outside, assignment_text
@@ -33,6 +36,8 @@ module deck_store
     procedure, private :: get_optional_real, get_optional_integer
     !> The same for a scalar that is allocated only where the key has a value.
     generic :: get_optional => get_optional_real, get_optional_integer
+    procedure :: path_of
+    procedure :: note_file
     procedure :: find_number
     procedure :: set_real
     procedure :: drop_group
@@ -195,6 +200,33 @@ contains
     self%values(row)%text = value
     self%values(row)%status = assumed
   end subroutine assume_text
+
+  !> Path of the file that a key names: unless it begins with a slash, from the folder of the deck.
+  pure function path_of(self, group, key) result(path)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    character(len=:), allocatable :: path
+
+    call self%get(group, key, path)
+    if (index(path, '/') /= 1) path = self%source%folder // path
+  end function path_of
+
+  !> Notes what was in the file that a key names: `resolved` then gives the whole path, since it may
+  !> be read in another folder, and a checksum: a deck whose file has changed is another one.
+  subroutine note_file(self, group, key, content)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, key, content
+    character(len=:), allocatable :: path
+    character(len=8) :: number
+    integer :: row
+
+    row = self%row_of(group, key)
+    path = whole_path(self%path_of(group, key))
+    ! What no deck could say stays as it is.
+    if (len(path) <= self%specs(row)%most .and. plain(path) == path) self%values(row)%text = path
+    write (number, '(z8.8)') checksum(content)
+    self%values(row)%remark = 'checksum ' // number
+  end subroutine note_file
 
   !> Row of the key `path` ("force.hamaker"), and the term that it names of a list
   !> ("hydration.pressure(2)"); 0: none. Fails where the table has no such key, the key does not hold

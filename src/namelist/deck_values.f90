@@ -23,6 +23,8 @@ module deck_values
     integer :: whole = 0
     logical :: flag = .false.
     character(len=:), allocatable :: text
+    !> What is known of it besides, a comment where the deck is written again.
+    character(len=:), allocatable :: remark
   end type value_t
 
 contains
@@ -168,6 +170,7 @@ contains
     case default
       text = text // quoted(value%text)
     end select
+    if (allocated(value%remark)) text = text // ' ! ' // value%remark
     text = text // new_line('a')
   end function assignment_text
 

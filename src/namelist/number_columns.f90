@@ -5,6 +5,7 @@ module number_columns
   use failure, only: failure_t
   use deck_number, only: parse_real
   use deck_source, only: source_t, load_source
+  use deck_store, only: deck_t
   implicit none
   private
   public :: columns_t, read_columns, uncommented, between
@@ -22,16 +23,18 @@ module number_columns
 
 contains
 
-  !> Reads `file`; `error` says what is not two numbers, with the line.
-  subroutine read_columns(file, columns, error)
-    character(len=*), intent(in) :: file
+  !> Reads the file that a key of the deck names; `error` says what is not two numbers, and where.
+  subroutine read_columns(deck, group, key, columns, error)
+    type(deck_t), intent(inout) :: deck
+    character(len=*), intent(in) :: group, key
     type(columns_t), intent(out) :: columns
     type(failure_t), allocatable, intent(out) :: error
     real(wp) :: pair(2)
     integer :: first, last, n
 
-    call load_source(file, columns%source, error)
+    call load_source(deck%path_of(group, key), columns%source, error)
     if (allocated(error)) return
+    call deck%note_file(group, key, columns%source%text)
     n = count([(columns%source%text(first:first) == newline, first=1, &
       len(columns%source%text))]) + 1
     allocate (columns%first(n), columns%second(n), columns%place(n))

@@ -168,7 +168,7 @@ module result_rows
     row_t('iterations', '', 'number of iterations over all equilibria', group=in_cost), &
     row_t('kernel_entries', '', 'number of entries of kernel matrices computed', group=in_cost), &
     row_t('pressure_evaluations', '', &
-      'number of evaluations of the force law or of its slope', group=in_cost), &
+      'number of evaluations of a force or of its slope', group=in_cost), &
     row_t('operator_products', '', 'number of products with a kernel matrix', group=in_cost), &
     row_t('operator_columns', '', &
       'number of columns that took part in these products', group=in_cost), &

@@ -3,7 +3,7 @@ module byte_record
   use kinds, only: wp, long
   implicit none
   private
-  public :: byte_record_t, checksum
+  public :: byte_record_t
 
   !> What is put in comes out in the same order.
   type :: byte_record_t
@@ -187,30 +187,5 @@ contains
     self%exhausted = .true.
     count = 0
   end subroutine take_count
-
-  !> A checksum of 32 bits. Every half word changes it one to one, so that a single wrong one never
-  !> goes unseen; the shift brings upper bits down, or two wrong signs could cancel. The products
-  !> stay below 2^63. (The multiplier is MurmurHash's.)
-  pure integer(long) function checksum(words)
-    integer(long), intent(in) :: words(:)
-    integer(long), parameter :: mask = int(z'ffffffff', long), multiplier = int(z'5bd1e995', long)
-    integer :: i
-
-    checksum = size(words)
-    do i = 1, size(words)
-      call add(iand(words(i), mask))
-      call add(ishft(words(i), -32))
-    end do
-
-  contains
-
-    pure subroutine add(half)
-      integer(long), intent(in) :: half
-
-      checksum = iand(ieor(checksum, half)*multiplier, mask)
-      checksum = ieor(checksum, ishft(checksum, -15))
-    end subroutine add
-
-  end function checksum
 
 end module byte_record

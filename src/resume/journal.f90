@@ -12,7 +12,8 @@ module journal
   use failure, only: failure_t, fail, file_trouble
   use c_library, only: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, system_failure, &
     as_output, as_kept_output, nul
-  use byte_record, only: byte_record_t, checksum
+  use byte_record, only: byte_record_t
+  use checksums, only: checksum
   use clock, only: seconds
   implicit none
   private

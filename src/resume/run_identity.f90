@@ -7,7 +7,7 @@ module run_identity
   use c_library, only: c_openblas_config
   use text, only: brief
   use deck_number, only: parse_real
-  use byte_record, only: checksum
+  use checksums, only: checksum
   implicit none
   private
   public :: identity_of, difference_between

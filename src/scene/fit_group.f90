@@ -4,6 +4,7 @@ module fit_group
   use failure, only: failure_t
   use text, only: lower, quoted, word_count, word_of
   use deck, only: deck_t
+  use deck_source, only: source_t, load_source
   use deck_keys, only: key_spec, group, real_key, list_key, text_key, word_key, names_key
   use fit_request, only: unknown_t, of_contact_point, of_sensitivity, of_spring
   use scene_groups, only: scene_t
@@ -75,20 +76,27 @@ contains
     end associate
     if (allocated(error)) return
     allocate (scene%measurement, scene%fit)
-    call take_measurement(scene)
-    call take_unknowns(scene, error)
+    call take_measurement(scene, error)
+    if (.not. allocated(error)) call take_unknowns(scene, error)
   end subroutine take_fit
 
   !> &measurement.
-  subroutine take_measurement(scene)
+  subroutine take_measurement(scene, error)
     type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    type(source_t) :: source
+    type(failure_t), allocatable :: trouble
     character(len=:), allocatable :: names
     integer :: i
 
     associate (deck => scene%deck, measurement => scene%measurement)
-      call deck%get('measurement', 'file', measurement%file)
-      if (index(measurement%file, '/') /= 1) measurement%file = deck%source%folder // &
-        measurement%file
+      measurement%file = deck%path_of('measurement', 'file')
+      call load_source(measurement%file, source, trouble)
+      if (allocated(trouble)) then
+        call deck%mistake('measurement', 'file', trouble%message, error)
+        return
+      end if
+      call deck%note_file('measurement', 'file', source%text)
       call deck%assume('measurement', 'columns', '1 2')
       call deck%get('measurement', 'columns', names)
       allocate (measurement%columns(word_count(names)))

@@ -6,8 +6,9 @@ module c_library
   use failure, only: failure_t, fail, file_trouble
   implicit none
   private
-  public :: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, c_make_folder, c_lock, &
-    c_kind, c_rename, c_remove, c_is_terminal, c_prepare, c_openblas_threads, c_openblas_config
+  public :: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, c_make_folder, &
+    c_current_folder, c_lock, c_kind, c_rename, c_remove, c_is_terminal, c_prepare, &
+    c_openblas_threads, c_openblas_config
   public :: explain, system_failure, nul
   public :: as_input, as_output, as_kept_output, as_folder
   public :: too_large, disk_full, in_the_way, not_there, locked_elsewhere
@@ -72,6 +73,13 @@ module c_library
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*)
     end function c_make_folder
+
+    !> The whole path of the folder that relative paths begin in; blank where it is not known.
+    subroutine c_current_folder(path, size) bind(c, name='snapin_current_folder')
+      import :: c_char, c_int
+      character(kind=c_char), intent(out) :: path(*)
+      integer(c_int), value :: size
+    end subroutine c_current_folder
 
     !> Locks a folder without waiting: it fails as `locked_elsewhere` where another has it.
     integer(c_int) function c_lock(folder) bind(c, name='snapin_lock')

@@ -4,10 +4,11 @@ module files
   use, intrinsic :: iso_fortran_env, only: error_unit
   use kinds, only: long
   use failure, only: failure_t
-  use c_library, only: c_make_folder, c_is_terminal, c_write, system_failure, nul
+  use c_library, only: c_make_folder, c_current_folder, c_is_terminal, c_write, &
+    system_failure, nul
   implicit none
   private
-  public :: make_folder, file_exists, read_file, is_terminal, write_stderr
+  public :: make_folder, file_exists, whole_path, read_file, is_terminal, write_stderr
 
   !> Number of standard error.
   integer(c_int), parameter :: standard_error = 2
@@ -35,6 +36,18 @@ contains
       return
     end do
   end subroutine make_folder
+
+  !> `path` from the root on; as it is where the current folder is not known.
+  function whole_path(path) result(whole)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: whole
+    character(len=4096) :: here
+
+    whole = path
+    if (index(path, '/') == 1) return
+    call c_current_folder(here, len(here, kind=c_int))
+    if (here /= '') whole = trim(here) // '/' // path
+  end function whole_path
 
   !> The text of the file `path`; not allocated where it cannot be read.
   subroutine read_file(path, text)

@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -122,6 +123,12 @@ int snapin_make_folder(const char *path) {
   close(parent);
   close(made);
   return 0;
+}
+
+/* Blank where it is not known. */
+void snapin_current_folder(char *text, int size) {
+  char path[PATH_MAX];
+  hand_over(getcwd(path, sizeof path) != NULL ? path : "", text, size);
 }
 
 int snapin_lock(int folder) { return status_of(flock(folder, LOCK_EX | LOCK_NB)); }

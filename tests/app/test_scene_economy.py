@@ -1,7 +1,9 @@
 """Claims about cost, by the counters of &cost: what a scene leaves out costs nothing."""
 
+import math
+
 import pytest
-from support.scenes import exponential, lennard_jones, loading, runner
+from support.scenes import deck, exponential, lennard_jones, loading, runner
 
 COUNTERS = [
     "states",
@@ -59,6 +61,39 @@ def test_short_ranged_repulsion_multiplies_by_few_columns(run):
     # Attraction reaches everywhere.
     cost = run(lennard_jones(0.1, loading=loading(8, -2, 0.5), numerics=numerics)).cost
     assert cost["operator_columns"] >= 0.95 * cost["operator_products"] * cost["nodes"]
+
+
+def test_forces_that_are_absent_are_not_evaluated(run):
+    """Two groups that make the Lennard-Jones law take its iterations, and two evaluations for one;
+    each further force that hardly acts adds one."""
+    bodies, numerics = {"radius": 1.0, "stiffness": 1.0}, {"grid": "uniform", "nodes": 300}
+    forces = {
+        "van_der_waals": {"hamaker": 10.0},
+        "born": {"z0": 1.0},
+        "hydration": {"energy": 1e-12, "decay_length": 2.0},
+        "structural": {"amplitude": 1e-12, "period": 2.0, "decay_length": 1.0},
+    }
+    one = run(lennard_jones(10 / (16 * math.pi), **PLAIN, numerics=numerics)).cost
+    for count in (2, 3, 4):
+        present = dict(list(forces.items())[:count])
+        cost = run(deck(bodies=bodies, **present, **PLAIN, numerics=numerics)).cost
+        # Rounding makes some iterations more or fewer; a force more would be a quarter.
+        assert cost["iterations"] == pytest.approx(one["iterations"], rel=0.12)
+        assert cost["pressure_evaluations"] == pytest.approx(
+            count * one["pressure_evaluations"], rel=0.12)
+
+
+def test_one_force_alone_runs_without_a_sum(run):
+    """The paper's law and the group that is the same law: the same work, to the last digit."""
+    bodies, numerics = {"radius": 1.0, "stiffness": 1.0}, {"grid": "uniform", "nodes": 300}
+    paper, group = (
+        run(deck(bodies=bodies, **law, loading=loading(8, -6, 0.5), numerics=numerics)) for law in (
+            {"force": {"law": "exponential", "p0": 3.0, "decay_length": 1.0}},
+            {"hydration": {"pressure": 3.0, "decay_length": 1.0}})
+    )
+    assert counts(group) == counts(paper)
+    for name in ("h0", "load", "h_centre", "residual"):
+        assert list(group.curve[name]) == list(paper.curve[name]), name
 
 
 def test_a_law_without_attraction_meshes_the_contact_alone(run):

@@ -301,7 +301,6 @@ def test_data_that_cannot_be_fitted_are_refused_with_the_reason(branches, tmp_pa
 
 
 BAD_FILES = {
-    "missing": (None, "no such file"),
     "no such column": ("z,load,segment\n1,2,0\n", "no column 'force'"),
     "cells": ("z,force,segment\n1,2,0\n1,2\n", "2 columns where 3 columns are expected"),
     "words": ("z,force,segment\n1,two,0\n", "two is not a number"),
@@ -313,8 +312,7 @@ BAD_FILES = {
 def test_files_that_cannot_be_read_are_refused_with_the_line(tmp_path, case):
     text, message = BAD_FILES[case]
     file = tmp_path / "a.csv"
-    if text:
-        file.write_text(text)
+    file.write_text(text)
     result = run(fit_deck(LENNARD_JONES, str(file), [STRENGTH, POINT]))
     assert not result.converged
     assert any(message in warning for warning in result.summary["warnings"])
@@ -332,6 +330,7 @@ def test_a_parameter_without_effect_is_named(branches, tmp_path):
 
 
 BAD_DECKS = {
+    "no file": ({"measurement": {"file": "nowhere.csv", "spring_constant": 1.0}}, "no such file"),
     "no measurement": ({"measurement": None}, "needs &measurement"),
     "no fit": ({"fit": None}, "needs &fit"),
     "name": ({"fit": {"parameters": ["force.strength", POINT]}}, "force.strength"),
@@ -350,8 +349,9 @@ BAD_DECKS = {
 
 
 @pytest.mark.parametrize("case", BAD_DECKS)
-def test_a_wrong_deck_is_refused(case):
+def test_a_wrong_deck_is_refused(case, tmp_path):
     change, message = BAD_DECKS[case]
-    deck = fit_deck(LENNARD_JONES, "a.csv", [STRENGTH, POINT])
+    file = write(tmp_path / "a.csv", [0.0], [0.0], [0])
+    deck = fit_deck(LENNARD_JONES, file, [STRENGTH, POINT])
     with pytest.raises(snapin.DeckError, match=message.replace("&", ".")):
         snapin.run({**deck, **change})

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 import snapin
-from conftest import ROOT
 from support import boundary_value
 
 # Unit of potential [V], a Debye length [m], and the osmotic pressure 2 n kT [Pa] that they make.
@@ -206,15 +205,3 @@ def test_a_mistake_is_named(keys, named):
         snapin.law_numbers(groups)
     assert "&double_layer" in str(told.value)
     assert all(name in str(told.value) for name in named)
-
-
-def test_dlvo_forces_have_a_barrier_that_contact_lies_behind():
-    result = snapin.run(ROOT / "inputs" / "examples" / "dlvo.nml")
-    summary, curve = result.summary, result.curve
-    assert "warnings" not in summary and summary["barrier_pressure"] > 0
-    approach = curve[curve["branch"] == "loading"]
-    before = approach[approach["h0"] > summary["jump_in_h0"]]
-    # As Derjaguin has it, since the bodies hardly deform under the barrier.
-    highest = 2 * math.pi * 2e-5 * summary["barrier_energy"]
-    assert before["load"].max() == pytest.approx(highest, rel=0.1)
-    assert summary["jump_out_h0"] > summary["jump_in_h0"]

@@ -34,6 +34,15 @@ def test_van_der_waals_and_born_make_the_lennard_jones_law():
         claim(found, exact, abs(up) + abs(down))
 
 
+@pytest.mark.parametrize("z0", [1e-15, 1e-9, 1.0, 1e9])
+def test_a_power_has_no_length_that_others_could_be_too_long_or_short_for(z0):
+    groups = {"van_der_waals": {"hamaker": 1e-19 * z0**2}, "born": {"z0": z0}}
+    numbers = snapin.law_numbers(groups)
+    assert numbers.rest_gap == pytest.approx(z0, rel=1e-12)
+    assert numbers.edge_gap == pytest.approx(3 ** (1 / 6) * z0, rel=1e-12)
+    assert numbers.surface_energy == pytest.approx(1e-19 / (16 * math.pi), rel=1e-12)
+
+
 def test_retardation_is_gregory_s_and_far_away_an_inverse_fourth_power():
     length = 1e-8
     c = 5.32 / length
@@ -168,3 +177,26 @@ def test_forces_that_contradict_themselves_are_refused(check, forces, phrase):
     )
     assert status == 2
     assert phrase in err, err
+
+
+# --- What the scan of a sum finds
+
+
+def test_layers_of_a_liquid_have_their_contact_at_a_positive_separation():
+    """The formula goes on to negative ones with ever larger swings, which mean nothing."""
+    layers = {"structural": {"amplitude": 3e6, "period": 0.9e-9, "decay_length": 1e-9}}
+    numbers = snapin.law_numbers(layers)
+    assert numbers.rest_gap == pytest.approx(0.75 * 0.9e-9, rel=1e-12)
+    assert 0 < numbers.surface_energy < 3e6 * 0.9e-9
+
+
+def test_what_is_left_of_repulsions_far_away_is_no_well():
+    """The sum of a longer and a shorter exponential, whose signs rounding decides far away."""
+    groups = {
+        "structural": {"amplitude": 3e6, "period": 0.9e-9, "decay_length": 0.5e-9},
+        "hydration": {"energy": 5e-3, "decay_length": 0.9e-9},
+    }
+    assert (pressure(GAP, **groups) >= 0).all()
+    numbers = snapin.law_numbers(groups)
+    assert numbers.surface_energy == 0
+    assert math.isnan(numbers.rest_gap) and math.isnan(numbers.edge_gap)

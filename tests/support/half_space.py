@@ -11,6 +11,8 @@ import subprocess
 import sys
 
 import numpy as np
+from numpy.polynomial import chebyshev
+from support.dlvo import Dlvo
 from support.processes import HANG
 
 
@@ -102,6 +104,51 @@ class HalfSpace:
             found.append(gap)
         return found
 
+    def with_axis(self, law, s, axis):
+        """The gaps and H0 for each of several gaps on the axis, from far away inwards.
+
+        The gap on the axis is given and H0 sought, so that folds in H0 are states like others.
+        """
+        r = np.concatenate([[0.0], self.r])
+        shape, gap, h0 = r**2 / 2, axis[0] + r**2 / 2, axis[0]
+        found = []
+        for value in axis:
+            gap = gap + (value - gap[0])
+            for _ in range(60):
+                pressure, slope, _ = law(gap[1:])
+                residual = gap - h0 - shape - 2 * s * self.matrix @ pressure
+                # The first column is that of H0, since the gap on the axis does not change.
+                jacobian = np.eye(len(r))
+                jacobian[:, 1:] -= 2 * s * self.matrix * slope
+                jacobian[:, 0] = -1
+                step = np.linalg.solve(jacobian, -residual)
+                h0 += step[0]
+                step[0] = 0
+                gap = np.maximum(gap + step, 0.7 * gap)
+                if abs(step).max() < 1e-11 * max(1, abs(h0)):
+                    break
+            else:
+                raise ArithmeticError(f"no solution at {value}")
+            found.append((gap, h0))
+        return found
+
+    def folds(self, law, s, axis):
+        """H0 and load where H0 turns, from states at the given gaps on the axis."""
+        h0 = np.array([state[1] for state in self.with_axis(law, s, axis)])
+        turns = np.flatnonzero(np.diff(h0)[1:] * np.diff(h0)[:-1] < 0) + 1
+        found = []
+        for i in turns:
+            low, high = axis[i + 1], axis[i - 1]
+            at = (low + high) / 2 + (high - low) / 2 * chebyshev.chebpts1(12)[::-1]
+            states = self.with_axis(law, s, [*axis[:i:4], *at])[-12:]
+            u = chebyshev.chebpts1(12)[::-1]
+            h0_of = chebyshev.chebfit(u, [state[1] for state in states], 11)
+            load_of = chebyshev.chebfit(u, [self.load(law, s, state[0]) for state in states], 11)
+            roots = chebyshev.chebroots(chebyshev.chebder(h0_of))
+            root = roots[(abs(roots.imag) < 1e-9) & (abs(roots.real) <= 1)].real[0]
+            found.append([chebyshev.chebval(root, h0_of), chebyshev.chebval(root, load_of)])
+        return found
+
     def load(self, law, s, gap):
         """The load; beyond the mesh the deformation is taken as constant."""
         pressure, _, _ = law(gap[1:])
@@ -124,9 +171,34 @@ def lennard_jones(gap):
     )
 
 
+def behind_a_barrier(gap):
+    """Lennard-Jones and an exponential repulsion of ten times its range."""
+    push = 0.03 * np.exp(-gap / 10)
+    return tuple(one + more for one, more in zip(lennard_jones(gap), (push, -push / 10, 10 * push)))
+
+
+def dlvo(z0, **keys):
+    """DLVO forces in units of z0 and of the surface energy of the Lennard-Jones part over it."""
+    law = Dlvo(z0=z0, **keys)
+    energy = keys["hamaker"] / (16 * np.pi * z0**2)
+
+    def values(gap):
+        units = energy / z0, energy / z0**2, energy
+        return tuple(value / unit for value, unit in zip(law(gap * z0), units))
+
+    return values
+
+
 def independent_states(law, s, h0, ends, largest=0.8):
     """Gaps on the axis and loads at each H0 on panels with the given ends."""
     return carried_out({"law": law, "s": s, "h0": list(h0), "ends": list(ends), "largest": largest})
+
+
+def independent_folds(law, s, axis, ends, **keys):
+    """H0 and load, (two, folds), where H0 turns as the gap on the axis closes through `axis`."""
+    return carried_out(
+        {"law": law, "s": s, "folds": list(axis), "ends": list(ends), "keys": keys}
+    )
 
 
 def carried_out(task):
@@ -151,8 +223,13 @@ def carried_out(task):
 def main():
     """Carry out the task on standard input."""
     task = json.load(sys.stdin)
-    law = {"exponential": exponential, "lennard_jones": lennard_jones}[task["law"]]
+    law = {
+        "exponential": exponential, "lennard_jones": lennard_jones, "barrier": behind_a_barrier,
+    }.get(task["law"]) or dlvo(**task["keys"])
     half_space = HalfSpace(task["ends"])
+    if "folds" in task:
+        print(json.dumps(half_space.folds(law, task["s"], task["folds"])))
+        return
     gaps = half_space.solve(law, task["s"], task["h0"], task["largest"])
     print(json.dumps([[gap[0], half_space.load(law, task["s"], gap)] for gap in gaps]))
 

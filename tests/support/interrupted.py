@@ -25,7 +25,7 @@ def frames(journal):
 
 
 def checksum(words):
-    """The checksum of 64-bit words, as src/resume/byte_record.f90 has it."""
+    """The checksum of 64-bit words, as src/base/checksums.f90 has it."""
     value = len(words)
     for word in words:
         for half in (word & 0xFFFFFFFF, word >> 32):

@@ -179,3 +179,26 @@ def test_files_that_may_not_belong_together_are_not_drawn(plot, results):
         note.unlink()
     assert done.returncode != 0
     assert "may not belong together" in done.stderr
+
+
+def test_a_law_is_drawn_beside_its_curve(plot, tmp_path):
+    """A table's file is looked for beside the deck, wherever the command is given."""
+    for name in ("tabulated", "van_der_waals"):
+        deck = ROOT / "inputs" / "examples" / f"{name}.nml"
+        done = plot("law_and_curve.py", deck, "-o", "here.png")
+        assert (done.returncode, done.stdout) == (0, "here.png\n"), done.stderr
+        assert size_of(tmp_path / "here.png") == (1350, 585)
+    done = plot("law_and_curve.py", "nowhere.nml")
+    assert done.returncode == 1 and "nowhere.nml" in done.stderr
+
+
+def test_a_curve_does_not_swing_between_uneven_steps(monkeypatch):
+    monkeypatch.syspath_prepend(SCRIPTS)
+    from drawing import smooth
+
+    # A load near its maximum and, after a much longer step, at a fold.
+    h0 = np.array([60.0, 30.0, 10.0, 1.5, 1.25, 1.0, 0.84])
+    load = np.array([0.0, 0.1, 4.2, 57.7, 59.0, 58.2, 45.4])
+    curve = smooth(np.column_stack([h0, load]))
+    assert len(curve) > len(h0)
+    assert (np.diff(curve[:, 0]) <= 0).all()

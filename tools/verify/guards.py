@@ -165,6 +165,30 @@ GUARDS = {
         "if (.false.) then",
         ("resume/test_resume_whose.py::test_another_deck_is_refused_and_told_apart",),
     ),
+    "files": Guard(
+        "results of another table or profile are not taken for those of this one",
+        "namelist/number_columns.f90",
+        "call deck%note_file(group, key, columns%source%text)",
+        "",
+        ("resume/test_resume_files.py",),
+    ),
+    "far_gaps": Guard(
+        "a path is not lost for gaps where no force acts",
+        "equilibrium/equilibrium.f90",
+        "max(problem%law%closure(gap), harmless*(gap - far_gap))",
+        "problem%law%closure(gap)",
+        ("path/test_barrier.py::test_the_path_does_not_depend_on_gaps_where_no_force_acts",),
+    ),
+    "no_length": Guard(
+        "a sum is not scanned in the units of a term that has none",
+        "model/laws/van_der_waals.f90",
+        "this%has_length = .false.",
+        "",
+        (
+            "model/test_forces.py"
+            "::test_a_power_has_no_length_that_others_could_be_too_long_or_short_for",
+        ),
+    ),
     "torn": Guard(
         "what was torn is cut off the journal",
         "resume/journal.f90",

@@ -66,7 +66,8 @@ contains
     this%wave_number = 2*pi*this%length/period
     this%period = period/this%length
     this%closure_length = min(2.0_wp, 0.25_wp*this%period)
-    this%smallest_gap = -largest_exponent
+    ! Within the first layer there is no liquid: the formula would oscillate without bounds.
+    this%smallest_gap = 0
     this%group = 'structural'
     this%strength_key = 'amplitude'
     this%length_key = 'decay_length'

@@ -59,7 +59,6 @@ contains
     type(tabulated_t) :: this
     type(failure_t), allocatable :: trouble
     type(columns_t) :: columns
-    character(len=:), allocatable :: file
 
     if (.not. deck%has_group('tabulated')) return
     if (deck%is_set('tabulated', 'tail_exponent') .eqv. &
@@ -68,9 +67,7 @@ contains
         'tail_decay_length, one of the two: how the force goes on beyond the table', error)
       return
     end if
-    call deck%get('tabulated', 'file', file)
-    if (index(file, '/') /= 1) file = deck%source%folder // file
-    call read_columns(file, columns, trouble)
+    call read_columns(deck, 'tabulated', 'file', columns, trouble)
     if (.not. allocated(trouble)) call put_in_order(columns, trouble)
     if (allocated(trouble)) then
       call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, &

@@ -51,6 +51,7 @@ contains
     if (.not. deck%has_group('van_der_waals')) return
     call deck%get('van_der_waals', 'hamaker', hamaker)
     this%length = nanometre
+    this%has_length = .false.
     call check_decades(deck, 'van_der_waals', 'hamaker', &
       log10(hamaker) - log10(6*pi) - 3*log10(this%length), 'a pressure', ' Pa', error)
     if (allocated(error)) return

@@ -48,14 +48,11 @@ contains
     type(failure_t), allocatable :: trouble
     type(profile_t) :: this
     type(columns_t) :: columns
-    character(len=:), allocatable :: file
 
     call require(deck, 'profile', 'file', error)
     call refuse_radius(deck, 'the profile has its own', error)
     if (allocated(error)) return
-    call deck%get('shape', 'file', file)
-    if (index(file, '/') /= 1) file = deck%source%folder // file
-    call read_columns(file, columns, trouble)
+    call read_columns(deck, 'shape', 'file', columns, trouble)
     if (.not. allocated(trouble)) call check_points(columns, trouble)
     if (.not. allocated(trouble)) call take_points(columns, length, this, trouble)
     if (allocated(trouble)) then

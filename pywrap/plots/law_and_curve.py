@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""A deck's force law beside the force curve that comes of it; the deck is run.
+
+    .venv/bin/python pywrap/plots/law_and_curve.py inputs/examples/hydration.nml -o hydration.png
+"""
+
+import argparse
+import pathlib
+import sys
+import tempfile
+
+import numpy as np
+import snapin
+from drawing import BLACK, GREY, SKY, VERMILION, scale
+from force_curve import Curve
+from force_law import Law, forces_of
+from matplotlib.figure import Figure
+
+_NAMES = {"van_der_waals": "van der Waals", "born": "Born", "force": "Lennard-Jones",
+          "dugdale": "Dugdale"}
+# Loads that are shown, as parts of the largest tension.
+_HIGHEST, _FAINT = 2.0, 0.02
+_COLOURS = (VERMILION, SKY, GREY, BLACK)
+_DASHES = ((5, 2), (2, 1.5), (5, 1.5, 1, 1.5), (1, 1.5))
+
+
+def draw_law_and_curve(deck, results, terms=None, quantity="pressure"):
+    """Return a figure of the law of a deck's file and the curve in the folder `results`.
+
+    quantity: pressure or energy of the law; terms: label -> groups of a law that is drawn beside
+    that of the deck; without it the deck's own terms, if there are several.
+    """
+    groups = forces_of(deck)
+    if terms is None:
+        terms = _terms_of(groups)
+    figure = Figure(figsize=(9, 3.9), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    styles = ({"color": colour, "linestyle": (0, dashes), "linewidth": 1.2}
+              for colour, dashes in zip(_COLOURS, _DASHES))
+    law = Law(groups)
+    law.draw(left, quantity,
+             [(label, style, keys) for style, (label, keys) in zip(styles, terms.items())])
+    curve = Curve(results)
+    curve.theories = None
+    load, stable = curve.table["load"], curve.table["stable"] != 0
+    if stable.all() and len(curve.branches) > 1:
+        # The path has nothing more to say, and fewer points.
+        curve.branches = [branch for branch in curve.branches if branch.name != "path"]
+    if load.min() < 0:
+        curve.loads = scale([_HIGHEST * load.min()], "N")
+    curve.draw(right, "h0")
+    _look_at_contact(right, curve)
+    for panel in (left, right):
+        panel.legend(frameon=False, fontsize="small")
+    figure.draw_without_rendering()
+    curve.draw_arrows(right, "h0")
+    return figure
+
+
+def _look_at_contact(panel, curve):
+    """Show what adhesion does: not how the curve goes on under high loads, or where it is level."""
+    h0, load = curve.table["h0"] / curve.lengths[0], curve.table["load"] / curve.loads[0]
+    deepest = abs(load.min())
+    if load.min() < 0:
+        seen = h0[(load <= _HIGHEST * deepest) & (abs(load) >= _FAINT * deepest)]
+        span = np.ptp(seen)
+        panel.set_xlim(seen.min() - 0.05 * span, min(h0.max(), seen.max() + 0.2 * span))
+        panel.set_ylim(-1.2 * deepest, min(1.05 * load.max(), _HIGHEST * deepest))
+
+
+def _terms_of(groups):
+    """Return the forces of a deck one by one, by the names of their groups."""
+    if len(groups) == 1:
+        return {}
+    if "born" in groups:
+        # Without its own constant that of the attraction holds.
+        attraction = groups.get("van_der_waals", {})
+        groups = {**groups, "born": {"hamaker": attraction.get("hamaker"), **groups["born"]}}
+    return {_NAMES.get(name, name.replace("_", " ")): {name: keys}
+            for name, keys in groups.items()}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("deck", type=pathlib.Path)
+    parser.add_argument("-o", "--output", type=pathlib.Path,
+                        help="picture to write; default: that of the deck's name")
+    parser.add_argument("--dpi", type=float, default=150, help="dots per inch; default: 150")
+    options = parser.parse_args()
+    picture = options.output or options.deck.with_suffix(".png")
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            snapin.run(options.deck, out=folder)
+            draw_law_and_curve(options.deck, folder).savefig(picture, dpi=options.dpi)
+    except (snapin.SnapinError, OSError) as trouble:
+        sys.exit(f"{parser.prog}: {trouble}")
+    print(picture)
+
+
+if __name__ == "__main__":
+    main()

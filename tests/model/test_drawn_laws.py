@@ -1,0 +1,139 @@
+"""Claims about every force law with keys drawn at random, and about sums of such laws."""
+
+import numpy as np
+import pytest
+import snapin
+from conftest import ROOT
+from support.law_claims import claim_energy, claim_slope
+
+# Orders of magnitude of the keys of each group: drawn evenly by their logarithm; a third number is
+# how many values a list has at most.
+LOGARITHMIC = {
+    "lennard_jones": {"surface_energy": (1e-4, 1), "z0": (1e-10, 1e-9)},
+    "exponential": {"p0": (1e3, 1e10), "decay_length": (1e-11, 1e-8)},
+    "morse": {"surface_energy": (1e-4, 1), "z0": (1e-10, 1e-8), "decay_length": (1e-11, 1e-9)},
+    "van_der_waals": {"hamaker": (1e-22, 1e-18), "retardation_length": (1e-9, 1e-6)},
+    "born": {"hamaker": (1e-22, 1e-18), "z0": (1e-10, 1e-9)},
+    "hydration": {"energy": (1e-4, 1e-1, 4), "decay_length": (1e-10, 1e-8, 4)},
+    "hydrophobic": {"energy": (1e-4, 1e-1, 4), "decay_length": (1e-10, 1e-8, 4)},
+    "steric": {"brush_thickness": (1e-9, 1e-7), "grafting_density": (1e15, 1e18)},
+    "structural": {"amplitude": (1e3, 1e9), "period": (3e-10, 1e-8), "decay_length": (3e-10, 1e-8)},
+    "depletion": {"osmotic_pressure": (1e2, 1e6), "diameter": (1e-9, 1e-7)},
+    "capillary": {"kelvin_radius": (2e-10, 1e-7)},
+    "dugdale": {"stress": (1e4, 1e9), "range": (1e-10, 1e-7)},
+    "double_layer": {"potential": (1e-3, 0.2, 2), "debye_length": (3e-10, 1e-6)},
+}
+# Keys between two numbers, drawn evenly.
+EVEN = {
+    "born": {"exponent": (3, 16)},
+    "structural": {"phase": (-3, 3)},
+    "capillary": {"contact_angle": (0, 1.5, 2)},
+    "double_layer": {"regulation": (0, 1, 2)},
+}
+CHOICES = {
+    "steric": {"model": ("alexander_de_gennes", "milner_witten_cates"), "sides": (1, 2)},
+    "double_layer": {"model": ("linear", "superposition", "nonlinear")},
+}
+# Laws that end in a step: the smoothing is this part of the range at least, so that differences and
+# quadrature can follow it, and the most that is allowed.
+SMOOTHING = {"depletion": "diameter", "dugdale": "range"}
+WIDE = (0.2, 0.45)
+LEVEL = {"structural", "depletion", "dugdale", "capillary", "double_layer"}
+SEEDS = range(6)
+
+
+def drawn(law, draw):
+    """The groups of a deck with this law."""
+    keys = {}
+    for name, (low, high, *most) in LOGARITHMIC[law].items():
+        count = most[0] if most else None
+        keys[name] = np.exp(draw.uniform(np.log(low), np.log(high), count)).tolist()
+    for name, (low, high, *most) in EVEN.get(law, {}).items():
+        keys[name] = draw.uniform(low, high, most[0] if most else None)
+        keys[name] = keys[name].tolist() if most else float(keys[name])
+    for name, values in CHOICES.get(law, {}).items():
+        keys[name] = values[draw.integers(len(values))]
+    if law in SMOOTHING:
+        keys["smoothing"] = keys[SMOOTHING[law]] * draw.uniform(*WIDE)
+    if law == "capillary":
+        reach = keys["kelvin_radius"] * sum(np.cos(keys["contact_angle"]))
+        keys["smoothing"] = reach * draw.uniform(*WIDE)
+    if law == "lennard_jones":
+        n, m = sorted(draw.uniform(1.5, 14, 2), reverse=True)
+        keys["exponents"] = [n + 0.5, m]
+    if law in ("lennard_jones", "exponential"):
+        return {"force": {"law": law, **keys}}
+    return {law: keys}
+
+
+def separations(unit, groups):
+    """Separations from deep within the law to far away, those at which it is not smooth too, no
+    farther from each other than a period."""
+    gap = unit.origin + unit.length * np.geomspace(0.5, 40, 60)
+    if "steric" in groups:
+        keys = groups["steric"]
+        gap = np.union1d(gap, keys["sides"] * keys["brush_thickness"])
+    if "structural" in groups:
+        gap = np.union1d(gap, np.arange(gap[0], gap[-1], groups["structural"]["period"]))
+    return gap
+
+
+def parts_of(law, groups):
+    """The repulsion and the attraction of a law that is their difference."""
+    if law != "lennard_jones":
+        return [groups]
+    return [{"force": {**groups["force"], "part": part}} for part in ("repulsive", "attractive")]
+
+
+def test_every_law_is_drawn():
+    laws = {path.stem for path in (ROOT / "src" / "model" / "laws").glob("*.f90")}
+    # Tables are smooth between their points only (test_tabulated.py).
+    assert set(LOGARITHMIC) == laws - {"tabulated"}
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("law", LOGARITHMIC)
+def test_slope_and_energy_are_derivative_and_integral(law, seed):
+    groups = drawn(law, np.random.default_rng([seed, *law.encode()]))
+    unit = snapin.law_numbers(groups)
+    gap = separations(unit, groups)
+
+    def of(at):
+        return snapin.force_law(groups, at)
+
+    smooth, keys = gap, groups.get(law, {})
+    if law == "steric":
+        kink = keys["sides"] * keys["brush_thickness"]
+        smooth = gap[abs(gap - kink) > 0.02 * kink]
+    # The shortest length over which the law changes.
+    shortest = min(unit.length, keys.get("smoothing", np.inf), keys.get("period", np.inf) / 6)
+    slope = sum(abs(snapin.force_law(part, smooth).slope) for part in parts_of(law, groups))
+    energy = None
+    if law in LEVEL:
+        # Where they pass through zero, or end, their largest values say what digits they have.
+        slope, energy = slope.max(), abs(of(gap).energy).max()
+    if law == "steric":
+        # Where brushes part three terms cancel.
+        energy = abs(of(gap).energy[:-1]) + unit.pressure_unit * unit.length
+    claim_slope(of, smooth, unit._replace(length=shortest), slope)
+    claim_energy(of, gap, unit, energy)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_sum_is_the_sum_of_its_laws(seed):
+    draw = np.random.default_rng(seed)
+    # Only one of the two that share a group.
+    laws = [law for law in LOGARITHMIC if law not in ("lennard_jones", "exponential")]
+    laws.append(draw.choice(["lennard_jones", "exponential"]))
+    chosen = draw.choice(laws, draw.integers(2, 6), replace=False)
+    alone = [drawn(law, draw) for law in chosen]
+    whole = {name: keys for groups in alone for name, keys in groups.items()}
+    gap = np.geomspace(1e-10, 1e-6, 80)
+    found = snapin.force_law(whole, gap)
+    parts = [[snapin.force_law(part, gap) for part in parts_of(law, groups)]
+             for law, groups in zip(chosen, alone)]
+    for name in ("pressure", "slope", "energy"):
+        terms = [getattr(part, name) for law in parts for part in law]
+        size = sum(map(abs, terms))
+        # Every term's gap is rounded once in units of the sum; exponents carry that on.
+        assert (abs(getattr(found, name) - sum(terms)) <= 1e-11 * size).all(), name

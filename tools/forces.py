@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""Renew the pictures of docs/forces.md: a minute.
+
+    .venv/bin/python tools/forces.py [NAME ...]
+"""
+
+import os
+import pathlib
+import sys
+import tempfile
+
+# Before anything loads OpenMP.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import pages  # noqa: E402
+
+sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap", "pywrap/plots")]
+
+import f90nml  # noqa: E402
+import snapin  # noqa: E402
+from law_and_curve import draw_law_and_curve  # noqa: E402
+
+EXAMPLES = pages.ROOT / "inputs" / "examples"
+PICTURES = pages.ROOT / "docs" / "forces"
+# Decks that have a picture; those of one force show others beside it.
+NAMES = ("van_der_waals", "lennard_jones_10_4", "morse", "dlvo", "double_layer", "hydration",
+         "hydrophobic", "steric", "structural", "depletion", "capillary", "dugdale", "tabulated")
+# A picture whose deck has another name.
+DECKS = {"double_layer": "dlvo"}
+DPI = 90
+# Where nothing is to be seen of a term beside the whole law: limits of the first panel and, for the
+# secondary minimum of DLVO forces, of the second.
+VIEWS = {"steric": [{"xlim": (9.3, 12), "ylim": (-5, 12)}],
+         "double_layer": [{"xlim": (0, 8), "ylim": (-0.15, 0.45)},
+                          {"xlim": (15, 60), "ylim": (-0.012, 0.024)}]}
+
+
+def variants(name, keys):
+    """Return what is drawn beside the law of a deck, or None for the deck's own terms."""
+    if name == "double_layer":
+        return {model: {name: {**keys[name], "model": model}}
+                for model in ("superposition", "linear", "nonlinear")}
+    if name == "steric":
+        models = {"alexander_de_gennes": "Alexander, de Gennes",
+                  "milner_witten_cates": "Milner et al."}
+        return {label: {name: {**keys[name], "model": model}} for model, label in models.items()}
+    if name == "lennard_jones_10_4":
+        return {f"{n:g}, {m:g}": {"force": {**keys["force"], "exponents": [n, m]}}
+                for n, m in ((9.0, 3.0), (12.0, 6.0))}
+    if name == "morse":
+        law = {"law": "lennard_jones", "exponents": [9.0, 3.0]}
+        same = {key: keys["morse"][key] for key in ("surface_energy", "z0")}
+        return {"Lennard-Jones of the same energy": {"force": {**law, **same}}}
+    return None
+
+
+def main():
+    PICTURES.mkdir(exist_ok=True)
+    for name in sys.argv[1:] or NAMES:
+        deck = EXAMPLES / f"{DECKS.get(name, name)}.nml"
+        picture = PICTURES / f"{name}.png"
+        with tempfile.TemporaryDirectory() as folder:
+            snapin.run(deck, out=pathlib.Path(folder))
+            figure = draw_law_and_curve(
+                deck, folder, variants(name, f90nml.read(deck).todict()),
+                "energy" if name == "dlvo" else "pressure")
+            for panel, limits in zip(figure.axes, VIEWS.get(name, [])):
+                panel.set(**limits)
+                # Arrows are not cut off at the frame.
+                for arrow in list(panel.texts):
+                    arrow.remove()
+            figure.savefig(picture, dpi=DPI)
+        print(picture.relative_to(pages.ROOT))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""Renew the table of docs/forces.md that sets pull-offs under different laws side by side: seconds.
+
+    .venv/bin/python tools/law_independence.py
+"""
+
+import math
+import os
+import re
+import sys
+
+# Before anything loads OpenMP.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import pages  # noqa: E402
+
+sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap")]
+
+import snapin  # noqa: E402
+
+PAGE = pages.ROOT / "docs" / "forces.md"
+# Work of adhesion, radius and separation at rest are 1.
+RANGES = (0.2, 0.5, 1, 2, 5)
+LAWS = {
+    **{f"{n:g}, {m:g}": {"force": {"law": "lennard_jones", "surface_energy": 1.0, "z0": 1.0,
+                                   "exponents": [n, m]}}
+       for n, m in ((9.0, 3.0), (10.0, 4.0), (12.0, 6.0), (6.0, 3.0))},
+    "Morse": {"morse": {"surface_energy": 1.0, "z0": 1.0, "decay_length": 0.5}},
+}
+
+
+def pull_offs(law, tabor, accuracy=1e-8):
+    """Return the largest tension over pi w R, and that of Maugis-Dugdale theory, under a law.
+
+    tabor: Tabor's parameter by the range of the law, surface energy over largest tension.
+    """
+    edge = snapin.law_numbers(law).edge_gap
+    reach = -1 / snapin.force_law(law, [edge]).pressure[0]
+    modulus = (tabor * reach) ** -1.5
+    summary = snapin.run({
+        "bodies": {"radius": 1.0, "stiffness": 2 * modulus}, **law,
+        "equilibrium_path": {"h0_end": -1.0}, "regime": {}, "classical": {},
+        "numerics": {"accuracy": accuracy},
+    }).summary
+    if abs(summary["regime_tabor_range"] / tabor - 1) > 1e-9:
+        raise ArithmeticError(f"Tabor's parameter is {summary['regime_tabor_range']}, not {tabor}")
+    return summary["max_tension"] / math.pi, summary["maugis_pull_off"] / math.pi
+
+
+def table():
+    """Return the lines of the table."""
+    names = ("by range", "Maugis-Dugdale", *LAWS)
+    lines = ["| " + " | ".join(names) + " |", "|" + "---|" * len(names)]
+    for tabor in RANGES:
+        found = [pull_offs(law, tabor) for law in LAWS.values()]
+        cells = [found[0][1], *(tension for tension, _ in found)]
+        lines.append(f"| {tabor:g} | " + " | ".join(f"{cell:.5f}" for cell in cells) + " |")
+    return lines
+
+
+def main():
+    text = PAGE.read_text(encoding="utf-8")
+    new = re.sub(r"(<!-- laws -->\n).*?(<!-- /laws -->)",
+                 lambda match: match[1] + "\n".join(table()) + "\n" + match[2], text, flags=re.S)
+    PAGE.write_text(new, encoding="utf-8")
+    pages.mark(PAGE)
+
+
+if __name__ == "__main__":
+    main()
