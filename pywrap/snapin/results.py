@@ -9,7 +9,7 @@ import numpy as np
 
 from .arguments import SnapinError
 
-_TEXT_COLUMNS = ("branch", "direction", "theory")
+_TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter")
 
 
 class ResultsError(SnapinError):
@@ -100,7 +100,7 @@ def _as_list(value):
 
 
 def read_table(folder, name):
-    """Return the columns of a table as a dict of arrays, text for `branch` and `theory`."""
+    """Return the columns of a table as a dict of arrays, text for `_TEXT_COLUMNS`."""
     path = pathlib.Path(folder) / name
     if path.with_name("INCOMPLETE.txt").exists():
         raise ResultsError(f"files in {folder} may not belong together: see INCOMPLETE.txt there")

@@ -16,9 +16,9 @@ module simulation
   use blas_threads, only: thread_count
   use linear_algebra, only: claim_buffers
   use equilibrium, only: cost_t
-  use derived_tables, only: write_derived_tables, write_path_tables
+  use derived_tables, only: write_derived_tables, write_path_tables, &
+    write_sensitivities
   use stability_records, only: stability_recorder_t
-  use sensitivity_rows, only: sensitivity_columns, sensitivity_lines
   use summarise, only: summary_of
   use summary, only: summary_t
   use results, only: results_t, journal_of
@@ -202,8 +202,8 @@ contains
     call write_path_tables(problem, outcome, results)
     summary = summary_of(scene, problem, outcome)
     call recorder%warn(summary)
-    if (allocated(scene%sensitivity)) call results%write_table('sensitivity.csv', &
-      sensitivity_columns, sensitivity_lines(scene%sensitivity%varied, summary))
+    if (allocated(scene%sensitivity)) &
+      call write_sensitivities(scene%sensitivity, problem, outcome, summary, results)
     cost = outcome%cost
     cost%factorisations = cost%factorisations + recorder%cost%factorisations
   end subroutine run_observed

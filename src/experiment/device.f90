@@ -25,6 +25,8 @@ module device
     logical :: inward = .true., landed = .false.
     type(curve_state_t) :: before, after
     real(wp) :: energy = 0, uncertainty = 0
+    !> Derivatives of the energy by each parameter of &sensitivity, SI units.
+    real(wp), allocatable :: energy_rate(:)
   end type jump_t
 
   !> What a drive does to the bodies. Lost in all jumps, and over the cycle, the area between the

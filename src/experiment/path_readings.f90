@@ -6,6 +6,7 @@ module path_readings
   use listener, only: listener_t
   use experiment_request, only: request_t
   use path_curve, only: curve_t, new_curve
+  use path_sensitivity, only: rate_t
   use curve_states, only: curve_solver_t
   use driven_pieces, only: drive_t, through_spring
   use device, only: driven_t, drive_bodies
@@ -23,6 +24,8 @@ module path_readings
     !> A drive for each stiffness; and at prescribed h0, for the table.
     type(driven_t), allocatable :: device(:), prescribed
     type(loaded_state_t), allocatable :: loaded(:)
+    !> Derivatives at the curve's nodes by each parameter of &sensitivity, (parameters, nodes).
+    type(rate_t), allocatable :: rate(:, :)
     !> h0 from which the path was traced, and from which bodies are taken as undeformed until there.
     real(wp) :: traced_from = 0, undeformed_from = 0
     !> Whether the curve exists and everything on it was solved.

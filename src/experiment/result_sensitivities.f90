@@ -2,37 +2,24 @@
 module result_sensitivities
   use kinds, only: wp
   use listener, only: listener_t
-  use equilibrium, only: state_t, equations_t
-  use solver_options, only: solver_options_t
+  use equilibrium, only: state_t
   use frozen_jacobian, only: frozen_jacobian_t
   use continuation, only: coordinate_of
-  use traced_path, only: traced_path_t
-  use known_path, only: known_path_t, landing_t, landing_over
+  use known_path, only: landing_t, landing_over
   use reported, only: reported_t, measure_t
-  use variation, only: variation_t, along_path
+  use variation, only: along_path
   use state_sensitivity, only: place_on_path_t
   use place_sensitivity, only: local_t, find_local, at_fixed, at_extremum, of_h0, of_load, &
     of_displacement, of_energy
   use path_stepper, only: path_stepper_t
+  use sensitivity_finder, only: finder_t, apart_at, h0_alone, load_alone
+  use reading_sensitivities, only: rate_readings
   use stepped_branch, only: branch_t
   use experiment_request, only: sensitivity_t
   use experiment_result, only: experiment_result_t
   implicit none
   private
   public :: find_sensitivities
-
-  !> What the derivatives are found with. The first of `varied` is the path's coordinate.
-  type :: finder_t
-    type(variation_t), allocatable :: varied(:)
-    class(path_stepper_t), pointer :: steps => null()
-    !> Whether all that was looked for exists.
-    logical :: whole = .true.
-  end type finder_t
-
-  real(wp), parameter :: h0_alone(2) = [1.0_wp, 0.0_wp], load_alone(2) = [0.0_wp, 1.0_wp]
-  !> Part of the distance of two points of the path over which second derivatives are taken, and
-  !> that distance where it is not known.
-  real(wp), parameter :: part = 0.03_wp, usual = 0.1_wp
 
 contains
 
@@ -64,6 +51,7 @@ contains
         call rate_branch(finder, outcome%unloading(k))
       end do
     end if
+    if (allocated(outcome%readings)) call rate_readings(finder, outcome%readings)
     if (allocated(outcome%jumps)) call rate_energy(finder, outcome%jumps, outcome%energy_rate)
     outcome%differentiated = finder%whole
   end subroutine find_sensitivities
@@ -185,28 +173,5 @@ contains
     end do
     energy_rate = total
   end subroutine rate_energy
-
-  !> Over which distance of the coordinate second derivatives are taken at s: a part of that between
-  !> the points of the path about it, polished ones aside, which may be as near as they like.
-  pure real(wp) function apart_at(path, mesh, s) result(apart)
-    type(traced_path_t), intent(in) :: path
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: s
-    real(wp) :: below, above, at
-    type(state_t) :: state
-    logical :: there
-    integer :: i
-
-    below = s - usual
-    above = s + usual
-    do i = 1, path%held
-      if (path%point(i)%fold .or. path%point(i)%load_extremum) cycle
-      call path%seen_on(i, mesh, state, at, there)
-      if (.not. there) cycle
-      if (at < s) below = max(below, at)
-      if (at > s) above = min(above, at)
-    end do
-    apart = part*(above - below)
-  end function apart_at
 
 end module result_sensitivities

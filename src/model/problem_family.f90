@@ -1,4 +1,5 @@
-!> Problems that differ in the values of some parameters: what a derivative by these needs, or a fit.
+!> Problems that differ in the values of some parameters: what a derivative by these needs, or a
+!> fit.
 module problem_family
   use kinds, only: wp
   use failure, only: failure_t

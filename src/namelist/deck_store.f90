@@ -229,9 +229,9 @@ contains
   end subroutine note_file
 
   !> Row of the key `path` ("force.hamaker"), and the term that it names of a list
-  !> ("hydration.pressure(2)"); 0: none. Fails where the table has no such key, the key does not hold
-  !> numbers or so many, or the deck lacks its group; `error` then says so without a place in the
-  !> file, which is the caller's to add.
+  !> ("hydration.pressure(2)"); 0: none. Fails where the table has no such key, the key does not
+  !> hold numbers or so many, or the deck lacks its group; `error` then says so without a place in
+  !> the file, which is the caller's to add.
   subroutine find_number(self, path, row, term, error)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: path
@@ -304,8 +304,8 @@ contains
     end do
   end function numbers_of
 
-  !> Gives the key `path` another value (a list: this one value, or one of its terms), as if the deck
-  !> said so. Fails as `find_number` does and where the value is out of range.
+  !> Gives the key `path` another value (a list: this one value, or one of its terms), as if the
+  !> deck said so. Fails as `find_number` does and where the value is out of range.
   subroutine set_real(self, path, value, error)
     class(deck_t), intent(inout) :: self
     character(len=*), intent(in) :: path

@@ -16,7 +16,7 @@ module curve_states
   use path_curve, only: curve_t, along_curve, no_mesh
   implicit none
   private
-  public :: curve_state_t, curve_solver_t, place_t
+  public :: curve_state_t, curve_solver_t, place_t, coordinate_at
 
   !> A place on a curve.
   type :: place_t
@@ -32,6 +32,9 @@ module curve_states
     real(wp) :: slopes(2) = 0, residual = 0
     integer :: modes = 0
     logical :: converged = .false.
+    !> Derivatives of what is reported of it by each parameter of &sensitivity
+    !> (`place_sensitivity`).
+    real(wp), allocatable :: rate(:, :)
   end type curve_state_t
 
   !> A curve, and what solves states on it.
@@ -41,6 +44,7 @@ module curve_states
     type(frozen_jacobian_t) :: frozen
     integer :: solved = 0
   contains
+    procedure :: equilibrium_at
     procedure :: state_of
     procedure :: root_of
   end type curve_solver_t
@@ -53,7 +57,37 @@ module curve_states
 
 contains
 
-  !> The equilibrium at a place.
+  !> The path's coordinate (`continuation`) at a place that is on a mesh.
+  pure real(wp) function coordinate_at(curve, place) result(s)
+    type(curve_t), intent(in) :: curve
+    class(place_t), intent(in) :: place
+
+    s = place%x
+    associate (node => curve%begin_of(place%interval))
+      if (node%mesh == approach) s = -s
+    end associate
+  end function coordinate_at
+
+  !> The equilibrium at a place that is on a mesh.
+  subroutine equilibrium_at(self, equations, known, place, state, converged)
+    class(curve_solver_t), intent(inout) :: self
+    type(equations_t), intent(inout) :: equations
+    type(known_path_t), intent(in) :: known
+    class(place_t), intent(in) :: place
+    type(state_t), intent(out) :: state
+    logical, intent(out) :: converged
+    type(neighbours_t) :: near
+
+    associate (node => self%curve%begin_of(place%interval))
+      near = neighbours_of(known%path, node%point)
+    end associate
+    call state_at(equations, tightened(self%options), self%frozen, near%arc_t, &
+      coordinate_at(self%curve, place), state, converged)
+    self%solved = self%solved + 1
+    converged = converged .or. state%residual <= self%options%tolerance
+  end subroutine equilibrium_at
+
+  !> What is reported of the equilibrium at a place.
   subroutine state_of(self, equations, known, place, found)
     class(curve_solver_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
@@ -61,8 +95,6 @@ contains
     type(place_t), intent(in) :: place
     type(curve_state_t), intent(out) :: found
     type(state_t) :: state
-    type(neighbours_t) :: near
-    real(wp) :: s
 
     found%interval = place%interval
     found%x = place%x
@@ -77,12 +109,7 @@ contains
         found%converged = .true.
         return
       end if
-      s = merge(-place%x, place%x, node%mesh == approach)
-      near = neighbours_of(known%path, node%point)
-      call state_at(equations, tightened(self%options), self%frozen, near%arc_t, s, state, &
-        found%converged)
-      self%solved = self%solved + 1
-      found%converged = found%converged .or. state%residual <= self%options%tolerance
+      call self%equilibrium_at(equations, known, place, state, found%converged)
       found%h0 = state%h0
       found%load = state%load
       found%axis_gap = state%axis_gap
@@ -91,7 +118,8 @@ contains
       found%radius = radius_of_gap(problem%shape, self%curve%contact_gap, &
         equations%meshes%grid(node%mesh), state)
       call energy_of(equations, node%mesh, state, found%energy, found%uncertainty)
-      call along_curve(equations, node%mesh, s, state, self%frozen, found%slopes, found%converged)
+      call along_curve(equations, node%mesh, coordinate_at(self%curve, place), state, self%frozen, &
+        found%slopes, found%converged)
     end associate
   end subroutine state_of
 

@@ -1,8 +1,9 @@
-!> How the curve of all equilibria changes with parameters of the problem: derivatives of h0 and load
-!> at every node of the curve (`path_curve`) at a fixed place x on it, in SI units. At a fixed h0, or
-!> position of a drive, the place moves; `held` takes that into account.
+!> How the curve of all equilibria changes with parameters of the problem: derivatives of h0 and
+!> load at every node of the curve (`path_curve`) at a fixed place x on it, in SI units. At a fixed
+!> h0, or position of a drive, the place moves; `held` takes that into account.
 module path_sensitivity
   use kinds, only: wp
+  use dimensionless_problem, only: problem_t
   use equilibrium, only: equations_t
   use frozen_jacobian, only: frozen_jacobian_t
   use known_path, only: known_path_t
@@ -77,16 +78,17 @@ contains
   end function rate_undeformed
 
   !> The rate at a fixed value of weights(1) h0 + weights(2) load, SI units, in place of a fixed x:
-  !> at h0 with 1, 0; at the position of a drive of stiffness k with 1, -1/k; under a load with 0, 1.
+  !> at h0 with 1, 0; at the position of a drive of stiffness k with 1, -1/k; under a load with
+  !> 0, 1.
   !> Infinite where that value turns round along the path.
-  pure type(rate_t) function held(equations, node, rate, weights)
-    type(equations_t), intent(in) :: equations
+  pure type(rate_t) function held(problem, node, rate, weights)
+    type(problem_t), intent(in) :: problem
     type(curve_node_t), intent(in) :: node
     type(rate_t), intent(in) :: rate
     real(wp), intent(in) :: weights(2)
     real(wp) :: slope(2), shift
 
-    slope = [node%h0_slope*equations%problem%length, node%load_slope*equations%problem%load]
+    slope = [node%h0_slope*problem%length, node%load_slope*problem%load]
     shift = -dot_product(weights, [rate%h0, rate%load])/dot_product(weights, slope)
     held = rate
     held%h0 = rate%h0 + shift*slope(1)

@@ -1,6 +1,6 @@
-!> How what is reported of an equilibrium changes with the parameters: where it stays at its place on
-!> the path, and where it is defined by an h0, a position of a drive or a load, or as an extremum of
-!> one of these. SI units throughout.
+!> How what is reported of an equilibrium changes with the parameters: where it stays at its place
+!> on the path, and where it is defined by an h0, a position of a drive or a load, or as an extremum
+!> of one of these. SI units throughout.
 !>
 !> With s the path's coordinate and p a parameter, dQ/dp = Q_p + Q_s s_p. A given value of
 !> D = a h0 + b F asks for s_p = (dD/dp - D_p)/D_s, an extremum of D for s_p = -D_sp/D_ss; D itself
@@ -15,11 +15,12 @@ module place_sensitivity
   use edge_locked, only: approach
   use continuation, only: path_control
   use potential_energy, only: energy_of
+  use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   use variation, only: variation_t
   use state_sensitivity, only: change_t, place_on_path_t, differentiate, move
   implicit none
   private
-  public :: local_t, find_local, at_fixed, at_extremum
+  public :: local_t, find_local, local_undeformed, at_fixed, at_extremum
   public :: quantities, of_h0, of_load, of_displacement, of_energy, of_radius
 
   !> What is reported of a state: h0 [m], load [N], displacement [m], potential energy [J], contact
@@ -27,14 +28,16 @@ module place_sensitivity
   integer, parameter :: quantities = 5
   integer, parameter :: of_h0 = 1, of_load = 2, of_displacement = 3, of_energy = 4, of_radius = 5
 
-  !> rate(:, i): derivatives of the quantities by parameter i at a fixed place; slope: by s.
+  !> rate(:, i): derivatives of the quantities by parameter i at a fixed place; slope: by s; along:
+  !> of the separations at the nodes and of h0 by s.
   type :: local_t
     real(wp) :: slope(quantities) = 0
+    real(wp), allocatable :: along(:)
     real(wp), allocatable :: rate(:, :)
   end type local_t
 
   !> Difference of positions, relative, over which the gap's slope is taken.
-  real(wp), parameter :: close = 1.0e-4_wp
+  real(wp), parameter :: close = 1.0e-6_wp
 
 contains
 
@@ -53,6 +56,7 @@ contains
     allocate (local%rate(quantities, size(varied) - 1))
     call differentiate(equations, place, frozen, varied, change, found)
     if (.not. found) return
+    local%along = change(1)%separation
     radius = radius_of_gap(equations%problem%shape, contact_level_of(equations%problem), &
       equations%meshes%grid(place%mesh), place%state)
     call measure(equations, place, varied(1), change(1), radius, local%slope)
@@ -60,6 +64,32 @@ contains
       call measure(equations, place, varied(i), change(i), radius, local%rate(:, i - 1))
     end do
   end subroutine find_local
+
+  !> The same of bodies that do not deform, at the gap h0; their place is -log(h0) (`path_curve`).
+  function local_undeformed(problem, h0, varied) result(local)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+    type(variation_t), intent(in) :: varied(:)
+    type(local_t) :: local
+    real(wp) :: gap
+    integer :: i, k
+
+    allocate (local%rate(quantities, size(varied) - 1), source=0.0_wp)
+    local%slope(of_h0) = -h0*problem%length
+    local%slope(of_load) = -h0*load_slope_undeformed(problem, h0)*problem%load
+    local%slope(of_energy) = h0*load_undeformed(problem, h0)*problem%load*problem%length
+    do i = 2, size(varied)
+      do k = 1, size(varied(i)%offset)
+        associate (other => varied(i)%problem(k), rate => local%rate(:, i - 1))
+          gap = other%law%gap_of(problem%law%separation_of(h0))
+          rate(of_load) = rate(of_load) + &
+            varied(i)%weight(k)*load_undeformed(other, gap)*other%load
+          rate(of_energy) = rate(of_energy) + &
+            varied(i)%weight(k)*energy_undeformed(other, gap)*other%load*other%length
+        end associate
+      end do
+    end do
+  end function local_undeformed
 
   !> Derivatives of the quantities along a line of equilibria; radius: of the contact.
   subroutine measure(equations, place, varied, line, radius, rate)
@@ -128,8 +158,8 @@ contains
   end function at_fixed
 
   !> Derivatives of the quantities at an extremum of weights(1) h0 + weights(2) load. The second
-  !> derivatives are differences over places that are `apart` in s. found = .false.: a state there was
-  !> not solved.
+  !> derivatives are differences over places that are `apart` in s. found = .false.: a state there
+  !> was not solved.
   subroutine at_extremum(equations, options, place, weights, apart, varied, rate, found)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
@@ -145,8 +175,9 @@ contains
     type(local_t) :: local, there
     ! Second derivatives of D, by s and by s and each parameter.
     real(wp) :: bend, cross(size(varied) - 1)
-    integer :: k, i
+    integer :: k, i, n
 
+    n = size(place%state%gap)
     call find_local(equations, place, frozen, varied, local, found)
     bend = 0
     cross = 0
@@ -154,6 +185,10 @@ contains
       if (.not. found) return
       near = place
       near%s = place%s + steps(k)*apart
+      associate (moved => steps(k)*apart*local%along/equations%problem%length)
+        near%state%gap = near%state%gap + moved(:n)
+        near%state%h0 = near%state%h0 + moved(n + 1)
+      end associate
       call solve_anderson(equations, tightened(options), frozen, &
         path_control(equations%problem, near%mesh, near%s), near%state, found)
       found = found .or. near%state%residual <= options%tolerance

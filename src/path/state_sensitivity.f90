@@ -55,7 +55,8 @@ contains
     logical, intent(out) :: found
     integer :: i
 
-    call freeze(equations, path_control(equations%problem, place%mesh, place%s), place%state, frozen)
+    call freeze(equations, path_control(equations%problem, place%mesh, place%s), place%state, &
+      frozen)
     found = frozen%factors%valid
     do i = 1, size(varied)
       if (.not. found) return

@@ -1,21 +1,25 @@
 !> The tables beside the curve, in `write_derived_tables` one statement each.
 module derived_tables
   use dimensionless_problem, only: problem_t
+  use experiment_request, only: sensitivity_t
   use h0_range, only: path_start
   use scene_groups, only: scene_t
   use experiment_result, only: experiment_result_t
   use records, only: theory_row_t
   use namelist_writer, only: line_t
   use tables, only: cells
+  use summary, only: summary_t
   use results, only: results_t
   use classical_rows, only: rows_of_classical
   use approximation_tables, only: approximation_rows
   use device_rows, only: device_columns, jump_columns, device_lines, jump_lines
   use fixed_load_rows, only: fixed_load_columns, fixed_load_lines
   use table_rows, only: table_columns, table_lines
+  use sensitivity_rows, only: sensitivity_columns, curve_sensitivity_columns, sensitivity_lines, &
+    curve_sensitivity_lines
   implicit none
   private
-  public :: write_derived_tables, write_path_tables, theory_columns
+  public :: write_derived_tables, write_path_tables, write_sensitivities, theory_columns
 
   !> Columns of classical.csv and approximations.csv.
   character(len=*), parameter :: theory_columns(*) = [character(len=96) :: &
@@ -58,6 +62,23 @@ contains
         table_lines(problem, readings))
     end associate
   end subroutine write_path_tables
+
+  !> Writes the derivatives of what is in the summary and read from the path.
+  subroutine write_sensitivities(sensitivity, problem, outcome, summary, results)
+    type(sensitivity_t), intent(in) :: sensitivity
+    type(problem_t), intent(in) :: problem
+    type(experiment_result_t), intent(in) :: outcome
+    type(summary_t), intent(in) :: summary
+    type(results_t), intent(inout) :: results
+
+    if (.not. allocated(outcome%readings)) return
+    associate (readings => outcome%readings)
+      call results%write_table('sensitivity.csv', sensitivity_columns, &
+        sensitivity_lines(problem, sensitivity%varied, summary, readings))
+      if (allocated(readings%rate)) call results%write_table('curve_sensitivity.csv', &
+        curve_sensitivity_columns, curve_sensitivity_lines(problem, sensitivity%varied, readings))
+    end associate
+  end subroutine write_sensitivities
 
   !> Rows of a theory as lines of its table.
   pure function theory_lines(rows) result(lines)

@@ -8,6 +8,8 @@ module device_rows
   use curve_states, only: curve_state_t
   use driven_pieces, only: drive_t
   use device, only: driven_t, leg_t
+  use place_sensitivity, only: of_load
+  use reading_sensitivities, only: weights_of
   use path_readings, only: path_readings_t
   use namelist_writer, only: line_t
   use tables, only: cells
@@ -181,12 +183,14 @@ contains
   end function z_of
 
   !> What the drives leave in the summary, an element for each stiffness: the first jump of each
-  !> way, and the energy.
-  subroutine summarise_device(problem, readings, summary)
+  !> way, and the energy; with derivatives by so many parameters.
+  subroutine summarise_device(problem, readings, parameters, summary)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
+    integer, intent(in) :: parameters
     type(summary_t), intent(inout) :: summary
     real(wp) :: unit
+    integer :: i
 
     unit = problem%load*problem%length
     associate (device => readings%device)
@@ -194,6 +198,8 @@ contains
       call take_jumps('device_jump_in', .true.)
       call take_jumps('device_jump_out', .false.)
       call summary%set('device_energy_lost', device%energy_lost*unit)
+      call summary%set_rate('device_energy_lost', reshape([(energy_rates(device(i), parameters), &
+        i=1, size(device))], [parameters, size(device)]))
       call summary%set('device_cycle_energy', device%cycle_energy*unit)
       call summary%set('device_energy_uncertainty', uncertainty(device)*unit)
       if (.not. all(device%caught)) call summary%warn('device: no stable state is known ' // &
@@ -209,11 +215,15 @@ contains
       character(len=*), intent(in) :: name
       logical, intent(in) :: inward
       real(wp), dimension(size(readings%device)) :: z, before, after
+      real(wp), dimension(parameters, size(readings%device)) :: z_rate, before_rate, after_rate
       integer :: k, first
 
       z = ieee_value(1.0_wp, ieee_quiet_nan)
       before = z
       after = z
+      z_rate = z(1)
+      before_rate = z_rate
+      after_rate = z_rate
       do k = 1, size(readings%device)
         associate (driven => readings%device(k))
           first = findloc(driven%jump%inward, inward, 1)
@@ -222,15 +232,41 @@ contains
             z(k) = z_of(problem, driven%drive, jump%before%h0, jump%before%load)
             before(k) = jump%before%load*problem%load
             if (jump%landed) after(k) = jump%after%load*problem%load
+            if (allocated(jump%before%rate)) then
+              before_rate(:, k) = jump%before%rate(of_load, :)
+              if (driven%drive%weights(1) > 0) z_rate(:, k) = &
+                matmul(weights_of(problem, driven%drive), jump%before%rate(:2, :))
+            end if
+            if (allocated(jump%after%rate)) after_rate(:, k) = jump%after%rate(of_load, :)
           end associate
         end associate
       end do
       call summary%set(name // '_z', z)
       call summary%set(name // '_load', before)
       call summary%set(name // '_load_after', after)
+      call summary%set_rate(name // '_z', z_rate)
+      call summary%set_rate(name // '_load', before_rate)
+      call summary%set_rate(name // '_load_after', after_rate)
     end subroutine take_jumps
 
   end subroutine summarise_device
+
+  !> Derivatives of the energy lost by each parameter; NaN where a jump has none.
+  pure function energy_rates(driven, parameters) result(rate)
+    type(driven_t), intent(in) :: driven
+    integer, intent(in) :: parameters
+    real(wp) :: rate(parameters)
+    integer :: i
+
+    rate = 0
+    do i = 1, size(driven%jump)
+      if (allocated(driven%jump(i)%energy_rate)) then
+        rate = rate + driven%jump(i)%energy_rate
+      else
+        rate = ieee_value(rate, ieee_quiet_nan)
+      end if
+    end do
+  end function energy_rates
 
   !> How well the energy lost is known: the two routes to it share the states where jumps start and
   !> end, but one takes the energy of these and the other the load on the way between them.

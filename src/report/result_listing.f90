@@ -8,7 +8,7 @@ module result_listing
   use device_rows, only: device_columns, jump_columns
   use fixed_load_rows, only: fixed_load_columns
   use table_rows, only: table_columns
-  use sensitivity_rows, only: sensitivity_columns
+  use sensitivity_rows, only: sensitivity_columns, curve_sensitivity_columns
   use fit_rows, only: fit_columns
   use profiles, only: profile_columns, unlike_columns
   implicit none
@@ -56,9 +56,12 @@ contains
         call heading('with &table', 'One row for each stable state, in and out.')
         call list_columns(unit, table_columns, '')
       case ('sensitivity.csv')
-        call heading('with &sensitivity', 'One row for each entry of &summary that depends on ' // &
-          'them and each parameter.')
+        call heading('with &sensitivity', 'One row for each number that is differentiated ' // &
+          'and each parameter.')
         call list_columns(unit, sensitivity_columns, '')
+      case ('curve_sensitivity.csv')
+        call heading('with &sensitivity', 'One row for each equilibrium, parameter and stiffness.')
+        call list_columns(unit, curve_sensitivity_columns, '')
       case ('fit.csv')
         call heading('with &fit', 'One row for each sample of the measured curve.')
         call list_columns(unit, fit_columns, '')

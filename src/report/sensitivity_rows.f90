@@ -1,38 +1,69 @@
-!> Derivatives of what is reported by the parameters of &sensitivity, as rows of tables: of the
-!> numbers of the summary, and of the curve.
+!> Derivatives of what is reported by the parameters of &sensitivity, as rows of tables: of numbers,
+!> and of the curve.
 module sensitivity_rows
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use variation, only: variation_t
+  use fixed_loads, only: loaded_state_t
+  use place_sensitivity, only: of_h0, of_displacement, of_radius
+  use path_sensitivity, only: rate_t, held
+  use driven_pieces, only: through_spring
+  use path_readings, only: path_readings_t
   use namelist_writer, only: line_t
   use result_rows, only: rows
   use summary, only: summary_t
   use tables, only: cells
   implicit none
   private
-  public :: sensitivity_columns, sensitivity_lines
+  public :: sensitivity_columns, curve_sensitivity_columns, sensitivity_lines, &
+    curve_sensitivity_lines
 
-  !> Columns of sensitivity.csv.
+  !> Columns of sensitivity.csv and of curve_sensitivity.csv.
   character(len=*), parameter :: sensitivity_columns(*) = [character(len=96) :: &
-    'quantity [] entry of &summary; of a list with the number of its value', &
+    'quantity [] entry of &summary, or column of a table; with a number, of which value or row', &
     'parameter [] key of the deck', &
     'value [] of the quantity, in its unit', &
     'derivative [] by the parameter, SI units', &
     'logarithmic [] derivative of the logarithm of the quantity by that of the parameter']
+  character(len=*), parameter :: curve_sensitivity_columns(*) = [character(len=96) :: &
+    'parameter [] key of the deck', &
+    'stiffness [N/m] of the spring; 0: dead load; Infinity: h0 is prescribed', &
+    'z [m] position of the drive, h0 - load/stiffness; NaN under a dead load', &
+    'h0 [m] separation that undeformed bodies would have on the axis', &
+    'load [N] negative: tension', &
+    'h0_derivative [] by the parameter at this z, under a dead load at this load; SI units', &
+    'load_derivative [] the same of the load; NaN, as h0_derivative, where z turns round']
+
+  !> Where z changes along the path by less than this part of its terms, or of the law's units, it
+  !> turns round.
+  real(wp), parameter :: turning = 1.0e-8_wp
 
 contains
 
-  !> Rows of sensitivity.csv, quantity by quantity in the order of the summary.
-  function sensitivity_lines(varied, summary) result(lines)
+  !> Rows of sensitivity.csv.
+  function sensitivity_lines(problem, varied, summary, readings) result(lines)
+    type(problem_t), intent(in) :: problem
     type(variation_t), intent(in) :: varied(:)
     type(summary_t), intent(in) :: summary
+    type(path_readings_t), intent(in) :: readings
     type(line_t), allocatable :: lines(:)
+
+    allocate (lines(0))
+    call add_of_summary(varied, summary, lines)
+    if (allocated(readings%loaded)) call add_of_loaded(problem, varied, readings%loaded, lines)
+  end function sensitivity_lines
+
+  !> Adds rows of sensitivity.csv, quantity by quantity in the order of the summary.
+  subroutine add_of_summary(varied, summary, lines)
+    type(variation_t), intent(in) :: varied(:)
+    type(summary_t), intent(in) :: summary
+    type(line_t), allocatable, intent(inout) :: lines(:)
     type(line_t) :: line
     real(wp), allocatable :: values(:), rate(:, :)
     character(len=40) :: name
     integer :: i, j, k
 
-    allocate (lines(0))
     do i = 1, size(rows)
       rate = summary%rate(trim(rows(i)%key))
       values = summary%numbers(trim(rows(i)%key))
@@ -40,14 +71,111 @@ contains
         name = rows(i)%key
         if (rows(i)%list) write (name, '(2a, i0, a)') trim(rows(i)%key), '(', k, ')'
         do j = 1, size(rate, 1)
-          associate (parameter => varied(j)%parameter)
-            line%text = trim(name) // ',' // parameter%name // ',' // &
-              cells([values(k), rate(j, k), rate(j, k)*parameter%value/values(k)])
-          end associate
+          line%text = sensitivity_line(trim(name), varied(j), values(k), rate(j, k))
           lines = [lines, line]
         end do
       end do
     end do
-  end function sensitivity_lines
+  end subroutine add_of_summary
+
+  !> One row.
+  pure function sensitivity_line(quantity, varied, value, rate) result(text)
+    character(len=*), intent(in) :: quantity
+    type(variation_t), intent(in) :: varied
+    real(wp), intent(in) :: value, rate
+    character(len=:), allocatable :: text
+
+    text = quantity // ',' // varied%parameter%name // ',' // &
+      cells([value, rate, rate*varied%parameter%value/value])
+  end function sensitivity_line
+
+  !> Adds rows of sensitivity.csv for the rows of fixed_load.csv.
+  subroutine add_of_loaded(problem, varied, loaded, lines)
+    type(problem_t), intent(in) :: problem
+    type(variation_t), intent(in) :: varied(:)
+    type(loaded_state_t), intent(in) :: loaded(:)
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    character(len=12) :: row
+    integer :: i
+
+    do i = 1, size(loaded)
+      write (row, '(a, i0, a)') '(', i, ')'
+      associate (state => loaded(i)%state)
+        if (.not. allocated(state%rate)) cycle
+        call add('h0', problem%law%separation_of(state%h0), state%rate(of_h0, :))
+        call add('displacement', (state%axis_gap - state%h0)*problem%length, &
+          state%rate(of_displacement, :))
+        if (state%radius > 0) call add('contact_radius', state%radius*problem%lateral, &
+          state%rate(of_radius, :))
+      end associate
+    end do
+
+  contains
+
+    subroutine add(column, value, rate)
+      character(len=*), intent(in) :: column
+      real(wp), intent(in) :: value, rate(:)
+      type(line_t) :: line
+      integer :: j
+
+      do j = 1, size(rate)
+        line%text = sensitivity_line('fixed_load.' // column // trim(row), varied(j), value, &
+          rate(j))
+        lines = [lines, line]
+      end do
+    end subroutine add
+
+  end subroutine add_of_loaded
+
+  !> Rows of curve_sensitivity.csv: the curve at prescribed h0 and then behind each spring, for each
+  !> parameter.
+  function curve_sensitivity_lines(problem, varied, readings) result(lines)
+    type(problem_t), intent(in) :: problem
+    type(variation_t), intent(in) :: varied(:)
+    type(path_readings_t), intent(in) :: readings
+    type(line_t), allocatable :: lines(:)
+    real(wp), allocatable :: stiffness(:)
+    integer :: i, j, k
+
+    allocate (lines(0))
+    stiffness = [ieee_value(1.0_wp, ieee_positive_inf)]
+    if (allocated(readings%device)) stiffness = [stiffness, &
+      pack(readings%device%stiffness, readings%device%stiffness <= huge(1.0_wp))]
+    do j = 1, size(varied)
+      do k = 1, size(stiffness)
+        do i = 1, size(readings%curve%node)
+          call add(i, j, stiffness(k))
+        end do
+      end do
+    end do
+
+  contains
+
+    subroutine add(i, j, stiffness)
+      integer, intent(in) :: i, j
+      real(wp), intent(in) :: stiffness
+      type(line_t) :: line
+      type(rate_t) :: rate
+      real(wp) :: weights(2), terms(2), z
+
+      associate (node => readings%curve%node(i), drive => through_spring(stiffness))
+        weights = drive%weights
+        terms = weights*[node%h0_slope*problem%length, node%load_slope*problem%load]
+        rate = held(problem, node, readings%rate(j, i), weights)
+        if (.not. abs(sum(terms)) > turning*sum(abs(terms) + &
+          abs(weights)*[problem%length, problem%load])) then
+          rate%h0 = ieee_value(1.0_wp, ieee_quiet_nan)
+          rate%load = rate%h0
+        end if
+        z = ieee_value(1.0_wp, ieee_quiet_nan)
+        if (weights(1) > 0) z = problem%law%separation_of(node%h0) + weights(2)*node%load* &
+          problem%load
+        line%text = varied(j)%parameter%name // ',' // cells([stiffness, z, &
+          problem%law%separation_of(node%h0), node%load*problem%load, rate%h0, rate%load])
+      end associate
+      lines = [lines, line]
+    end subroutine add
+
+  end function curve_sensitivity_lines
 
 end module sensitivity_rows

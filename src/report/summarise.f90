@@ -48,7 +48,7 @@ contains
     call take_energy(problem, outcome, summary)
     call take_end(problem, outcome, summary)
     if (.not. outcome%differentiated) &
-      call summary%fail_with('not all derivatives of &sensitivity were found')
+      call summary%fail_with('sensitivity: not all derivatives were found')
     if (.not. problem%rigid) call judge_resolution(summary)
     call judge_accuracy(scene, outcome, summary)
     call judge_stopping(outcome, ended_as_planned(outcome), summary)
@@ -137,6 +137,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(experiment_result_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
+    integer :: parameters
 
     associate (readings => outcome%readings)
       call summary%set('path_traced_h0', problem%law%separation_of(readings%traced_from))
@@ -144,7 +145,10 @@ contains
         'path_undeformed_h0', problem%law%separation_of(readings%undeformed_from))
       if (.not. readings%solved) &
         call summary%fail_with('not all that is read from the path was solved')
-      if (allocated(readings%device)) call summarise_device(problem, readings, summary)
+      parameters = 0
+      if (allocated(scene%sensitivity)) parameters = size(scene%sensitivity%varied)
+      if (allocated(readings%device)) &
+        call summarise_device(problem, readings, parameters, summary)
       if (allocated(readings%loaded)) call summarise_fixed_loads(problem, scene%fixed_load%load, &
         readings%loaded, summary)
     end associate

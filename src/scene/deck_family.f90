@@ -23,8 +23,8 @@ module deck_family
 contains
 
   !> The problems of a deck with other values of keys: blank-separated names as 'group.key', a term
-  !> of a list as 'group.key(2)'. Fails, with a message that has no place in the file, where a key is
-  !> no number of bodies, shape or forces, or has no value in the deck.
+  !> of a list as 'group.key(2)'. Fails, with a message that has no place in the file, where a key
+  !> is no number of bodies, shape or forces, or has no value in the deck.
   subroutine new_deck_family(deck, keys, family, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: keys
@@ -69,8 +69,8 @@ contains
 
     names = parameters_of(deck)
     if (index(names // ' ', ' ' // parameter%name // ' ') == 0) then
-      call fail(error, bad_input, quoted(clip(parameter%name)) // ' is not a number of bodies, ' // &
-        'shape or forces that this deck has; allowed: ' // listing(names, '', ''))
+      call fail(error, bad_input, quoted(clip(parameter%name)) // ' is not a number of ' // &
+        'bodies, shape or forces that this deck has; allowed: ' // listing(names, '', ''))
       return
     end if
     call deck%find_number(parameter%name, row, term, error)

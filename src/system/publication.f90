@@ -21,8 +21,8 @@ module publication
   !> The files of a folder of results, the summary last.
   character(len=*), parameter :: result_files(*) = [character(len=21) :: 'curve.csv', &
     'profiles.csv', 'approximations.csv', 'classical.csv', 'device.csv', &
-    'device_jumps.csv', 'fixed_load.csv', 'table.csv', 'sensitivity.csv', 'fit.csv', 'fit.nml', &
-    'sweep.csv', 'summary.nml']
+    'device_jumps.csv', 'fixed_load.csv', 'table.csv', 'sensitivity.csv', &
+    'curve_sensitivity.csv', 'fit.csv', 'fit.nml', 'sweep.csv', 'summary.nml']
   character(len=*), parameter :: journal_name = 'journal' // partial
 
   character(len=*), parameter :: intent_name = 'INCOMPLETE.txt', set_aside = '.old' // partial

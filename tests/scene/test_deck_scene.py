@@ -41,6 +41,35 @@ REFUSED = {
     "device upwards": (
         with_extra("&equilibrium_path /\n&device z_start = 1e-9,\n z_end = 2e-9 /"), 5, "device",
         "z_start", "not above z_end"),
+    "derivative by an accuracy": (
+        with_extra("&equilibrium_path /\n&sensitivity parameters = 'numerics.accuracy' /"), 5,
+        "sensitivity", "parameters", "bodies.radius, bodies.stiffness, force.hamaker, force.z0"),
+    "derivative by a range": (
+        with_extra("&equilibrium_path /\n&sensitivity parameters = 'loading.h0_end' /"), 5,
+        "sensitivity", "parameters", "not a number of bodies, shape or forces"),
+    "derivative by a word": (
+        with_extra("&equilibrium_path /\n&sensitivity parameters = 'force.part' /"), 5,
+        "sensitivity", "parameters", "not a number of bodies, shape or forces"),
+    "derivative by no term of a list": (
+        with_bodies("radius = 1, young = 1, 2, poisson = 0.3 /") + "&equilibrium_path /\n"
+        "&sensitivity parameters = 'bodies.young' /", 5, "sensitivity", "parameters",
+        "bodies.young(1), bodies.young(2), bodies.poisson"),
+    "derivative by what is nothing": (
+        GOOD.replace("&loading", "&structural amplitude = 1e5, period = 1e-9, decay_length = 1e-9, "
+                     "phase = 0 /\n&morse surface_energy = 0.01, z0 = 0, decay_length = 1e-9 /\n"
+                     "&loading") + "&equilibrium_path /\n&sensitivity parameters = 'morse.z0' /", 7,
+        "sensitivity", "parameters", "is 0"),
+    "derivatives in a sweep": (
+        with_extra("&equilibrium_path /\n&sensitivity parameters = 'force.z0' /\n"
+                   "&sweep key = 'force.z0', values = 1e-9 /"), 5, "sensitivity", "",
+        "not together with &sweep"),
+    "derivatives without a path": (with_extra("&sensitivity parameters = 'force.z0' /"), 4,
+                                   "sensitivity", "", "needs &equilibrium_path"),
+    "derivatives by nothing": (with_extra("&equilibrium_path /\n&sensitivity /"), 5, "sensitivity",
+                               "parameters", "missing"),
+    "two names in one": (
+        with_extra("&equilibrium_path /\n&sensitivity parameters = 'force.z0, bodies.radius' /"), 5,
+        "sensitivity", "parameters", "is not one name"),
     "no load": (with_extra("&equilibrium_path /\n&fixed_load /"), 5, "fixed_load", "load",
                 "missing"),
     "no stiffness": (with_bodies("radius = 1 /"), 1, "bodies", "stiffness", "give one of"),
@@ -108,6 +137,9 @@ REFUSED = {
                                  "sweep", "key", "no &unloading"),
     "sweep of the sweep": (with_extra("&sweep key = 'sweep.count', values = 3 /"), 4, "sweep",
                            "key", "no &sweep"),
+    "sweep of a term too many": (
+        with_bodies("radius = 1, young = 1, 2, poisson = 0.3 /")
+        + "&sweep key = 'bodies.young(3)', values = 1 /", 4, "sweep", "key", "no such term"),
     "sweep out of range": (with_extra("&sweep key = 'bodies.radius',\n values = 1, -1 /"), 5,
                            "sweep", "values", "out of range"),
     "sweep to a wrong deck": (with_extra("&sweep key = 'loading.h0_end',\n from = 0, to = 9e-9, "

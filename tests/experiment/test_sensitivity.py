@@ -1,0 +1,199 @@
+"""Claims about derivatives by the numbers of a deck: the dimensions of the problem, and differences
+of whole runs."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from support.scenes import deck, lennard_jones, runner, several
+
+LAW = {"law": "lennard_jones", "hamaker": 1.0e-20, "z0": 0.5e-9}
+PARABOLA = {"radius": 1.5e-2, "stiffness": 1.0e10}
+READ = {
+    "equilibrium_path": {"h0_end": -2e-9},
+    "device": {"stiffness": [1e6, 1e4]},
+    "fixed_load": {"load": [-3e-5, 2e-5]},
+}
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("sensitivity"))
+
+
+def derivatives(found, kind="logarithmic"):
+    """Derivatives by quantity and parameter."""
+    table = found.table("sensitivity.csv")
+    by_quantity = {}
+    for quantity, parameter, value in zip(table["quantity"], table["parameter"], table[kind]):
+        by_quantity.setdefault(quantity, {})[parameter] = value
+    return by_quantity
+
+
+def value_of(found, quantity):
+    """A number that sensitivity.csv names: of the summary, or of a column of a table."""
+    if match := re.fullmatch(r"(\w+)\.(\w+)\((\d+)\)", quantity):
+        return found.table(match[1] + ".csv")[match[2]][int(match[3]) - 1]
+    name, number = re.fullmatch(r"(\w+)(?:\((\d+)\))?", quantity).groups()
+    return several(found.summary[name])[int(number or 1) - 1]
+
+
+@pytest.mark.parametrize("sigma", [0.01, 0.87, 8.7, 1000.0])
+def test_derivatives_obey_the_dimensions_of_the_problem(run, sigma):
+    """Loads are (A/z0^2) R times a function of sigma ~ A R^(1/2) / (E z0^(7/2)), lengths z0 times
+    one: one derivative says the other three."""
+    names = ["force.hamaker", "bodies.radius", "force.z0", "bodies.stiffness"]
+    found = derivatives(run(lennard_jones(
+        sigma, equilibrium_path={"h0_end": -2.0}, sensitivity={"parameters": names})))
+    powers = {"_load": (1, 1, -2), "_h0": (0, 0, 1), "tension": (1, 1, -2), "lost": (1, 1, -1)}
+    tried = 0
+    for quantity, rate in found.items():
+        if not quantity.startswith(("max_tension", "jump", "folds", "energy")):
+            continue
+        kind = next(end for end in powers if quantity.split("(")[0].endswith(end))
+        strength = -rate["bodies.stiffness"]
+        expected = np.add(powers[kind], strength * np.array([1, 0.5, -3.5]))
+        # A load at a fold takes second derivatives, which are differences.
+        np.testing.assert_allclose([rate[name] for name in names[:3]], expected, rtol=1e-6,
+                                   atol=1e-6, err_msg=quantity)
+        tried += 1
+    assert tried >= (2 if sigma < 0.1 else 11)
+
+
+def test_rigid_and_jkr_limits_have_the_powers_of_their_theories(run):
+    names = ["force.hamaker", "bodies.radius", "force.z0", "bodies.stiffness"]
+    for sigma in (1e-4, 1e4):
+        rate = derivatives(run(lennard_jones(
+            sigma, equilibrium_path={"h0_end": -2.0},
+            sensitivity={"parameters": names})))["max_tension"]
+        # The pull-offs 2 pi w R and 3/2 pi w R, with w = A/(16 pi z0^2).
+        assert [rate[name] for name in names] == pytest.approx([1, 1, -2, 0], abs=1e-3)
+
+
+CASES = {
+    "Lennard-Jones": ({"bodies": PARABOLA, "force": LAW, **READ},
+                      ["force.hamaker", "force.z0", "bodies.radius", "bodies.stiffness"]),
+    "van der Waals and a double layer": (
+        {"bodies": {"radius": 5e-6, "stiffness": 2e9}, "van_der_waals": {"hamaker": 6.5e-20},
+         "born": {"z0": 0.25e-9},
+         "double_layer": {"model": "linear", "potential": -0.03, "salt": 1.0},
+         "equilibrium_path": {"h0_end": -4e-9}, "device": {"stiffness": [50.0]}},
+        ["van_der_waals.hamaker", "born.z0", "double_layer.potential", "double_layer.salt"]),
+    "two hydrophobic terms": (
+        {"bodies": {"radius": 5e-6, "stiffness": 2e9},
+         "force": {"law": "lennard_jones", "hamaker": 3e-20, "z0": 0.4e-9},
+         "hydrophobic": {"energy": [5e-3, 1e-3], "decay_length": [1e-9, 2e-9]},
+         "equilibrium_path": {"h0_end": -4e-9}},
+        ["hydrophobic.energy(1)", "hydrophobic.decay_length(2)"]),
+    "powers of any exponent": (
+        {"bodies": {"radius": 5e-6, "stiffness": 2e9},
+         "force": {"law": "lennard_jones", "surface_energy": 0.03, "z0": 0.4e-9,
+                   "exponents": [10.0, 4.0]},
+         "equilibrium_path": {"h0_end": -4e-9}},
+        ["force.exponents(1)", "force.exponents(2)", "force.surface_energy"]),
+    "Morse law on a power of r": (
+        {"bodies": {"stiffness": 1e9}, "shape": {"kind": "power", "exponent": 3.0, "radius": 1e-6},
+         "morse": {"surface_energy": 0.05, "z0": 0.3e-9, "decay_length": 0.2e-9},
+         "equilibrium_path": {"h0_end": -4e-9}, "fixed_load": {"load": [2e-8]}},
+        ["shape.exponent", "shape.radius", "morse.decay_length", "bodies.stiffness"]),
+    "Morse law on a sphere": (
+        {"bodies": {"stiffness": 5e7}, "shape": {"kind": "sphere", "radius": 1e-7},
+         "morse": {"surface_energy": 0.05, "z0": 0.3e-9, "decay_length": 0.2e-9},
+         "equilibrium_path": {"h0_end": -10e-9}},
+        ["shape.radius", "morse.surface_energy"]),
+}
+
+
+def with_numbers(groups, changes):
+    """The deck's groups with keys replaced, 'group.key' or 'group.key(term)'."""
+    changed = {name: dict(keys) for name, keys in groups.items()}
+    for name, value in changes.items():
+        group, key, term = re.fullmatch(r"(\w+)\.(\w+)(?:\((\d+)\))?", name).groups()
+        if term:
+            changed[group][key] = list(changed[group][key])
+            changed[group][key][int(term) - 1] = value
+        else:
+            changed[group][key] = value
+    return changed
+
+
+def number_in(groups, name):
+    group, key, term = re.fullmatch(r"(\w+)\.(\w+)(?:\((\d+)\))?", name).groups()
+    return groups[group][key][int(term) - 1] if term else groups[group][key]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_derivatives_are_those_of_whole_runs(run, case):
+    """Of fourth order in a direction in which all parameters change, by 4e-3 of themselves and
+    less: what that leaves out is some 1e-8, and errors of runs of accuracy 1e-9 count 250 times."""
+    groups, names = CASES[case]
+    groups = {**groups, "numerics": {"accuracy": 1e-9}}
+    found = run(deck(**groups, sensitivity={"parameters": names}))
+    direction = dict(zip(names, np.cos(np.arange(len(names)) + 0.5)))
+    step = 4e-3
+
+    def moved(steps):
+        return run(deck(**with_numbers(groups, {
+            name: number_in(groups, name) * (1 + steps * step * part)
+            for name, part in direction.items()})))
+
+    runs = [moved(steps) for steps in (-2, -1, 1, 2)]
+    tried = 0
+    for quantity, rate in derivatives(found, "derivative").items():
+        expected = sum(rate[name] * number_in(groups, name) * part
+                       for name, part in direction.items())
+        values = [value_of(one, quantity) for one in runs]
+        if not np.isfinite(values).all():
+            continue
+        difference = np.dot([1, -8, 8, -1], values) / (12 * step)
+        # Loads at folds of the other variable change infinitely fast there, and runs have them to
+        # fewer digits; sizes stand in where a derivative happens to be small.
+        size = max(abs(difference), abs(value_of(found, quantity)))
+        assert abs(expected - difference) <= 2e-6 * size, quantity
+        tried += 1
+    assert tried >= 8
+
+
+def test_curve_has_the_derivative_of_the_state_at_each_h0(run):
+    groups = {"bodies": PARABOLA, "force": LAW, "device": {"stiffness": [1e5, 0.0]}}
+    names = {"parameters": ["force.z0", "bodies.stiffness"]}
+    table = run(deck(**groups, equilibrium_path={"h0_end": -2e-9}, sensitivity=names)).table(
+        "curve_sensitivity.csv")
+    for parameter in names["parameters"]:
+        mine = {k: np.flatnonzero((table["parameter"] == parameter) & (table["stiffness"] == k))
+                for k in (math.inf, 1e5, 0.0)}
+        row = mine[math.inf][-4]
+        one = run(deck(bodies=PARABOLA, force=LAW, sensitivity=names,
+                       equilibrium_path={"h0_end": table["h0"][row]}))
+        assert value_of(one, "end_load") == pytest.approx(table["load"][row], rel=1e-9)
+        assert derivatives(one, "derivative")["end_load"][parameter] == pytest.approx(
+            table["load_derivative"][row], rel=1e-6)
+        # At fixed z, h0 = z + F/k: F_p = F_p|h0 + F' F_p/k, and at fixed load F_p|h0 = -F' h0_p.
+        at_h0, of_h0 = table["load_derivative"][mine[math.inf]], table["h0_derivative"][mine[0.0]]
+        at_z = table["load_derivative"][mine[1e5]]
+        turns = ~np.isfinite(at_h0) | ~np.isfinite(of_h0) | ~np.isfinite(at_z)
+        assert turns.sum() < 8
+        np.testing.assert_allclose((at_z * (1 + at_h0 / of_h0 / 1e5))[~turns], at_h0[~turns],
+                                   rtol=1e-6)
+
+
+def test_a_parameter_at_the_end_of_its_range_is_varied_inward(run):
+    """dE*/dnu is 2 nu/(1 - nu^2) E* for E* = E/(1 - nu^2), and nu = 1/2 is the largest there is."""
+    for poisson in (0.5, 0.3, 0.0):
+        rate = derivatives(run(deck(
+            bodies={"radius": 1.5e-2, "young": 1e10, "poisson": poisson}, force=LAW,
+            equilibrium_path={"h0_end": -2e-9},
+            sensitivity={"parameters": ["bodies.young", "bodies.poisson"]})), "derivative")
+        by_young, by_poisson = rate["max_tension"].values()
+        expected = by_young * 1e10 * 2 * poisson / (1 - poisson**2)
+        assert by_poisson == pytest.approx(expected, rel=1e-7, abs=1e-9 * by_young * 1e10)
+
+
+def test_nothing_else_changes(run):
+    groups = {"bodies": PARABOLA, "force": LAW, **READ}
+    without = run(deck(**groups))
+    beside = run(deck(**groups, sensitivity={"parameters": ["force.z0"]}))
+    for name in ("curve.csv", "device.csv", "device_jumps.csv", "fixed_load.csv"):
+        assert (beside.folder / name).read_bytes() == (without.folder / name).read_bytes()
+    assert not (without.folder / "sensitivity.csv").exists()
