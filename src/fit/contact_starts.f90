@@ -32,8 +32,8 @@ contains
     integer :: i, k, role
 
     few = residuals
-    few%noise = white_noise(residuals%noise%deviation)
-    call few%take_samples(max(1, size(few%measured%z)/samples))
+    few%data%noise = white_noise(residuals%data%noise%deviation)
+    call few%data%take(max(1, size(few%data%measured%z)/samples))
     call few%reach(value, ends, found)
     allocate (starts(0), costs(0))
     if (.not. found) return

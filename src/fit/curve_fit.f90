@@ -92,7 +92,7 @@ contains
     fitted%found = fitted%found .and. found
     if (.not. found) return
     fitted%chi_squared = sum(residual**2)
-    fitted%freedom = size(residual) - n - residuals%baseline%unknowns()
+    fitted%freedom = size(residual) - n - residuals%data%baseline%unknowns()
     do j = 1, n
       jacobian(:, j) = jacobian(:, j)*value_by_fitted(residuals%unknown(j), fitted%value(j))
     end do
@@ -118,7 +118,7 @@ contains
         [(covariance(i, j)/sqrt(covariance(i, i)*covariance(j, j)), i=1, n)]
     end do
     call residuals%split(fitted%value, fitted%model, fitted%baseline)
-    fitted%residual = residuals%measured%signal - fitted%model
+    fitted%residual = residuals%data%measured%signal - fitted%model
     fitted%jump_z = [residuals%jump_of(fitted%value, 1), residuals%jump_of(fitted%value, 2)]
   end subroutine judge
 

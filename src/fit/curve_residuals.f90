@@ -10,11 +10,8 @@ module curve_residuals
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring
-  use measured_curve, only: measured_t
-  use measured_jumps, only: measured_jump_t
-  use noise, only: noise_t, whiten
-  use baseline, only: baseline_t, new_baseline
-  use force_model, only: force_model_t, response_t, inward, outward
+  use fit_samples, only: fit_samples_t
+  use force_model, only: force_model_t, response_t
   use force_branch, only: load_at_t
   use least_squares, only: residuals_t
   use unknowns, only: value_of, value_by_free, value_by_fitted, fitted_of
@@ -24,19 +21,17 @@ module curve_residuals
 
   !> What a jump that the model does not have counts, in standard deviations.
   real(wp), parameter :: missed = 10
+  !> A trial is no farther than a factor of exp of this from the deck's value: paths of problems
+  !> that are nothing like it may take for ever.
+  real(wp), parameter :: farthest_off = 5
 
   type, extends(residuals_t) :: curve_residuals_t
     class(force_model_t), pointer, private :: model => null()
-    type(measured_t) :: measured
-    type(noise_t) :: noise
-    type(measured_jump_t) :: jump(2)
+    type(fit_samples_t) :: data
     type(unknown_t), allocatable :: unknown(:)
     !> Spring, detector and contact point where they are no unknowns. Where the signal is the force,
     !> it is the deflection of the deck's spring.
     real(wp) :: spring = 1, sensitivity = 1, contact_point = 0
-    !> The samples that count; the run that each is of, and the side of its jump; see `load_on`.
-    integer, allocatable :: sample(:), run(:), side(:), way(:)
-    type(baseline_t) :: baseline
     !> Signals up to this are wanted of the model, less their baseline.
     real(wp) :: largest = 0
     type(response_t), private :: response
@@ -45,7 +40,6 @@ module curve_residuals
     logical, private :: has_rates = .false.
   contains
     procedure :: set_model
-    procedure :: take_samples
     procedure :: rows
     procedure :: values
     procedure :: residuals_of
@@ -70,37 +64,11 @@ contains
     if (allocated(self%asked)) deallocate (self%asked)
   end subroutine set_model
 
-  !> Which samples count, every `every`-th, and the columns that are linear in them.
-  subroutine take_samples(self, every)
-    class(curve_residuals_t), intent(inout) :: self
-    integer, intent(in) :: every
-    integer :: i, n
-
-    associate (data => self%measured)
-      n = size(data%z)
-      self%way = merge(inward, outward, data%inward)
-      self%side = [(0, i=1, n)]
-      do i = 1, n
-        associate (jump => self%jump(self%way(i)))
-          if (jump%before == 0) cycle
-          if (i <= jump%before) self%side(i) = 1
-          if (i >= jump%after) self%side(i) = 2
-          if (i > jump%before .and. i < jump%after) self%side(i) = -1
-        end associate
-      end do
-      ! Of one way and one side of its jump.
-      self%run = 3*self%way + self%side
-      self%sample = pack([(i, i=1, n)], self%side >= 0 .and. [(mod(i, every) == 0, i=1, n)])
-      self%baseline = new_baseline(data%z, data%inward, self%sample, self%run(self%sample), &
-        self%noise)
-    end associate
-  end subroutine take_samples
-
   !> Number of residuals: samples, jumps that the theory speaks of, what was known before.
   pure integer function rows(self)
     class(curve_residuals_t), intent(in) :: self
 
-    rows = size(self%sample) + count(self%jump%before > 0) + count(self%unknown%prior > 0)
+    rows = size(self%data%sample) + count(self%data%jump%before > 0) + count(self%unknown%prior > 0)
   end function rows
 
   !> The values of the unknowns.
@@ -128,20 +96,21 @@ contains
     real(wp), intent(in) :: value(:)
     real(wp), intent(out) :: residual(:)
     logical, intent(out) :: found
-    real(wp) :: left(size(self%sample), 1)
+    real(wp) :: left(size(self%data%sample), 1)
     integer :: i, n
 
-    call self%ask(value, .false., found)
+    found = .not. any(self%unknown%in_log .and. &
+      abs(fitted_of(self%unknown, value)) > farthest_off)
+    if (found) call self%ask(value, .false., found)
     if (.not. found) return
-    associate (s => self%sample)
-      left(:, 1) = self%measured%signal(s) - self%signal_of(value, s)
-      call whiten(self%noise, self%run(s), left)
+    associate (s => self%data%sample)
+      left(:, 1) = self%data%measured%signal(s) - self%signal_of(value, s)
     end associate
-    n = size(self%sample)
-    call self%baseline%take_off(left)
+    n = size(self%data%sample)
+    call self%data%clean(left)
     residual(:n) = left(:, 1)
     do i = 1, 2
-      if (self%jump(i)%before == 0) cycle
+      if (self%data%jump(i)%before == 0) cycle
       n = n + 1
       residual(n) = jump_residual(self, value, i)
     end do
@@ -174,26 +143,26 @@ contains
     real(wp), intent(out) :: jacobian(:, :)
     logical, intent(out) :: found
     type(load_at_t) :: load
-    real(wp) :: by(size(self%sample), size(value)), k
+    real(wp) :: by(size(self%data%sample), size(value)), k
     integer :: i, j, n
 
     call self%ask(value, .true., found)
     if (.not. found) return
     k = self%number_of(value, of_spring, self%spring)
-    associate (facing => self%measured%facing, s => self%number_of(value, of_sensitivity, &
+    associate (facing => self%data%measured%facing, s => self%number_of(value, of_sensitivity, &
       self%sensitivity))
-      do n = 1, size(self%sample)
-        i = self%sample(n)
-        load = self%response%load_on(self%way(i), self%side(i), position_of(self, value, i))
+      do n = 1, size(self%data%sample)
+        i = self%data%sample(n)
+        load = self%response%load_on(self%data%way(i), self%data%side(i), &
+          position_of(self, value, i))
         by(n, :) = -unfolded(self%unknown%role, load%rate/(k*s), -facing*load%slope/(k*s), &
           -load%load/(k*s**2), -(load%slope*load%load/k**2 + load%load/k)/(k*s))
       end do
-      call whiten(self%noise, self%run(self%sample), by)
-      n = size(self%sample)
-      call self%baseline%take_off(by)
+      n = size(self%data%sample)
+      call self%data%clean(by)
       jacobian(:n, :) = by
       do i = 1, 2
-        if (self%jump(i)%before == 0) cycle
+        if (self%data%jump(i)%before == 0) cycle
         n = n + 1
         jacobian(n, :) = jump_rates(self, i, k, facing)
       end do
@@ -223,8 +192,8 @@ contains
     if (.not. self%response%way(way)%foretold) return
     residual = missed
     if (self%response%way(way)%main == 0) return
-    residual = self%measured%facing*(self%jump_of(value, way) - self%jump(way)%z)/ &
-      self%jump(way)%uncertainty
+    residual = self%data%measured%facing*(self%jump_of(value, way) - self%data%jump(way)%z)/ &
+      self%data%jump(way)%uncertainty
   end function jump_residual
 
   !> Where the base is when the model's main jump on a way starts; NaN without one.
@@ -239,7 +208,7 @@ contains
     if (self%response%way(way)%main == 0 .or. .not. self%response%way(way)%foretold) return
     call self%response%jump_from(way, position, rate, load)
     z = self%number_of(value, of_contact_point, self%contact_point) + &
-      self%measured%facing*position
+      self%data%measured%facing*position
   end function jump_of
 
   !> Its derivatives.
@@ -254,7 +223,8 @@ contains
     by = 0
     if (.not. self%response%way(way)%foretold .or. self%response%way(way)%main == 0) return
     call self%response%jump_from(way, position, rate, load)
-    by = unfolded(self%unknown%role, rate, facing, 0.0_wp, load/k**2)/self%jump(way)%uncertainty
+    by = unfolded(self%unknown%role, rate, facing, 0.0_wp, load/k**2)/ &
+      self%data%jump(way)%uncertainty
   end function jump_rates
 
   !> Derivatives by the unknowns in their order, from those by the model's and by the others.
@@ -280,7 +250,8 @@ contains
 
     do n = 1, size(sample)
       i = sample(n)
-      load = self%response%load_on(self%way(i), max(self%side(i), 0), position_of(self, value, i))
+      load = self%response%load_on(self%data%way(i), max(self%data%side(i), 0), &
+        position_of(self, value, i))
       signal(n) = load%load
     end do
     signal = signal/(self%number_of(value, of_spring, self%spring)* &
@@ -292,13 +263,10 @@ contains
     class(curve_residuals_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
     real(wp), allocatable, intent(out) :: model(:), baseline(:)
-    real(wp) :: left(size(self%sample), 1)
     integer :: i
 
-    model = self%signal_of(value, [(i, i=1, size(self%way))])
-    left(:, 1) = self%measured%signal(self%sample) - model(self%sample)
-    call whiten(self%noise, self%run(self%sample), left)
-    baseline = self%baseline%of(left(:, 1))
+    model = self%signal_of(value, [(i, i=1, size(self%data%way))])
+    baseline = self%data%baseline_under(self%data%measured%signal - model)
     model = model + baseline
   end subroutine split
 
@@ -315,7 +283,7 @@ contains
     ends = 0
     call self%ask(value, .false., found)
     if (.not. found) return
-    nearest = minval(self%measured%facing*self%measured%z)
+    nearest = minval(self%data%measured%facing*self%data%measured%z)
     inner = huge(inner)
     outer = 0
     do i = 1, size(self%response%branch)
@@ -325,7 +293,7 @@ contains
       end associate
     end do
     ! Z = facing z - facing (contact point).
-    ends = self%measured%facing*(nearest - [inner, outer])
+    ends = self%data%measured%facing*(nearest - [inner, outer])
   end subroutine reach
 
   !> Position of the drive at a sample.
@@ -334,7 +302,7 @@ contains
     real(wp), intent(in) :: value(:)
     integer, intent(in) :: i
 
-    position = self%measured%facing*(self%measured%z(i) - &
+    position = self%data%measured%facing*(self%data%measured%z(i) - &
       self%number_of(value, of_contact_point, self%contact_point))
   end function position_of
 
@@ -368,7 +336,7 @@ contains
     if (found) return
     if (allocated(self%asked)) deallocate (self%asked)
     ! From twice the travel, wherever the contact point is.
-    farthest = 2*(maxval(self%measured%z) - minval(self%measured%z))
+    farthest = 2*(maxval(self%data%measured%z) - minval(self%data%measured%z))
     call self%model%respond(asked(:size(asked) - 1), k, farthest, largest, with_rates, &
       self%response, found)
     if (.not. found) return

@@ -42,13 +42,14 @@ contains
       if (fitted%identifiable < lost) call add('some combination of the parameters cannot be ' // &
         'told from these data: identifiable = ' // rounded(fitted%identifiable))
       do i = 1, 2
-        if (curve%jump(i)%before == 0) cycle
+        if (curve%data%jump(i)%before == 0) cycle
         if (.not. abs(fitted%jump_z(i)) < huge(1.0_wp)) then
           call add('on the ' // trim(ways(i)) // ' the data jump and the model does not')
-        else if (abs(fitted%jump_z(i) - curve%jump(i)%z) > far*curve%jump(i)%uncertainty) then
+        else if (abs(fitted%jump_z(i) - curve%data%jump(i)%z) > &
+          far*curve%data%jump(i)%uncertainty) then
           call add('on the ' // trim(ways(i)) // ' the data jump at z = ' // &
-            rounded(curve%jump(i)%z) // ' m and the model ' // &
-            rounded(abs(fitted%jump_z(i) - curve%jump(i)%z)) // ' m from there')
+            rounded(curve%data%jump(i)%z) // ' m and the model ' // &
+            rounded(abs(fitted%jump_z(i) - curve%data%jump(i)%z)) // ' m from there')
         end if
       end do
     end associate

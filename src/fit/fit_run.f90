@@ -99,7 +99,7 @@ contains
     type(failure_t), allocatable :: error
     real(wp) :: slope
 
-    call read_measured(measurement, curve%measured, error)
+    call read_measured(measurement, curve%data%measured, error)
     if (allocated(error)) then
       trouble = error%message
       return
@@ -111,25 +111,25 @@ contains
     if (allocated(measurement%sensitivity)) curve%sensitivity = measurement%sensitivity
     if (allocated(measurement%contact_point)) curve%contact_point = measurement%contact_point
     slope = 1/curve%sensitivity
-    associate (data => curve%measured)
-      call find_far(data, slope, curve%noise)
+    associate (data => curve%data%measured)
+      call find_far(data, slope, curve%data%noise)
       if (allocated(fit%noise)) then
-        curve%noise = white_noise(fit%noise)
+        curve%data%noise = white_noise(fit%noise)
       else if (count(data%far) < fewest_far) then
         trouble = 'fewer than 12 samples far from contact, too few to see the noise; give noise'
         return
       end if
-      if (curve%noise%deviation < least_noise*maxval(abs(data%signal))) &
-        curve%noise = white_noise(least_noise*maxval(abs(data%signal)))
-      call check_measured(data, curve%noise, slope, trouble)
+      if (curve%data%noise%deviation < least_noise*maxval(abs(data%signal))) &
+        curve%data%noise = white_noise(least_noise*maxval(abs(data%signal)))
+      call check_measured(data, curve%data%noise, slope, trouble)
       if (allocated(trouble)) return
-      curve%jump = [find_jump(data, curve%noise, slope, .true.), &
-        find_jump(data, curve%noise, slope, .false.)]
+      curve%data%jump = [find_jump(data, curve%data%noise, slope, .true.), &
+        find_jump(data, curve%data%noise, slope, .false.)]
       curve%largest = beyond*(maxval(data%signal) - &
         sum(data%signal, data%far)/max(1, count(data%far)))
     end associate
-    call curve%take_samples(1)
-    if (size(curve%sample) < 2*size(curve%unknown) + 4) &
+    call curve%data%take(1)
+    if (size(curve%data%sample) < 2*size(curve%unknown) + 4) &
       trouble = 'too few samples for so many parameters'
   end subroutine take_curve
 

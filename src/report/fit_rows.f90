@@ -21,7 +21,7 @@ module fit_rows
     'model [] the same by the model, with its baseline', &
     'baseline [] the signal without force', &
     'residual [] measured less model', &
-    'used [] 1: the sample counts; 0: it lies within a jump']
+    'used [] 1: the sample counts; 0: it is the last before a jump, or within it']
 
   character(len=1), parameter :: nl = new_line('a')
 
@@ -33,12 +33,12 @@ contains
     type(line_t), allocatable :: lines(:)
     integer :: i
 
-    associate (data => outcome%curve%measured, fitted => outcome%fitted)
+    associate (data => outcome%curve%data%measured, fitted => outcome%fitted)
       allocate (lines(size(data%z)))
       do i = 1, size(lines)
         lines(i)%text = trim(merge('approach', 'retreat ', data%inward(i))) // ',' // &
           cells([data%z(i), data%signal(i), fitted%model(i), fitted%baseline(i), &
-          fitted%residual(i)]) // merge(',1', ',0', any(outcome%curve%sample == i))
+          fitted%residual(i)]) // merge(',1', ',0', any(outcome%curve%data%sample == i))
       end do
     end associate
   end function fit_lines
@@ -57,12 +57,12 @@ contains
       '&fit' // nl // assignment_of('title', name) // &
       of_fitted(outcome%curve%unknown, outcome%fitted)
     associate (curve => outcome%curve)
-      numbers = [curve%noise%deviation]
+      numbers = [curve%data%noise%deviation]
       text = text // assignment_of('noise', numbers)
-      numbers = curve%noise%correlation(1:)
+      numbers = curve%data%noise%correlation(1:)
       text = text // assignment_of('noise_correlation', numbers)
-      text = text // of_jump('jump_in', curve%jump(1), outcome%fitted%jump_z(1)) // &
-        of_jump('jump_out', curve%jump(2), outcome%fitted%jump_z(2))
+      text = text // of_jump('jump_in', curve%data%jump(1), outcome%fitted%jump_z(1)) // &
+        of_jump('jump_out', curve%data%jump(2), outcome%fitted%jump_z(2))
     end associate
     text = text // assignment_of('warnings', doubts_of(outcome)) // '/' // nl
     do i = 1, size(outcome%theory)
@@ -134,9 +134,9 @@ contains
 
     allocate (lines(0))
     associate (curve => outcome%curve)
-      line%text = brief(real(size(curve%sample), wp)) // ' samples, noise ' // &
-        rounded(curve%noise%deviation) // ', correlation of neighbours ' // &
-        rounded(curve%noise%correlation(1))
+      line%text = brief(real(size(curve%data%sample), wp)) // ' samples, noise ' // &
+        rounded(curve%data%noise%deviation) // ', correlation of neighbours ' // &
+        rounded(curve%data%noise%correlation(1))
       lines = [lines, line]
       do i = 1, size(curve%unknown)
         line%text = curve%unknown(i)%name // ' = ' // rounded(outcome%fitted%value(i)) // &

@@ -48,7 +48,7 @@ def test_the_example_gives_what_its_page_says(example):
             for name, group in result.fitted.items()}
     assert set(left) == {"fit", "jkr", "dmt", "maugis_dugdale"}
     assert all(4.3 < value < 4.6 for value in left.values())
-    for phrase in ("2011 samples", "times the noise", "cannot be told apart",
+    for phrase in ("2009 samples", "times the noise", "cannot be told apart",
                    "on the approach the data jump"):
         assert phrase in said, phrase
 
