@@ -126,7 +126,7 @@ contains
         g(n + 1) = state%axis_gap - control%value
       case (at_edge_radius, at_h0_with_edge)
         edge_gap = state%h0 + problem%shape%height(state%scale) + raised(centre_row)
-        g(n + 1) = edge_gap - problem%law%edge_gap
+        g(n + 1) = edge_gap - equations%meshes%locked_gap(problem%law, control%mesh)
       end select
       state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
       if (grid%is_bounded()) state%load = state%load + 2*pi*load_beyond(problem, &

@@ -23,15 +23,17 @@ contains
     type(factorisation_t), intent(inout) :: factors
     real(wp), intent(in), optional :: shift
 
-    associate (grid => equations%meshes%grid(control%mesh))
-      call factorise_on(equations%problem, grid, control, state, factors, equations%cost, shift)
+    associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem)
+      call factorise_on(problem, grid, equations%meshes%locked_gap(problem%law, control%mesh), &
+        control, state, factors, equations%cost, shift)
     end associate
   end subroutine factorise_jacobian
 
-  !> The same for a state on a mesh that is given.
-  subroutine factorise_on(problem, grid, control, state, factors, cost, shift)
+  !> The same for a state on a mesh that is given, locked to a given gap.
+  subroutine factorise_on(problem, grid, locked_gap, control, state, factors, cost, shift)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: locked_gap
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(factorisation_t), intent(inout) :: factors
@@ -61,21 +63,22 @@ contains
       end if
       factors%lu(j, j) = factors%lu(j, j) + diagonal
     end do
-    if (m > n) call border(problem, grid, control, state, factors%lu(:, m))
+    if (m > n) call border(problem, grid, locked_gap, control, state, factors%lu(:, m))
     call factorise(factors)
     cost%factorisations = cost%factorisations + 1
   end subroutine factorise_on
 
   !> The column of derivatives of `residual` by the control's unknown.
-  pure subroutine border(problem, grid, control, state, column)
+  pure subroutine border(problem, grid, locked_gap, control, state, column)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: locked_gap
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: column(:)
 
     if (control%kind == at_h0_with_edge) then
-      column = scale_derivative(problem, grid, state)
+      column = scale_derivative(problem, grid, locked_gap, state)
     else
       column = -1
       column(size(column)) = 1
@@ -85,16 +88,17 @@ contains
   !> Derivative of `residual` by the scale c: -x f'(c x) - 2 coupling W P at the nodes, the opposite
   !> sign, with x = 1, in the equation for the edge. The deformation is read off the gaps, which is
   !> exact where the residual vanishes and costs no operator product.
-  pure function scale_derivative(problem, grid, state) result(column)
+  pure function scale_derivative(problem, grid, locked_gap, state) result(column)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: locked_gap
     type(state_t), intent(in) :: state
     real(wp) :: column(size(state%gap) + 1)
 
     associate (c => state%scale, n => size(state%gap))
       column(:n) = -problem%shape%unlike_scaling(c, grid%x(:n)) - (state%gap - state%h0)/c
       column(n + 1) = problem%shape%unlike_scaling(c, 1.0_wp) + &
-        (problem%law%edge_gap - state%h0)/c
+        (locked_gap - state%h0)/c
     end associate
   end function scale_derivative
 
@@ -118,7 +122,10 @@ contains
       allocate (derivative(n + 1), source=0.0_wp)
       derivative(n + 1) = -1
     case (at_edge_radius)
-      derivative = scale_derivative(equations%problem, equations%meshes%grid(control%mesh), state)
+      associate (problem => equations%problem, meshes => equations%meshes)
+        derivative = scale_derivative(problem, meshes%grid(control%mesh), &
+          meshes%locked_gap(problem%law, control%mesh), state)
+      end associate
     end select
   end function control_derivative
 

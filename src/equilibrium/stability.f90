@@ -94,7 +94,7 @@ contains
     first = eigenvalue
     shift = first - room(close, first, widest)
     control%scale = state%scale
-    call factorise_on(problem, grid, control, state, factors, cost, -shift)
+    call factorise_on(problem, grid, problem%law%edge_gap, control, state, factors, cost, -shift)
     if (.not. factors%valid) return
     if (determinant_sign(factors) < 0) return
     associate (weight => grid%weight(:size(factor)))

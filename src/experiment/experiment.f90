@@ -16,6 +16,7 @@ module experiment
   use h0_range, only: path_start, range_of
   use h0_schedule, only: schedule_of
   use experiment_result, only: experiment_result_t
+  use refinement, only: trace_resolved
   use result_errors, only: judge_locked, judge_fixed
   use result_sensitivities, only: find_sensitivities
   use path, only: follow_path
@@ -82,17 +83,18 @@ contains
     steps%meshes = new_mesh_family(problem, high, low, outcome%chosen%digits)
     steps%cost%kernel_seconds = seconds() - began
     steps%cost%kernel_entries = sum(steps%meshes%grid%kernel_entries())
-    outcome%nodes = sum(steps%meshes%grid%nodes)
     call use_threads_for(maxval(steps%meshes%grid%nodes))
     began = seconds()
     select type (steps)
     class is (path_stepper_t)
-      call steps%know_path(high, low, allocated(request%path), observer)
+      call trace_resolved(steps, high, low, allocated(request%path), request%numerics%accuracy, &
+        observer, outcome%panel_tail)
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
       if (request%reads_path()) call read_path(request, steps, observer, outcome%readings)
     class is (unique_stepper_t)
       if (allocated(request%path)) call run_stepped_path(request, steps, observer, outcome)
     end select
+    outcome%nodes = sum(steps%meshes%grid%nodes)
     if (allocated(request%loading) .and. with_cycle) &
       call run_kept_cycle(request, steps, observer, outcome, keeper)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began

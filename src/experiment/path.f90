@@ -4,7 +4,6 @@ module path
   use kinds, only: wp
   use dimensionless_problem, only: spacing_over_neck
   use equilibrium, only: state_t
-  use edge_locked, only: contact
   use traced_path, only: traced_path_t
   use ending, only: ending_t, state_lost
   use known_path, only: known_path_t, interval_at
@@ -200,7 +199,7 @@ contains
         profile)
       path%states = path%states + 1
       path%worst_residual = max(path%worst_residual, state%residual)
-      if (row%mesh >= contact) path%worst_spacing = max(path%worst_spacing, &
+      if (steps%meshes%in_contact(row%mesh)) path%worst_spacing = max(path%worst_spacing, &
         spacing_over_neck(steps%problem, state%scale*grid%spacing))
     end associate
     if (.not. row%converged) then

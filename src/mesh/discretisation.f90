@@ -22,6 +22,8 @@ module discretisation
   !> Nodes of panels on [0, 1], weights of the integral, and barycentric weights.
   type :: local_nodes_t
     real(wp), allocatable :: node(:), weight(:), barycentric(:)
+  contains
+    procedure :: tail
   end type local_nodes_t
 
   type :: discretisation_t
@@ -52,6 +54,7 @@ module discretisation
     procedure :: note_axis
     procedure :: is_bounded
     procedure :: in_tail
+    procedure :: panel_tails
     procedure, private :: panel_at
     procedure :: kernel_entries
   end type discretisation_t
@@ -67,6 +70,52 @@ contains
     call gauss_legendre(local%node, local%weight)
     local%barycentric = barycentric_weights(local%node)
   end function gauss_nodes
+
+  !> The larger of the last two Legendre coefficients of a function given on the nodes: small if its
+  !> polynomial is the function.
+  pure real(wp) function tail(self, value)
+    class(local_nodes_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+
+    tail = max(abs(coefficient(self, value, size(value) - 1)), &
+      abs(coefficient(self, value, size(value) - 2)))
+  end function tail
+
+  !> A Legendre coefficient of a function given on Gauss-Legendre nodes.
+  pure real(wp) function coefficient(local, value, degree)
+    class(local_nodes_t), intent(in) :: local
+    real(wp), intent(in) :: value(:)
+    integer, intent(in) :: degree
+    real(wp), dimension(size(value)) :: before, now, next
+    integer :: k
+
+    before = 1
+    now = 2*local%node - 1
+    do k = 1, degree - 1
+      next = ((2*k + 1)*(2*local%node - 1)*now - k*before)/(k + 1)
+      before = now
+      now = next
+    end do
+    coefficient = (2*degree + 1)*sum(local%weight*value*now)
+  end function coefficient
+
+  !> The tail of a pressure on each panel, over the largest pressure or its unit, which is the law's
+  !> largest tension or near it; 0 on a panel to infinity.
+  pure function panel_tails(self, pressure) result(tails)
+    class(discretisation_t), intent(in) :: self
+    real(wp), intent(in) :: pressure(:)
+    real(wp) :: tails(size(self%panel))
+    integer :: k
+
+    tails = 0
+    do k = 1, size(self%panel)
+      if (self%panel(k)%kind == algebraic_map) cycle
+      associate (local => self%local(self%which(k)), first => self%first(k))
+        tails(k) = local%tail(pressure(first:first + size(local%node) - 1))
+      end associate
+    end do
+    tails = tails/max(maxval(abs(pressure)), 1.0_wp)
+  end function panel_tails
 
   !> Value at position x of the function with the given nodal values, by the panel's polynomial: of
   !> the inverse position where the mesh goes on to infinity, so that the function has to be bounded

@@ -3,37 +3,55 @@
 !> Before contact the mesh is mapped to the axis and the gap there is the coordinate of the path. In
 !> contact meshes are locked to the contact edge: positions are in units of the contact radius c,
 !> the edge stays at 1, and c is the coordinate. Both coordinates are monotone along the path. A
-!> mesh serves a band of contact radii; the path passes from one to the next.
+!> mesh serves a band of contact radii; the path passes from one to the next. Where a step of the
+!> pressure pulls the bodies together, meshes between the two are locked to its front (`step_front`)
+!> in the same way.
 module edge_locked
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, neck_width, calm_gap
   use discretisation, only: discretisation_t
-  use mapped_mesh, only: new_mapped_mesh
-  use mesh_rule, only: approach_shape, contact_shape
+  use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
+  use mesh_rule, only: approach_shape, contact_shape, short_orders
+  use law_panels, only: about_front, about_edge
+  use step_front, only: front_leads, first_front, last_front
+  use force_law, only: force_law_t
   use contact_scales, only: largest_radius, contact_level, lost_in_rounding
   implicit none
   private
   public :: mesh_family_t, new_mesh_family
   public :: approach, contact
 
-  !> The mesh before contact, and the first of those in contact.
+  !> The mesh before contact, and the first of those in contact or about a front.
   integer, parameter :: approach = 1, contact = 2
 
   !> Largest ratio of the contact radii that one mesh serves: a mesh for wider bands has more nodes,
-  !> and more bands have more meshes.
-  real(wp), parameter :: widest_band = 30
+  !> and more bands have more meshes. Under a law that oscillates or has a step, short panels lie
+  !> wherever its gaps are at any radius of the band.
+  real(wp), parameter :: widest_band = 30, narrow_band = 2_wp
+  !> Part of the radius at which a front becomes sharp, from which on a mesh is locked to it.
+  real(wp), parameter :: early = 0.25_wp
 
   type :: mesh_family_t
     !> The meshes in the order of the path.
     type(discretisation_t), allocatable :: grid(:)
-    !> Contact radius at which the path passes from a mesh to the next, lateral units; of the last
-    !> it is the largest that is expected.
+    !> What these are like, and whether panels of them were halved.
+    type(mapped_shape_t), allocatable :: shape(:)
+    logical, allocatable :: refined(:)
+    !> Radius of what the next mesh is locked to at which the path passes to it, lateral units; of
+    !> the last it is the largest that is expected.
     real(wp), allocatable :: passage(:)
     !> Whether the path can be traced: the law attracts, or the bodies are rigid and it is trivial.
     !> If not, there is one mesh for contact, and its scale is prescribed by `hertz_scale`.
     logical :: traceable = .true.
     !> Gap at which a law without a contact edge begins to deform the bodies.
     real(wp) :: level = -huge(1.0_wp)
+    !> How many meshes next to that of the approach are locked to the front of a step.
+    integer :: fronts = 0
+  contains
+    procedure :: in_contact
+    procedure :: locked_gap
+    procedure :: halve_panels
+    procedure :: follow
   end type mesh_family_t
 
 contains
@@ -45,40 +63,121 @@ contains
     real(wp), intent(in) :: h0_high, h0_low, digits
     logical, intent(in), optional :: shape_only
     type(mesh_family_t) :: meshes
-    real(wp) :: first, widest
+    real(wp) :: widest
+    real(wp), allocatable :: low(:), high(:)
     logical :: elastic
-    integer :: bands, k
+    integer :: k
 
     elastic = .not. problem%rigid
     if (present(shape_only)) elastic = elastic .and. .not. shape_only
     meshes%traceable = problem%law%adhesion > 0 .or. problem%rigid
     if (.not. meshes%traceable) meshes%level = contact_level(problem)
     widest = largest_radius(problem, h0_low, meshes%level)
-    first = min(passage_to_contact(problem), widest)
-    bands = 0
+    allocate (low(0), high(0))
     if (.not. meshes%traceable) then
-      bands = 1
-      first = 1
+      call add_bands(1.0_wp, widest, 1, low, high)
     else if (problem%law%edge_gap > 0 .and. .not. problem%rigid) then
-      ! Where rounding hides the contact the path ends at its first fold.
-      if (lost_in_rounding(problem, widest)) widest = widest_band*first
-      bands = ceiling(log(widest/first)/log(widest_band))
+      associate (first => min(passage_to_contact(problem), widest))
+        ! Where rounding hides the contact the path ends at its first fold.
+        if (lost_in_rounding(problem, widest)) widest = widest_band*first
+        if (front_leads(problem%law)) call add_bands(early*first_front(problem), &
+          last_front(problem), bands_for(problem%law, early*first_front(problem), &
+          last_front(problem)), low, high)
+        meshes%fronts = size(low)
+        call add_bands(first, widest, bands_for(problem%law, first, widest), low, high)
+      end associate
     end if
-    allocate (meshes%grid(approach + bands))
-    meshes%passage = [first, (first*(widest/first)**(real(k, wp)/bands), k=1, bands)]
-    if (meshes%traceable) meshes%grid(approach) = new_mapped_mesh( &
-      approach_shape(problem, max(h0_high, calm_gap(problem)), digits), elastic)
+    allocate (meshes%grid(approach + size(low)), meshes%shape(approach + size(low)))
+    meshes%refined = spread(.false., 1, size(meshes%grid))
+    meshes%passage = [low, widest]
+    if (meshes%traceable) meshes%shape(approach) = &
+      approach_shape(problem, max(h0_high, calm_gap(problem)), digits)
     do k = contact, size(meshes%grid)
-      meshes%grid(k) = new_mapped_mesh(contact_shape(problem, meshes%passage(k - 1), &
-        meshes%passage(k), meshes%level, digits), elastic)
+      meshes%shape(k) = contact_shape(problem, &
+        merge(about_edge, about_front, meshes%in_contact(k)), low(k - 1), high(k - 1), &
+        meshes%level, digits)
+    end do
+    do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
+      meshes%grid(k) = new_mapped_mesh(meshes%shape(k), elastic)
     end do
   end function new_mesh_family
 
+  !> How many bands of equal ratio there are between two radii.
+  pure integer function bands_for(law, first, last) result(bands)
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: first, last
+
+    bands = ceiling(log(last/first)/log(merge(narrow_band, widest_band, &
+      law%period > 0 .or. law%step_width > 0)))
+  end function bands_for
+
+  !> Adds bands between two radii.
+  pure subroutine add_bands(first, last, bands, low, high)
+    real(wp), intent(in) :: first, last
+    integer, intent(in) :: bands
+    real(wp), allocatable, intent(inout) :: low(:), high(:)
+    real(wp) :: border(0:bands)
+    integer :: k
+
+    border = [first, (first*(last/first)**(real(k, wp)/bands), k=1, bands)]
+    low = [low, border(:bands - 1)]
+    high = [high, border(1:)]
+  end subroutine add_bands
+
+  !> Halves panels of a mesh for bodies that yield.
+  subroutine halve_panels(self, mesh, which)
+    class(mesh_family_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+    logical, intent(in) :: which(:)
+
+    self%refined(mesh) = .true.
+    self%shape(mesh) = self%shape(mesh)%halved(which)
+    self%grid(mesh) = new_mapped_mesh(self%shape(mesh), elastic=.true.)
+  end subroutine halve_panels
+
+  !> Makes meshes that were refined in another family, where they have fewer digits, those of it
+  !> with more nodes.
+  subroutine follow(self, other, more_digits)
+    class(mesh_family_t), intent(inout) :: self
+    class(mesh_family_t), intent(in) :: other
+    real(wp), intent(in) :: more_digits
+    integer :: k
+
+    do k = 1, size(other%grid)
+      if (.not. other%refined(k)) cycle
+      self%shape(k) = other%shape(k)%enriched(ceiling(short_orders*more_digits), more_digits)
+      self%grid(k) = new_mapped_mesh(self%shape(k), elastic=.true.)
+    end do
+  end subroutine follow
+
+  !> Whether a mesh is locked to the contact edge.
+  pure logical function in_contact(self, mesh)
+    class(mesh_family_t), intent(in) :: self
+    integer, intent(in) :: mesh
+
+    in_contact = mesh >= contact + self%fronts
+  end function in_contact
+
+  !> The gap that a mesh in contact, or about a front, is locked to.
+  pure real(wp) function locked_gap(self, law, mesh) result(gap)
+    class(mesh_family_t), intent(in) :: self
+    class(force_law_t), intent(in) :: law
+    integer, intent(in) :: mesh
+
+    gap = law%edge_gap
+    if (self%fronts > 0 .and. .not. self%in_contact(mesh)) gap = law%step_at
+  end function locked_gap
+
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a part of the
   !> neck, and of the radius at which the axis of rigid bodies comes from most tension to rest.
+  !> Inside a front nothing is sharp before that.
   pure real(wp) function passage_to_contact(problem) result(c)
     type(problem_t), intent(in) :: problem
 
+    if (front_leads(problem%law)) then
+      c = 0.5_wp*last_front(problem)
+      return
+    end if
     c = 0.25_wp*neck_width(problem)
     if (problem%law%edge_gap > 0) &
       c = min(c, 0.25_wp*problem%shape%position_of( &

@@ -1,44 +1,47 @@
 !> Panels short enough for a force law with lengths of its own: barriers, oscillations and steps lie
 !> somewhere between the edge and infinity, where no general rule can know of them.
 !>
-!> The pressure is tried over gaps as bodies have them: undeformed before contact, in contact the
-!> gap outside a JKR contact. Panels in z on which the last Legendre coefficients of that pressure
-!> are not small are halved.
+!> The pressure is tried over gaps as bodies have them: undeformed before contact; about the front
+!> of a step those of a disk under tension; in contact the gap outside a JKR contact. Panels in z on
+!> which the last Legendre coefficients of that pressure are not small are halved.
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap
   use discretisation, only: local_nodes_t, gauss_nodes
+  use step_front, only: front_leads, gap_about_front
   implicit none
   private
   public :: fitting_panels, longest
+  public :: about_axis, about_front, about_edge
 
-  !> Longest panel in z; how often one is halved; gaps on the axis, or contact radii, that are
-  !> tried.
+  !> What a mesh is mapped to: the axis, the front of a step, the contact edge.
+  integer, parameter :: about_axis = 1, about_front = 2, about_edge = 3
+
+  !> Longest panel in z; how often one is halved; gaps on the axis, or radii, that are tried.
   real(wp), parameter :: longest = 0.7_wp
   integer, parameter :: most_halvings = 6, tried = 9
 
 contains
 
-  !> Lengths in z of panels of so many nodes that lie outside `centre` (0: the axis, 1: the contact
-  !> edge) at distances d sinh(z) up to z_length; low, high: contact radii in contact.
-  function fitting_panels(problem, centre, d, z_length, low, high, order, digits) result(lengths)
+  !> Lengths in z of panels of so many nodes at positions centre + side*d sinh(z), z up to z_length,
+  !> for radii of the front or the edge from low to high; `about`: what is at the centre.
+  function fitting_panels(problem, about, side, d, z_length, low, high, order, digits) &
+    result(lengths)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: centre, d, z_length, low, high, digits
-    integer, intent(in) :: order
+    integer, intent(in) :: about, side, order
+    real(wp), intent(in) :: d, z_length, low, high, digits
     real(wp), allocatable :: lengths(:)
     type(local_nodes_t) :: local
-    real(wp) :: parameter(tried), largest(1)
+    real(wp), allocatable :: parameter(:)
+    real(wp) :: largest(1)
     integer :: panels, k
 
     local = gauss_nodes(order)
     largest = abs(problem%law%pressure([problem%law%edge_gap]))
-    if (centre > 0) then
-      parameter = low*(high/low)**[(real(k, wp)/(tried - 1), k=0, tried - 1)]
+    if (about == about_axis) then
+      parameter = axis_gaps(problem)
     else
-      associate (from => problem%law%edge_gap)
-        parameter = from*(max(calm_gap(problem), 2*from)/from)** &
-          [(real(k, wp)/(tried - 1), k=0, tried - 1)]
-      end associate
+      parameter = between(low, high)
     end if
     allocate (lengths(0))
     panels = ceiling(z_length/longest)
@@ -64,52 +67,63 @@ contains
     !> The largest of the last two Legendre coefficients of the pressure on a panel.
     real(wp) function tail_on(z, length) result(tail)
       real(wp), intent(in) :: z, length
-      real(wp) :: pressure(order)
+      real(wp) :: pressure(order), offset(order)
       integer :: j
 
       tail = 0
-      do j = 1, tried
-        pressure = problem%law%pressure(gap_at(problem, centre, parameter(j), &
-          centre + d*sinh(z + length*local%node)))
-        tail = max(tail, abs(coefficient(local, pressure, order - 1)), &
-          abs(coefficient(local, pressure, order - 2)))
+      offset = side*d*sinh(z + length*local%node)
+      do j = 1, size(parameter)
+        pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset))
+        tail = max(tail, local%tail(pressure))
       end do
     end function tail_on
 
   end function fitting_panels
 
-  !> The gap at positions x: before contact with the gap h on the axis; in contact, outside a JKR
-  !> contact of radius h, whose edge has the gap of largest tension.
-  elemental real(wp) function gap_at(problem, centre, h, x) result(gap)
+  !> Gaps on the axis that bodies have before contact: down to that of most tension, or where a step
+  !> has a front before that, through the step.
+  pure function axis_gaps(problem) result(gap)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: centre, h, x
-    real(wp) :: angle
-
-    if (.not. centre > 0) then
-      gap = h + problem%shape%height(x)
-      return
-    end if
-    angle = acos(min(1/x, 1.0_wp))
-    gap = problem%law%edge_gap + problem%shape%hertz_gap(h, x) + &
-      2/pi*sqrt(4*pi*problem%coupling*problem%law%adhesion*h)*angle
-  end function gap_at
-
-  !> A Legendre coefficient of a function given on Gauss-Legendre nodes.
-  pure real(wp) function coefficient(local, value, degree)
-    type(local_nodes_t), intent(in) :: local
-    real(wp), intent(in) :: value(:)
-    integer, intent(in) :: degree
-    real(wp), dimension(size(value)) :: before, now, next
+    real(wp), allocatable :: gap(:)
+    real(wp) :: from
     integer :: k
 
-    before = 1
-    now = 2*local%node - 1
-    do k = 1, degree - 1
-      next = ((2*k + 1)*(2*local%node - 1)*now - k*before)/(k + 1)
-      before = now
-      now = next
-    end do
-    coefficient = (2*degree + 1)*sum(local%weight*value*now)
-  end function coefficient
+    associate (law => problem%law)
+      from = law%edge_gap
+      if (front_leads(law)) from = law%step_at
+      gap = between(from, max(calm_gap(problem), 2*from))
+      if (front_leads(law)) gap = [gap, law%step_at + law%step_width*[(0.5_wp*k, k=-4, 6)]]
+    end associate
+  end function axis_gaps
+
+  !> Values to try from one to another, in equal ratios.
+  pure function between(from, to) result(values)
+    real(wp), intent(in) :: from, to
+    real(wp) :: values(tried)
+    integer :: k
+
+    values = from*(to/from)**[(real(k, wp)/(tried - 1), k=0, tried - 1)]
+  end function between
+
+  !> The gap at an offset from the centre: before contact with the gap h on the axis; about a front
+  !> of radius h; outside a JKR contact of radius h, whose edge has the gap of largest tension.
+  elemental real(wp) function gap_at(problem, about, h, offset) result(gap)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: about
+    real(wp), intent(in) :: h, offset
+    real(wp) :: x, angle
+
+    select case (about)
+    case (about_axis)
+      gap = h + problem%shape%height(offset)
+    case (about_front)
+      gap = gap_about_front(problem, h, 1 + offset)
+    case default
+      x = 1 + offset
+      angle = acos(min(1/x, 1.0_wp))
+      gap = problem%law%edge_gap + problem%shape%hertz_gap(h, x) + &
+        2/pi*sqrt(4*pi*problem%coupling*problem%law%adhesion*h)*angle
+    end select
+  end function gap_at
 
 end module law_panels

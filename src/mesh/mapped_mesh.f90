@@ -27,9 +27,42 @@ module mapped_mesh
     real(wp) :: digits = 14
     !> Whether functions are even in the distance from the axis.
     logical :: even = .true.
+  contains
+    procedure :: halved
+    procedure :: enriched
   end type mapped_shape_t
 
 contains
+
+  !> The shape with some of its sinh panels halved.
+  pure type(mapped_shape_t) function halved(self, which) result(shape)
+    class(mapped_shape_t), intent(in) :: self
+    logical, intent(in) :: which(:)
+    integer :: k
+
+    shape = self
+    deallocate (shape%order, shape%z_length)
+    allocate (shape%order(0), shape%z_length(0))
+    do k = 1, size(self%order)
+      associate (parts => merge(2, 1, which(k)))
+        shape%order = [shape%order, spread(self%order(k), 1, parts)]
+        shape%z_length = [shape%z_length, spread(self%z_length(k)/parts, 1, parts)]
+      end associate
+    end do
+    shape%inner = self%inner + count(which(:self%inner))
+  end function halved
+
+  !> The shape with so many nodes more on each panel, and digits of the kernel.
+  pure type(mapped_shape_t) function enriched(self, nodes, digits) result(shape)
+    class(mapped_shape_t), intent(in) :: self
+    integer, intent(in) :: nodes
+    real(wp), intent(in) :: digits
+
+    shape = self
+    shape%order = self%order + nodes
+    if (self%tail_order > 0) shape%tail_order = self%tail_order + nodes
+    shape%digits = self%digits + digits
+  end function enriched
 
   !> The mesh of a shape; elastic = .false. leaves the kernel out.
   function new_mapped_mesh(shape, elastic) result(grid)

@@ -7,11 +7,12 @@ module mesh_rule
   use shape, only: shape_t
   use dimensionless_problem, only: problem_t, calm_gap
   use contact_scales, only: smallest_feature
-  use law_panels, only: fitting_panels, longest
+  use law_panels, only: fitting_panels, longest, about_axis, about_front, about_edge
+  use step_front, only: front_leads, first_front, front_width
   use mapped_mesh, only: mapped_shape_t
   implicit none
   private
-  public :: approach_shape, contact_shape, digits_for
+  public :: approach_shape, contact_shape, digits_for, short_orders
 
   !> d over the smallest feature: errors change little from half of it to twice.
   real(wp), parameter :: finer = 0.5_wp
@@ -73,16 +74,21 @@ contains
     reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
     shape%d = finer*smallest_feature(problem, 1.0_wp)
+    if (front_leads(problem%law)) shape%d = min(shape%d, finer*first_front(problem))
     shape%even = is_even(problem%shape)
-    call add_panels(problem, shape, asinh(reach/shape%d), density, digits, 0.0_wp, 0.0_wp)
+    call add_panels(problem, shape, about_axis, 1, asinh(reach/shape%d), density, digits, 0.0_wp, &
+      0.0_wp)
     call refine_axis(problem, digits, 3.0_wp, shape)
     shape%digits = kernel_digits(digits)
   end function approach_shape
 
-  !> In contact, about the edge, for contact radii from `low` to `high` (lateral units). level: the
-  !> gap at which a law without adhesion begins to deform the bodies.
-  type(mapped_shape_t) function contact_shape(problem, low, high, level, digits) result(shape)
+  !> In contact, about the edge, for contact radii from `low` to `high` (lateral units); or before,
+  !> about the front of a step. level: the gap at which a law without adhesion begins to deform the
+  !> bodies.
+  type(mapped_shape_t) function contact_shape(problem, about, low, high, level, digits) &
+    result(shape)
     type(problem_t), intent(in) :: problem
+    integer, intent(in) :: about
     real(wp), intent(in) :: low, high, level, digits
     real(wp) :: density, outer, reach
 
@@ -102,12 +108,13 @@ contains
     shape%centre = 1
     shape%even = is_even(problem%shape)
     shape%d = min(finer*smallest_feature(problem, high)/high, 1.0_wp)
-    call add_panels(problem, shape, asinh(1/shape%d), density, digits)
+    if (about == about_front) shape%d = finer*front_width(problem, high)
+    call add_panels(problem, shape, about, -1, asinh(1/shape%d), density, digits, low, high)
     call refine_axis(problem, digits, 1.0_wp, shape)
     shape%inner = size(shape%order)
     ! Panels of a whole number of nodes are a little longer, and end on the axis.
     shape%d = 1/sinh(sum(shape%z_length))
-    call add_panels(problem, shape, asinh(reach/shape%d), outer, digits, low, high)
+    call add_panels(problem, shape, about, 1, asinh(reach/shape%d), outer, digits, low, high)
     shape%digits = kernel_digits(digits)
   end function contact_shape
 
@@ -155,20 +162,20 @@ contains
 
   !> Adds sinh panels over z_length: one for the paper's laws, which are powers of the gap or one
   !> exponential, and bodies that are parabolas near the axis: the density was fitted to these.
-  !> Other laws have lengths of their own anywhere within their reach: short panels follow them,
-  !> outside the edge those that fit the law. So they do other shapes. low, high: contact radii;
-  !> absent inside the edge.
-  subroutine add_panels(problem, shape, z_length, density, digits, low, high)
+  !> Other laws have lengths of their own anywhere within their reach: short panels follow them, but
+  !> inside the edge those that fit the law. So they do other shapes. about, side, low, high: as for
+  !> `fitting_panels`.
+  subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
-    real(wp), intent(in) :: z_length, density, digits
-    real(wp), intent(in), optional :: low, high
+    integer, intent(in) :: about, side
+    real(wp), intent(in) :: z_length, density, digits, low, high
     real(wp), allocatable :: lengths(:)
     integer :: panels, order
     logical :: broken
 
     broken = problem%shape%smooth_from() > 0
-    if (present(low)) broken = broken .or. &
+    if (side > 0) broken = broken .or. &
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0) > &
       problem%shape%ends
     if (problem%law%of_paper .and. .not. (abs(problem%shape%exponent - 2) > 0 .or. broken)) then
@@ -176,13 +183,16 @@ contains
       return
     end if
     order = ceiling(short_order + short_orders*digits)
-    if (present(low) .and. problem%law%edge_gap > 0 .and. .not. problem%law%of_paper) then
-      lengths = fitting_panels(problem, shape%centre, shape%d, z_length, low, high, order, &
+    if (problem%law%edge_gap > 0 .and. .not. problem%law%of_paper .and. &
+      .not. (about == about_edge .and. side < 0)) then
+      lengths = fitting_panels(problem, about, side, shape%d, z_length, low, high, order, &
         merge(min(digits, digits_of_broken), digits, broken))
     else
       panels = ceiling(z_length/longest)
       lengths = spread(z_length/panels, 1, panels)
     end if
+    ! From the axis outward.
+    if (side < 0) lengths = lengths(size(lengths):1:-1)
     if (.not. allocated(shape%order)) allocate (shape%order(0), shape%z_length(0))
     shape%order = [shape%order, spread(order, 1, size(lengths))]
     shape%z_length = [shape%z_length, lengths]

@@ -90,11 +90,15 @@ contains
 
   !> A gap beyond which bodies hardly deform: twice that of the jump of parabolas into contact under
   !> an r^-3 attraction, (37); for any shape and law that attracts, where about a tenth of what a
-  !> jump takes is left.
+  !> jump takes is left. Outside a step of the law.
   pure real(wp) function calm_gap(problem) result(gap)
     type(problem_t), intent(in) :: problem
+    !> Widths of a step outside it at which erfc(x) is below rounding.
+    real(wp), parameter :: outside = 6
 
     gap = max(5.0_wp, yielding_gap(problem, 1.0_wp/8))
+    if (problem%law%step_width > 0) &
+      gap = max(gap, problem%law%step_at + outside*problem%law%step_width)
     if (problem%shape%parabolic) &
       gap = max(gap, 2*(27*problem%coupling*problem%law%adhesion)**(2.0_wp/7))
   end function calm_gap

@@ -84,7 +84,8 @@ contains
   !> Units and scales of a law whose terms are complete. A sum is looked at in units of its shortest
   !> term first, of those that have a length. If it has a well its units are then those of the well:
   !> z0 of the first term that has one, else the range, which is the depth over the largest tension;
-  !> and the largest tension. The contact is at gap 1. So are those of a law without units of its own, a sum of one.
+  !> and the largest tension. The contact is at gap 1. So are those of a law without units of its
+  !> own, a sum of one.
   subroutine settle(law)
     class(force_law_t), allocatable, intent(inout) :: law
     type(force_sum_t) :: alone
@@ -253,7 +254,8 @@ contains
     end do
   end function table_error
 
-  !> The least that any of the forces allows.
+  !> The least that any of the forces allows; and beyond the range half of what is beyond it,
+  !> whatever their lengths: far out gaps are large, and so is what a prediction of them is off by.
   pure function closure(self, gap) result(most)
     class(force_sum_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
@@ -266,6 +268,7 @@ contains
         most = min(most, term%law%closure(term%own(gap))/term%stretch)
       end associate
     end do
+    if (self%range > 0) most = max(most, 0.5_wp*(gap - self%range))
   end function closure
 
 end module force_sum

@@ -19,6 +19,7 @@ module step_attraction
     procedure :: pressure
     procedure :: slope
     procedure :: energy
+    procedure :: closure
   end type step_t
 
   !> Smoothing where the deck does not say, over the range; and beyond how many smoothing lengths
@@ -69,7 +70,6 @@ contains
     this%length = range
     this%pressure_unit = stress
     this%smoothing = this%smoothing/range
-    this%closure_length = this%smoothing
     this%step_at = 1
     this%step_width = this%smoothing
     this%group = group
@@ -113,5 +113,14 @@ contains
     value = -0.5_wp*self%smoothing*(exp(-min(x**2, farthest**2))/sqrt(pi) - x*erfc(x))
     where (x >= farthest) value = 0
   end function energy
+
+  !> By how much gaps may close in one iteration: half the way to the step, and its width.
+  pure function closure(self, gap) result(most)
+    class(step_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: most(size(gap))
+
+    most = self%smoothing + 0.5_wp*abs(gap - 1)
+  end function closure
 
 end module step_attraction

@@ -40,7 +40,6 @@ module continuation
     procedure :: advance
     procedure, private :: remember
     procedure :: change_mesh
-    procedure, private :: contact_radius
   end type continuation_t
 
 contains
@@ -78,6 +77,7 @@ contains
     logical :: converged
 
     lost = .false.
+    self%step = min(self%step, longest_step(equations%problem, self))
     do
       s = self%coordinate(self%held) + sense_of(self)*self%step
       call state_at(equations, options, self%frozen, self%arc_t, s, trial, converged)
@@ -92,6 +92,22 @@ contains
     if (trial%iterations > 12) self%step = 0.7_wp*self%step
     call self%remember(equations%problem, trial)
   end subroutine advance
+
+  !> The longest step of the path's coordinate. Where the axis passes a step of the pressure all
+  !> changes over the width of it, and h0 may turn several times.
+  pure real(wp) function longest_step(problem, self) result(longest)
+    type(problem_t), intent(in) :: problem
+    class(continuation_t), intent(in) :: self
+    !> Parts of the step's width that are passed at once, and reach of the step in its widths.
+    real(wp), parameter :: at_once = 0.25_wp, reach = 4
+
+    longest = self%largest_step
+    if (self%mesh /= approach .or. .not. problem%law%step_width > 0) return
+    associate (law => problem%law, gap => self%state(self%held)%axis_gap)
+      longest = min(longest, max(at_once*law%step_width, &
+        0.5_wp*(abs(gap - law%step_at) - reach*law%step_width))/(gap - 0.9_wp*law%rest_gap))
+    end associate
+  end function longest_step
 
   !> The control that prescribes the path's coordinate s on a mesh: the logarithm of the gap on the
   !> axis above nine tenths of the gap at rest, or of the contact radius.
@@ -137,9 +153,7 @@ contains
     real(wp) :: c
 
     associate (problem => equations%problem, meshes => equations%meshes)
-      c = state%scale
-      if (from == approach) c = radius_of_gap(problem%shape, problem%law%edge_gap, &
-        meshes%grid(from), state)
+      c = radius_for(equations, from, to, state)
       done = c > 0
       if (.not. done) return
       state = regrid(problem%shape, state, meshes%grid(from), meshes%grid(to), c)
@@ -219,10 +233,11 @@ contains
     logical :: done(2)
 
     lost = .false.
-    associate (meshes => equations%meshes)
+    associate (meshes => equations%meshes, next => self%mesh + 1)
       if (.not. equations%problem%law%edge_gap > 0 .or. self%mesh == size(meshes%grid)) return
-      if (self%contact_radius(equations, self%held) < meshes%passage(self%mesh)) return
-      if (self%contact_radius(equations, max(1, self%held - 1)) < &
+      if (radius_for(equations, self%mesh, next, self%state(self%held)) < &
+        meshes%passage(self%mesh)) return
+      if (radius_for(equations, self%mesh, next, self%state(max(1, self%held - 1))) < &
         nearly_passed*meshes%passage(self%mesh)) return
     end associate
     self%frozen%factors%valid = .false.
@@ -241,15 +256,20 @@ contains
     self%step = 0.5_wp*self%step
   end subroutine change_mesh
 
-  !> Contact radius of the j-th state that is held, lateral units; 0 without a contact.
-  pure real(wp) function contact_radius(self, equations, j) result(c)
-    class(continuation_t), intent(in) :: self
+  !> Radius, lateral units, of what one mesh is locked to for a state on another; 0 where the state
+  !> has none.
+  pure real(wp) function radius_for(equations, from, to, state) result(c)
     type(equations_t), intent(in) :: equations
-    integer, intent(in) :: j
+    integer, intent(in) :: from, to
+    type(state_t), intent(in) :: state
 
-    c = self%state(j)%scale
-    if (self%mesh == approach) c = radius_of_gap(equations%problem%shape, &
-      equations%problem%law%edge_gap, equations%meshes%grid(approach), self%state(j))
-  end function contact_radius
+    associate (problem => equations%problem, meshes => equations%meshes)
+      c = state%scale
+      associate (gap => meshes%locked_gap(problem%law, to))
+        if (from > approach .and. .not. abs(gap - meshes%locked_gap(problem%law, from)) > 0) return
+        c = radius_of_gap(problem%shape, gap, meshes%grid(from), state)
+      end associate
+    end associate
+  end function radius_for
 
 end module continuation

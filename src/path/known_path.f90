@@ -6,7 +6,7 @@ module known_path
   use listener, only: listener_t
   use equilibrium, only: state_t, equations_t
   use solver_options, only: solver_options_t
-  use edge_locked, only: approach, contact
+  use edge_locked, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
   use continuation, only: continuation_t, new_continuation
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
@@ -97,7 +97,7 @@ contains
       associate (n => known%path%held)
         associate (last => known%path%point(n), before => known%path%point(n - 1))
           finished = last%modes == 0 .and. max(last%state%h0, before%state%h0) <= h0_low .and. &
-            (last%mesh >= contact .or. .not. into_contact)
+            (equations%meshes%in_contact(last%mesh) .or. .not. into_contact)
         end associate
       end associate
     end do

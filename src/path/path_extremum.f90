@@ -14,9 +14,10 @@ module path_extremum
 
   !> The quantities that have extrema.
   integer, parameter :: of_h0 = 1, of_load = 2
-  !> Secants for an extremum, and the change of the path's coordinate below which it is found.
-  integer, parameter :: most_rounds = 12
-  real(wp), parameter :: root_tolerance = 1.0e-10_wp
+  !> Secants for an extremum, and the change of the path's coordinate below which it is found; below
+  !> which rounding may keep the derivative from falling.
+  integer, parameter :: most_rounds = 60
+  real(wp), parameter :: root_tolerance = 1.0e-10_wp, rounding_rules = 1.0e-6_wp
 
   !> An extremum on one of the meshes: its place on the path and its state; 1 for a maximum, -1 for
   !> a minimum; the derivative of the load by the path's coordinate there, up to a positive factor.
@@ -31,7 +32,8 @@ contains
 
   !> The extremum of h0 or load that the last three states of an arc surround: a root of its exact
   !> derivative along the path, begun at the extremum of the polynomial through the states and found
-  !> by secants. lost: a solve failed.
+  !> by secants, and by bisection where these do not come nearer, as under a force that changes by
+  !> orders of magnitude. lost: a solve failed.
   subroutine polish_extremum(equations, options, arc, quantity, found, lost)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
@@ -44,7 +46,7 @@ contains
     type(bracket_t) :: bracket
     real(wp) :: slopes(2), slope, slope_size, slope_before, s, s_before, s_next
     integer :: round
-    logical :: solved
+    logical :: solved, fell
 
     associate (n => arc%held)
       associate (value => merge(arc%state(:n)%h0, arc%state(:n)%load, quantity == of_h0))
@@ -61,18 +63,19 @@ contains
       lost = .not. solved
       if (lost) return
       slope = slopes(quantity)
-      if (abs(slope) < slope_size) then
+      fell = abs(slope) < slope_size
+      if (fell) then
         slope_size = abs(slope)
         found%state = trial
         found%coordinate = s
         found%load_slope = slopes(2)
-      else if (round > 2) then
-        ! Rounding rules once the derivative no longer falls; the first two only set the secant up.
-        exit
       end if
       ! A maximum has its rising side before it.
       call bracket%narrow((slope > 0) .eqv. (found%sense > 0), s)
-      if (round == 1) then
+      if (.not. fell .and. round > 2) then
+        if (abs(s - s_before) < rounding_rules) exit
+        s_next = bracket%middle()
+      else if (round == 1) then
         s_next = s + sign(1.0e-4_wp*(bracket%high - bracket%low) + 1.0e-7_wp, found%sense*slope)
       else if (abs(slope - slope_before) > tiny(slope)) then
         s_next = secant_root(s, slope, s_before, slope_before)

@@ -21,7 +21,7 @@ module place_sensitivity
   implicit none
   private
   public :: local_t, find_local, local_undeformed, at_fixed, at_extremum
-  public :: quantities, of_h0, of_load, of_displacement, of_energy, of_radius
+  public :: of_h0, of_load, of_displacement, of_energy, of_radius
 
   !> What is reported of a state: h0 [m], load [N], displacement [m], potential energy [J], contact
   !> radius [m].

@@ -53,6 +53,8 @@ module traced_path
   !> to no gap at all. What is left of the gap at the first fold when it is followed no farther,
   !> and if there is no fold, how many of the law's lengths.
   real(wp), parameter :: collapse = 0.3_wp
+  !> A load over the law's adhesion below which it is none: its extrema are of no consequence.
+  real(wp), parameter :: no_load = 1.0e-16_wp
 
 contains
 
@@ -133,7 +135,8 @@ contains
       else if (.not. any(path%point(max(1, path%held - 4):path%held)%fold)) then
         call insert_hidden(path, walker, equations, options)
       end if
-      if (.not. lost .and. surrounded(walker%state(n - 2:n)%load)) &
+      if (.not. lost .and. surrounded(walker%state(n - 2:n)%load) .and. &
+        any(abs(walker%state(n - 2:n)%load) > no_load*equations%problem%law%adhesion)) &
         call insert_extremum(path, walker, of_load, equations, options, lost)
     end if
     if (.not. lost) call change_mesh(path, walker, equations, options, lost)

@@ -4,6 +4,7 @@ module quality_warnings
   use kinds, only: wp
   use scene_groups, only: scene_t
   use experiment_result, only: experiment_result_t
+  use refinement, only: unresolved_from
   use summary, only: summary_t
   implicit none
   private
@@ -56,6 +57,9 @@ contains
         short_number(summary%number('worst_residual'))// &
         ' lengths of the force law, above the tolerance of '//short_number(tolerance))
     end associate
+    if (outcome%panel_tail > unresolved_from(scene%numerics%accuracy)) call summary%warn( &
+      'the mesh does not resolve the force law: '//short_number(outcome%panel_tail)// &
+      ' of the largest pressure is left between nodes; smoother forces are resolved')
     if (.not. summary%has('error_estimate')) return
     estimate = summary%number('error_estimate')
     enough = clearly*scene%numerics%accuracy

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+import snapin as python
 from support.scenes import deck, lennard_jones, runner, several
 
 LAW = {"law": "lennard_jones", "hamaker": 1.0e-20, "z0": 0.5e-9}
@@ -54,9 +55,11 @@ def test_derivatives_obey_the_dimensions_of_the_problem(run, sigma):
         kind = next(end for end in powers if quantity.split("(")[0].endswith(end))
         strength = -rate["bodies.stiffness"]
         expected = np.add(powers[kind], strength * np.array([1, 0.5, -3.5]))
-        # A load at a fold takes second derivatives, which are differences.
-        np.testing.assert_allclose([rate[name] for name in names[:3]], expected, rtol=1e-6,
-                                   atol=1e-6, err_msg=quantity)
+        # A load at a fold takes second derivatives, which are differences, and is as good as the
+        # place of the fold: of the narrow pair at sigma = 8.7 that is known to some 1e-6.
+        bound = 5e-6 if kind == "_load" else 1e-7
+        np.testing.assert_allclose([rate[name] for name in names[:3]], expected, rtol=bound,
+                                   atol=bound, err_msg=quantity)
         tried += 1
     assert tried >= (2 if sigma < 0.1 else 11)
 
@@ -69,6 +72,28 @@ def test_rigid_and_jkr_limits_have_the_powers_of_their_theories(run):
             sensitivity={"parameters": names})))["max_tension"]
         # The pull-offs 2 pi w R and 3/2 pi w R, with w = A/(16 pi z0^2).
         assert [rate[name] for name in names] == pytest.approx([1, 1, -2, 0], abs=1e-3)
+
+
+@pytest.mark.parametrize(("shape", "lengths"), [
+    ({"kind": "sphere", "radius": 1e-7}, ["radius"]),
+    ({"kind": "rounded_punch", "radius": 1e-6, "flat_radius": 6e-8}, ["radius", "flat_radius"]),
+])
+def test_derivatives_for_other_shapes_obey_the_dimensions_too(run, shape, lengths):
+    """Loads are w times a length, and what has no dimension depends on w/(E L)."""
+    lengths = [f"shape.{name}" for name in lengths] + ["morse.z0", "morse.decay_length"]
+    found = derivatives(run(deck(
+        bodies={"stiffness": 5e7}, shape=shape,
+        morse={"surface_energy": 0.05, "z0": 0.3e-9, "decay_length": 0.2e-9},
+        equilibrium_path={"h0_end": -2e-9}, numerics={"accuracy": 1e-4},
+        sensitivity={"parameters": [*lengths, "bodies.stiffness", "morse.surface_energy"]})))
+    for quantity in ("max_tension", "max_tension_h0", "jump_in_h0", "jump_out_h0"):
+        rate = found[quantity]
+        load = quantity == "max_tension"
+        assert rate["bodies.stiffness"] + rate["morse.surface_energy"] == pytest.approx(
+            1 if load else 0, abs=1e-6)
+        # The place of an extremum is known to some 1e-5 at this accuracy beside a punch's rim.
+        assert sum(rate[name] for name in lengths) - rate["bodies.stiffness"] == pytest.approx(
+            1, abs=2e-5)
 
 
 CASES = {
@@ -123,7 +148,12 @@ def number_in(groups, name):
     return groups[group][key][int(term) - 1] if term else groups[group][key]
 
 
-@pytest.mark.parametrize("case", CASES)
+# On other shapes the meshes of accuracy 1e-9 are large.
+LONG = ["Morse law on a power of r", "Morse law on a sphere"]
+
+
+@pytest.mark.parametrize("case", [
+    pytest.param(case, marks=[pytest.mark.long] if case in LONG else []) for case in CASES])
 def test_derivatives_are_those_of_whole_runs(run, case):
     """Of fourth order in a direction in which all parameters change, by 4e-3 of themselves and
     less: what that leaves out is some 1e-8, and errors of runs of accuracy 1e-9 count 250 times."""
@@ -197,3 +227,13 @@ def test_nothing_else_changes(run):
     for name in ("curve.csv", "device.csv", "device_jumps.csv", "fixed_load.csv"):
         assert (beside.folder / name).read_bytes() == (without.folder / name).read_bytes()
     assert not (without.folder / "sensitivity.csv").exists()
+
+
+def test_python_has_the_tables_by_name():
+    result = python.run({"bodies": PARABOLA, "force": LAW, "equilibrium_path": {"h0_end": -2e-9},
+                         "sensitivity": {"parameters": ["force.z0"]}})
+    table = result.sensitivity
+    mine = table[table["quantity"] == "max_tension"]
+    assert list(mine["parameter"]) == ["force.z0"]
+    assert mine["value"] == result.summary["max_tension"]
+    assert len(result.curve_sensitivity) > 20

@@ -1,0 +1,108 @@
+!> The front of a step of the pressure. Where an attraction ends suddenly (`step_attraction`),
+!> bodies that come together are pulled first where their gap has just passed the step: a disk about
+!> the axis under nearly uniform tension, outside which there is none. Its rim is the front. It is
+!> sharp before there is a contact edge, and meshes are locked to it until there is one.
+module step_front
+  use kinds, only: wp, pi
+  use force_law, only: force_law_t
+  use dimensionless_problem, only: problem_t
+  implicit none
+  private
+  public :: front_leads, first_front, last_front, front_width, gap_about_front
+
+  !> Inside the step, so many of its widths from the middle, its tension is complete; and the least
+  !> part of the largest tension that makes bodies follow the step before what is nearer. Under
+  !> less, the front recedes while the axis is drawn into contact.
+  real(wp), parameter :: complete = 2, leading = 0.5_wp
+
+contains
+
+  !> Whether bodies under a law are pulled together by a step of it.
+  pure logical function front_leads(law)
+    class(force_law_t), intent(in) :: law
+    real(wp) :: pressure(2)
+
+    front_leads = .false.
+    if (.not. (law%step_width > 0 .and. law%edge_gap > 0 .and. law%step_at > law%edge_gap)) return
+    pressure = law%pressure([law%edge_gap, law%step_at - complete*law%step_width])
+    front_leads = pressure(2) < leading*pressure(1)
+  end function front_leads
+
+  !> Coupling times the tension inside the step: its disk of radius c is deformed by 4 c of it on
+  !> the axis and by 8/pi c at the rim.
+  pure real(wp) function pull(problem)
+    type(problem_t), intent(in) :: problem
+    real(wp) :: pressure(1)
+
+    pressure = problem%law%pressure([problem%law%step_at - complete*problem%law%step_width])
+    pull = -problem%coupling*pressure(1)
+  end function pull
+
+  !> Radius, lateral units, from which on there is a front: that of a disk over which the gap
+  !> changes by the width of the step.
+  pure real(wp) function first_front(problem)
+    type(problem_t), intent(in) :: problem
+
+    first_front = radius_spanning(problem, problem%law%step_width)
+  end function first_front
+
+  !> Radius at which bodies within the front are at rest on the axis.
+  pure real(wp) function last_front(problem)
+    type(problem_t), intent(in) :: problem
+
+    last_front = radius_spanning(problem, problem%law%step_at - problem%law%rest_gap)
+  end function last_front
+
+  !> Radius of the disk over which the gap changes by `height`, but for a factor of two.
+  pure real(wp) function radius_spanning(problem, height) result(c)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: height
+
+    c = min(problem%shape%position_of(height), height/((4 - 8/pi)*pull(problem)))
+  end function radius_spanning
+
+  !> Width of the front of radius c in units of it: that of the step over the slope of the gap,
+  !> which is logarithmic in the width.
+  pure real(wp) function front_width(problem, c) result(width)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: c
+    real(wp), parameter :: logarithm = 5
+
+    width = min(1.0_wp, problem%law%step_width/ &
+      (c*(problem%shape%slope(c) + 4/pi*logarithm*pull(problem))))
+  end function front_width
+
+  !> The gap at positions x (units of c) about a front of radius c whose disk is under uniform
+  !> tension.
+  elemental real(wp) function gap_about_front(problem, c, x) result(gap)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: c, x
+
+    gap = problem%law%step_at + problem%shape%height(c*x) - problem%shape%height(c) + &
+      2*pull(problem)*c*(4/pi - raised_by_disk(x))
+  end function gap_about_front
+
+  !> Integral of the kernel (15) over the unit disk: 4/pi E(x^2) inside, and outside
+  !> 4/pi [x E(1/x^2) - (x - 1/x) K(1/x^2)], by arithmetic-geometric means.
+  elemental real(wp) function raised_by_disk(x) result(raised)
+    real(wp), intent(in) :: x
+    real(wp) :: q, a, b, next, total, integral_k, integral_e
+    integer :: step
+
+    q = min(x, 1/max(x, tiny(1.0_wp)))
+    a = 1
+    b = sqrt(max((1 - q)*(1 + q), epsilon(1.0_wp)**2))
+    total = 0.5_wp*q**2
+    do step = 0, 8
+      total = total + 2.0_wp**step*(0.5_wp*(a - b))**2
+      next = 0.5_wp*(a + b)
+      b = sqrt(a*b)
+      a = next
+    end do
+    integral_k = pi/(2*a)
+    integral_e = integral_k*(1 - total)
+    raised = 4/pi*integral_e
+    if (x > 1) raised = 4/pi*(x*integral_e - (x - 1/x)*integral_k)
+  end function raised_by_disk
+
+end module step_front

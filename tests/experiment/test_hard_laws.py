@@ -1,0 +1,161 @@
+"""Claims about force laws that end in a step, oscillate, or attract alone: the path is found, it
+has the folds that it has and no others, and its numbers are as good as their errors say.
+
+Laws are in units of the step's tension and range, on a body of unit radius; the stiffness is the
+inverse of sigma but for a factor near 1.
+"""
+
+import math
+
+import pytest
+from support.scenes import deck, runner, several
+
+# Pull-off over pi R w of Maugis' theory (1992), from a solver of its own.
+MAUGIS = {0.3: 1.815556, 1.0: 1.600735, 2.0: 1.534603}
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("hard_laws"))
+
+
+def steps(sigma, h0_end=-3.0, accuracy=1e-6, stiffness=None, **law):
+    """A deck with the path under a step and a repulsion."""
+    return deck(
+        bodies={"radius": 1.0, "stiffness": stiffness or 1 / sigma},
+        **law,
+        equilibrium_path={"h0_end": h0_end},
+        numerics={"accuracy": accuracy},
+    )
+
+
+def dugdale(smoothing, pressure=20.0, decay_length=0.05):
+    return {
+        "dugdale": {"stress": 1.0, "range": 1.0, "smoothing": smoothing},
+        "hydration": {"pressure": pressure, "decay_length": decay_length},
+    }
+
+
+def capillary(smoothing):
+    return {
+        "capillary": {
+            "surface_tension": 0.5, "kelvin_radius": 0.5, "contact_angle": 0.0,
+            "smoothing": smoothing,
+        },
+        "born": {"hamaker": 0.147, "z0": 0.16},
+    }
+
+
+def depletion(smoothing):
+    return {
+        "depletion": {"osmotic_pressure": 1.0, "diameter": 1.0, "smoothing": smoothing},
+        "hydration": {"pressure": 50.0, "decay_length": 0.04},
+    }
+
+
+def check(result, accuracy=1e-6):
+    """The path is whole, nothing is hidden, and what is reported is as good as asked for."""
+    assert result.warnings == []
+    assert result.summary["converged"]
+    assert result.summary["error_estimate"] <= 3 * accuracy
+    return result.summary
+
+
+@pytest.mark.parametrize("law", [dugdale, capillary, depletion])
+@pytest.mark.parametrize("sigma", [0.1, 1.0, pytest.param(10.0, marks=pytest.mark.slow)])
+def test_path_under_a_sharp_step_is_whole(run, law, sigma):
+    summary = check(run(steps(sigma, h0_end=-2 - 2 * sigma, **law(0.01))))
+    stable = several(summary["folds_stable"])
+    # The bodies are stable far apart and in contact.
+    assert stable[-1] == 1 and stable[0] == 0 and len(stable) % 2 == 0
+    assert 1 < summary["max_tension"] / summary["jkr_pull_off"] < 4 / 3
+
+
+@pytest.mark.slow
+def test_strongest_adhesion_under_a_sharp_step(run):
+    summary = check(run(steps(100.0, h0_end=-45.0, **dugdale(0.02))))
+    assert summary["max_tension"] / summary["jkr_pull_off"] == pytest.approx(1, abs=3e-4)
+
+
+@pytest.mark.parametrize("parameter", [0.3, pytest.param(1.0, marks=pytest.mark.slow),
+                                       pytest.param(2.0, marks=pytest.mark.slow)])
+def test_hard_dugdale_bodies_tend_to_maugis(run, parameter):
+    """The sharper the step and the harder the repulsion, the nearer."""
+
+    def pull_off(smoothing, decay_length):
+        work = 1 - 3 * decay_length
+        for _ in range(2):  # lambda = 2 stress (9 R/(4 pi w stiffness^2))^(1/3).
+            stiffness = (2 / parameter) ** 1.5 * math.sqrt(9 / (4 * math.pi * work))
+            scene = steps(1, accuracy=1e-4, stiffness=stiffness,
+                          **dugdale(smoothing, decay_length=decay_length))
+            summary = check(run(scene), 1e-4)
+            work = summary["surface_energy"]
+        return summary["max_tension"] / (math.pi * work)
+
+    laws = ((0.1, 0.05), (0.02, 0.005))
+    soft, hard = (abs(pull_off(*law) / MAUGIS[parameter] - 1) for law in laws)
+    assert hard < 3e-3
+    assert soft > 3 * hard
+
+
+def test_least_repulsion_before_a_step_is_where_the_pressure_vanishes(run):
+    """There the bodies are hardly deformed, and by (23) the load is largest; the pressure falls by
+    orders of magnitude between the states of the path beside it."""
+    summary = check(run(steps(0.1, **dugdale(0.1))))
+    low, high = 1.2, 1.8
+    for _ in range(60):
+        middle = (low + high) / 2
+        if math.erfc((middle - 1) / 0.1) / 2 > 20 * math.exp(-20 * middle):
+            low = middle
+        else:
+            high = middle
+    assert several(summary["load_folds_h0"])[0] == pytest.approx(low, abs=1e-6)
+
+
+def test_step_outside_a_stronger_attraction(run):
+    law = {
+        "force": {"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
+        "dugdale": {"stress": 0.05, "range": 3.0, "smoothing": 0.3},
+    }
+    check(run(steps(3.0, h0_end=-6.0, **law)))
+
+
+def oscillating(accuracy):
+    return deck(
+        bodies={"radius": 1.0, "stiffness": 1.0},
+        force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
+        structural={"amplitude": 0.6, "period": 3.0, "decay_length": 3.0},
+        equilibrium_path={"h0_end": -4.0},
+        numerics={"accuracy": accuracy},
+    )
+
+
+def test_oscillating_law_has_no_false_folds(run):
+    """Once 25 folds were found in contact, where there is the one of the jump out."""
+    summary = check(run(oscillating(1e-5)), 1e-5)
+    # Over JKR's of the Lennard-Jones part alone; from an independent solution, to its digits.
+    assert summary["max_tension"] / (1.5 * math.pi) == pytest.approx(0.9023, abs=1e-4)
+    assert len(several(summary["folds_h0"])) == 4
+    coarse = check(run(oscillating(1e-3)), 1e-3)
+    assert several(coarse["folds_h0"]) == pytest.approx(several(summary["folds_h0"]), rel=1e-3)
+
+
+def test_attraction_alone_is_resolved_into_its_fall(run):
+    scene = deck(
+        bodies={"radius": 5e-6, "young": 3e9, "poisson": 0.35},
+        van_der_waals={"hamaker": 6.5e-20},
+        equilibrium_path={"h0_end": 0.2e-9},
+    )
+    result = run(scene)
+    assert len(result.warnings) == 1 and "fall onto each other" in result.warnings[0]
+    assert result.summary["error_estimate"] <= 1e-6
+
+
+def test_what_no_mesh_resolves_is_not_silent(run):
+    """A step far too sharp outside a stronger attraction, at which the front recedes."""
+    law = {
+        "force": {"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
+        "dugdale": {"stress": 0.3, "range": 4.0, "smoothing": 0.004},
+    }
+    result = run(steps(0.3, accuracy=1e-2, h0_end=0.5, **law), status=1)
+    assert any("lost" in warning for warning in result.warnings)
