@@ -2,7 +2,7 @@
 module far_samples
   use kinds, only: wp
   use measured_curve, only: measured_t
-  use measured_jumps, only: measured_jump_t, find_jump
+  use measured_jumps, only: find_jump
   use noise, only: noise_t, noise_of, white_noise
   implicit none
   private

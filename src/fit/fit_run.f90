@@ -8,7 +8,7 @@ module fit_run
   use problem_family, only: problem_family_t
   use experiment_request, only: numerics_t
   use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point
-  use measured_curve, only: measured_t, read_measured
+  use measured_curve, only: read_measured
   use measured_jumps, only: find_jump
   use measured_checks, only: check_measured
   use noise, only: white_noise
@@ -19,7 +19,7 @@ module fit_run
   use curve_fit, only: fitted_t, fit_curve
   implicit none
   private
-  public :: fit_outcome_t, theory_fit_t, run_fit
+  public :: fit_outcome_t, run_fit
 
   !> What a classical theory makes of the curve.
   type :: theory_fit_t

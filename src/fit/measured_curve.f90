@@ -7,7 +7,7 @@ module measured_curve
   use fit_request, only: measurement_t
   implicit none
   private
-  public :: measured_t, read_measured, fewest
+  public :: measured_t, read_measured
 
   !> Samples in the order of the file, those of the approach first. Where undeformed bodies under a
   !> relaxed spring would touch, z is the contact point; the position of the drive (`driven_pieces`)

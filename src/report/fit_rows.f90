@@ -1,6 +1,6 @@
 !> What a fit found: fit.csv, sample by sample; fit.nml, the unknowns; and the same in words.
 module fit_rows
-  use kinds, only: wp, long
+  use kinds, only: wp
   use text, only: rounded, brief
   use namelist_writer, only: line_t, assignment_of
   use tables, only: cells
