@@ -22,6 +22,8 @@ PAGES = {
     "README.md": "./run inputs/first.nml, compared by hand; then tools/pages.py --mark README.md",
     "docs/accuracy.md": "./bench",
     "docs/asymptotics.md": "tools/asymptotics.py",
+    "docs/fitting.md": "inputs/examples/fit.nml, pywrap/plots/fit.py and tools/bench/coverage.py, by "
+    "hand; then tools/pages.py --mark docs/fitting.md",
     "docs/forces.md": "tools/law_independence.py; tools/forces.py for its pictures",
     "docs/methods.md": "inputs/first.nml with &equilibrium_path, compared by hand; then "
     "tools/pages.py --mark docs/methods.md",

@@ -23,10 +23,13 @@ class Result:
     `classical`, `sweep`, whatever the deck asked for. `summary` and `cost` are dictionaries of the
     groups of summary.nml; lists of numbers in them are arrays. `converged` says that every
     state was found.
+    `fitted` has the groups of fit.nml by name, each a dictionary whose values are arrays; of a deck
+    without &fit it is empty.
     """
 
-    def __init__(self, tables, summary, cost):
+    def __init__(self, tables, summary, cost, fitted=None):
         self.tables, self.summary, self.cost = tables, summary, cost
+        self.fitted = fitted or {}
 
     @property
     def converged(self):
@@ -54,7 +57,23 @@ def read_results(folder):
         for path in sorted(pathlib.Path(folder).glob("*.csv"))
         if path.read_bytes()[:1] == b"#"
     }
-    return Result(tables, _with_lists(groups["summary"]), _with_lists(groups["cost"]))
+    return Result(
+        tables, _with_lists(groups["summary"]), _with_lists(groups["cost"]), _read_fitted(folder)
+    )
+
+
+def _read_fitted(folder):
+    """Return the groups of fit.nml, the correlations as matrices; none where there is no fit."""
+    path = pathlib.Path(folder) / "fit.nml"
+    if not path.is_file():
+        return {}
+    groups = {
+        name: {key: _as_list(value) for key, value in group.items() if key != "title"}
+        for name, group in f90nml.read(path).items()
+    }
+    for group in groups.values():
+        group["correlation"] = group["correlation"].reshape(2 * (len(group["parameters"]),))
+    return groups
 
 
 def _structured(columns):

@@ -28,6 +28,12 @@ module simulation
   use progress, only: duration
   use files, only: write_stderr, file_exists
   use clock, only: seconds
+  use namelist_writer, only: line_t
+  use deck_family, only: deck_family_t
+  use fit_group, only: family_of_fit
+  use fit_run, only: run_fit, fit_outcome_t
+  use fit_doubts, only: doubts_of
+  use fit_rows, only: fit_columns, fit_lines, fit_text, fit_words
   implicit none
   private
   public :: run_scene
@@ -70,6 +76,7 @@ contains
     if (allocated(error)) return
     call compute(scene, problem, destination, results, summary, cost)
     call write_derived_tables(scene, problem, results)
+    if (allocated(scene%fit)) call fit_measured(scene, problem, destination, results, summary)
     call describe_program(summary)
     call summary%set('wall_seconds', results%journal%earlier + seconds() - began)
     call results%write_summary(summary, cost, scene%deck)
@@ -200,6 +207,38 @@ contains
     cost = outcome%cost
     cost%factorisations = cost%factorisations + recorder%cost%factorisations
   end subroutine run_observed
+
+  !> The fit of &fit, its files, and what it says; where there is none the summary says why.
+  subroutine fit_measured(scene, problem, destination, results, summary)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(destination_t), intent(in) :: destination
+    type(results_t), intent(inout) :: results
+    type(summary_t), intent(inout) :: summary
+    type(deck_family_t) :: family
+    type(fit_outcome_t) :: outcome
+    type(failure_t), allocatable :: error
+    type(line_t), allocatable :: lines(:)
+    integer :: i
+
+    call family_of_fit(scene%deck, family, error)
+    call run_fit(scene%measurement, scene%fit, scene%numerics, family, problem, results, outcome)
+    if (allocated(outcome%trouble)) then
+      call summary%fail_with('no fit: ' // outcome%trouble)
+      return
+    end if
+    call results%write_table('fit.csv', fit_columns, fit_lines(outcome))
+    call results%write_text('fit.nml', fit_text(outcome, scene%title))
+    lines = doubts_of(outcome)
+    if (.not. outcome%fitted%found) call summary%set('converged', .false.)
+    do i = 1, size(lines)
+      call summary%warn('fit: ' // lines(i)%text)
+    end do
+    lines = fit_words(outcome)
+    do i = 1, size(lines)
+      call destination%say('fit: ' // lines(i)%text)
+    end do
+  end subroutine fit_measured
 
   !> What made the numbers.
   subroutine describe_program(summary)

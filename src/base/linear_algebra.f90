@@ -4,7 +4,7 @@ module linear_algebra
   implicit none
   private
   public :: multiply, multiply_transposed, factorisation_t, factorise, solve, determinant_sign, &
-    log_determinant, claim_buffers, eigenvalues, solve_tridiagonal
+    log_determinant, claim_buffers, eigenvalues, solve_tridiagonal, singular_values
 
   !> LU factors of a square matrix, from `factorise`.
   type :: factorisation_t
@@ -57,6 +57,14 @@ module linear_algebra
       real(wp), intent(out) :: wr(*), wi(*), vl(ldvl, *), vr(ldvr, *), work(*)
       integer, intent(out) :: info
     end subroutine dgeev
+    subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
+      import :: wp
+      character, intent(in) :: jobu, jobvt
+      integer, intent(in) :: m, n, lda, ldu, ldvt, lwork
+      real(wp), intent(inout) :: a(lda, *)
+      real(wp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *), work(*)
+      integer, intent(out) :: info
+    end subroutine dgesvd
   end interface
 
 contains
@@ -123,6 +131,26 @@ contains
 
     call dgtsv(size(b), 1, below, middle, above, b, size(b), info)
   end subroutine solve_tridiagonal
+
+  !> Singular values of a matrix with no fewer rows than columns, largest first, and the right vectors,
+  !> one a row. Zeros where they were not found.
+  subroutine singular_values(a, values, right)
+    real(wp), intent(in) :: a(:, :)
+    real(wp), intent(out) :: values(:), right(:, :)
+    real(wp), allocatable :: spent(:, :), work(:)
+    real(wp) :: left(1, 1), best(1)
+    integer :: info
+
+    spent = a
+    associate (m => size(a, 1), n => size(a, 2))
+      call dgesvd('n', 'a', m, n, spent, m, values, left, 1, right, n, best, -1, info)
+      allocate (work(nint(best(1))))
+      call dgesvd('n', 'a', m, n, spent, m, values, left, 1, right, n, work, size(work), info)
+    end associate
+    if (info == 0) return
+    values = 0
+    right = 0
+  end subroutine singular_values
 
   !> Sign of the determinant, +1 or -1.
   pure integer function determinant_sign(factors)

@@ -4,7 +4,7 @@ module text
   use decimal, only: put_real, longest_real
   implicit none
   private
-  public :: lower, quoted, unquoted, brief, full, guess, clip, listing, printable, &
+  public :: lower, quoted, unquoted, brief, rounded, full, guess, clip, listing, printable, &
     word_count, word_of
 
 contains
@@ -109,6 +109,18 @@ contains
     if (text(mark - 1:mark - 1) == '.') text(mark - 1:mark - 1) = ' '
     text = trim(text(:mark - 1)) // 'e' // trim(buffer)
   end function brief
+
+  !> `x` for a message to three digits.
+  pure function rounded(x) result(text)
+    real(wp), intent(in) :: x
+    character(len=:), allocatable :: text
+    character(len=16) :: buffer
+    real(wp) :: near
+
+    write (buffer, '(es10.2)') x
+    read (buffer, *) near
+    text = brief(near)
+  end function rounded
 
   !> Number of blank-separated words in `list`.
   pure integer function word_count(list) result(n)

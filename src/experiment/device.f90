@@ -12,9 +12,10 @@ module device
   private
   public :: driven_t, leg_t, jump_t, drive_bodies
 
-  !> A way along one stable piece.
+  !> A way along one stable piece, of this number in `driven_t`.
   type :: leg_t
     logical :: inward = .true.
+    integer :: piece = 0
     type(curve_state_t) :: from, to
   end type leg_t
 
@@ -34,6 +35,8 @@ module device
     type(drive_t) :: drive
     !> As the deck has it [N/m]; infinite where h0 is prescribed.
     real(wp) :: stiffness = 0
+    !> All that is stable, from afar inward.
+    type(driven_piece_t), allocatable :: piece(:)
     type(leg_t), allocatable :: leg(:)
     type(jump_t), allocatable :: jump(:)
     real(wp) :: energy_lost = 0, cycle_energy = 0, uncertainty = 0
@@ -64,6 +67,7 @@ contains
     driven%energy_lost = ieee_value(1.0_wp, ieee_quiet_nan)
     driven%cycle_energy = driven%energy_lost
     call find_pieces(solver, equations, known, drive, pieces, driven%solved)
+    driven%piece = pieces
     if (size(pieces) == 0) return
     piece = 1
     state = pieces(1)%first
@@ -101,6 +105,7 @@ contains
 
       do
         leg%inward = inward
+        leg%piece = piece
         leg%from = state
         stop_at = limit(inward, stops)
         if (stops) then

@@ -8,7 +8,7 @@ module number_columns
   use deck_store, only: deck_t
   implicit none
   private
-  public :: columns_t, read_columns
+  public :: columns_t, read_columns, uncommented, between
 
   !> The file; its numbers, and where in its text each row stands.
   type :: columns_t

@@ -48,7 +48,8 @@ module path_curve
     procedure :: slope
     procedure :: begin_of
     procedure :: end_of
-    procedure, private :: polynomial, support
+    procedure :: support
+    procedure, private :: polynomial
   end type curve_t
 
 contains

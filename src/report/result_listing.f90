@@ -9,6 +9,7 @@ module result_listing
   use fixed_load_rows, only: fixed_load_columns
   use table_rows, only: table_columns
   use sensitivity_rows, only: sensitivity_columns, curve_sensitivity_columns
+  use fit_rows, only: fit_columns
   use profiles, only: profile_columns, unlike_columns
   implicit none
   private
@@ -61,6 +62,12 @@ contains
       case ('curve_sensitivity.csv')
         call heading('with &sensitivity', 'One row for each equilibrium, parameter and stiffness.')
         call list_columns(unit, curve_sensitivity_columns, '')
+      case ('fit.csv')
+        call heading('with &fit', 'One row for each sample of the measured curve.')
+        call list_columns(unit, fit_columns, '')
+      case ('fit.nml')
+        call heading('with &fit', 'A namelist: &fit, the values found, and a group for each ' // &
+          'classical theory, fitted to the same samples.')
       case ('sweep.csv')
         call heading('with &sweep', 'One row for each value of the key: the value, then the ' // &
           'entries of &summary marked "in sweep.csv".')

@@ -51,6 +51,7 @@ module results
     procedure :: hear
     procedure :: take_case
     procedure :: write_table
+    procedure :: write_text
     procedure :: write_summary
     procedure :: finish
     procedure, private :: claim
@@ -202,6 +203,19 @@ contains
     if (.not. allocated(self%trouble)) call table%close(self%trouble)
   end subroutine write_table
 
+  !> Writes the file `name`, one of `result_files`, whole.
+  subroutine write_text(self, name, text)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: name, text
+    type(output_t) :: file
+
+    if (allocated(self%trouble)) return
+    where (result_files == name) self%made = .true.
+    call file%open(self%path_of(name) // partial, self%trouble)
+    if (.not. allocated(self%trouble)) call file%put(text, self%trouble)
+    if (.not. allocated(self%trouble)) call file%close(self%trouble)
+  end subroutine write_text
+
   !> Writes the summary. Its title and version, where not allocated, are those of `open`.
   subroutine write_summary(self, summary, cost, deck)
     class(results_t), intent(inout) :: self
@@ -209,7 +223,6 @@ contains
     type(cost_t), intent(in) :: cost
     type(deck_t), intent(in) :: deck
     type(summary_t) :: complete
-    type(output_t) :: file
     type(failure_t), allocatable :: missing
 
     if (allocated(self%trouble)) return
@@ -223,11 +236,7 @@ contains
       call move_alloc(missing, self%trouble)
       return
     end if
-    where (result_files == 'summary.nml') self%made = .true.
-    call file%open(self%path_of('summary.nml') // partial, self%trouble)
-    if (.not. allocated(self%trouble)) &
-      call file%put(summary_text(complete) // deck%resolved(), self%trouble)
-    if (.not. allocated(self%trouble)) call file%close(self%trouble)
+    call self%write_text('summary.nml', summary_text(complete) // deck%resolved())
   end subroutine write_summary
 
   !> Ends the progress and gives the files of this run their names; those of an earlier run which

@@ -18,6 +18,7 @@ module scene
   use theory_groups, only: take_theories
   use stability_group, only: take_stability
   use sweep_group, only: take_sweep
+  use fit_group, only: take_fit
   use numerics_group, only: take_numerics
   use magnitudes, only: check_derived
   use shape_checks, only: check_end
@@ -27,7 +28,7 @@ module scene
 
   !> The groups that compute something by themselves; a deck needs at least one of them.
   character(len=*), parameter :: computing(*) = [character(len=17) :: 'loading', &
-    'equilibrium_path', 'approximations', 'classical']
+    'equilibrium_path', 'approximations', 'classical', 'fit']
 
 contains
 
@@ -75,6 +76,7 @@ contains
     call take_stability(scene, error)
     call take_sweep(scene, error)
     call take_numerics(scene)
+    call take_fit(scene, error)
     if (.not. any([(deck%has_group(trim(computing(i))), i=1, size(computing))])) &
       call deck%mistake('', '', 'nothing to compute; a deck needs at least one of ' // &
                         listing(transfer(computing, all_names), '&', ''), error)

@@ -6,6 +6,7 @@ module scene_groups
   use experiment_request, only: request_t
   use force_law, only: force_law_t
   use shape, only: shape_t
+  use fit_request, only: measurement_t, fit_t
   implicit none
   private
   public :: scene_t, bodies_t, range_t, stability_t, regime_t, sweep_t
@@ -55,6 +56,8 @@ module scene_groups
     type(stability_t), allocatable :: stability
     type(regime_t), allocatable :: regime
     type(sweep_t), allocatable :: sweep
+    type(measurement_t), allocatable :: measurement
+    type(fit_t), allocatable :: fit
   contains
     procedure :: has_curve
     procedure :: has_eigenvalues

@@ -15,6 +15,7 @@ module scene_keys
   use theory_groups, only: theory_keys
   use stability_group, only: stability_keys
   use sweep_group, only: sweep_keys
+  use fit_group, only: fit_keys
   use numerics_group, only: numerics_keys
   implicit none
   private
@@ -41,6 +42,7 @@ contains
       profiles_keys(), &
       theory_keys(), &
       stability_keys(), &
+      fit_keys(), &
       sweep_keys(), &
       numerics_keys(), &
       group('summary', 'Results in a summary file, so that such a file can be run again.', &

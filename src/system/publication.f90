@@ -22,7 +22,7 @@ module publication
   character(len=*), parameter :: result_files(*) = [character(len=21) :: 'curve.csv', &
     'profiles.csv', 'approximations.csv', 'classical.csv', 'device.csv', &
     'device_jumps.csv', 'fixed_load.csv', 'table.csv', 'sensitivity.csv', &
-    'curve_sensitivity.csv', 'sweep.csv', 'summary.nml']
+    'curve_sensitivity.csv', 'fit.csv', 'fit.nml', 'sweep.csv', 'summary.nml']
   character(len=*), parameter :: journal_name = 'journal' // partial
 
   character(len=*), parameter :: intent_name = 'INCOMPLETE.txt', set_aside = '.old' // partial

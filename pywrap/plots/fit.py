@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""A measured force curve with the model that was fitted to it, and what is left.
+
+    .venv/bin/python pywrap/plots/fit.py results/fit
+"""
+
+import pathlib
+
+import f90nml
+import numpy as np
+from drawing import BLUE, SKY, VERMILION, dress, run, scale, title_of
+from matplotlib.figure import Figure
+from snapin.results import read_summary, read_table
+
+_WAYS = {"approach": SKY, "retreat": BLUE}
+# Of the travel, how much farther than the last sample with a force the picture goes.
+_BEYOND = 0.15
+# What stands out of the residuals by this many times their median is force.
+_STANDS_OUT = 10
+
+
+def draw_fit(folder, whole=False):
+    """Return a figure of the fit in `folder`; `whole` shows all of the baseline."""
+    summary, table = read_summary(folder), read_table(folder, "fit.csv")
+    force = table["measured"] - table["baseline"]
+    lengths = scale(np.ptp(table["z"]), "m")
+    unit = _unit_of(folder)
+    signals = scale(force, unit)
+    lefts = scale(table["residual"][table["used"] == 1], unit)
+    z = (table["z"] - table["z"].min()) / lengths[0]
+
+    figure = Figure(figsize=(7.5, 5.6), layout="constrained")
+    panel, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    for way, color in _WAYS.items():
+        mine = table["direction"] == way
+        if not mine.any():
+            continue
+        used = mine & (table["used"] == 1)
+        panel.plot(z[mine], force[mine] / signals[0], ".", markersize=2.5, color=color, label=way)
+        model = (table["model"] - table["baseline"])[mine] / signals[0]
+        panel.plot(z[mine], model, color=VERMILION, linewidth=1.0,
+                   label="model" if way == table["direction"][0] else None)
+        below.plot(z[used], table["residual"][used] / lefts[0], ".", markersize=2.5, color=color)
+    dress(panel, "", f"signal less baseline [{signals[1]}]")
+    dress(below, f"position of the base, from its least [{lengths[1]}]",
+          f"residual [{lefts[1]}]")
+    if not whole:
+        _show_contact(panel, z, table, force)
+    panel.legend(frameon=False, markerscale=3)
+    figure.suptitle(title_of(folder, summary))
+    return figure
+
+
+def _unit_of(folder):
+    """Return the unit of the signal, by the deck that the summary repeats."""
+    deck = f90nml.read(pathlib.Path(folder) / "summary.nml")
+    return "V" if "sensitivity" in deck["measurement"] else "N"
+
+
+def _show_contact(panel, z, table, force):
+    """Leave out most of the baseline."""
+    level = _STANDS_OUT * np.median(np.abs(table["residual"]))
+    stands = z[np.abs(force) > level]
+    if stands.size == 0:
+        return
+    margin = _BEYOND * np.ptp(stands)
+    panel.set_xlim(max(z.min(), stands.min() - margin), min(z.max(), stands.max() + margin))
+
+
+if __name__ == "__main__":
+    run(draw_fit, "fit.png", "Draw a measured force curve and what was fitted to it.",
+        lambda parser: parser.add_argument("--whole", action="store_true",
+                                           help="show all of the baseline"))

@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+"""A force curve in a file of an instrument (JPK, Asylum, Bruker, NT-MDT and others) as a table of
+text for &measurement: position of the base, force, and segment.
+
+    .venv/bin/python pywrap/scripts/afm_to_table.py CURVE [--number 0] > curve.csv
+
+The file is read by afmformats, which the project does not need otherwise: pip install afmformats.
+The spring constant of the file stands in the table's head.
+"""
+
+import argparse
+import sys
+
+
+def table_of(curve):
+    """Return the lines of the table of a curve: columns "height (measured)" or "height (piezo)",
+    "force" and "segment" of afmformats, all SI."""
+    height = next(name for name in ("height (measured)", "height (piezo)") if name in curve.columns)
+    yield f"# from {curve.path.name}; {height} is the position of the base"
+    yield f"# spring_constant = {curve.metadata.get('spring constant', 'unknown')}"
+    yield "z,force,segment"
+    for z, force, segment in zip(curve[height], curve["force"], curve["segment"]):
+        if int(segment) in (0, 1):
+            yield f"{float(z):.9e},{float(force):.9e},{int(segment)}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split(":")[0])
+    parser.add_argument("file", help="file of the instrument")
+    parser.add_argument("--number", type=int, default=0, help="which curve of a map; default: 0")
+    options = parser.parse_args()
+    try:
+        import afmformats
+    except ImportError:
+        sys.exit(f"{parser.prog}: missing: {sys.executable} -m pip install afmformats")
+    curves = afmformats.load_data(options.file)
+    print("\n".join(table_of(curves[options.number])))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,170 @@
+!> The classical theories as models of a measured curve: JKR, DMT, Maugis and Dugdale. Bodies that
+!> do not touch do not attract each other; those that touch go along the theory's curve, whose order
+!> is the contact radius. Where the bodies jump into contact these theories cannot say.
+module classical_model
+  use kinds, only: wp
+  use root_finding, only: bracket_t
+  use classical, only: jkr_load, jkr_displacement, dmt_load, hertz_displacement
+  use maugis, only: maugis_load, maugis_displacement
+  use force_model, only: force_model_t, response_t, way_t, inward, outward
+  implicit none
+  private
+  public :: classical_model_t, theories
+
+  character(len=*), parameter :: theories(*) = [character(len=14) :: 'jkr', 'dmt', &
+    'maugis_dugdale']
+
+  !> Panels of the branch in contact; and of the step of a difference over what is varied.
+  integer, parameter :: panels = 200
+  real(wp), parameter :: step = 1.0e-4_wp
+  !> Contact radii that are tried for the largest position, over the largest of all; sections that
+  !> find it then.
+  integer, parameter :: tried = 400, sections = 60
+
+  !> The unknowns are the work of adhesion [J/m^2] and the stiffness [Pa] where these are to be
+  !> found; else they are as here. radius [m]; range [m] of the tension of Maugis and Dugdale.
+  type, extends(force_model_t) :: classical_model_t
+    character(len=14) :: theory = 'jkr'
+    real(wp) :: radius = 1, work = 1, stiffness = 1, range = 1
+    logical :: finds_work = .true., finds_stiffness = .true.
+  contains
+    procedure :: respond
+  end type classical_model_t
+
+contains
+
+  subroutine respond(self, value, stiffness, farthest, largest, with_rates, response, found)
+    class(classical_model_t), intent(inout) :: self
+    real(wp), intent(in) :: value(:), stiffness, farthest, largest
+    logical, intent(in) :: with_rates
+    type(response_t), intent(out) :: response
+    logical, intent(out) :: found
+    real(wp) :: number(2), widest, turn
+
+    number = [self%work, self%stiffness]
+    number(pack([1, 2], [self%finds_work, self%finds_stiffness])) = value
+    ! The contact that Hertz foretells under the load and under more adhesion than there is.
+    widest = (1.5_wp*self%radius*(2*max(largest, 0.0_wp) + 100*number(1)*self%radius)/ &
+      number(2))**(1.0_wp/3)
+    turn = turning_radius(self, number, 1/stiffness, widest)
+    found = turn < 0.5_wp*widest
+    if (.not. found) return
+    allocate (response%branch(2))
+    call add_outside(merge(size(value), 0, with_rates))
+    call add_contact(merge(size(value), 0, with_rates))
+    response%branch(2)%turns_first = .true.
+    call response%branch(1)%close(stiffness)
+    call response%branch(2)%close(stiffness)
+    response%way(inward) = way_t([1, 2], [0.0_wp, -huge(1.0_wp)], 1, .false.)
+    response%way(outward) = way_t([2, 1], [response%branch(2)%position(1), huge(1.0_wp)], 1)
+
+  contains
+
+    !> No load, until the bodies touch.
+    subroutine add_outside(unknowns)
+      integer, intent(in) :: unknowns
+
+      associate (branch => response%branch(1))
+        allocate (branch%h0(4, 1), branch%load(4, 1), branch%h0_rate(unknowns, 2, 1), &
+          branch%load_rate(unknowns, 2, 1), source=0.0_wp)
+        ! From any distance, and with a slope that makes h0 fall evenly.
+        branch%h0(:, 1) = widest*[1, 0, -1, -1]
+        branch%turns_last = .true.
+      end associate
+    end subroutine add_outside
+
+    !> In contact, from where the position turns round inward; panels grow with the contact.
+    subroutine add_contact(unknowns)
+      integer, intent(in) :: unknowns
+      real(wp) :: a, edge(0:panels), by_a(2), changed(2)
+      integer, allocatable :: which(:)
+      integer :: i, k, side
+
+      which = pack([1, 2], [self%finds_work, self%finds_stiffness])
+      edge = [(turn + (widest - turn)*(real(i, wp)/panels)**2, i=0, panels)]
+      associate (branch => response%branch(2))
+        allocate (branch%h0(4, panels), branch%load(4, panels), &
+          branch%h0_rate(unknowns, 2, panels), branch%load_rate(unknowns, 2, panels))
+        do i = 1, panels
+          do side = 1, 2
+            a = edge(i - 2 + side)
+            changed = state(self, number, a)
+            branch%h0(side, i) = changed(1)
+            branch%load(side, i) = changed(2)
+            by_a = (state(self, number, a*(1 + step)) - state(self, number, a*(1 - step)))/ &
+              (2*step*a)*(edge(i) - edge(i - 1))
+            branch%h0(2 + side, i) = by_a(1)
+            branch%load(2 + side, i) = by_a(2)
+            do k = 1, unknowns
+              changed = varied(which(k), a)
+              branch%h0_rate(k, side, i) = changed(1)
+              branch%load_rate(k, side, i) = changed(2)
+            end do
+          end do
+        end do
+      end associate
+    end subroutine add_contact
+
+    !> Derivatives of h0 and load by one of the two numbers.
+    function varied(k, a)
+      integer, intent(in) :: k
+      real(wp), intent(in) :: a
+      real(wp) :: varied(2), more(2), less(2)
+
+      more = number
+      less = number
+      more(k) = number(k)*(1 + step)
+      less(k) = number(k)*(1 - step)
+      varied = (state(self, more, a) - state(self, less, a))/(2*step*number(k))
+    end function varied
+
+  end subroutine respond
+
+  !> h0 and load at a contact radius; number: work of adhesion and stiffness.
+  pure function state(model, number, a)
+    class(classical_model_t), intent(in) :: model
+    real(wp), intent(in) :: number(2), a
+    real(wp) :: state(2)
+
+    associate (r => model%radius, w => number(1), y => number(2))
+      select case (model%theory)
+      case ('jkr')
+        state = [-jkr_displacement(a, r, y, w), jkr_load(a, r, y, w)]
+      case ('dmt')
+        state = [-hertz_displacement(a, r), dmt_load(a, r, y, w)]
+      case default
+        state = [-maugis_displacement(a, r, y, w, w/model%range), &
+          maugis_load(a, r, y, w, w/model%range)]
+      end select
+    end associate
+  end function state
+
+  !> The contact radius at which the position of the drive is largest.
+  pure real(wp) function turning_radius(model, number, compliance, widest) result(turn)
+    class(classical_model_t), intent(in) :: model
+    real(wp), intent(in) :: number(2), compliance, widest
+    type(bracket_t) :: bracket
+    real(wp) :: at(0:tried), position(0:tried), points(2)
+    integer :: i
+
+    at = [(widest*(max(real(i, wp), 0.01_wp)/tried)**2, i=0, tried)]
+    position = [(position_at(at(i)), i=0, tried)]
+    i = maxloc(position, 1) - 1
+    bracket = bracket_t(at(max(i - 1, 0)), at(min(i + 1, tried)))
+    do i = 1, sections
+      points = bracket%golden_points()
+      call bracket%keep_larger([position_at(points(1)), position_at(points(2))])
+    end do
+    turn = bracket%middle()
+
+  contains
+
+    pure real(wp) function position_at(a)
+      real(wp), intent(in) :: a
+
+      position_at = dot_product(state(model, number, a), [1.0_wp, -compliance])
+    end function position_at
+
+  end function turning_radius
+
+end module classical_model

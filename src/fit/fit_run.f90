@@ -1,0 +1,194 @@
+!> A fit from beginning to end: the measured curve is read, its noise and jumps are found, the model
+!> of the path is fitted, and the classical theories are beside it.
+module fit_run
+  use kinds, only: wp
+  use failure, only: failure_t
+  use listener, only: listener_t
+  use dimensionless_problem, only: problem_t, surface_energy, largest_tension
+  use problem_family, only: problem_family_t
+  use experiment_request, only: numerics_t
+  use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point
+  use measured_curve, only: read_measured
+  use measured_jumps, only: find_jump
+  use measured_checks, only: check_measured
+  use noise, only: white_noise
+  use far_samples, only: find_far, fewest_far
+  use path_model, only: path_model_t
+  use classical_model, only: classical_model_t, theories
+  use curve_residuals, only: curve_residuals_t
+  use curve_fit, only: fitted_t, fit_curve
+  implicit none
+  private
+  public :: fit_outcome_t, run_fit
+
+  !> What a classical theory makes of the curve.
+  type :: theory_fit_t
+    character(len=14) :: theory = ''
+    type(unknown_t), allocatable :: unknown(:)
+    type(fitted_t) :: fitted
+  end type theory_fit_t
+
+  !> trouble: why there is no fit, and what to do.
+  type :: fit_outcome_t
+    character(len=:), allocatable :: trouble
+    type(curve_residuals_t) :: curve
+    type(fitted_t) :: fitted
+    type(theory_fit_t), allocatable :: theory(:)
+  end type fit_outcome_t
+
+  !> A signal whose noise is smaller than this part of it is one that was computed.
+  real(wp), parameter :: least_noise = 1.0e-9_wp
+  !> Over the largest signal, up to which the model is wanted: for a trial that is too soft.
+  real(wp), parameter :: beyond = 1.2_wp
+  !> An unknown whose fitted number (`unknowns`) changes by 1 is seen by this many standard
+  !> deviations of all data, or it has no effect.
+  real(wp), parameter :: least_effect = 0.1_wp
+
+contains
+
+  !> family: the problems, whose parameters are the unknowns of the model; problem: with their
+  !> values in the deck.
+  subroutine run_fit(measurement, fit, numerics, family, problem, listener, outcome)
+    type(measurement_t), intent(in) :: measurement
+    type(fit_t), intent(in) :: fit
+    type(numerics_t), intent(in) :: numerics
+    class(problem_family_t), intent(in) :: family
+    type(problem_t), intent(in) :: problem
+    class(listener_t), intent(inout) :: listener
+    type(fit_outcome_t), intent(out) :: outcome
+    type(path_model_t), target :: model
+    type(curve_residuals_t) :: curve
+    integer :: i
+
+    call take_curve(measurement, fit, problem, curve, outcome%trouble)
+    if (allocated(outcome%trouble)) return
+    call listener%hear('fitting the path')
+    allocate (model%family, source=family)
+    model%numerics = numerics
+    call curve%set_model(model)
+    call fit_curve(curve, curve%unknown%value, outcome%fitted)
+    call curve%set_model()
+    outcome%curve = curve
+    if (.not. outcome%fitted%has_curve) then
+      outcome%trouble = 'with the values of the deck the path could not be solved as ' // &
+        'far as the data go, or does not come near them; start from others, or fit a part of them'
+      return
+    end if
+    if (.not. allocated(outcome%fitted%effect)) then
+      outcome%trouble = &
+        'the search ended where the path has no derivatives; start from other values'
+      return
+    end if
+    do i = 1, size(outcome%fitted%effect)
+      if (outcome%fitted%effect(i) > least_effect) cycle
+      outcome%trouble = outcome%curve%unknown(i)%name // ' has no effect on this curve; ' // &
+        'take it out of parameters'
+      return
+    end do
+    call listener%hear('fitting classical theories')
+    call fit_theories(outcome, problem, family)
+  end subroutine run_fit
+
+  !> The measured curve with its noise and its jumps, and what is unknown.
+  subroutine take_curve(measurement, fit, problem, curve, trouble)
+    type(measurement_t), intent(in) :: measurement
+    type(fit_t), intent(in) :: fit
+    type(problem_t), intent(in) :: problem
+    type(curve_residuals_t), intent(inout) :: curve
+    character(len=:), allocatable, intent(out) :: trouble
+    type(failure_t), allocatable :: error
+    real(wp) :: slope
+
+    call read_measured(measurement, curve%data%measured, error)
+    if (allocated(error)) then
+      trouble = error%message
+      return
+    end if
+    curve%unknown = fit%unknown
+    where (curve%unknown%role == of_contact_point) curve%unknown%scale = problem%length
+    curve%spring = measurement%spring_constant
+    curve%sensitivity = 1/measurement%spring_constant
+    if (allocated(measurement%sensitivity)) curve%sensitivity = measurement%sensitivity
+    if (allocated(measurement%contact_point)) curve%contact_point = measurement%contact_point
+    slope = 1/curve%sensitivity
+    associate (data => curve%data%measured)
+      call find_far(data, slope, curve%data%noise)
+      if (allocated(fit%noise)) then
+        curve%data%noise = white_noise(fit%noise)
+      else if (count(data%far) < fewest_far) then
+        trouble = 'fewer than 12 samples far from contact, too few to see the noise; give noise'
+        return
+      end if
+      if (curve%data%noise%deviation < least_noise*maxval(abs(data%signal))) &
+        curve%data%noise = white_noise(least_noise*maxval(abs(data%signal)))
+      call check_measured(data, curve%data%noise, slope, trouble)
+      if (allocated(trouble)) return
+      curve%data%jump = [find_jump(data, curve%data%noise, slope, .true.), &
+        find_jump(data, curve%data%noise, slope, .false.)]
+      curve%largest = beyond*(maxval(data%signal) - &
+        sum(data%signal, data%far)/max(1, count(data%far)))
+    end associate
+    call curve%data%take(1)
+    if (size(curve%data%sample) < 2*size(curve%unknown) + 4) &
+      trouble = 'too few samples for so many parameters'
+  end subroutine take_curve
+
+  !> The same curve by JKR, DMT and Maugis-Dugdale, where the bodies are parabolas. Found is what
+  !> the deck wants to find of it: adhesion where it asks for a force, stiffness where for that of
+  !> bodies.
+  subroutine fit_theories(outcome, problem, family)
+    type(fit_outcome_t), intent(inout), target :: outcome
+    type(problem_t), intent(in) :: problem
+    class(problem_family_t), intent(in) :: family
+    type(classical_model_t), target :: model
+    type(curve_residuals_t) :: curve
+    type(problem_t) :: final
+    type(failure_t), allocatable :: error
+    type(unknown_t) :: unknown(2)
+    real(wp), allocatable :: start(:)
+    logical :: elastic(size(family%parameter))
+    integer :: i
+
+    allocate (outcome%theory(0))
+    call family%pose(pack(outcome%fitted%value, outcome%curve%unknown%role == of_model), final, &
+      error)
+    if (allocated(error) .or. .not. problem%shape%parabolic) return
+    if (.not. final%law%work > 0) return
+    elastic = [(index(family%parameter(i)%name, 'bodies.') == 1 .and. &
+      family%parameter(i)%name /= 'bodies.radius', i=1, size(elastic))]
+    model%radius = final%radius
+    model%work = surface_energy(final)
+    model%stiffness = final%stiffness
+    model%range = model%work/largest_tension(final)
+    model%finds_stiffness = any(elastic)
+    model%finds_work = .not. all(elastic)
+    unknown(1) = unknown_of('work_of_adhesion', model%work)
+    unknown(2) = unknown_of('stiffness', model%stiffness)
+    curve = outcome%curve
+    curve%unknown = [pack(unknown, [model%finds_work, model%finds_stiffness]), &
+      pack(outcome%curve%unknown, outcome%curve%unknown%role /= of_model)]
+    deallocate (outcome%theory)
+    allocate (outcome%theory(size(theories)))
+    start = [pack(unknown%value, [model%finds_work, model%finds_stiffness]), &
+      pack(outcome%fitted%value, outcome%curve%unknown%role /= of_model)]
+    do i = 1, size(theories)
+      model%theory = theories(i)
+      call curve%set_model(model)
+      outcome%theory(i)%theory = theories(i)
+      outcome%theory(i)%unknown = curve%unknown
+      call fit_curve(curve, start, outcome%theory(i)%fitted)
+    end do
+  end subroutine fit_theories
+
+  !> A positive unknown of a theory.
+  type(unknown_t) function unknown_of(name, value) result(unknown)
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: value
+
+    unknown%name = name
+    unknown%in_log = .true.
+    unknown%value = value
+    unknown%scale = value
+  end function unknown_of
+
+end module fit_run

@@ -1,0 +1,186 @@
+!> The load on bodies that are driven through a spring along one stable piece, as a function of the
+!> drive's position, with its derivatives by the unknowns of a model. SI units.
+!>
+!> Between two places of the piece h0 and load are cubics of the place; which place has a given
+!> position h0 - load/stiffness is found by Newton's method.
+module force_branch
+  use kinds, only: wp
+  use root_finding, only: bracket_t
+  implicit none
+  private
+  public :: branch_t, load_at_t
+
+  !> Loads, not found for larger errors of the position in units of a panel's.
+  real(wp), parameter :: found_at = 1.0e-13_wp
+  integer, parameter :: most_steps = 60
+
+  !> Panels from afar inward. h0(:, i) and load(:, i): at begin and end of panel i, and their
+  !> derivatives by t, which goes from 0 to 1 along it. The same of derivatives by each unknown,
+  !> rate(unknown, end, panel), at a fixed t. turns: the piece ends there because the position turns
+  !> round, not because no more is known of it.
+  type :: branch_t
+    real(wp), allocatable :: h0(:, :), load(:, :)
+    real(wp), allocatable :: h0_rate(:, :, :), load_rate(:, :, :)
+    logical :: turns_first = .false., turns_last = .false.
+    !> 1/stiffness of the spring.
+    real(wp) :: compliance = 0
+    !> Position where panel i begins; one more for the end of the last.
+    real(wp), allocatable :: position(:)
+  contains
+    procedure :: close
+    procedure :: at
+    procedure :: end_of
+  end type branch_t
+
+  !> The load at a position, its derivative by that, and by the unknowns at that position.
+  type :: load_at_t
+    real(wp) :: load = 0, slope = 0
+    real(wp), allocatable :: rate(:)
+  end type load_at_t
+
+contains
+
+  !> Sets the spring, after the panels.
+  pure subroutine close(self, stiffness)
+    class(branch_t), intent(inout) :: self
+    real(wp), intent(in) :: stiffness
+    integer :: n
+
+    self%compliance = 1/stiffness
+    n = size(self%h0, 2)
+    self%position = [self%h0(1, :) - self%compliance*self%load(1, :), &
+      self%h0(2, n) - self%compliance*self%load(2, n)]
+  end subroutine close
+
+  !> The load at a position. Beyond a turning end the load stays what it is there; beyond an end
+  !> of what is known it goes on along a straight line inward, and stays outward.
+  pure type(load_at_t) function at(self, position) result(found)
+    class(branch_t), intent(in) :: self
+    real(wp), intent(in) :: position
+    real(wp) :: t
+    integer :: i, n
+
+    n = size(self%h0, 2)
+    if (position >= self%position(1)) then
+      found = self%end_of(.false.)
+    else if (position <= self%position(n + 1)) then
+      found = self%end_of(.true.)
+      if (self%turns_last) return
+      found = on_panel(self, n, 1.0_wp)
+      found%load = found%load + found%slope*(position - self%position(n + 1))
+    else
+      i = panel_of(self%position, position)
+      t = place_on(self, i, position)
+      found = on_panel(self, i, t)
+    end if
+  end function at
+
+  !> The last panel that begins at or before a position; positions fall.
+  pure integer function panel_of(positions, position) result(low)
+    real(wp), intent(in) :: positions(:), position
+    integer :: high, middle
+
+    low = 1
+    high = size(positions)
+    do while (high - low > 1)
+      middle = (low + high)/2
+      if (positions(middle) >= position) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
+  end function panel_of
+
+  !> t on panel i, over which the position falls, at a position.
+  pure real(wp) function place_on(self, i, position) result(t)
+    class(branch_t), intent(in) :: self
+    integer, intent(in) :: i
+    real(wp), intent(in) :: position
+    type(bracket_t) :: bracket
+    real(wp) :: c(4), missing, width
+    integer :: step
+
+    c = cubic_of(self%h0(:, i) - self%compliance*self%load(:, i))
+    width = abs(self%position(i) - self%position(i + 1))
+    bracket = bracket_t(0.0_wp, 1.0_wp)
+    t = (self%position(i) - position)/max(width, tiny(1.0_wp))
+    do step = 1, most_steps
+      missing = value_of(c, t) - position
+      if (abs(missing) <= found_at*width) exit
+      call bracket%narrow(missing > 0, t)
+      if (abs(slope_of(c, t)) > 0) t = t - missing/slope_of(c, t)
+      if (.not. (t > bracket%low .and. t < bracket%high)) t = bracket%middle()
+    end do
+  end function place_on
+
+  !> All of it at t on panel i, where the position does not turn round.
+  pure type(load_at_t) function on_panel(self, i, t) result(found)
+    class(branch_t), intent(in) :: self
+    integer, intent(in) :: i
+    real(wp), intent(in) :: t
+    real(wp) :: load(4), h0(4), load_slope, slope
+
+    load = cubic_of(self%load(:, i))
+    h0 = cubic_of(self%h0(:, i))
+    load_slope = slope_of(load, t)
+    slope = slope_of(h0, t) - self%compliance*load_slope
+    found%load = value_of(load, t)
+    found%slope = load_slope/slope
+    found%rate = linear(self%load_rate(:, :, i), t)
+    found%rate = found%rate - found%slope*(linear(self%h0_rate(:, :, i), t) - &
+      self%compliance*found%rate)
+  end function on_panel
+
+  !> The load at an end, which moves with the unknowns where the position turns round: to where the
+  !> derivative of the position by t is zero again.
+  pure type(load_at_t) function end_of(self, inner) result(found)
+    class(branch_t), intent(in) :: self
+    logical, intent(in) :: inner
+    real(wp), allocatable :: shift(:)
+    real(wp) :: c(4), bend
+    integer :: i, side
+
+    i = merge(size(self%h0, 2), 1, inner)
+    side = merge(2, 1, inner)
+    found%load = self%load(side, i)
+    found%rate = self%load_rate(:, side, i)
+    if (.not. merge(self%turns_last, self%turns_first, inner)) return
+    c = cubic_of(self%h0(:, i) - self%compliance*self%load(:, i))
+    bend = 2*c(3) + 6*c(4)*merge(1, 0, inner)
+    shift = self%h0_rate(:, 2, i) - self%h0_rate(:, 1, i) - &
+      self%compliance*(self%load_rate(:, 2, i) - self%load_rate(:, 1, i))
+    if (abs(bend) > 0) found%rate = found%rate - shift/bend*self%load(2 + side, i)
+  end function end_of
+
+  !> The coefficients of the cubic on [0, 1] with these values and slopes at its ends.
+  pure function cubic_of(ends) result(c)
+    real(wp), intent(in) :: ends(4)
+    real(wp) :: c(4)
+
+    associate (rise => ends(2) - ends(1))
+      c = [ends(1), ends(3), 3*rise - 2*ends(3) - ends(4), ends(3) + ends(4) - 2*rise]
+    end associate
+  end function cubic_of
+
+  pure real(wp) function value_of(c, t)
+    real(wp), intent(in) :: c(4), t
+
+    value_of = c(1) + t*(c(2) + t*(c(3) + t*c(4)))
+  end function value_of
+
+  pure real(wp) function slope_of(c, t)
+    real(wp), intent(in) :: c(4), t
+
+    slope_of = c(2) + t*(2*c(3) + 3*t*c(4))
+  end function slope_of
+
+  !> Between the values at both ends of a panel.
+  pure function linear(ends, t) result(value)
+    real(wp), intent(in) :: ends(:, :), t
+    real(wp) :: value(size(ends, 1))
+
+    value = (1 - t)*ends(:, 1) + t*ends(:, 2)
+  end function linear
+
+end module force_branch

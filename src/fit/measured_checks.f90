@@ -1,0 +1,87 @@
+!> Whether a measured curve is one that can be fitted; if not, why, and what to do.
+module measured_checks
+  use kinds, only: wp
+  use text, only: rounded
+  use measured_curve, only: measured_t
+  use measured_jumps, only: measured_jump_t, find_jump
+  use noise, only: noise_t
+  implicit none
+  private
+  public :: check_measured
+
+  !> What stands out of the noise; the part of the samples that is nearest to the other body; how
+  !> steep, over the spring, the wrong end of a curve must be to be called so.
+  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp
+
+contains
+
+  !> trouble is allocated where the curve cannot be fitted. stiffness: of the spring, units of
+  !> signal over z.
+  subroutine check_measured(measured, noise, stiffness, trouble)
+    type(measured_t), intent(in) :: measured
+    type(noise_t), intent(in) :: noise
+    real(wp), intent(in) :: stiffness
+    character(len=:), allocatable, intent(out) :: trouble
+    type(measured_t) :: turned
+    type(measured_jump_t) :: jump(2)
+    real(wp), allocatable :: left(:)
+    real(wp) :: near, before, travel
+
+    left = off_baseline(measured)
+    if (.not. maxval(abs(left)) > stands_out*noise%deviation) then
+      trouble = 'no contact in the data: nothing stands out of the noise of ' // &
+        rounded(noise%deviation) // '; measure nearer, or see that columns names the signal'
+      return
+    end if
+    call nearest(measured, left, near, before, travel)
+    if (near >= 0 .or. near >= before) return
+    turned = measured
+    turned%signal = -measured%signal
+    jump(1) = find_jump(turned, noise, stiffness, .true.)
+    jump(2) = find_jump(turned, noise, stiffness, .false.)
+    if (before - near > steep*stiffness*travel .or. any(jump%before > 0)) trouble = &
+      'the force falls where the bodies are pressed together: repulsion is positive here; a ' // &
+      'minus before the name of a column turns its sign'
+  end subroutine check_measured
+
+  !> The signal less the straight line through the baseline of its way.
+  pure function off_baseline(measured) result(left)
+    type(measured_t), intent(in) :: measured
+    real(wp) :: left(size(measured%z))
+    logical :: far(size(measured%z))
+    real(wp) :: middle(2), slope
+    integer :: way
+
+    left = 0
+    do way = 1, 2
+      far = measured%far .and. (measured%inward .eqv. way == 1)
+      if (.not. any(far)) cycle
+      associate (z => measured%z, s => measured%signal)
+        middle = [sum(z, far), sum(s, far)]/count(far)
+        slope = sum((z - middle(1))*(s - middle(2)), far)/ &
+          max(sum((z - middle(1))**2, far), tiny(1.0_wp))
+        where (measured%inward .eqv. way == 1) left = s - middle(2) - slope*(z - middle(1))
+      end associate
+    end do
+  end function off_baseline
+
+  !> Means of what is left over the samples nearest to the other body and the as many before them,
+  !> and how far apart these are.
+  pure subroutine nearest(measured, left, near, before, travel)
+    type(measured_t), intent(in) :: measured
+    real(wp), intent(in) :: left(:)
+    real(wp), intent(out) :: near, before, travel
+    real(wp) :: position(size(left)), low, width
+    logical :: mask(size(left))
+
+    position = measured%facing*measured%z
+    low = minval(position)
+    width = nearest_part*(maxval(position) - low)
+    mask = position <= low + width
+    near = sum(left, mask)/max(1, count(mask))
+    mask = position > low + width .and. position <= low + 2*width
+    before = sum(left, mask)/max(1, count(mask))
+    travel = width
+  end subroutine nearest
+
+end module measured_checks

@@ -1,0 +1,117 @@
+!> A measured force curve: the base of the spring moves to the other body and back, and its
+!> deflection, or the force, is recorded.
+module measured_curve
+  use kinds, only: wp
+  use failure, only: failure_t, fail, bad_input
+  use data_table, only: data_table_t, read_data_table
+  use fit_request, only: measurement_t
+  implicit none
+  private
+  public :: measured_t, read_measured
+
+  !> Samples in the order of the file, those of the approach first. Where undeformed bodies under a
+  !> relaxed spring would touch, z is the contact point; the position of the drive (`driven_pieces`)
+  !> is facing*(z - contact point): facing = 1 where z falls towards the other body, else -1.
+  type :: measured_t
+    real(wp), allocatable :: z(:), signal(:)
+    logical, allocatable :: inward(:)
+    real(wp) :: facing = 1
+    !> Samples so far from contact that they are the baseline, once that is known.
+    logical, allocatable :: far(:)
+  end type measured_t
+
+  !> Samples of a way, fewer of which are no curve.
+  integer, parameter :: fewest = 20
+  !> A way begins and ends with this part of its samples; a turn that is nearer to the first or the
+  !> last sample than that is none.
+  real(wp), parameter :: end_part = 0.1_wp
+
+contains
+
+  !> Reads what `request` says, whose file is where a path from here leads. A third column says
+  !> which way a sample is of: 0 approach, 1 retreat; without one the ways part where z turns.
+  subroutine read_measured(request, measured, error)
+    type(measurement_t), intent(in) :: request
+    type(measured_t), intent(out) :: measured
+    type(failure_t), allocatable, intent(out) :: error
+    type(data_table_t) :: table
+    logical, allocatable :: wanted(:)
+    integer :: i
+
+    call read_data_table(request%file, request%columns, table, error)
+    if (allocated(error)) return
+    associate (z => table%value(:, 1), signal => table%value(:, 2))
+      if (size(z) < fewest) then
+        call fail(error, bad_input, table%source%file // ': fewer than 20 samples are no curve')
+        return
+      end if
+      if (size(request%columns) > 2) then
+        do i = 1, size(z)
+          if (any(nint(table%value(i, 3)) == [0, 1])) cycle
+          call table%source%complain(table%place(i), '', '', &
+            'the segment is neither 0, approach, nor 1, retreat', error)
+          return
+        end do
+        measured%inward = nint(table%value(:, 3)) == 0
+      else
+        measured%inward = before_turn(z, request%segment)
+      end if
+      wanted = [(.true., i=1, size(z))]
+      if (request%segment == 'approach') wanted = measured%inward
+      if (request%segment == 'retreat') wanted = .not. measured%inward
+      measured%z = [pack(z, measured%inward .and. wanted), &
+        pack(z, wanted .and. .not. measured%inward)]
+      measured%signal = [pack(signal, measured%inward .and. wanted), &
+        pack(signal, wanted .and. .not. measured%inward)]
+      measured%inward = [pack(measured%inward, measured%inward .and. wanted), &
+        pack(measured%inward, wanted .and. .not. measured%inward)]
+    end associate
+    call find_facing(table%source%file, measured, error)
+  end subroutine read_measured
+
+  !> Which samples come before z turns round; where it does not, `segment` decides.
+  pure function before_turn(z, segment) result(inward)
+    real(wp), intent(in) :: z(:)
+    character(len=*), intent(in) :: segment
+    logical :: inward(size(z))
+    integer :: turn, i, margin
+
+    margin = max(1, nint(end_part*size(z)))
+    turn = maxloc(z, 1)
+    if (min(turn, size(z) - turn) < margin) turn = minloc(z, 1)
+    if (min(turn, size(z) - turn) < margin) turn = merge(0, size(z), segment == 'retreat')
+    inward = [(i <= turn, i=1, size(z))]
+  end function before_turn
+
+  !> Which way z goes when the bodies approach; fails where a way is too short or the two disagree.
+  subroutine find_facing(file, measured, error)
+    character(len=*), intent(in) :: file
+    type(measured_t), intent(inout) :: measured
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: travel(2)
+    integer :: n(2)
+
+    n = [count(measured%inward), count(.not. measured%inward)]
+    if (any(n < fewest .and. n > 0) .or. sum(n) == 0) then
+      call fail(error, bad_input, file // ': fewer than 20 samples of the approach or the ' // &
+        'retreat; segment says which of them to fit, and columns where the file says so')
+      return
+    end if
+    travel = 0
+    if (n(1) > 0) travel(1) = travel_of(measured%z(:n(1)))
+    if (n(2) > 0) travel(2) = -travel_of(measured%z(n(1) + 1:))
+    if (travel(1)*travel(2) < 0) call fail(error, bad_input, file // ': z goes the same way ' // &
+      'in approach and retreat; is the third column 0 for approach and 1 for retreat?')
+    measured%facing = merge(1.0_wp, -1.0_wp, sum(travel) < 0)
+  end subroutine find_facing
+
+  !> How far z goes from the begin to the end of a way.
+  pure real(wp) function travel_of(z) result(travel)
+    real(wp), intent(in) :: z(:)
+    integer :: part
+
+    part = max(1, nint(end_part*size(z)))
+    travel = (sum(z(size(z) - part + 1:)) - sum(z(:part)))/part
+  end function travel_of
+
+end module measured_curve

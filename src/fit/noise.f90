@@ -1,0 +1,126 @@
+!> The noise of a signal, from samples that would be a straight line without it. Neighbours are
+!> correlated where an instrument filters: a sample is then foretold from some before it, and what
+!> is left of it is white (autoregression; Levinson, 1947, and Durbin, 1960).
+module noise
+  use kinds, only: wp
+  implicit none
+  private
+  public :: noise_t, white_noise, noise_of, whiten
+
+  !> Most samples from which another is foretold.
+  integer, parameter :: longest = 8
+
+  !> Standard deviation; correlation of samples so many apart; how many of those before a sample
+  !> tell something of it, by what weights (of the nearest first, column k where there are k), and
+  !> what then is left of the standard deviation.
+  type :: noise_t
+    real(wp) :: deviation = 0, correlation(0:longest) = 0
+    integer :: order = 0
+    real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
+  end type noise_t
+
+contains
+
+  !> Noise without correlation.
+  pure type(noise_t) function white_noise(deviation) result(noise)
+    real(wp), intent(in) :: deviation
+
+    noise%deviation = deviation
+    noise%correlation(0) = 1
+    noise%left = deviation
+  end function white_noise
+
+  !> The noise of a signal at equal steps, of which each run of samples is a straight line in z;
+  !> run(i) is the number of the run of sample i.
+  pure function noise_of(z, signal, run) result(noise)
+    real(wp), intent(in) :: z(:), signal(:)
+    integer, intent(in) :: run(:)
+    type(noise_t) :: noise
+    real(wp) :: r(size(z)), covariance(0:longest)
+    integer :: k, i, n
+
+    do i = minval(run), maxval(run)
+      where (run == i) r = off_line(z, signal, run == i)
+    end do
+    n = size(r)
+    do k = 0, longest
+      covariance(k) = sum(r(1 + k:)*r(:n - k), run(1 + k:) == run(:n - k))/n
+    end do
+    ! Each line took two unknowns.
+    noise = white_noise(sqrt(covariance(0)*n/max(1, n - 2*(maxval(run) - minval(run) + 1))))
+    if (.not. covariance(0) > 0) return
+    noise%correlation = covariance/covariance(0)
+    call find_weights(noise, n)
+  end function noise_of
+
+  !> What is left of the samples in `mask` beside their straight line.
+  pure function off_line(z, signal, mask) result(r)
+    real(wp), intent(in) :: z(:), signal(:)
+    logical, intent(in) :: mask(:)
+    real(wp) :: r(size(z)), middle(2)
+
+    middle = [sum(z, mask), sum(signal, mask)]/max(1, count(mask))
+    r = signal - middle(2)
+    r = r - (z - middle(1))*sum((z - middle(1))*r, mask)/ &
+      max(sum((z - middle(1))**2, mask), tiny(1.0_wp))
+  end function off_line
+
+  !> The weights of all orders from the correlations, and the order that is worth its unknowns: the
+  !> one with the least n ln(left^2) + 2 order (Akaike, 1974).
+  pure subroutine find_weights(noise, n)
+    type(noise_t), intent(inout) :: noise
+    integer, intent(in) :: n
+    real(wp) :: reflection, left, gain, best, before(longest)
+    integer :: k
+
+    left = 1
+    best = 0
+    before = 0
+    do k = 1, longest
+      reflection = (noise%correlation(k) - dot_product(before(:k - 1), &
+        reversed(noise%correlation(1:k - 1))))/left
+      noise%weight(:k - 1, k) = before(:k - 1) - reflection*reversed(before(:k - 1))
+      noise%weight(k, k) = reflection
+      before = noise%weight(:, k)
+      left = left*(1 - reflection**2)
+      noise%left(k) = noise%deviation*sqrt(left)
+      gain = n*log(left) + 2*k
+      if (gain >= best) cycle
+      best = gain
+      noise%order = k
+    end do
+  end subroutine find_weights
+
+  pure function reversed(a)
+    real(wp), intent(in) :: a(:)
+    real(wp) :: reversed(size(a))
+
+    reversed = a(size(a):1:-1)
+  end function reversed
+
+  !> Makes columns of numbers, one a sample, such that noise in them is white and of deviation 1;
+  !> samples of different runs are not correlated.
+  pure subroutine whiten(noise, run, column)
+    type(noise_t), intent(in) :: noise
+    integer, intent(in) :: run(:)
+    real(wp), intent(inout) :: column(:, :)
+    real(wp) :: raw(size(column, 2), 0:longest)
+    logical :: begins(size(run))
+    integer :: i, known
+
+    begins = .true.
+    if (size(run) > 1) begins(2:) = run(2:) /= run(:size(run) - 1)
+    known = 0
+    raw = 0
+    do i = 1, size(run)
+      known = merge(0, min(known + 1, noise%order), begins(i))
+      raw(:, 1:) = raw(:, :longest - 1)
+      raw(:, 0) = column(i, :)
+      column(i, :) = raw(:, 0)
+      if (known > 0) column(i, :) = column(i, :) - &
+        matmul(raw(:, 1:known), noise%weight(:known, known))
+      column(i, :) = column(i, :)/noise%left(known)
+    end do
+  end subroutine whiten
+
+end module noise

@@ -1,0 +1,245 @@
+!> The model whose loads are those of the equilibrium path, solved for each trial of the unknowns:
+!> the branches are the path's stable pieces behind the spring, and the ways those of `device`.
+module path_model
+  use kinds, only: wp
+  use failure, only: failure_t
+  use interpolation, only: polynomial_weights
+  use listener, only: listener_t
+  use dimensionless_problem, only: problem_t
+  use problem_family, only: problem_family_t
+  use variation, only: variation_t, vary
+  use edge_locked, only: new_mesh_family
+  use path_curve, only: curve_t, new_curve
+  use path_sensitivity, only: rate_t, rates_along
+  use curve_states, only: curve_solver_t
+  use driven_pieces, only: driven_piece_t, through_spring
+  use device, only: driven_t, drive_bodies
+  use experiment_request, only: request_t, numerics_t
+  use h0_range, only: range_of
+  use experiment, only: prepare
+  use numerics_choice, only: choice_t, choose
+  use path_demand, only: farthest_wanted
+  use path_stepper, only: path_stepper_t
+  use locked_stepper, only: has_path
+  use dimensionless_problem, only: contact_level_of
+  use force_branch, only: branch_t
+  use force_model, only: force_model_t, response_t, inward, outward
+  implicit none
+  private
+  public :: path_model_t
+
+  !> Panels of a branch for each interval of the path's curve: between its points the curve is a
+  !> polynomial of the seventh degree, on a panel a cubic.
+  integer, parameter :: panels = 8
+
+  type, extends(force_model_t) :: path_model_t
+    !> The problems; the unknowns are its parameters.
+    class(problem_family_t), allocatable :: family
+    type(numerics_t) :: numerics
+    !> The trial that was solved last, at these values.
+    real(wp), allocatable, private :: value(:)
+    type(path_stepper_t), private :: steps
+    type(curve_t), private :: curve
+    type(driven_t), private :: driven
+    real(wp), private :: stiffness = 0, farthest = 0, largest = 0
+    logical, private :: solved = .false.
+  contains
+    procedure :: respond
+    procedure, private :: solve_trial
+  end type path_model_t
+
+contains
+
+  subroutine respond(self, value, stiffness, farthest, largest, with_rates, response, found)
+    class(path_model_t), intent(inout) :: self
+    real(wp), intent(in) :: value(:), stiffness, farthest, largest
+    logical, intent(in) :: with_rates
+    type(response_t), intent(out) :: response
+    logical, intent(out) :: found
+    type(rate_t), allocatable :: rate(:, :)
+    integer :: i
+
+    if (.not. is_known(self, value, stiffness, farthest, largest)) &
+      call self%solve_trial(value, stiffness, farthest, largest)
+    found = self%solved
+    if (.not. found) return
+    allocate (rate(merge(size(value), 0, with_rates), size(self%curve%node)))
+    if (size(rate) > 0) call find_rates(self, rate, found)
+    if (.not. found) return
+    allocate (response%branch(size(self%driven%piece)))
+    do i = 1, size(response%branch)
+      call make_branch(self%steps%problem, self%curve, self%driven%piece(i), rate, &
+        response%branch(i))
+      call response%branch(i)%close(stiffness)
+    end do
+    call find_ways(self%steps%problem, self%driven, response)
+  end subroutine respond
+
+  !> Whether the trial solved last is of these values, and goes as far.
+  pure logical function is_known(self, value, stiffness, farthest, largest)
+    class(path_model_t), intent(in) :: self
+    real(wp), intent(in) :: value(:), stiffness, farthest, largest
+
+    is_known = allocated(self%value) .and. largest <= self%largest .and. &
+      farthest <= self%farthest
+    if (is_known) is_known = all(abs(value - self%value) <= 0) .and. &
+      abs(stiffness - self%stiffness) <= 0
+  end function is_known
+
+  !> Traces the path of a trial and drives the bodies along it.
+  subroutine solve_trial(self, value, stiffness, farthest, largest)
+    class(path_model_t), intent(inout) :: self
+    real(wp), intent(in) :: value(:), stiffness, farthest, largest
+    type(path_stepper_t) :: fresh
+    type(request_t) :: request
+    type(problem_t) :: problem
+    type(choice_t) :: chosen
+    type(curve_solver_t) :: solver
+    type(listener_t) :: silent
+    type(failure_t), allocatable :: error
+    real(wp), allocatable :: anywhere
+    real(wp) :: low, high
+
+    self%value = value
+    self%stiffness = stiffness
+    self%largest = largest
+    self%farthest = farthest
+    self%solved = .false.
+    self%steps = fresh
+    call self%family%pose(value, problem, error)
+    if (allocated(error)) return
+    if (.not. has_path(problem)) return
+    request%numerics = self%numerics
+    allocate (request%path, request%device, request%fixed_load)
+    request%path%h0_end = problem%law%separation_of(problem%law%rest_gap)
+    request%device%stiffness = [stiffness]
+    request%device%z_start = farthest
+    request%fixed_load%load = [largest]
+    call range_of(request, problem, low, high)
+    chosen = choose(self%numerics, problem, low)
+    call prepare(self%steps, problem, chosen, self%numerics%accuracy)
+    if (self%steps%options%method == 'mixing') self%steps%options%method = 'anderson'
+    self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits)
+    call self%steps%know_path(high, low, .true., .true., silent)
+    solver%options = self%steps%options
+    call new_curve(self%steps%equations_t, self%steps%known, farthest_wanted(request, problem), &
+      contact_level_of(problem), solver%curve, self%solved)
+    if (.not. self%solved) return
+    call drive_bodies(solver, self%steps%equations_t, self%steps%known, &
+      through_spring(stiffness*problem%length/problem%load), low, anywhere, anywhere, self%driven)
+    self%curve = solver%curve
+    self%solved = self%driven%solved .and. self%driven%caught .and. size(self%driven%leg) > 1
+  end subroutine solve_trial
+
+  !> Derivatives of the curve of the trial solved last by its unknowns.
+  subroutine find_rates(self, rate, found)
+    class(path_model_t), intent(inout) :: self
+    type(rate_t), intent(out) :: rate(:, :)
+    logical, intent(out) :: found
+    type(variation_t) :: varied(size(rate, 1))
+    type(rate_t), allocatable :: all_rates(:, :)
+    type(failure_t), allocatable :: error
+    integer :: i
+
+    self%family%parameter%value = self%value
+    where (abs(self%value) > 0) self%family%parameter%scale = abs(self%value)
+    found = .true.
+    do i = 1, size(varied)
+      call vary(self%family, i, varied(i), error)
+      found = found .and. .not. allocated(error)
+    end do
+    if (found) call rates_along(self%steps%equations_t, self%steps%known, self%curve, varied, &
+      all_rates, found)
+    if (found) rate = all_rates
+  end subroutine find_rates
+
+  !> A stable piece of the curve as panels, SI units; rate(unknown, node) of the curve.
+  subroutine make_branch(problem, curve, piece, rate, branch)
+    type(problem_t), intent(in) :: problem
+    type(curve_t), intent(in) :: curve
+    type(driven_piece_t), intent(in) :: piece
+    type(rate_t), intent(in) :: rate(:, :)
+    type(branch_t), intent(out) :: branch
+    integer :: i, k, n
+    real(wp) :: low, high
+
+    n = panels*(piece%last%interval - piece%first%interval + 1)
+    allocate (branch%h0(4, n), branch%load(4, n), branch%h0_rate(size(rate, 1), 2, n), &
+      branch%load_rate(size(rate, 1), 2, n))
+    n = 0
+    do i = piece%first%interval, piece%last%interval
+      associate (begin => curve%begin_of(i), end => curve%end_of(i))
+        low = begin%x
+        high = end%x
+      end associate
+      if (i == piece%first%interval) low = piece%first%x
+      if (i == piece%last%interval) high = piece%last%x
+      if (.not. high > low) cycle
+      do k = 1, panels
+        n = n + 1
+        call add_end(1, low + (high - low)*(k - 1)/panels, (high - low)/panels)
+        call add_end(2, low + (high - low)*k/panels, (high - low)/panels)
+      end do
+    end do
+    branch%h0 = branch%h0(:, :n)
+    branch%load = branch%load(:, :n)
+    branch%h0_rate = branch%h0_rate(:, :, :n)
+    branch%load_rate = branch%load_rate(:, :, :n)
+    branch%turns_first = piece%first_turns
+    branch%turns_last = piece%last_turns
+
+  contains
+
+    !> Begin (1) or end (2) of panel n, at x, where t has the unit `width` of x.
+    subroutine add_end(side, x, width)
+      integer, intent(in) :: side
+      real(wp), intent(in) :: x, width
+      real(wp), parameter :: of_h0(2) = [1, 0], of_load(2) = [0, 1]
+
+      branch%h0(side, n) = problem%law%separation_of(curve%value(i, of_h0, x))
+      branch%h0(2 + side, n) = problem%length*width*curve%slope(i, of_h0, x)
+      branch%load(side, n) = problem%load*curve%value(i, of_load, x)
+      branch%load(2 + side, n) = problem%load*width*curve%slope(i, of_load, x)
+      if (size(rate, 1) == 0) return
+      associate (near => curve%support(i))
+        associate (weight => polynomial_weights(curve%node(near)%x, x))
+          branch%h0_rate(:, side, n) = matmul(rate(:, near)%h0, weight)
+          branch%load_rate(:, side, n) = matmul(rate(:, near)%load, weight)
+        end associate
+      end associate
+    end subroutine add_end
+
+  end subroutine make_branch
+
+  !> Which branches the bodies go along, in and out, and from which of them they jump farthest.
+  subroutine find_ways(problem, driven, response)
+    type(problem_t), intent(in) :: problem
+    type(driven_t), intent(in) :: driven
+    type(response_t), intent(inout) :: response
+    real(wp) :: largest(2)
+    integer :: i, k
+
+    do k = inward, outward
+      allocate (response%way(k)%branch(0), response%way(k)%leaves_at(0))
+    end do
+    do i = 1, size(driven%leg)
+      k = merge(inward, outward, driven%leg(i)%inward)
+      associate (way => response%way(k))
+        way%branch = [way%branch, driven%leg(i)%piece]
+        way%leaves_at = [way%leaves_at, &
+          problem%law%separation_of(driven%drive%position(driven%leg(i)%to))]
+      end associate
+    end do
+    ! The jumps of a way start from its legs, in order, but for the last.
+    largest = 0
+    do i = 1, size(driven%jump)
+      k = merge(inward, outward, driven%jump(i)%inward)
+      associate (change => abs(driven%jump(i)%after%load - driven%jump(i)%before%load))
+        if (.not. change > largest(k)) cycle
+        largest(k) = change
+        response%way(k)%main = count(driven%jump(:i)%inward .eqv. driven%jump(i)%inward)
+      end associate
+    end do
+  end subroutine find_ways
+
+end module path_model

@@ -1,0 +1,190 @@
+!> A text file with a table of numbers, as measuring programs write it: comments after #, perhaps a
+!> line with the names of the columns, then a row a line, cells apart by blanks, tabs, commas or
+!> semicolons.
+module data_table
+  use kinds, only: wp
+  use failure, only: failure_t
+  use text, only: lower, quoted, clip, guess
+  use deck_number, only: parse_real, parse_integer
+  use deck_source, only: source_t, load_source
+  use number_columns, only: uncommented, between
+  implicit none
+  private
+  public :: data_table_t, read_data_table
+
+  !> The columns asked for, value(row, column), and where in the file's text each row stands.
+  type :: data_table_t
+    type(source_t) :: source
+    real(wp), allocatable :: value(:, :)
+    integer, allocatable :: place(:)
+  end type data_table_t
+
+  !> A cell: its first and last character in a line.
+  type :: cell_t
+    integer :: first = 0, last = 0
+  end type cell_t
+
+  character(len=*), parameter :: newline = new_line('a')
+
+contains
+
+  !> Reads the columns `wanted` of `file`: names from its header line, in upper or lower case, or
+  !> numbers counted from 1; a minus before either turns the column's sign. error: what is wrong
+  !> with the file, with the line.
+  subroutine read_data_table(file, wanted, table, error)
+    character(len=*), intent(in) :: file, wanted(:)
+    type(data_table_t), intent(out) :: table
+    type(failure_t), allocatable, intent(out) :: error
+    type(cell_t), allocatable :: cells(:)
+    integer :: first, next, n, columns, at(size(wanted))
+
+    call load_source(file, table%source, error)
+    if (allocated(error)) return
+    n = count([(table%source%text(first:first) == newline, first=1, &
+      len(table%source%text))]) + 1
+    allocate (table%value(n, size(wanted)), table%place(n))
+    n = 0
+    columns = 0
+    next = 1
+    do while (next <= len(table%source%text))
+      first = next
+      next = first + scan(table%source%text(first:), newline)
+      if (next == first) next = len(table%source%text) + 2
+      call split(uncommented(table%source%part(first, next - 2)), cells)
+      if (size(cells) == 0) cycle
+      if (columns == 0) then
+        columns = size(cells)
+        call find_columns(table%source, first, cells, wanted, at, error)
+        if (allocated(error)) return
+        if (is_header(table%source, first, cells)) cycle
+      end if
+      if (size(cells) /= columns) then
+        call table%source%complain(first, '', '', counted(size(cells)) // ' where ' // &
+          counted(columns) // ' are expected', error)
+        return
+      end if
+      n = n + 1
+      call read_row(table%source, first, cells(at), wanted, table%value(n, :), error)
+      if (allocated(error)) return
+      table%place(n) = first
+    end do
+    table%value = table%value(:n, :)
+    table%place = table%place(:n)
+  end subroutine read_data_table
+
+  !> The cells of a line.
+  subroutine split(line, cells)
+    character(len=*), intent(in) :: line
+    type(cell_t), allocatable, intent(out) :: cells(:)
+    integer :: first, length
+
+    allocate (cells(0))
+    first = 1
+    do while (first <= len(line))
+      length = verify(line(first:), between)
+      if (length == 0) return
+      first = first + length - 1
+      length = scan(line(first:), between) - 1
+      if (length < 0) length = len(line) - first + 1
+      cells = [cells, cell_t(first, first + length - 1)]
+      first = first + length
+    end do
+  end subroutine split
+
+  !> Whether a line has a cell that is no number.
+  logical function is_header(source, start, cells)
+    type(source_t), intent(in) :: source
+    integer, intent(in) :: start
+    type(cell_t), intent(in) :: cells(:)
+    character(len=:), allocatable :: what
+    real(wp) :: number
+    integer :: i
+
+    is_header = .false.
+    do i = 1, size(cells)
+      call parse_real(source%part(start + cells(i)%first - 1, start + cells(i)%last - 1), number, &
+        what)
+      is_header = is_header .or. allocated(what)
+    end do
+  end function is_header
+
+  !> In which column each wanted one is, from the first line that is no comment.
+  subroutine find_columns(source, start, cells, wanted, at, error)
+    type(source_t), intent(in) :: source
+    integer, intent(in) :: start
+    type(cell_t), intent(in) :: cells(:)
+    character(len=*), intent(in) :: wanted(:)
+    integer, intent(out) :: at(:)
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: names, name, what
+    integer :: i, k
+
+    names = ''
+    do k = 1, size(cells)
+      names = names // ' ' // lower(cell(k))
+    end do
+    do i = 1, size(wanted)
+      name = unsigned(wanted(i))
+      call parse_integer(name, at(i), what)
+      if (allocated(what)) at(i) = 0
+      do k = 1, size(cells)
+        if (allocated(what) .and. lower(cell(k)) == lower(name)) at(i) = k
+      end do
+      if (at(i) >= 1 .and. at(i) <= size(cells)) cycle
+      call source%complain(start, '', '', 'no column ' // quoted(clip(name)) // &
+        guess(name, names(2:), '') // '; this line has ' // counted(size(cells)), error)
+    end do
+
+  contains
+
+    pure function cell(k)
+      integer, intent(in) :: k
+      character(len=:), allocatable :: cell
+
+      cell = source%part(start + cells(k)%first - 1, start + cells(k)%last - 1)
+    end function cell
+
+  end subroutine find_columns
+
+  !> A column's name or number without its sign.
+  pure function unsigned(name)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: unsigned
+
+    unsigned = trim(adjustl(name))
+    if (index(unsigned, '-') == 1) unsigned = trim(adjustl(unsigned(2:)))
+  end function unsigned
+
+  !> The numbers in these cells of a line.
+  subroutine read_row(source, start, cells, wanted, row, error)
+    type(source_t), intent(in) :: source
+    integer, intent(in) :: start
+    type(cell_t), intent(in) :: cells(:)
+    character(len=*), intent(in) :: wanted(:)
+    real(wp), intent(out) :: row(:)
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: what
+    integer :: i
+
+    do i = 1, size(cells)
+      call parse_real(source%part(start + cells(i)%first - 1, start + cells(i)%last - 1), row(i), &
+        what)
+      if (allocated(what)) then
+        call source%complain(start + cells(i)%first - 1, '', '', what, error)
+        return
+      end if
+      if (index(adjustl(wanted(i)), '-') == 1) row(i) = -row(i)
+    end do
+  end subroutine read_row
+
+  !> '1 column', '3 columns'.
+  pure function counted(n)
+    integer, intent(in) :: n
+    character(len=:), allocatable :: counted
+    character(len=12) :: number
+
+    write (number, '(i0)') n
+    counted = trim(number) // ' column' // trim(merge(' ', 's', n == 1))
+  end function counted
+
+end module data_table

@@ -1,0 +1,165 @@
+!> What a fit found: fit.csv, sample by sample; fit.nml, the unknowns; and the same in words.
+module fit_rows
+  use kinds, only: wp
+  use text, only: rounded, brief
+  use namelist_writer, only: line_t, assignment_of
+  use tables, only: cells
+  use fit_request, only: unknown_t
+  use measured_jumps, only: measured_jump_t
+  use curve_fit, only: fitted_t
+  use fit_run, only: fit_outcome_t
+  use fit_doubts, only: doubts_of
+  implicit none
+  private
+  public :: fit_columns, fit_lines, fit_text, fit_words
+
+  !> Columns of fit.csv.
+  character(len=*), parameter :: fit_columns(*) = [character(len=96) :: &
+    'direction [] approach or retreat', &
+    'z [m] position of the base, as measured', &
+    'measured [] the signal: N, or V where the deck has a sensitivity', &
+    'model [] the same by the model, with its baseline', &
+    'baseline [] the signal without force', &
+    'residual [] measured less model', &
+    'used [] 1: the sample counts; 0: it is the last before a jump, or within it']
+
+  character(len=1), parameter :: nl = new_line('a')
+
+contains
+
+  !> Rows of fit.csv.
+  function fit_lines(outcome) result(lines)
+    type(fit_outcome_t), intent(in) :: outcome
+    type(line_t), allocatable :: lines(:)
+    integer :: i
+
+    associate (data => outcome%curve%data%measured, fitted => outcome%fitted)
+      allocate (lines(size(data%z)))
+      do i = 1, size(lines)
+        lines(i)%text = trim(merge('approach', 'retreat ', data%inward(i))) // ',' // &
+          cells([data%z(i), data%signal(i), fitted%model(i), fitted%baseline(i), &
+          fitted%residual(i)]) // merge(',1', ',0', any(outcome%curve%data%sample == i))
+      end do
+    end associate
+  end function fit_lines
+
+  !> fit.nml: a group for the fit of the path, and one for that of each theory.
+  function fit_text(outcome, title) result(text)
+    type(fit_outcome_t), intent(in) :: outcome
+    character(len=*), intent(in) :: title
+    character(len=:), allocatable :: text
+    character(len=:), allocatable :: name
+    real(wp), allocatable :: numbers(:)
+    integer :: i
+
+    name = title
+    text = '! A fit by snapin, SI units. What does not exist is NaN or left out.' // nl // &
+      '&fit' // nl // assignment_of('title', name) // &
+      of_fitted(outcome%curve%unknown, outcome%fitted)
+    associate (curve => outcome%curve)
+      numbers = [curve%data%noise%deviation]
+      text = text // assignment_of('noise', numbers)
+      numbers = curve%data%noise%correlation(1:)
+      text = text // assignment_of('noise_correlation', numbers)
+      text = text // of_jump('jump_in', curve%data%jump(1), outcome%fitted%jump_z(1)) // &
+        of_jump('jump_out', curve%data%jump(2), outcome%fitted%jump_z(2))
+    end associate
+    text = text // assignment_of('warnings', doubts_of(outcome)) // '/' // nl
+    do i = 1, size(outcome%theory)
+      associate (theory => outcome%theory(i))
+        if (.not. allocated(theory%fitted%effect)) cycle
+        text = text // '&' // trim(theory%theory) // nl // &
+          of_fitted(theory%unknown, theory%fitted) // '/' // nl
+      end associate
+    end do
+  end function fit_text
+
+  !> The entries that all fits have.
+  function of_fitted(unknown, fitted) result(text)
+    type(unknown_t), intent(in) :: unknown(:)
+    type(fitted_t), intent(in) :: fitted
+    character(len=:), allocatable :: text
+    type(line_t), allocatable :: names(:)
+    real(wp), allocatable :: numbers(:)
+    logical, allocatable :: found
+    integer :: i
+
+    allocate (names(size(unknown)))
+    do i = 1, size(unknown)
+      names(i)%text = unknown(i)%name
+    end do
+    found = fitted%found
+    text = assignment_of('converged', found) // assignment_of('parameters', names) // &
+      assignment_of('estimate', fitted%value) // &
+      assignment_of('standard_error', fitted%deviation)
+    numbers = [(fitted%end_of(i, unknown(i), -1.0_wp), i=1, size(unknown))]
+    text = text // assignment_of('lower_68', numbers)
+    numbers = [(fitted%end_of(i, unknown(i), 1.0_wp), i=1, size(unknown))]
+    text = text // assignment_of('upper_68', numbers)
+    numbers = reshape(fitted%correlation, [size(fitted%correlation)])
+    text = text // assignment_of('correlation', numbers)
+    numbers = [fitted%identifiable]
+    text = text // assignment_of('identifiable', numbers)
+    numbers = [fitted%chi_squared]
+    text = text // assignment_of('chi_squared', numbers)
+    numbers = [real(fitted%freedom, wp)]
+    text = text // assignment_of('degrees_of_freedom', numbers)
+  end function of_fitted
+
+  !> Where the base was at a jump, as measured and by the model; nothing where none was seen.
+  function of_jump(name, jump, model) result(text)
+    character(len=*), intent(in) :: name
+    type(measured_jump_t), intent(in) :: jump
+    real(wp), intent(in) :: model
+    character(len=:), allocatable :: text
+    real(wp), allocatable :: numbers(:)
+
+    numbers = [model]
+    text = assignment_of(name // '_z_model', numbers)
+    if (jump%before == 0) return
+    numbers = [jump%z]
+    text = text // assignment_of(name // '_z', numbers)
+    numbers = [jump%uncertainty]
+    text = text // assignment_of(name // '_z_uncertainty', numbers)
+    numbers = [jump%change]
+    text = text // assignment_of(name // '_change', numbers)
+  end function of_jump
+
+  !> The fit in words, for the terminal.
+  function fit_words(outcome) result(lines)
+    type(fit_outcome_t), intent(in) :: outcome
+    type(line_t), allocatable :: lines(:)
+    type(line_t) :: line
+    integer :: i
+
+    allocate (lines(0))
+    associate (curve => outcome%curve)
+      line%text = brief(real(size(curve%data%sample), wp)) // ' samples, noise ' // &
+        rounded(curve%data%noise%deviation) // ', correlation of neighbours ' // &
+        rounded(curve%data%noise%correlation(1))
+      lines = [lines, line]
+      do i = 1, size(curve%unknown)
+        line%text = curve%unknown(i)%name // ' = ' // rounded(outcome%fitted%value(i)) // &
+          ' +- ' // rounded(outcome%fitted%deviation(i))
+        lines = [lines, line]
+      end do
+    end associate
+    line%text = 'what is left is ' // rounded(left_of(outcome%fitted)) // ' times the noise'
+    do i = 1, size(outcome%theory)
+      associate (theory => outcome%theory(i))
+        if (.not. allocated(theory%fitted%effect)) cycle
+        line%text = line%text // '; by ' // trim(theory%theory) // ' ' // &
+          rounded(left_of(theory%fitted))
+      end associate
+    end do
+    lines = [lines, line]
+  end function fit_words
+
+  !> What a fit leaves over the noise.
+  pure real(wp) function left_of(fitted)
+    type(fitted_t), intent(in) :: fitted
+
+    left_of = sqrt(fitted%chi_squared/max(1, fitted%freedom))
+  end function left_of
+
+end module fit_rows

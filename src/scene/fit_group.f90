@@ -1,0 +1,258 @@
+!> &measurement and &fit: a measured force curve, and the keys of the deck that are fitted to it.
+module fit_group
+  use kinds, only: wp
+  use failure, only: failure_t
+  use text, only: lower, quoted, word_count, word_of
+  use deck, only: deck_t
+  use deck_source, only: source_t, load_source
+  use deck_keys, only: key_spec, group, real_key, list_key, text_key, word_key, names_key
+  use fit_request, only: unknown_t, of_contact_point, of_sensitivity, of_spring
+  use scene_groups, only: scene_t
+  use deck_family, only: deck_family_t, new_deck_family
+  implicit none
+  private
+  public :: fit_keys, take_fit, family_of_fit
+
+  integer, parameter :: most_unknowns = 20
+
+contains
+
+  !> Its rows of the table.
+  pure function fit_keys() result(specs)
+    type(key_spec), allocatable :: specs(:)
+    real(wp), parameter :: zero = 0
+
+    specs = [ &
+      group('measurement', 'A measured force curve, for &fit.'), &
+      text_key('measurement', 'file', 1000, 'Its file: a table of numbers, # before comments, ' // &
+               'perhaps a line of names; in the folder of the deck unless a path.', &
+               required=.true.), &
+      names_key('measurement', 'columns', 3, 'Name or number of the columns of the base''s ' // &
+                'position [m], the signal (force [N], positive: repulsion, or [V]) and, if ' // &
+                'there is one, the segment: 0 approach, 1 retreat. A minus turns the sign.', &
+                otherwise='the first two'), &
+      real_key('measurement', 'spring_constant', 'N/m', 'Stiffness of the spring.', above=zero, &
+               required=.true.), &
+      real_key('measurement', 'sensitivity', 'm/V', 'Deflection of the spring for one volt; 1 ' &
+               // 'for a deflection in metres.', above=zero, otherwise='the signal is the force'), &
+      real_key('measurement', 'contact_point', 'm', 'Position of the base at which undeformed ' // &
+               'bodies would touch.', otherwise='found by the fit'), &
+      word_key('measurement', 'segment', 'both approach retreat', 'Which way is fitted.', &
+               default='both'), &
+      group('fit', 'Keys of this deck found such that the path''s curve is that of ' // &
+            '&measurement.'), &
+      names_key('fit', 'parameters', most_unknowns, 'What is unknown, as ''group.key'': ' // &
+                'numbers of bodies, shape and forces, and measurement.contact_point, ' // &
+                'sensitivity or spring_constant.', required=.true.), &
+      list_key('fit', 'lower', '', 'Least value of each, in the unit of the key.', &
+               most=most_unknowns, otherwise='none'), &
+      list_key('fit', 'upper', '', 'Largest value of each.', most=most_unknowns, &
+               otherwise='none'), &
+      list_key('fit', 'prior', '', 'Standard deviation of what is known before of each, about ' // &
+               'the value in the deck; 0: nothing.', most=most_unknowns, low=zero, &
+               otherwise='nothing known'), &
+      real_key('fit', 'noise', '', 'Standard deviation of the signal, in its unit.', above=zero, &
+               otherwise='that of the baseline')]
+  end function fit_keys
+
+  !> &measurement and &fit.
+  subroutine take_fit(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+
+    associate (deck => scene%deck)
+      if (deck%has_group('measurement') .and. .not. deck%has_group('fit')) &
+        call deck%mistake('measurement', '', 'needs &fit', error)
+      if (.not. deck%has_group('fit')) return
+      if (.not. deck%has_group('measurement')) then
+        call deck%mistake('fit', '', 'needs &measurement', error)
+        return
+      end if
+      if (deck%has_group('sweep')) call deck%mistake('fit', '', 'not together with &sweep', error)
+      if (allocated(scene%law)) then
+        if (scene%bodies%rigid .or. .not. scene%law%adhesion > 0) call deck%mistake('fit', '', &
+          'needs elastic bodies and a force that attracts', error)
+      end if
+    end associate
+    if (allocated(error)) return
+    allocate (scene%measurement, scene%fit)
+    call take_measurement(scene, error)
+    if (.not. allocated(error)) call take_unknowns(scene, error)
+  end subroutine take_fit
+
+  !> &measurement.
+  subroutine take_measurement(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    type(source_t) :: source
+    type(failure_t), allocatable :: trouble
+    character(len=:), allocatable :: names
+    integer :: i
+
+    associate (deck => scene%deck, measurement => scene%measurement)
+      measurement%file = deck%path_of('measurement', 'file')
+      call load_source(measurement%file, source, trouble)
+      if (allocated(trouble)) then
+        call deck%mistake('measurement', 'file', trouble%message, error)
+        return
+      end if
+      call deck%note_file('measurement', 'file', source%text)
+      call deck%assume('measurement', 'columns', '1 2')
+      call deck%get('measurement', 'columns', names)
+      allocate (measurement%columns(word_count(names)))
+      do i = 1, size(measurement%columns)
+        measurement%columns(i) = word_of(names, i)
+      end do
+      call deck%get('measurement', 'spring_constant', measurement%spring_constant)
+      call deck%get_optional('measurement', 'sensitivity', measurement%sensitivity)
+      call deck%get_optional('measurement', 'contact_point', measurement%contact_point)
+      call deck%get('measurement', 'segment', measurement%segment)
+      call deck%get_optional('fit', 'noise', scene%fit%noise)
+    end associate
+  end subroutine take_measurement
+
+  !> The problems whose parameters are the unknowns of bodies, shape and forces, in their order.
+  subroutine family_of_fit(deck, family, error)
+    type(deck_t), intent(in) :: deck
+    type(deck_family_t), intent(out) :: family
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: names, own
+    integer :: i
+
+    call deck%get('fit', 'parameters', names)
+    own = ''
+    do i = 1, word_count(names)
+      if (.not. is_measured(word_of(names, i))) own = own // ' ' // word_of(names, i)
+    end do
+    call new_deck_family(deck, own, family, error)
+  end subroutine family_of_fit
+
+  !> Whether a key is one of &measurement.
+  pure logical function is_measured(name)
+    character(len=*), intent(in) :: name
+
+    is_measured = index(lower(name), 'measurement.') == 1
+  end function is_measured
+
+  !> The unknowns of &fit with their bounds and what is known before.
+  subroutine take_unknowns(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    type(deck_family_t) :: family
+    type(failure_t), allocatable :: trouble
+    character(len=:), allocatable :: names
+    integer :: i, k, own, row, term
+
+    call scene%deck%get('fit', 'parameters', names)
+    call family_of_fit(scene%deck, family, trouble)
+    if (allocated(trouble)) then
+      call scene%deck%mistake('fit', 'parameters', trouble%message // &
+        ', measurement.contact_point, measurement.sensitivity, measurement.spring_constant', error)
+      return
+    end if
+    allocate (scene%fit%unknown(word_count(names)))
+    own = 0
+    do i = 1, size(scene%fit%unknown)
+      associate (unknown => scene%fit%unknown(i))
+        unknown%name = lower(word_of(names, i))
+        if (is_measured(unknown%name)) then
+          call take_measured(scene, unknown, error)
+        else
+          own = own + 1
+          unknown%value = family%parameter(own)%value
+          unknown%scale = family%parameter(own)%scale
+          call scene%deck%find_number(unknown%name, row, term, trouble)
+          unknown%in_log = unknown%value > 0 .and. scene%deck%specs(row)%low >= 0
+          unknown%origin = unknown%value
+        end if
+      end associate
+      do k = 1, i - 1
+        if (scene%fit%unknown(k)%name == scene%fit%unknown(i)%name) call scene%deck%mistake('fit', &
+          'parameters', quoted(scene%fit%unknown(i)%name) // ' is there twice', error)
+      end do
+      if (allocated(error)) return
+    end do
+    if (.not. any(scene%fit%unknown%role == of_contact_point) .and. &
+      .not. allocated(scene%measurement%contact_point)) call scene%deck%mistake('fit', &
+      'parameters', 'measurement.contact_point is neither here nor given in &measurement', error)
+    call take_bounds(scene%deck, scene%fit%unknown, error)
+  end subroutine take_unknowns
+
+  !> An unknown of the measurement.
+  subroutine take_measured(scene, unknown, error)
+    type(scene_t), intent(in) :: scene
+    type(unknown_t), intent(inout) :: unknown
+    type(failure_t), allocatable, intent(inout) :: error
+
+    select case (unknown%name)
+    case ('measurement.contact_point')
+      unknown%role = of_contact_point
+      if (allocated(scene%measurement%contact_point)) &
+        unknown%value = scene%measurement%contact_point
+    case ('measurement.spring_constant')
+      unknown%role = of_spring
+      unknown%value = scene%measurement%spring_constant
+    case ('measurement.sensitivity')
+      unknown%role = of_sensitivity
+      if (allocated(scene%measurement%sensitivity)) then
+        unknown%value = scene%measurement%sensitivity
+      else
+        call scene%deck%mistake('fit', 'parameters', 'the signal is a force: &measurement has ' // &
+          'no sensitivity', error)
+      end if
+    case default
+      call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // &
+        ' cannot be fitted; of &measurement contact_point, sensitivity and spring_constant ' // &
+        'can', error)
+    end select
+    unknown%in_log = unknown%role /= of_contact_point
+    if (unknown%in_log .and. unknown%value > 0) unknown%scale = unknown%value
+  end subroutine take_measured
+
+  !> Bounds and what is known before, one for each unknown.
+  subroutine take_bounds(deck, unknown, error)
+    type(deck_t), intent(in) :: deck
+    type(unknown_t), intent(inout) :: unknown(:)
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=*), parameter :: keys(*) = [character(len=5) :: 'lower', 'upper', 'prior']
+    real(wp), allocatable :: value(:)
+    integer :: i, k
+
+    do k = 1, size(keys)
+      call deck%get('fit', trim(keys(k)), value)
+      if (size(value) == 0) cycle
+      if (size(value) /= size(unknown)) then
+        call deck%mistake('fit', trim(keys(k)), 'one for each of parameters is needed', error)
+        return
+      end if
+      do i = 1, size(unknown)
+        select case (keys(k))
+        case ('lower')
+          unknown(i)%lower = value(i)
+          if (unknown(i)%in_log .and. value(i) <= 0) deallocate (unknown(i)%lower)
+        case ('upper')
+          unknown(i)%upper = value(i)
+        case default
+          unknown(i)%prior = value(i)
+        end select
+      end do
+    end do
+    do i = 1, size(unknown)
+      if (unknown(i)%role == of_contact_point .and. .not. deck%is_set('measurement', &
+        'contact_point')) then
+        if (unknown(i)%prior > 0) call deck%mistake('fit', 'prior', &
+          'measurement.contact_point is not given, so that nothing is known of it', error)
+        cycle
+      end if
+      if (allocated(unknown(i)%lower)) then
+        if (unknown(i)%value < unknown(i)%lower) call deck%mistake('fit', 'lower', &
+          unknown(i)%name // ' is below it in this deck', error)
+      end if
+      if (allocated(unknown(i)%upper)) then
+        if (unknown(i)%value > unknown(i)%upper) call deck%mistake('fit', 'upper', &
+          unknown(i)%name // ' is above it in this deck', error)
+      end if
+    end do
+  end subroutine take_bounds
+
+end module fit_group

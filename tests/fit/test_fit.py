@@ -1,0 +1,358 @@
+"""Claims about fits of measured curves: what data without noise give back, what the errors mean,
+and what is said where a fit cannot work."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+import snapin
+from support.measured import (
+    BODIES,
+    CONTACT_POINT,
+    LENNARD_JONES,
+    SPRING,
+    Branches,
+    fit_deck,
+    states_of_device,
+    write,
+)
+
+POINT = "measurement.contact_point"
+STRENGTH, STIFFNESS = "force.hamaker", "bodies.stiffness"
+# A noise that data without any are said to have, so that the sum of squares has a scale.
+FINE = {"noise": 1e-13}
+BASELINE, SLOPE = 2e-10, 1e-3
+
+SCENES = {
+    "lennard_jones": (LENNARD_JONES, {STRENGTH: 1.0e-19, STIFFNESS: 1e10}),
+    "stronger": (
+        {"bodies": {"radius": 50e-9, "stiffness": 2e9}, "force": LENNARD_JONES["force"]},
+        {"force.z0": 3e-10, STRENGTH: 1.0e-19},
+    ),
+    "morse": (
+        {"bodies": BODIES, "morse": {"surface_energy": 0.03, "z0": 3e-10, "decay_length": 2e-10}},
+        {"morse.surface_energy": 0.03, "morse.decay_length": 2e-10, STIFFNESS: 1e10},
+    ),
+    "sum": (
+        {
+            "bodies": {"radius": 50e-9, "stiffness": 1e10},
+            "van_der_waals": {"hamaker": 1e-19},
+            "born": {"z0": 3e-10},
+            "hydration": {"energy": 2e-3, "decay_length": 3e-10},
+        },
+        {"van_der_waals.hamaker": 1e-19, STIFFNESS: 1e10},
+    ),
+    "power": (
+        {"bodies": {"stiffness": 1e10},
+         "shape": {"kind": "power", "exponent": 3.0, "radius": 50e-9},
+         "force": LENNARD_JONES["force"]},
+        {STRENGTH: 1.0e-19, "shape.radius": 50e-9},
+    ),
+}
+
+
+def with_values(groups, values):
+    """Groups with other values of keys."""
+    changed = {name: dict(keys) for name, keys in groups.items()}
+    for key, value in values.items():
+        group, name = key.split(".")
+        changed[group][name] = value
+    return changed
+
+
+def run(deck):
+    """A fit whose warnings are for the test to look at."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", snapin.SnapinWarning)
+        return snapin.run(deck)
+
+
+def values_of(result, group="fit"):
+    found = result.fitted[group]
+    return dict(zip(found["parameters"], found["estimate"]))
+
+
+def errors_of(result):
+    found = result.fitted["fit"]
+    return dict(zip(found["parameters"], found["standard_error"]))
+
+
+@pytest.fixture(scope="module")
+def exact(tmp_path_factory):
+    """exact(name) -> file of the states of a scene, with a baseline."""
+    folder, files = tmp_path_factory.mktemp("exact"), {}
+
+    def file_of(name):
+        if name not in files:
+            z, load, segment = states_of_device(SCENES[name][0])
+            files[name] = write(folder / f"{name}.csv", z + CONTACT_POINT,
+                                load + BASELINE + SLOPE * z, segment)
+        return files[name]
+
+    return file_of
+
+
+@pytest.fixture(scope="module")
+def branches():
+    return Branches(LENNARD_JONES)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_data_without_noise_give_the_values_back(exact, name):
+    groups, truth = SCENES[name]
+    start = with_values(groups, {key: 1.07 * value for key, value in truth.items()})
+    result = run(fit_deck(start, exact(name), [*truth, POINT], FINE))
+    found = values_of(result)
+    assert result.converged
+    for key, value in truth.items():
+        assert found[key] == pytest.approx(value, rel=1e-6)
+    # To a thousandth of a picometre.
+    assert found[POINT] == pytest.approx(CONTACT_POINT, abs=1e-15)
+    # Within a jump nothing counts; elsewhere the model is the data.
+    used = result.fit["used"] == 1
+    assert np.abs(result.fit["residual"][used]).max() < 1e-14
+    # The last sample before each of two jumps, and what lies within.
+    assert (~used).sum() <= 6
+
+
+def test_errors_are_those_of_the_profile_of_the_sum_of_squares(branches, tmp_path):
+    """With one value held a little off, the others found again, chi squared is the square of how
+    many standard errors it is off: the Jacobian and what is made of it are right together."""
+    truth = SCENES["lennard_jones"][1]
+    file = write(tmp_path / "a.csv", *branches.measure(300))
+    quiet = {"noise": 1e-11}
+    accurate = {"numerics": {"accuracy": 1e-8}}
+    free = run(fit_deck(LENNARD_JONES, file, [*truth, POINT], quiet, **accurate))
+    for key in truth:
+        others = [name for name in (*truth, POINT) if name != key]
+        gained = []
+        # On either side: the model is not linear, which shows in the difference of the two.
+        for off in (-0.5, 0.5):
+            value = values_of(free)[key] + off * errors_of(free)[key]
+            held = run(fit_deck(with_values(LENNARD_JONES, {key: value}), file, others, quiet,
+                                **accurate)).fitted["fit"]
+            gained.append(held["chi_squared"][0] - free.fitted["fit"]["chi_squared"][0])
+        assert np.mean(gained) == pytest.approx(0.25, rel=0.01)
+
+
+def test_conventions_do_not_matter(branches, tmp_path):
+    """z that grows or falls, force of either sign, volts, columns by number: the same."""
+    z, force, segment = branches.measure(300, noise=2e-12)
+    plain = write(tmp_path / "a.csv", z, force, segment)
+    keys = [STRENGTH, STIFFNESS, POINT]
+    first = run(fit_deck(LENNARD_JONES, plain, keys))
+    others = {
+        "grows": (write(tmp_path / "b.csv", -z, force, segment), {}),
+        "minus": (write(tmp_path / "c.csv", z, -force, segment),
+                  {"columns": ["z", "-force", "segment"]}),
+        "volts": (write(tmp_path / "d.csv", z, force / (SPRING * 5e-8), segment),
+                  {"sensitivity": 5e-8}),
+        "numbers": (plain, {"columns": ["1", "2", "3"]}),
+        "no segments": (write(tmp_path / "e.csv", z, force), {"columns": ["z", "force"]}),
+    }
+    for name, (file, measurement) in others.items():
+        found = run(fit_deck(LENNARD_JONES, file, keys, measurement=measurement))
+        for key in (STRENGTH, STIFFNESS):
+            assert values_of(found)[key] == pytest.approx(values_of(first)[key], rel=1e-5), name
+        sign = -1 if name == "grows" else 1
+        # A hundredth of its standard error.
+        assert values_of(found)[POINT] == pytest.approx(sign * values_of(first)[POINT], abs=1e-14)
+
+
+@pytest.mark.parametrize("segment", ["approach", "retreat"])
+def test_one_way_alone_can_be_fitted(branches, tmp_path, segment):
+    z, force, segments = branches.measure(400, noise=2e-12)
+    file = write(tmp_path / "a.csv", z, force, segments)
+    result = run(fit_deck(LENNARD_JONES, file, [STRENGTH, POINT],
+                          measurement={"segment": segment}))
+    assert set(result.fit["direction"]) == {segment}
+    assert abs(values_of(result)[STRENGTH] - 1e-19) < 5 * errors_of(result)[STRENGTH]
+
+
+def test_intervals_hold_what_they_say(branches, tmp_path):
+    """Of 20 curves the errors are as large as the standard errors say; tools/bench/coverage.py does
+    hundreds."""
+    off = []
+    for seed in range(20):
+        z, force, segment = branches.measure(150, noise=2e-11, seed=seed)
+        file = write(tmp_path / f"{seed}.csv", z, force, segment)
+        result = run(fit_deck(LENNARD_JONES, file, [STRENGTH, STIFFNESS, POINT],
+                              numerics={"accuracy": 1e-5}))
+        for key, truth in ((STRENGTH, 1e-19), (STIFFNESS, 1e10), (POINT, 0.0)):
+            off.append((values_of(result)[key] - truth) / errors_of(result)[key])
+    # 60 numbers, in threes correlated: their square has mean 1 and a standard deviation below 0.3.
+    assert 0.4 < np.mean(np.square(off)) < 1.9
+    assert np.max(np.abs(off)) < 4.5
+
+
+def test_correlated_noise_is_seen_and_makes_errors_larger(branches, tmp_path):
+    z, force, segment = branches.measure(500)
+    white = 1e-11 * np.random.default_rng(5).standard_normal(len(z))
+    red = np.zeros_like(white)
+    for i in range(1, len(z)):
+        red[i] = 0.7 * red[i - 1] + math.sqrt(1 - 0.7**2) * white[i]
+    results = [
+        run(fit_deck(LENNARD_JONES, write(tmp_path / name, z, force + noise, segment),
+                     [STRENGTH, POINT]))
+        for name, noise in (("white.csv", white), ("red.csv", red))
+    ]
+    fits = [result.fitted["fit"] for result in results]
+    assert abs(fits[0]["noise_correlation"][0]) < 0.15
+    assert fits[1]["noise_correlation"][0] == pytest.approx(0.7, abs=0.1)
+    assert errors_of(results[1])[POINT] > 1.2 * errors_of(results[0])[POINT]
+    for fit in fits:
+        # The noise is that of some 300 samples; of red noise they are like 60 independent ones.
+        assert fit["chi_squared"][0] == pytest.approx(fit["degrees_of_freedom"][0], rel=0.4)
+
+
+def test_sensitivity_and_spring_are_found_with_what_is_known_of_them(exact):
+    """Both scale the signal: without a prior they cannot be told apart from the stiffness."""
+    deck = fit_deck(LENNARD_JONES, exact("lennard_jones"),
+                    [STRENGTH, STIFFNESS, POINT, "measurement.spring_constant"],
+                    {**FINE, "prior": [0.0, 0.0, 0.0, 0.01]},
+                    numerics={"accuracy": 1e-8})
+    deck["measurement"]["spring_constant"] = 1.01 * SPRING
+    found = run(deck).fitted["fit"]
+    assert found["standard_error"][3] <= 0.01
+    sensitivity = fit_deck(LENNARD_JONES, exact("lennard_jones"),
+                           [STRENGTH, POINT, "measurement.sensitivity"], FINE,
+                           {"sensitivity": 1.1 / SPRING}, numerics={"accuracy": 1e-8})
+    assert values_of(run(sensitivity))["measurement.sensitivity"] == pytest.approx(
+        1 / SPRING, rel=1e-6)
+
+
+def test_what_cannot_be_told_apart_is_said(branches, tmp_path):
+    z, force, segment = branches.measure(300, noise=2e-11)
+    file = write(tmp_path / "a.csv", z, force, segment)
+    result = run(fit_deck(LENNARD_JONES, file, [STRENGTH, "force.z0", "bodies.radius", STIFFNESS,
+                                                POINT]))
+    assert any("cannot be told" in text for text in result.summary["warnings"])
+    assert result.fitted["fit"]["identifiable"][0] < 0.05
+
+
+def test_a_bound_that_decides_is_said(branches, tmp_path):
+    z, force, segment = branches.measure(300, noise=2e-11)
+    file = write(tmp_path / "a.csv", z, force, segment)
+    deck = fit_deck(LENNARD_JONES, file, [STIFFNESS, POINT],
+                    {"lower": [1e9, -1e-8], "upper": [9e9, 1e-8]})
+    deck["bodies"] = {**BODIES, "stiffness": 5e9}
+    result = run(deck)
+    assert values_of(result)[STIFFNESS] == pytest.approx(9e9, rel=1e-3)
+    assert any("touches upper" in text for text in result.summary["warnings"])
+
+
+def jkr_curve(work, stiffness, radius, spring, n):
+    """Way out of a JKR contact behind a spring, evenly in the contact radius."""
+    turn = (2.25 * math.pi * work * radius**2 / stiffness) ** (1 / 3)
+    a = np.linspace(2.0, 0.3, 4000) * turn
+    load = 2 * stiffness * a**3 / (3 * radius) - np.sqrt(4 * math.pi * work * stiffness * a) * a
+    h0 = -(a**2 / radius - np.sqrt(4 * math.pi * work * a / stiffness))
+    z = h0 - load / spring
+    last = np.argmax(z)
+    return z[:last][:: last // n], load[:last][:: last // n]
+
+
+def test_jkr_data_give_the_values_of_jkr_back_and_the_path_agrees(tmp_path):
+    """The path of a short range of force is JKR's, but for the part 1/sigma or so."""
+    work, stiffness, radius = 0.05, 1e8, 100e-9
+    z, load = jkr_curve(work, stiffness, radius, SPRING, 150)
+    far = np.linspace(z[-1] + 1e-9, z[-1] + 60e-9, 100)
+    file = write(tmp_path / "jkr.csv", np.append(z, far), np.append(load, 0 * far))
+    groups = {
+        "bodies": {"radius": radius, "stiffness": 1.2e8},
+        "force": {"law": "lennard_jones", "surface_energy": 0.06, "z0": 2e-10},
+    }
+    result = run(fit_deck(groups, file, ["force.surface_energy", STIFFNESS, POINT],
+                          {"noise": 1e-12},
+                          {"columns": ["z", "force"], "segment": "retreat"}))
+    jkr = values_of(result, "jkr")
+    assert jkr["work_of_adhesion"] == pytest.approx(work, rel=1e-6)
+    assert jkr["stiffness"] == pytest.approx(stiffness, rel=1e-6)
+    found = values_of(result)
+    assert found["force.surface_energy"] == pytest.approx(work, rel=0.02)
+    assert found[STIFFNESS] == pytest.approx(stiffness, rel=0.02)
+    left = {name: group["chi_squared"][0] for name, group in result.fitted.items()}
+    assert left["jkr"] < left["fit"] < left["dmt"]
+
+
+def flat(rng, z):
+    return 1e-11 * rng.standard_normal(len(z))
+
+
+BAD_DATA = {
+    "no contact": (lambda z, f, s, rng: (z, flat(rng, z), s), "no contact in the data"),
+    "wrong sign": (lambda z, f, s, rng: (z, -f, s), "repulsion is positive"),
+    "too few": (lambda z, f, s, rng: (z[:10], f[:10], s[:10]), "fewer than 20 samples"),
+    "segments": (lambda z, f, s, rng: (z, f, 2 + s), "neither 0, approach, nor 1, retreat"),
+    "same way": (lambda z, f, s, rng: (np.append(z[:300], z[:300]), np.append(f[:300], f[:300]), s),
+                 "z goes the same way"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_DATA)
+def test_data_that_cannot_be_fitted_are_refused_with_the_reason(branches, tmp_path, case):
+    change, message = BAD_DATA[case]
+    z, force, segment = branches.measure(300, noise=1e-11)
+    file = write(tmp_path / "a.csv", *change(z, force, segment, np.random.default_rng(1)))
+    result = run(fit_deck(LENNARD_JONES, file, [STRENGTH, POINT]))
+    assert not result.converged
+    assert not result.fitted
+    assert any(message in text for text in result.summary["warnings"]), result.summary["warnings"]
+
+
+BAD_FILES = {
+    "no such column": ("z,load,segment\n1,2,0\n", "no column 'force'"),
+    "cells": ("z,force,segment\n1,2,0\n1,2\n", "2 columns where 3 columns are expected"),
+    "words": ("z,force,segment\n1,two,0\n", "two is not a number"),
+    "nan": ("z,force,segment\n1,nan,0\n", "not a finite number"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_FILES)
+def test_files_that_cannot_be_read_are_refused_with_the_line(tmp_path, case):
+    text, message = BAD_FILES[case]
+    file = tmp_path / "a.csv"
+    file.write_text(text)
+    result = run(fit_deck(LENNARD_JONES, str(file), [STRENGTH, POINT]))
+    assert not result.converged
+    assert any(message in warning for warning in result.summary["warnings"])
+
+
+def test_a_parameter_without_effect_is_named(branches, tmp_path):
+    """A repulsion that is nothing beside the force's own."""
+    z, force, segment = branches.measure(300, noise=1e-11)
+    file = write(tmp_path / "a.csv", z, force, segment)
+    groups = {**LENNARD_JONES, "hydration": {"energy": 1e-12, "decay_length": 2e-10}}
+    result = run(fit_deck(groups, file, ["hydration.energy", POINT],
+                          {"lower": [1e-13, -1e-8], "upper": [1e-11, 1e-8]}))
+    assert any("hydration.energy has no effect" in text
+               for text in result.summary["warnings"]), result.summary["warnings"]
+
+
+BAD_DECKS = {
+    "no file": ({"measurement": {"file": "nowhere.csv", "spring_constant": 1.0}}, "no such file"),
+    "no measurement": ({"measurement": None}, "needs &measurement"),
+    "no fit": ({"fit": None}, "needs &fit"),
+    "name": ({"fit": {"parameters": ["force.strength", POINT]}}, "force.strength"),
+    "numerics": ({"fit": {"parameters": ["numerics.accuracy", POINT]}}, "numerics.accuracy"),
+    "twice": ({"fit": {"parameters": [STRENGTH, STRENGTH, POINT]}}, "is there twice"),
+    "no contact point": ({"fit": {"parameters": [STRENGTH]}}, "contact_point is neither here"),
+    "no volts": ({"fit": {"parameters": [POINT, "measurement.sensitivity"]}},
+                 "the signal is a force"),
+    "not to be fitted": ({"fit": {"parameters": [POINT, "measurement.file"]}}, "cannot be fitted"),
+    "bounds": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-21]}}, "one for each"),
+    "below": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-18, -1.0]}}, "is below it"),
+    "above": ({"fit": {"parameters": [STRENGTH, POINT], "upper": [1e-20, 1.0]}}, "is above it"),
+    "rigid": ({"bodies": {"radius": 1.0, "rigid": True}}, "needs elastic bodies"),
+    "sweep": ({"sweep": {"key": STRENGTH, "values": [1e-19]}}, "not together with &sweep"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_DECKS)
+def test_a_wrong_deck_is_refused(case, tmp_path):
+    change, message = BAD_DECKS[case]
+    file = write(tmp_path / "a.csv", [0.0], [0.0], [0])
+    deck = fit_deck(LENNARD_JONES, file, [STRENGTH, POINT])
+    with pytest.raises(snapin.DeckError, match=message.replace("&", ".")):
+        snapin.run({**deck, **change})
