@@ -39,8 +39,9 @@ _MOST_DEPTH = 1000
 
 
 def bytes_for(nodes):
-    """Return the memory that a calculation on so many nodes takes: at most three matrices."""
-    return 3 * 8 * nodes**2
+    """Return the memory that a calculation on so many nodes takes: at most three matrices and, of
+    an accelerated iteration, some vectors."""
+    return 8 * (3 * nodes**2 + 100 * nodes)
 
 
 # --- Kernel and quadrature

@@ -20,8 +20,6 @@ module decimal
   integer, parameter :: one_factor = 27, most_powers = 2*one_factor
   !> Bits of the lower word where a product takes two.
   integer, parameter :: low_bits = 60
-  integer :: k
-  integer(long), parameter :: fives(0:one_factor) = [(5_long**k, k=0, one_factor)]
   integer(long), parameter :: smallest = 10_long**(places - 1), beyond = 10*smallest
 
 contains
@@ -131,13 +129,13 @@ contains
     number = 0
     found = p >= 0 .and. p <= most_powers
     if (.not. found) return
-    product = int(m, wide)*fives(min(p, one_factor))
+    product = int(m, wide)*5_long**min(p, one_factor)
     low = 0
     shift = -(b + p)
     if (p > one_factor) then
       ! product 2^60 + low: above 2^117, while the number is below 2^57, so that shift exceeds 60.
-      low = iand(product, mask(low_bits))*fives(p - one_factor)
-      product = ishft(product, -low_bits)*fives(p - one_factor) + ishft(low, -low_bits)
+      low = iand(product, mask(low_bits))*5_long**(p - one_factor)
+      product = ishft(product, -low_bits)*5_long**(p - one_factor) + ishft(low, -low_bits)
       low = iand(low, mask(low_bits))
       shift = shift - low_bits
     end if

@@ -129,6 +129,8 @@ def sample_value(description):
     """Some value that a key described so takes."""
     if match := re.match(r"one of ('\w+')", description):
         return match[1]
+    if " names in quotes" in description:
+        return "'x'"
     if re.search(r" from 1 to \d+", description):
         return "2"
     if " > 1" in description:
