@@ -126,10 +126,10 @@ print(snapin.force_curve([4.0, 3.0], law=law, **bodies).converged)
 
 
 def test_what_does_not_fit_is_refused_with_the_memory_that_it_needs():
-    """Fortran would end the process; three matrices of 20000 nodes are 9.6 GB."""
+    """Fortran would end the process; three matrices of 20000 nodes and vectors are 9.62 GB."""
     lines = answer(LIMITED, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1").splitlines()
     assert [line.split(": ")[0] for line in lines[:2]] == ["mesh", "mesh"]
-    assert all("9.6 GB of memory are needed" in line for line in lines[:2])
+    assert all("9.62 GB of memory are needed" in line for line in lines[:2])
     # The program's own forecast, and nothing computed.
     assert re.fullmatch("not computed: .*20000 nodes need .* GB of memory.* False 0", lines[2])
     assert lines[3] == "True"
@@ -139,7 +139,7 @@ def test_what_is_beyond_the_memory_that_is_free_is_refused(monkeypatch):
     """The system would promise it, and end the process when it is used."""
     monkeypatch.setattr("snapin.arguments._free_memory", lambda: 10**6)
     mesh = snapin.uniform_mesh(1000, 10.0)
-    with pytest.raises(MemoryError, match="^mesh: 0.024 GB of memory .* 0.001 GB are free$"):
+    with pytest.raises(MemoryError, match="^mesh: 0.0248 GB of memory .* 0.001 GB are free$"):
         mesh.matrix()
 
 
