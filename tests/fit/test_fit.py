@@ -136,6 +136,54 @@ def test_errors_are_those_of_the_profile_of_the_sum_of_squares(branches, tmp_pat
         assert np.mean(gained) == pytest.approx(0.25, rel=0.01)
 
 
+def test_errors_and_correlations_are_those_of_differences_between_curves(branches, tmp_path):
+    """The Jacobian of the fit against forces and jumps of scenes on either side of the solution,
+    interpolated from states at given h0: another way to the same curve."""
+    truth = SCENES["lennard_jones"][1]
+    noise = 1e-11
+    z, force, segment = branches.measure(150)
+    file = write(tmp_path / "a.csv", z, force, segment)
+    result = run(fit_deck(LENNARD_JONES, file, [*truth, POINT], {"noise": noise},
+                          numerics={"accuracy": 1e-8}))
+    inward, used = segment == 0, result.fit["used"] == 1
+
+    def model(groups, curve, shift=0.0):
+        """Samples, and the jump that stands out of so few, over their errors; shift: of the contact
+        point."""
+        force = np.where(inward, curve.force(z - shift, True), curve.force(z - shift, False))
+        summary = run({**groups, "equilibrium_path": {"h0_end": -2e-9},
+                       "device": {"stiffness": SPRING}, "numerics": {"accuracy": 1e-9}}).summary
+        jump = summary["device_jump_out_z"] + shift
+        jump_error = result.fitted["fit"]["jump_out_z_uncertainty"]
+        return np.concatenate([force[used] / noise, jump / jump_error])
+
+    # A measured jump lies between samples, and so the solution is a little off the truth.
+    found = values_of(result)
+    solution = with_values(LENNARD_JONES, {key: found[key] for key in truth})
+    z = z - found[POINT]
+    columns = []
+    for key in truth:
+        value = found[key]
+        off = 1e-3 * value
+        near, far = (with_values(solution, {key: value + side}) for side in (-off, off))
+        columns.append((model(far, Branches(far)) - model(near, Branches(near))) / (2 * off))
+    off = 1e-12
+    curve = Branches(solution)
+    columns.append((model(solution, curve, off) - model(solution, curve, -off)) / (2 * off))
+    for baseline in (np.ones_like(z), z):
+        columns.append(np.append(baseline[used] / noise, 0))
+    jacobian = np.array(columns).T
+    scale = np.abs(jacobian).max(axis=0)
+    covariance = np.linalg.inv(jacobian.T / scale[:, None] @ jacobian / scale)
+    error = np.sqrt(np.diag(covariance))
+    expected = dict(zip([*truth, POINT], (error / scale)[:3]))
+    # What the interpolation leaves of differences a thousandth wide.
+    assert errors_of(result) == pytest.approx(expected, rel=2e-3)
+    correlation = (covariance / np.outer(error, error))[:3, :3]
+    assert np.reshape(result.fitted["fit"]["correlation"], (3, 3)) == pytest.approx(
+        correlation, abs=2e-3)
+
+
 def test_conventions_do_not_matter(branches, tmp_path):
     """z that grows or falls, force of either sign, volts, columns by number: the same."""
     z, force, segment = branches.measure(300, noise=2e-12)
