@@ -4,7 +4,7 @@ module fixed_loads
   use equilibrium, only: equations_t
   use known_path, only: known_path_t
   use curve_states, only: curve_solver_t, curve_state_t
-  use driven_pieces, only: turning_places
+  use driven_pieces, only: find_turning_places
   implicit none
   private
   public :: loaded_state_t, find_loaded
@@ -31,20 +31,21 @@ contains
     type(loaded_state_t), allocatable, intent(inout) :: list(:)
     logical, intent(inout) :: solved
     type(loaded_state_t) :: found
-    real(wp), allocatable :: edges(:), beyond(:)
+    real(wp), allocatable :: edges(:), places(:), beyond(:)
     integer :: i, k
 
     found%wanted = load
     do i = 1, size(solver%curve%interval)
       associate (begin => solver%curve%begin_of(i), end => solver%curve%end_of(i))
-        edges = [begin%x, turning_places(solver%curve, i, of_load), end%x]
+        call find_turning_places(solver, equations, known, i, of_load, places)
+        edges = [begin%x, places, end%x]
       end associate
       beyond = [(solver%curve%value(i, of_load, edges(k)) - load, k=1, size(edges))]
       do k = 1, size(edges) - 1
         if ((beyond(k) < 0) .eqv. (beyond(k + 1) < 0)) cycle
         call solver%root_of(equations, known, i, of_load, edges(k), edges(k + 1), found%state, load)
         solved = solved .and. found%state%converged
-        if (.not. found%state%converged) cycle
+        if (.not. (found%state%converged .and. found%state%met)) cycle
         ! Inward h0 falls along what is stable at fixed h0.
         found%stable = found%state%modes == 0 .and. found%state%slopes(2) > 0
         list = [list, found]

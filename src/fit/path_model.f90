@@ -9,6 +9,7 @@ module path_model
   use problem_family, only: problem_family_t
   use variation, only: variation_t, vary
   use edge_locked, only: new_mesh_family
+  use mesh_store, only: mesh_store_t
   use path_curve, only: curve_t, new_curve
   use path_sensitivity, only: rate_t, rates_along
   use curve_states, only: curve_solver_t
@@ -20,6 +21,7 @@ module path_model
   use numerics_choice, only: choice_t, choose
   use path_demand, only: farthest_wanted
   use path_stepper, only: path_stepper_t
+  use refinement, only: trace_resolved
   use locked_stepper, only: has_path
   use dimensionless_problem, only: contact_level_of
   use force_branch, only: branch_t
@@ -36,6 +38,8 @@ module path_model
     !> The problems; the unknowns are its parameters.
     class(problem_family_t), allocatable :: family
     type(numerics_t) :: numerics
+    !> Trials share their meshes.
+    type(mesh_store_t), private :: store
     !> The trial that was solved last, at these values.
     real(wp), allocatable, private :: value(:)
     type(path_stepper_t), private :: steps
@@ -98,7 +102,7 @@ contains
     type(listener_t) :: silent
     type(failure_t), allocatable :: error
     real(wp), allocatable :: anywhere
-    real(wp) :: low, high
+    real(wp) :: low, high, panel_tail
 
     self%value = value
     self%stiffness = stiffness
@@ -119,8 +123,9 @@ contains
     chosen = choose(self%numerics, problem, low)
     call prepare(self%steps, problem, chosen, self%numerics%accuracy)
     if (self%steps%options%method == 'mixing') self%steps%options%method = 'anderson'
-    self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits)
-    call self%steps%know_path(high, low, .true., .true., silent)
+    self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits, store=self%store)
+    call trace_resolved(self%steps, high, low, .true., .true., self%numerics%accuracy, silent, &
+      panel_tail)
     solver%options = self%steps%options
     call new_curve(self%steps%equations_t, self%steps%known, farthest_wanted(request, problem), &
       contact_level_of(problem), solver%curve, self%solved)

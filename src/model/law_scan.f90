@@ -82,15 +82,19 @@ contains
     class(force_law_t), intent(in) :: law
     type(surroundings_t) :: found
     real(wp), allocatable :: gap(:), pressure(:)
+    logical, allocatable :: counts(:)
     real(wp) :: top, bottom, depth
     integer :: i, j, peak
 
+    if (.not. law%edge_gap > 0) return
     gap = gaps_of(law)
     pressure = law%pressure(gap)
+    ! Less than this is rounding, or of no consequence; a barrier that fades into it has no well.
+    counts = abs(pressure) >= nothing*abs(pressure_at(law, law%edge_gap))
+    gap = pack(gap, counts)
+    pressure = pack(pressure, counts)
     i = next_zero(pressure, 1, falling=.true.)
-    if (i == 0 .or. .not. law%edge_gap > 0) return
-    ! Less than this is rounding, or of no consequence.
-    where (abs(pressure) < nothing*abs(pressure_at(law, law%edge_gap))) pressure = 0
+    if (i == 0) return
     do
       j = next_zero(pressure, i + 1, falling=.false.)
       if (j == 0) return

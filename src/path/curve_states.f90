@@ -32,6 +32,8 @@ module curve_states
     real(wp) :: slopes(2) = 0, residual = 0
     integer :: modes = 0
     logical :: converged = .false.
+    !> Of a state that was looked for (`root_of`), whether it is where it should be.
+    logical :: met = .false.
     !> Derivatives of what is reported of it by each parameter of &sensitivity
     !> (`place_sensitivity`).
     real(wp), allocatable :: rate(:, :)
@@ -52,6 +54,9 @@ module curve_states
   !> Corrections of a place, and the one (of x) below which it is found.
   integer, parameter :: most_corrections = 12
   real(wp), parameter :: found_at = 1.0e-12_wp
+  !> The correction (of x) that rounding may leave where the path is nearly flat. Where a load that
+  !> grows by orders of magnitude has no root, corrections are above 1e-3.
+  real(wp), parameter :: left_over = 1.0e-5_wp
   !> Difference of x over which the polynomial's second derivative is taken.
   real(wp), parameter :: apart = 1.0e-4_wp
 
@@ -123,7 +128,8 @@ contains
   end subroutine state_of
 
   !> The equilibrium in interval i between x = from and x = to at which weights(1) h0 + weights(2)
-  !> load is `wanted` or, where that is absent, is an extremum. The curve has one between them.
+  !> load is `wanted` or, where that is absent, is an extremum. The curve has one between them;
+  !> found%met: so has the path.
   subroutine root_of(self, equations, known, i, weights, from, to, found, wanted)
     class(curve_solver_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
@@ -155,6 +161,7 @@ contains
       steepness = (on_curve(x + apart) - on_curve(x - apart))/(2*apart)
       if (present(wanted)) steepness = dot_product(weights, trial%slopes)
       if (.not. abs(steepness) > tiny(1.0_wp)) exit
+      found%met = abs(missing/steepness) < left_over
       x = min(max(x - missing/steepness, min(from, to)), max(from, to))
       if (abs(x - trial%x) < found_at) exit
     end do

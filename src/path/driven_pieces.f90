@@ -13,7 +13,7 @@ module driven_pieces
   use curve_states, only: curve_solver_t, curve_state_t, place_t
   implicit none
   private
-  public :: drive_t, driven_piece_t, find_pieces, state_driven, through_spring, turning_places
+  public :: drive_t, driven_piece_t, find_pieces, state_driven, through_spring, find_turning_places
 
   !> Weights of h0 and load in D.
   type :: drive_t
@@ -121,11 +121,11 @@ contains
     type(driven_piece_t), allocatable, intent(out) :: pieces(:)
     logical, intent(out) :: whole
     type(driven_piece_t) :: piece
-    real(wp), allocatable :: edges(:)
+    real(wp), allocatable :: edges(:), places(:)
     ! Where the last stable interval ends.
     real(wp) :: end_x
     integer :: i, k, n
-    logical :: open
+    logical :: open, falls
 
     allocate (pieces(0))
     open = .false.
@@ -138,11 +138,14 @@ contains
           if (open) call close_at(i - 1, end_x, .false.)
           cycle
         end if
-        edges = [begin%x, turning_places(solver%curve, i, drive%weights), end%x]
+        call find_turning_places(solver, equations, known, i, drive%weights, places)
+        edges = [begin%x, places, end%x]
+        falls = solver%curve%slope(i, drive%weights, begin%x) < 0
         end_x = end%x
       end associate
       do k = 1, size(edges) - 1
-        if (solver%curve%slope(i, drive%weights, 0.5_wp*(edges(k) + edges(k + 1))) < 0) then
+        if (k > 1) falls = .not. falls
+        if (falls) then
           if (.not. open) call open_at(edges(k), k > 1)
         else if (open) then
           call close_at(i, edges(k), k > 1)
@@ -198,6 +201,40 @@ contains
     end subroutine solve_edge
 
   end subroutine find_pieces
+
+  !> Where within an interval a combination of h0 and load turns round, in order. The curve's slope
+  !> is exact at the interval's ends alone: where it turns more than once, states between say
+  !> whether the path does. A load that grows by orders of magnitude makes polynomials swing.
+  subroutine find_turning_places(solver, equations, known, i, weights, places)
+    type(curve_solver_t), intent(inout) :: solver
+    type(equations_t), intent(inout) :: equations
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: i
+    real(wp), intent(in) :: weights(2)
+    real(wp), allocatable, intent(out) :: places(:)
+    type(curve_state_t) :: state
+    logical, allocatable :: falls(:)
+    integer :: k
+
+    places = turning_places(solver%curve, i, weights)
+    if (size(places) < 2) return
+    falls = [(mod(k, 2) == 0 .eqv. solver%curve%slope(i, weights, begin_x()) < 0, &
+      k=0, size(places))]
+    do k = 1, size(places) - 1
+      call solver%state_of(equations, known, place_t(i, 0.5_wp*(places(k) + places(k + 1))), state)
+      if (state%converged) falls(k + 1) = dot_product(weights, state%slopes) < 0
+    end do
+    places = pack(places, falls(:size(places)) .neqv. falls(2:))
+
+  contains
+
+    real(wp) function begin_x()
+      associate (begin => solver%curve%begin_of(i))
+        begin_x = begin%x
+      end associate
+    end function begin_x
+
+  end subroutine find_turning_places
 
   !> Where within an interval the curve says that a combination of h0 and load turns round, in
   !> order.

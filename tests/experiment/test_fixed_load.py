@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import lennard_jones, loading, runner, several
+from support.scenes import deck, lennard_jones, loading, runner, several
 
 SIGMA = 0.87
 
@@ -52,3 +52,22 @@ def test_a_faint_tension_is_met_by_undeformed_bodies(run):
     load = -1e-9
     table = run(under(load)).table("fixed_load.csv")
     assert table["h0"][0] == pytest.approx((16 * np.pi * SIGMA / (6 * -load)) ** 0.5, rel=1e-8)
+
+
+def test_a_load_that_fades_by_orders_of_magnitude_has_its_own_zeros_alone(run):
+    """Outside a step a repulsion of short range fades far out: the bodies have no equilibria under
+    no load there, no outer well, and a dead load holds them up to the barrier."""
+    found = run(deck(
+        bodies={"radius": 1.0, "stiffness": 2.5},
+        dugdale={"stress": 1.0, "range": 1.0, "smoothing": 0.02},
+        hydration={"pressure": 20.0, "decay_length": 0.07},
+        equilibrium_path={"h0_end": -4.0},
+        fixed_load={"load": [0.0]},
+        device={"stiffness": [0.0]},
+    ))
+    table = found.table("fixed_load.csv")
+    assert list(table["stable"]) == [0, 1]
+    assert not any(key.startswith("secondary") for key in found.summary)
+    jump_in = found.table("device_jumps.csv")["h0"][0]
+    assert jump_in == pytest.approx(several(found.summary["load_folds_h0"])[0], rel=1e-8)
+    assert jump_in < 1.2
