@@ -132,8 +132,8 @@ contains
     call dgtsv(size(b), 1, below, middle, above, b, size(b), info)
   end subroutine solve_tridiagonal
 
-  !> Singular values of a matrix with no fewer rows than columns, largest first, and the right vectors,
-  !> one a row. Zeros where they were not found.
+  !> Singular values of a matrix with no fewer rows than columns, largest first, and the right
+  !> vectors, one a row. Zeros where they were not found.
   subroutine singular_values(a, values, right)
     real(wp), intent(in) :: a(:, :)
     real(wp), intent(out) :: values(:), right(:, :)

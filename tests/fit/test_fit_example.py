@@ -57,8 +57,8 @@ def test_the_fit_is_drawn(example):
     pytest.importorskip("matplotlib")
     folder, _ = example
     script = ROOT / "pywrap/plots/fit.py"
-    done = subprocess.run([sys.executable, str(script), str(folder)], capture_output=True, text=True,
-                          timeout=HANG, check=False)
+    done = subprocess.run([sys.executable, str(script), str(folder)], capture_output=True,
+                          text=True, timeout=HANG, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert (folder / "fit.png").stat().st_size > 2e4
 
