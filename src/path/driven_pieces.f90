@@ -11,9 +11,10 @@ module driven_pieces
   use known_path, only: known_path_t
   use path_curve, only: curve_t
   use curve_states, only: curve_solver_t, curve_state_t, place_t
+  use stable_stretches, only: edge_t, stretch_t, stretches_of
   implicit none
   private
-  public :: drive_t, driven_piece_t, find_pieces, state_driven, through_spring, turning_places
+  public :: drive_t, driven_piece_t, find_pieces, state_driven, through_spring
 
   !> Weights of h0 and load in D.
   type :: drive_t
@@ -31,10 +32,6 @@ module driven_pieces
     logical :: first_turns = .false., last_turns = .false.
   end type driven_piece_t
 
-  !> Places of an interval at which the slope of D is looked at, and the width below which only its
-  !> ends are.
-  integer, parameter :: looks = 8
-  real(wp), parameter :: narrow_interval = 1.0e-4_wp
   !> Nodes of the rule that integrates over an interval.
   integer, parameter :: rule = 8
 
@@ -120,110 +117,40 @@ contains
     type(drive_t), intent(in) :: drive
     type(driven_piece_t), allocatable, intent(out) :: pieces(:)
     logical, intent(out) :: whole
+    type(stretch_t), allocatable :: stretches(:)
     type(driven_piece_t) :: piece
-    real(wp), allocatable :: edges(:)
-    ! Where the last stable interval ends.
-    real(wp) :: end_x
-    integer :: i, k, n
-    logical :: open
+    integer :: i
 
     allocate (pieces(0))
-    open = .false.
     whole = .true.
-    n = size(solver%curve%interval)
-    do i = 1, n
-      associate (begin => solver%curve%begin_of(i), end => solver%curve%end_of(i))
-        if (solver%curve%interval(i)%modes > 0) then
-          ! A fold in h0: the path is no longer stable however stiff the spring is.
-          if (open) call close_at(i - 1, end_x, .false.)
-          cycle
-        end if
-        edges = [begin%x, turning_places(solver%curve, i, drive%weights), end%x]
-        end_x = end%x
-      end associate
-      do k = 1, size(edges) - 1
-        if (solver%curve%slope(i, drive%weights, 0.5_wp*(edges(k) + edges(k + 1))) < 0) then
-          if (.not. open) call open_at(edges(k), k > 1)
-        else if (open) then
-          call close_at(i, edges(k), k > 1)
-        end if
-      end do
-    end do
-    if (.not. open) return
-    call close_at(n, end_x, .false.)
-    if (size(pieces) > 0) pieces(size(pieces))%last_turns = .false.
-
-  contains
-
-    !> Begins a piece in interval i at x: at a turning point within, or at its first node.
-    subroutine open_at(x, turns)
-      real(wp), intent(in) :: x
-      logical, intent(in) :: turns
-
-      open = .true.
-      call solve_edge(i, x, turns, piece%first)
-      piece%first_turns = turns .or. i > 1
-    end subroutine open_at
-
-    !> Ends it in interval j at x.
-    subroutine close_at(j, x, turns)
-      integer, intent(in) :: j
-      real(wp), intent(in) :: x
-      logical, intent(in) :: turns
-
-      open = .false.
-      piece%last_turns = .true.
-      call solve_edge(j, x, turns, piece%last)
+    stretches = stretches_of(solver%curve, drive%weights)
+    do i = 1, size(stretches)
+      piece%first_turns = stretches(i)%first_turns
+      piece%last_turns = stretches(i)%last_turns
+      call solve_edge(stretches(i)%first, piece%first)
+      call solve_edge(stretches(i)%last, piece%last)
       if (piece%first%converged .and. piece%last%converged) then
         pieces = [pieces, piece]
       else
         whole = .false.
       end if
-    end subroutine close_at
+    end do
 
-    subroutine solve_edge(j, x, turns, state)
-      integer, intent(in) :: j
-      real(wp), intent(in) :: x
-      logical, intent(in) :: turns
+  contains
+
+    subroutine solve_edge(edge, state)
+      type(edge_t), intent(in) :: edge
       type(curve_state_t), intent(out) :: state
-      real(wp) :: width
 
-      if (.not. turns) then
-        call solver%state_of(equations, known, place_t(j, x), state)
-        return
+      if (edge%turns) then
+        call solver%root_of(equations, known, edge%interval, drive%weights, edge%x - edge%width, &
+          edge%x + edge%width, state)
+      else
+        call solver%state_of(equations, known, place_t(edge%interval, edge%x), state)
       end if
-      ! Half the way to the neighbouring edges contains this one alone.
-      width = 0.5_wp*min(edges(k) - edges(k - 1), edges(k + 1) - edges(k))
-      call solver%root_of(equations, known, j, drive%weights, x - width, x + width, state)
     end subroutine solve_edge
 
   end subroutine find_pieces
-
-  !> Where within an interval the curve says that a combination of h0 and load turns round, in
-  !> order.
-  pure function turning_places(curve, i, weights) result(places)
-    type(curve_t), intent(in) :: curve
-    integer, intent(in) :: i
-    real(wp), intent(in) :: weights(2)
-    real(wp), allocatable :: places(:)
-    real(wp) :: x, x_before, slope, slope_before
-    integer :: k, n
-
-    allocate (places(0))
-    associate (begin => curve%begin_of(i), end => curve%end_of(i))
-      n = merge(looks, 1, end%x - begin%x > narrow_interval)
-      x_before = begin%x
-      slope_before = curve%slope(i, weights, x_before)
-      do k = 1, n
-        x = begin%x + (end%x - begin%x)*k/n
-        slope = curve%slope(i, weights, x)
-        if ((slope < 0) .neqv. (slope_before < 0)) places = [places, &
-          x_before + (x - x_before)*slope_before/(slope_before - slope)]
-        x_before = x
-        slope_before = slope
-      end do
-    end associate
-  end function turning_places
 
   !> The state of a piece at which D has a value between those at its ends.
   subroutine state_driven(solver, equations, known, drive, piece, wanted, state)
