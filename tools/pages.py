@@ -22,8 +22,8 @@ PAGES = {
     "README.md": "./run inputs/first.nml, compared by hand; then tools/pages.py --mark README.md",
     "docs/accuracy.md": "./bench",
     "docs/asymptotics.md": "tools/asymptotics.py",
-    "docs/fitting.md": "inputs/examples/fit.nml, pywrap/plots/fit.py and tools/bench/coverage.py, by "
-    "hand; then tools/pages.py --mark docs/fitting.md",
+    "docs/fitting.md": "inputs/examples/fit.nml, pywrap/plots/fit.py and tools/bench/coverage.py, "
+    "by hand; then tools/pages.py --mark docs/fitting.md",
     "docs/forces.md": "tools/law_independence.py; tools/forces.py for its pictures",
     "docs/methods.md": "inputs/first.nml with &equilibrium_path, compared by hand; then "
     "tools/pages.py --mark docs/methods.md",
@@ -33,9 +33,9 @@ PAGES = {
 }
 # What reads decks, writes files or talks changes no number. A new file counts until it is here.
 _NO_NUMBERS = (
-    "namelist_writer", "clock", "command_line", "c_library", "decimal", "deck", "deck_keys", "deck_number",
-    "deck_scan", "deck_source", "deck_store", "text", "deck_token", "deck_values", "failure",
-    "checksums", "files", "finished_run", "folder_lock", "forecast", "journal", "memory",
+    "namelist_writer", "clock", "command_line", "c_library", "decimal", "deck", "deck_keys",
+    "deck_number", "deck_scan", "deck_source", "deck_store", "text", "deck_token", "deck_values",
+    "failure", "checksums", "files", "finished_run", "folder_lock", "forecast", "journal", "memory",
     "preflight", "result_listing", "result_rows", "state_records", "byte_record", "progress",
     "publication", "run_identity", "snapin", "text_file",
 )

@@ -6,6 +6,7 @@ module classical_model
   use root_finding, only: bracket_t
   use classical, only: jkr_load, jkr_displacement, dmt_load, hertz_displacement
   use maugis, only: maugis_load, maugis_displacement
+  use force_branch, only: branch_t
   use force_model, only: force_model_t, response_t, way_t, inward, outward
   implicit none
   private
@@ -40,6 +41,7 @@ contains
     type(response_t), intent(out) :: response
     logical, intent(out) :: found
     real(wp) :: number(2), widest, turn
+    integer :: unknowns
 
     number = [self%work, self%stiffness]
     number(pack([1, 2], [self%finds_work, self%finds_stiffness])) = value
@@ -50,75 +52,75 @@ contains
     found = turn < 0.5_wp*widest
     if (.not. found) return
     allocate (response%branch(2))
-    call add_outside(merge(size(value), 0, with_rates))
-    call add_contact(merge(size(value), 0, with_rates))
-    response%branch(2)%turns_first = .true.
+    unknowns = merge(size(value), 0, with_rates)
+    call set_apart(widest, unknowns, response%branch(1))
+    call set_in_contact(self, number, turn, widest, unknowns, response%branch(2))
     call response%branch(1)%close(stiffness)
     call response%branch(2)%close(stiffness)
     response%way(inward) = way_t([1, 2], [0.0_wp, -huge(1.0_wp)], 1, .false.)
     response%way(outward) = way_t([2, 1], [response%branch(2)%position(1), huge(1.0_wp)], 1)
-
-  contains
-
-    !> No load, until the bodies touch.
-    subroutine add_outside(unknowns)
-      integer, intent(in) :: unknowns
-
-      associate (branch => response%branch(1))
-        allocate (branch%h0(4, 1), branch%load(4, 1), branch%h0_rate(unknowns, 2, 1), &
-          branch%load_rate(unknowns, 2, 1), source=0.0_wp)
-        ! From any distance, and with a slope that makes h0 fall evenly.
-        branch%h0(:, 1) = widest*[1, 0, -1, -1]
-        branch%turns_last = .true.
-      end associate
-    end subroutine add_outside
-
-    !> In contact, from where the position turns round inward; panels grow with the contact.
-    subroutine add_contact(unknowns)
-      integer, intent(in) :: unknowns
-      real(wp) :: a, edge(0:panels), by_a(2), changed(2)
-      integer, allocatable :: which(:)
-      integer :: i, k, side
-
-      which = pack([1, 2], [self%finds_work, self%finds_stiffness])
-      edge = [(turn + (widest - turn)*(real(i, wp)/panels)**2, i=0, panels)]
-      associate (branch => response%branch(2))
-        allocate (branch%h0(4, panels), branch%load(4, panels), &
-          branch%h0_rate(unknowns, 2, panels), branch%load_rate(unknowns, 2, panels))
-        do i = 1, panels
-          do side = 1, 2
-            a = edge(i - 2 + side)
-            changed = state(self, number, a)
-            branch%h0(side, i) = changed(1)
-            branch%load(side, i) = changed(2)
-            by_a = (state(self, number, a*(1 + step)) - state(self, number, a*(1 - step)))/ &
-              (2*step*a)*(edge(i) - edge(i - 1))
-            branch%h0(2 + side, i) = by_a(1)
-            branch%load(2 + side, i) = by_a(2)
-            do k = 1, unknowns
-              changed = varied(which(k), a)
-              branch%h0_rate(k, side, i) = changed(1)
-              branch%load_rate(k, side, i) = changed(2)
-            end do
-          end do
-        end do
-      end associate
-    end subroutine add_contact
-
-    !> Derivatives of h0 and load by one of the two numbers.
-    function varied(k, a)
-      integer, intent(in) :: k
-      real(wp), intent(in) :: a
-      real(wp) :: varied(2), more(2), less(2)
-
-      more = number
-      less = number
-      more(k) = number(k)*(1 + step)
-      less(k) = number(k)*(1 - step)
-      varied = (state(self, more, a) - state(self, less, a))/(2*step*number(k))
-    end function varied
-
   end subroutine respond
+
+  !> No load, until the bodies touch.
+  subroutine set_apart(widest, unknowns, branch)
+    real(wp), intent(in) :: widest
+    integer, intent(in) :: unknowns
+    type(branch_t), intent(inout) :: branch
+
+    allocate (branch%h0(4, 1), branch%load(4, 1), branch%h0_rate(unknowns, 2, 1), &
+      branch%load_rate(unknowns, 2, 1), source=0.0_wp)
+    ! From any distance, and with a slope that makes h0 fall evenly.
+    branch%h0(:, 1) = widest*[1, 0, -1, -1]
+    branch%turns_last = .true.
+  end subroutine set_apart
+
+  !> In contact, from where the position turns round inward; panels grow with the contact.
+  subroutine set_in_contact(model, number, turn, widest, unknowns, branch)
+    class(classical_model_t), intent(in) :: model
+    real(wp), intent(in) :: number(2), turn, widest
+    integer, intent(in) :: unknowns
+    type(branch_t), intent(inout) :: branch
+    real(wp) :: a, edge(0:panels), by_a(2), now(2), rate(2)
+    integer, allocatable :: which(:)
+    integer :: i, k, side
+
+    which = pack([1, 2], [model%finds_work, model%finds_stiffness])
+    edge = [(turn + (widest - turn)*(real(i, wp)/panels)**2, i=0, panels)]
+    allocate (branch%h0(4, panels), branch%load(4, panels), &
+      branch%h0_rate(unknowns, 2, panels), branch%load_rate(unknowns, 2, panels))
+    branch%turns_first = .true.
+    do i = 1, panels
+      do side = 1, 2
+        a = edge(i - 2 + side)
+        now = state(model, number, a)
+        branch%h0(side, i) = now(1)
+        branch%load(side, i) = now(2)
+        by_a = (state(model, number, a*(1 + step)) - state(model, number, a*(1 - step)))/ &
+          (2*step*a)*(edge(i) - edge(i - 1))
+        branch%h0(2 + side, i) = by_a(1)
+        branch%load(2 + side, i) = by_a(2)
+        do k = 1, unknowns
+          rate = varied(model, number, which(k), a)
+          branch%h0_rate(k, side, i) = rate(1)
+          branch%load_rate(k, side, i) = rate(2)
+        end do
+      end do
+    end do
+  end subroutine set_in_contact
+
+  !> Derivatives of h0 and load by number k.
+  pure function varied(model, number, k, a)
+    class(classical_model_t), intent(in) :: model
+    real(wp), intent(in) :: number(2), a
+    integer, intent(in) :: k
+    real(wp) :: varied(2), more(2), less(2)
+
+    more = number
+    less = number
+    more(k) = number(k)*(1 + step)
+    less(k) = number(k)*(1 - step)
+    varied = (state(model, more, a) - state(model, less, a))/(2*step*number(k))
+  end function varied
 
   !> h0 and load at a contact radius; number: work of adhesion and stiffness.
   pure function state(model, number, a)

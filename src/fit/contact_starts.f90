@@ -32,12 +32,12 @@ contains
     integer :: i, k, role
 
     few = residuals
-    few%data%noise = white_noise(residuals%data%noise%deviation)
-    call few%data%take(max(1, size(few%data%measured%z)/samples))
-    call few%reach(value, ends, found)
+    few%curve%data%noise = white_noise(residuals%curve%data%noise%deviation)
+    call few%curve%data%take(max(1, size(few%curve%data%measured%z)/samples))
+    call few%curve%reach(value, ends, found)
     allocate (starts(0), costs(0))
     if (.not. found) return
-    role = findloc(few%unknown%role, of_contact_point, 1)
+    role = findloc(few%curve%unknown%role, of_contact_point, 1)
     at = [(ends(1) + (ends(2) - ends(1))*(i - 1)/(tried - 1), i=0, tried + 1)]
     cost = [(cost_at(at(i)), i=0, tried + 1)]
     do i = 1, tried

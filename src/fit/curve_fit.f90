@@ -6,6 +6,8 @@ module curve_fit
   use fit_request, only: unknown_t, of_contact_point
   use least_squares, only: minimise
   use unknowns, only: free_of, value_by_fitted
+  use force_model, only: force_model_t
+  use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t
   use contact_starts, only: find_starts
   implicit none
@@ -39,17 +41,21 @@ module curve_fit
 
 contains
 
-  !> Fits from the deck's values, and from several contact points where that is unknown.
-  subroutine fit_curve(residuals, start, fitted)
-    type(curve_residuals_t), intent(inout) :: residuals
+  !> Fits the model from the deck's values, and from several contact points where that is unknown.
+  subroutine fit_curve(curve, model, start, fitted)
+    type(modelled_curve_t), intent(in) :: curve
+    class(force_model_t), intent(inout), target :: model
     real(wp), intent(in) :: start(:)
     type(fitted_t), intent(out) :: fitted
+    type(curve_residuals_t) :: residuals
     real(wp), allocatable :: starts(:), x(:), residual(:)
     real(wp) :: value(size(start)), least
     logical :: found
     integer :: i, role
 
-    role = findloc(residuals%unknown%role, of_contact_point, 1)
+    residuals%curve = curve
+    residuals%curve%model => model
+    role = findloc(residuals%curve%unknown%role, of_contact_point, 1)
     if (role > 0) then
       call find_starts(residuals, start, most_starts, worse, starts, fitted%has_curve)
     else
@@ -64,8 +70,8 @@ contains
     do i = 1, size(starts)
       value = start
       if (role > 0) value(role) = starts(i)
-      if (role > 0) residuals%unknown(role)%origin = starts(i)
-      x = free_of(residuals%unknown, value)
+      if (role > 0) residuals%curve%unknown(role)%origin = starts(i)
+      x = free_of(residuals%curve%unknown, value)
       call minimise(residuals, x, residual, found)
       if (.not. sum(residual**2) < least) cycle
       least = sum(residual**2)
@@ -92,9 +98,9 @@ contains
     fitted%found = fitted%found .and. found
     if (.not. found) return
     fitted%chi_squared = sum(residual**2)
-    fitted%freedom = size(residual) - n - residuals%data%baseline%unknowns()
+    fitted%freedom = size(residual) - n - residuals%curve%data%baseline%unknowns()
     do j = 1, n
-      jacobian(:, j) = jacobian(:, j)*value_by_fitted(residuals%unknown(j), fitted%value(j))
+      jacobian(:, j) = jacobian(:, j)*value_by_fitted(residuals%curve%unknown(j), fitted%value(j))
     end do
     length = norm2(jacobian, 1)
     fitted%effect = length
@@ -111,15 +117,15 @@ contains
     length = max(length, tiny(1.0_wp)**0.25_wp)
     fitted%fitted_deviation = [(sqrt(covariance(j, j))/length(j), j=1, n)]
     fitted%deviation = fitted%fitted_deviation* &
-      abs([(value_by_fitted(residuals%unknown(j), fitted%value(j)), j=1, n)])
+      abs([(value_by_fitted(residuals%curve%unknown(j), fitted%value(j)), j=1, n)])
     allocate (fitted%correlation(n, n))
     do j = 1, n
       fitted%correlation(:, j) = &
         [(covariance(i, j)/sqrt(covariance(i, i)*covariance(j, j)), i=1, n)]
     end do
-    call residuals%split(fitted%value, fitted%model, fitted%baseline)
-    fitted%residual = residuals%data%measured%signal - fitted%model
-    fitted%jump_z = [residuals%jump_of(fitted%value, 1), residuals%jump_of(fitted%value, 2)]
+    call residuals%curve%split(fitted%value, fitted%model, fitted%baseline)
+    fitted%residual = residuals%curve%data%measured%signal - fitted%model
+    fitted%jump_z = [(residuals%curve%jump_of(fitted%value, i), i=1, 2)]
   end subroutine judge
 
   !> The end of the interval of `sign` standard deviations about unknown i; that of what is positive

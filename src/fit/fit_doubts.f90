@@ -5,6 +5,7 @@ module fit_doubts
   use text, only: rounded
   use namelist_writer, only: line_t
   use fit_request, only: unknown_t
+  use curve_fit, only: fitted_t
   use fit_run, only: fit_outcome_t
   implicit none
   private
@@ -22,71 +23,92 @@ contains
   function doubts_of(outcome) result(lines)
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), allocatable :: lines(:)
-    character(len=8), parameter :: ways(2) = ['approach', 'retreat ']
-    integer :: i, k
+    integer :: i
 
     allocate (lines(0))
-    associate (fitted => outcome%fitted, curve => outcome%curve)
-      if (.not. fitted%found) call add('the search for the best values ended before it had them')
-      if (fitted%chi_squared > poor**2*fitted%freedom) call add('what the model leaves is ' // &
-        rounded(sqrt(fitted%chi_squared/fitted%freedom)) // ' times the noise: it does not ' // &
-        'describe these data, and the true errors are larger than the standard errors')
+    associate (fitted => outcome%fitted, unknown => outcome%curve%unknown)
+      if (.not. fitted%found) call add(lines, 'the search for the best values ended before it ' // &
+        'had them')
+      if (fitted%chi_squared > poor**2*fitted%freedom) call add(lines, 'what the model leaves ' // &
+        'is ' // rounded(sqrt(fitted%chi_squared/fitted%freedom)) // ' times the noise: it ' // &
+        'does not describe these data, and the true errors are larger than the standard errors')
       do i = 1, size(fitted%value)
-        call add_one(curve%unknown(i), i)
-        do k = 1, i - 1
-          if (abs(fitted%correlation(i, k)) > alike) call add(curve%unknown(k)%name // ' and ' // &
-            curve%unknown(i)%name // ' cannot be told apart: their correlation is ' // &
-            rounded(fitted%correlation(i, k)) // '; fix one of them, or give a prior')
-        end do
+        call doubt_unknown(fitted, unknown(i), i, lines)
+        call doubt_pairs(fitted, unknown, i, lines)
       end do
-      if (fitted%identifiable < lost) call add('some combination of the parameters cannot be ' // &
-        'told from these data: identifiable = ' // rounded(fitted%identifiable))
-      do i = 1, 2
-        if (curve%data%jump(i)%before == 0) cycle
-        if (.not. abs(fitted%jump_z(i)) < huge(1.0_wp)) then
-          call add('on the ' // trim(ways(i)) // ' the data jump and the model does not')
-        else if (abs(fitted%jump_z(i) - curve%data%jump(i)%z) > &
-          far*curve%data%jump(i)%uncertainty) then
-          call add('on the ' // trim(ways(i)) // ' the data jump at z = ' // &
-            rounded(curve%data%jump(i)%z) // ' m and the model ' // &
-            rounded(abs(fitted%jump_z(i) - curve%data%jump(i)%z)) // ' m from there')
-        end if
-      end do
+      if (fitted%identifiable < lost) call add(lines, 'some combination of the parameters ' // &
+        'cannot be told from these data: identifiable = ' // rounded(fitted%identifiable))
     end associate
-
-  contains
-
-    !> Of unknown i alone.
-    subroutine add_one(unknown, i)
-      type(unknown_t), intent(in) :: unknown
-      integer, intent(in) :: i
-
-      associate (fitted => outcome%fitted)
-        if (unknown%in_log .and. fitted%fitted_deviation(i) > vague) call add('the data say ' // &
-          'little of ' // unknown%name // ': it may be larger or smaller by a factor of ' // &
-          rounded(exp(min(fitted%fitted_deviation(i), 100.0_wp))))
-        associate (low => fitted%end_of(i, unknown, -1.0_wp), &
-          high => fitted%end_of(i, unknown, 1.0_wp))
-          if (allocated(unknown%lower)) then
-            if (low <= unknown%lower) call add(unknown%name // ': its 68 % interval ' // &
-              'touches lower = ' // rounded(unknown%lower) // ', which decides and not the data')
-          end if
-          if (allocated(unknown%upper)) then
-            if (high >= unknown%upper) call add(unknown%name // ': its 68 % interval ' // &
-              'touches upper = ' // rounded(unknown%upper) // ', which decides and not the data')
-          end if
-        end associate
-      end associate
-    end subroutine add_one
-
-    subroutine add(text)
-      character(len=*), intent(in) :: text
-      type(line_t) :: line
-
-      line%text = text
-      lines = [lines, line]
-    end subroutine add
-
+    call doubt_jumps(outcome, lines)
   end function doubts_of
+
+  !> Of unknown i alone: what the data say of it, and bounds that decide.
+  subroutine doubt_unknown(fitted, unknown, i, lines)
+    type(fitted_t), intent(in) :: fitted
+    type(unknown_t), intent(in) :: unknown
+    integer, intent(in) :: i
+    type(line_t), allocatable, intent(inout) :: lines(:)
+
+    if (unknown%in_log .and. fitted%fitted_deviation(i) > vague) call add(lines, 'the data ' // &
+      'say little of ' // unknown%name // ': it may be larger or smaller by a factor of ' // &
+      rounded(exp(min(fitted%fitted_deviation(i), 100.0_wp))))
+    associate (low => fitted%end_of(i, unknown, -1.0_wp), &
+      high => fitted%end_of(i, unknown, 1.0_wp))
+      if (allocated(unknown%lower)) then
+        if (low <= unknown%lower) call add(lines, unknown%name // ': its 68 % interval ' // &
+          'touches lower = ' // rounded(unknown%lower) // ', which decides and not the data')
+      end if
+      if (allocated(unknown%upper)) then
+        if (high >= unknown%upper) call add(lines, unknown%name // ': its 68 % interval ' // &
+          'touches upper = ' // rounded(unknown%upper) // ', which decides and not the data')
+      end if
+    end associate
+  end subroutine doubt_unknown
+
+  !> Of unknown i and those before it: whether the data tell them apart.
+  subroutine doubt_pairs(fitted, unknown, i, lines)
+    type(fitted_t), intent(in) :: fitted
+    type(unknown_t), intent(in) :: unknown(:)
+    integer, intent(in) :: i
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    integer :: k
+
+    do k = 1, i - 1
+      if (abs(fitted%correlation(i, k)) > alike) call add(lines, unknown(k)%name // ' and ' // &
+        unknown(i)%name // ' cannot be told apart: their correlation is ' // &
+        rounded(fitted%correlation(i, k)) // '; fix one of them, or give a prior')
+    end do
+  end subroutine doubt_pairs
+
+  !> Of the jumps in the data that the model does not have there.
+  subroutine doubt_jumps(outcome, lines)
+    type(fit_outcome_t), intent(in) :: outcome
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    character(len=8), parameter :: ways(2) = ['approach', 'retreat ']
+    real(wp) :: off
+    integer :: i
+
+    do i = 1, 2
+      associate (jump => outcome%curve%data%jump(i))
+        if (jump%before == 0) cycle
+        off = abs(outcome%fitted%jump_z(i) - jump%z)
+        if (.not. off < huge(1.0_wp)) then
+          call add(lines, 'on the ' // trim(ways(i)) // ' the data jump and the model does not')
+        else if (off > far*jump%uncertainty) then
+          call add(lines, 'on the ' // trim(ways(i)) // ' the data jump at z = ' // &
+            rounded(jump%z) // ' m and the model ' // rounded(off) // ' m from there')
+        end if
+      end associate
+    end do
+  end subroutine doubt_jumps
+
+  subroutine add(lines, text)
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    character(len=*), intent(in) :: text
+    type(line_t) :: line
+
+    line%text = text
+    lines = [lines, line]
+  end subroutine add
 
 end module fit_doubts

@@ -15,7 +15,7 @@ module fit_run
   use far_samples, only: find_far, fewest_far
   use path_model, only: path_model_t
   use classical_model, only: classical_model_t, theories
-  use curve_residuals, only: curve_residuals_t
+  use modelled_curve, only: modelled_curve_t
   use curve_fit, only: fitted_t, fit_curve
   implicit none
   private
@@ -31,7 +31,7 @@ module fit_run
   !> trouble: why there is no fit, and what to do.
   type :: fit_outcome_t
     character(len=:), allocatable :: trouble
-    type(curve_residuals_t) :: curve
+    type(modelled_curve_t) :: curve
     type(fitted_t) :: fitted
     type(theory_fit_t), allocatable :: theory(:)
   end type fit_outcome_t
@@ -57,7 +57,7 @@ contains
     class(listener_t), intent(inout) :: listener
     type(fit_outcome_t), intent(out) :: outcome
     type(path_model_t), target :: model
-    type(curve_residuals_t) :: curve
+    type(modelled_curve_t) :: curve
     integer :: i
 
     call take_curve(measurement, fit, problem, curve, outcome%trouble)
@@ -65,9 +65,7 @@ contains
     call listener%hear('fitting the path')
     allocate (model%family, source=family)
     model%numerics = numerics
-    call curve%set_model(model)
-    call fit_curve(curve, curve%unknown%value, outcome%fitted)
-    call curve%set_model()
+    call fit_curve(curve, model, curve%unknown%value, outcome%fitted)
     outcome%curve = curve
     if (.not. outcome%fitted%has_curve) then
       outcome%trouble = 'with the values of the deck the path could not be solved as ' // &
@@ -94,7 +92,7 @@ contains
     type(measurement_t), intent(in) :: measurement
     type(fit_t), intent(in) :: fit
     type(problem_t), intent(in) :: problem
-    type(curve_residuals_t), intent(inout) :: curve
+    type(modelled_curve_t), intent(inout) :: curve
     character(len=:), allocatable, intent(out) :: trouble
     type(failure_t), allocatable :: error
     real(wp) :: slope
@@ -141,7 +139,7 @@ contains
     type(problem_t), intent(in) :: problem
     class(problem_family_t), intent(in) :: family
     type(classical_model_t), target :: model
-    type(curve_residuals_t) :: curve
+    type(modelled_curve_t) :: curve
     type(problem_t) :: final
     type(failure_t), allocatable :: error
     type(unknown_t) :: unknown(2)
@@ -173,10 +171,9 @@ contains
       pack(outcome%fitted%value, outcome%curve%unknown%role /= of_model)]
     do i = 1, size(theories)
       model%theory = theories(i)
-      call curve%set_model(model)
       outcome%theory(i)%theory = theories(i)
       outcome%theory(i)%unknown = curve%unknown
-      call fit_curve(curve, start, outcome%theory(i)%fitted)
+      call fit_curve(curve, model, start, outcome%theory(i)%fitted)
     end do
   end subroutine fit_theories
 

@@ -11,9 +11,10 @@ module driven_pieces
   use known_path, only: known_path_t
   use path_curve, only: curve_t
   use curve_states, only: curve_solver_t, curve_state_t, place_t
+  use stable_stretches, only: edge_t, stretch_t, find_stretches
   implicit none
   private
-  public :: drive_t, driven_piece_t, find_pieces, state_driven, through_spring, find_turning_places
+  public :: drive_t, driven_piece_t, find_pieces, state_driven, through_spring
 
   !> Weights of h0 and load in D.
   type :: drive_t
@@ -31,10 +32,6 @@ module driven_pieces
     logical :: first_turns = .false., last_turns = .false.
   end type driven_piece_t
 
-  !> Places of an interval at which the slope of D is looked at, and the width below which only its
-  !> ends are.
-  integer, parameter :: looks = 8
-  real(wp), parameter :: narrow_interval = 1.0e-4_wp
   !> Nodes of the rule that integrates over an interval.
   integer, parameter :: rule = 8
 
@@ -120,147 +117,40 @@ contains
     type(drive_t), intent(in) :: drive
     type(driven_piece_t), allocatable, intent(out) :: pieces(:)
     logical, intent(out) :: whole
+    type(stretch_t), allocatable :: stretches(:)
     type(driven_piece_t) :: piece
-    real(wp), allocatable :: edges(:), places(:)
-    ! Where the last stable interval ends.
-    real(wp) :: end_x
-    integer :: i, k, n
-    logical :: open, falls
+    integer :: i
 
     allocate (pieces(0))
-    open = .false.
     whole = .true.
-    n = size(solver%curve%interval)
-    do i = 1, n
-      associate (begin => solver%curve%begin_of(i), end => solver%curve%end_of(i))
-        if (solver%curve%interval(i)%modes > 0) then
-          ! A fold in h0: the path is no longer stable however stiff the spring is.
-          if (open) call close_at(i - 1, end_x, .false.)
-          cycle
-        end if
-        call find_turning_places(solver, equations, known, i, drive%weights, places)
-        edges = [begin%x, places, end%x]
-        falls = solver%curve%slope(i, drive%weights, begin%x) < 0
-        end_x = end%x
-      end associate
-      do k = 1, size(edges) - 1
-        if (k > 1) falls = .not. falls
-        if (falls) then
-          if (.not. open) call open_at(edges(k), k > 1)
-        else if (open) then
-          call close_at(i, edges(k), k > 1)
-        end if
-      end do
-    end do
-    if (.not. open) return
-    call close_at(n, end_x, .false.)
-    if (size(pieces) > 0) pieces(size(pieces))%last_turns = .false.
-
-  contains
-
-    !> Begins a piece in interval i at x: at a turning point within, or at its first node.
-    subroutine open_at(x, turns)
-      real(wp), intent(in) :: x
-      logical, intent(in) :: turns
-
-      open = .true.
-      call solve_edge(i, x, turns, piece%first)
-      piece%first_turns = turns .or. i > 1
-    end subroutine open_at
-
-    !> Ends it in interval j at x.
-    subroutine close_at(j, x, turns)
-      integer, intent(in) :: j
-      real(wp), intent(in) :: x
-      logical, intent(in) :: turns
-
-      open = .false.
-      piece%last_turns = .true.
-      call solve_edge(j, x, turns, piece%last)
+    call find_stretches(solver, equations, known, drive%weights, stretches)
+    do i = 1, size(stretches)
+      piece%first_turns = stretches(i)%first_turns
+      piece%last_turns = stretches(i)%last_turns
+      call solve_edge(stretches(i)%first, piece%first)
+      call solve_edge(stretches(i)%last, piece%last)
       if (piece%first%converged .and. piece%last%converged) then
         pieces = [pieces, piece]
       else
         whole = .false.
       end if
-    end subroutine close_at
-
-    subroutine solve_edge(j, x, turns, state)
-      integer, intent(in) :: j
-      real(wp), intent(in) :: x
-      logical, intent(in) :: turns
-      type(curve_state_t), intent(out) :: state
-      real(wp) :: width
-
-      if (.not. turns) then
-        call solver%state_of(equations, known, place_t(j, x), state)
-        return
-      end if
-      ! Half the way to the neighbouring edges contains this one alone.
-      width = 0.5_wp*min(edges(k) - edges(k - 1), edges(k + 1) - edges(k))
-      call solver%root_of(equations, known, j, drive%weights, x - width, x + width, state)
-    end subroutine solve_edge
-
-  end subroutine find_pieces
-
-  !> Where within an interval a combination of h0 and load turns round, in order. The curve's slope
-  !> is exact at the interval's ends alone: where it turns more than once, states between say
-  !> whether the path does. A load that grows by orders of magnitude makes polynomials swing.
-  subroutine find_turning_places(solver, equations, known, i, weights, places)
-    type(curve_solver_t), intent(inout) :: solver
-    type(equations_t), intent(inout) :: equations
-    type(known_path_t), intent(in) :: known
-    integer, intent(in) :: i
-    real(wp), intent(in) :: weights(2)
-    real(wp), allocatable, intent(out) :: places(:)
-    type(curve_state_t) :: state
-    logical, allocatable :: falls(:)
-    integer :: k
-
-    places = turning_places(solver%curve, i, weights)
-    if (size(places) < 2) return
-    falls = [(mod(k, 2) == 0 .eqv. solver%curve%slope(i, weights, begin_x()) < 0, &
-      k=0, size(places))]
-    do k = 1, size(places) - 1
-      call solver%state_of(equations, known, place_t(i, 0.5_wp*(places(k) + places(k + 1))), state)
-      if (state%converged) falls(k + 1) = dot_product(weights, state%slopes) < 0
     end do
-    places = pack(places, falls(:size(places)) .neqv. falls(2:))
 
   contains
 
-    real(wp) function begin_x()
-      associate (begin => solver%curve%begin_of(i))
-        begin_x = begin%x
-      end associate
-    end function begin_x
+    subroutine solve_edge(edge, state)
+      type(edge_t), intent(in) :: edge
+      type(curve_state_t), intent(out) :: state
 
-  end subroutine find_turning_places
+      if (edge%turns) then
+        call solver%root_of(equations, known, edge%interval, drive%weights, edge%x - edge%width, &
+          edge%x + edge%width, state)
+      else
+        call solver%state_of(equations, known, place_t(edge%interval, edge%x), state)
+      end if
+    end subroutine solve_edge
 
-  !> Where within an interval the curve says that a combination of h0 and load turns round, in
-  !> order.
-  pure function turning_places(curve, i, weights) result(places)
-    type(curve_t), intent(in) :: curve
-    integer, intent(in) :: i
-    real(wp), intent(in) :: weights(2)
-    real(wp), allocatable :: places(:)
-    real(wp) :: x, x_before, slope, slope_before
-    integer :: k, n
-
-    allocate (places(0))
-    associate (begin => curve%begin_of(i), end => curve%end_of(i))
-      n = merge(looks, 1, end%x - begin%x > narrow_interval)
-      x_before = begin%x
-      slope_before = curve%slope(i, weights, x_before)
-      do k = 1, n
-        x = begin%x + (end%x - begin%x)*k/n
-        slope = curve%slope(i, weights, x)
-        if ((slope < 0) .neqv. (slope_before < 0)) places = [places, &
-          x_before + (x - x_before)*slope_before/(slope_before - slope)]
-        x_before = x
-        slope_before = slope
-      end do
-    end associate
-  end function turning_places
+  end subroutine find_pieces
 
   !> The state of a piece at which D has a value between those at its ends.
   subroutine state_driven(solver, equations, known, drive, piece, wanted, state)

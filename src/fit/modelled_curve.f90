@@ -1,0 +1,214 @@
+!> A measured curve by a model with given unknowns:
+!>
+!>     signal = F(Z)/(k s) + baseline of the way + slope z ,   Z = facing (z - contact point) ,
+!>
+!> k the spring's stiffness, s the detector's sensitivity. What the model answered last is kept:
+!> moving the curve along, or another detector, needs no new solution.
+module modelled_curve
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: wp
+  use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring
+  use fit_samples, only: fit_samples_t
+  use force_model, only: force_model_t, response_t
+  use force_branch, only: load_at_t
+  implicit none
+  private
+  public :: modelled_curve_t
+
+  type :: modelled_curve_t
+    !> Is to live as long as it is asked.
+    class(force_model_t), pointer :: model => null()
+    type(fit_samples_t) :: data
+    type(unknown_t), allocatable :: unknown(:)
+    !> Spring, detector and contact point where they are no unknowns. Where the signal is the force,
+    !> it is the deflection of the deck's spring.
+    real(wp) :: spring = 1, sensitivity = 1, contact_point = 0
+    !> Signals up to this are wanted of the model, less their baseline.
+    real(wp) :: largest = 0
+    type(response_t) :: response
+    real(wp), allocatable, private :: asked(:)
+    real(wp), private :: deepest = 0
+    logical, private :: has_rates = .false.
+  contains
+    procedure :: ask
+    procedure :: signal_of
+    procedure :: signal_rates
+    procedure :: jump_of
+    procedure :: jump_rates
+    procedure :: split
+    procedure :: reach
+    procedure, private :: number_of, position_of
+  end type modelled_curve_t
+
+contains
+
+  !> Has the model answer for these values, unless it has.
+  subroutine ask(self, value, with_rates, found)
+    class(modelled_curve_t), intent(inout) :: self
+    real(wp), intent(in) :: value(:)
+    logical, intent(in) :: with_rates
+    logical, intent(out) :: found
+    real(wp), allocatable :: asked(:)
+    real(wp) :: k, farthest, largest
+
+    k = self%number_of(value, of_spring, self%spring)
+    asked = [pack(value, self%unknown%role == of_model), k]
+    largest = self%largest*k*self%number_of(value, of_sensitivity, self%sensitivity)
+    found = allocated(self%asked)
+    if (found) found = all(abs(asked - self%asked) <= 0) .and. largest <= self%deepest .and. &
+      (self%has_rates .or. .not. with_rates)
+    if (found) return
+    if (allocated(self%asked)) deallocate (self%asked)
+    ! From twice the travel, wherever the contact point is.
+    farthest = 2*(maxval(self%data%measured%z) - minval(self%data%measured%z))
+    call self%model%respond(asked(:size(asked) - 1), k, farthest, largest, with_rates, &
+      self%response, found)
+    if (.not. found) return
+    self%asked = asked
+    self%deepest = largest
+    self%has_rates = with_rates
+  end subroutine ask
+
+  !> The model's part of the signal at samples, for the values asked for last.
+  function signal_of(self, value, sample) result(signal)
+    class(modelled_curve_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    integer, intent(in) :: sample(:)
+    real(wp) :: signal(size(sample))
+    type(load_at_t) :: load
+    integer :: i, n
+
+    do n = 1, size(sample)
+      i = sample(n)
+      load = self%response%load_on(self%data%way(i), max(self%data%side(i), 0), &
+        self%position_of(value, i))
+      signal(n) = load%load
+    end do
+    signal = signal/(self%number_of(value, of_spring, self%spring)* &
+      self%number_of(value, of_sensitivity, self%sensitivity))
+  end function signal_of
+
+  !> Its derivatives by the unknowns, (sample, unknown), at samples that count.
+  function signal_rates(self, value) result(by)
+    class(modelled_curve_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    real(wp) :: by(size(self%data%sample), size(value))
+    type(load_at_t) :: load
+    real(wp) :: k, s
+    integer :: i, n
+
+    k = self%number_of(value, of_spring, self%spring)
+    s = self%number_of(value, of_sensitivity, self%sensitivity)
+    do n = 1, size(self%data%sample)
+      i = self%data%sample(n)
+      load = self%response%load_on(self%data%way(i), self%data%side(i), self%position_of(value, i))
+      by(n, :) = unfolded(self%unknown%role, load%rate/(k*s), &
+        -self%data%measured%facing*load%slope/(k*s), -load%load/(k*s**2), &
+        -(load%slope*load%load/k**2 + load%load/k)/(k*s))
+    end do
+  end function signal_rates
+
+  !> Where the base is when the model's main jump on a way starts; NaN without one.
+  real(wp) function jump_of(self, value, way) result(z)
+    class(modelled_curve_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    integer, intent(in) :: way
+    real(wp) :: position, load
+    real(wp), allocatable :: rate(:)
+
+    z = ieee_value(z, ieee_quiet_nan)
+    if (self%response%way(way)%main == 0 .or. .not. self%response%way(way)%foretold) return
+    call self%response%jump_from(way, position, rate, load)
+    z = self%number_of(value, of_contact_point, self%contact_point) + &
+      self%data%measured%facing*position
+  end function jump_of
+
+  !> Its derivatives by the unknowns; 0 without a jump.
+  function jump_rates(self, value, way) result(by)
+    class(modelled_curve_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    integer, intent(in) :: way
+    real(wp) :: by(size(value))
+    real(wp) :: position, load
+    real(wp), allocatable :: rate(:)
+
+    by = 0
+    if (.not. self%response%way(way)%foretold .or. self%response%way(way)%main == 0) return
+    call self%response%jump_from(way, position, rate, load)
+    by = self%data%measured%facing*unfolded(self%unknown%role, rate, self%data%measured%facing, &
+      0.0_wp, load/self%number_of(value, of_spring, self%spring)**2)
+  end function jump_rates
+
+  !> Derivatives by the unknowns in their order, from those by the model's and by the others.
+  pure function unfolded(role, by_model, by_contact_point, by_sensitivity, by_spring) result(by)
+    integer, intent(in) :: role(:)
+    real(wp), intent(in) :: by_model(:), by_contact_point, by_sensitivity, by_spring
+    real(wp) :: by(size(role))
+
+    by = unpack(by_model, role == of_model, 0.0_wp)
+    where (role == of_contact_point) by = by_contact_point
+    where (role == of_sensitivity) by = by_sensitivity
+    where (role == of_spring) by = by_spring
+  end function unfolded
+
+  !> The model with its baseline at all samples, and the baseline alone.
+  subroutine split(self, value, model, baseline)
+    class(modelled_curve_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    real(wp), allocatable, intent(out) :: model(:), baseline(:)
+    integer :: i
+
+    model = self%signal_of(value, [(i, i=1, size(self%data%way))])
+    baseline = self%data%baseline_under(self%data%measured%signal - model)
+    model = model + baseline
+  end subroutine split
+
+  !> The contact points with which the nearest sample is anywhere from the end of what the model
+  !> knows of the contact out to where nothing holds the bodies together.
+  subroutine reach(self, value, ends, found)
+    class(modelled_curve_t), intent(inout) :: self
+    real(wp), intent(in) :: value(:)
+    real(wp), intent(out) :: ends(2)
+    logical, intent(out) :: found
+    real(wp) :: nearest, inner, outer
+    integer :: i
+
+    ends = 0
+    call self%ask(value, .false., found)
+    if (.not. found) return
+    nearest = minval(self%data%measured%facing*self%data%measured%z)
+    inner = huge(inner)
+    outer = 0
+    do i = 1, size(self%response%branch)
+      associate (position => self%response%branch(i)%position)
+        inner = min(inner, minval(position))
+        if (i > 1) outer = max(outer, maxval(position))
+      end associate
+    end do
+    ! Z = facing z - facing (contact point).
+    ends = self%data%measured%facing*(nearest - [inner, outer])
+  end subroutine reach
+
+  !> Position of the drive at a sample.
+  pure real(wp) function position_of(self, value, i) result(position)
+    class(modelled_curve_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    integer, intent(in) :: i
+
+    position = self%data%measured%facing*(self%data%measured%z(i) - &
+      self%number_of(value, of_contact_point, self%contact_point))
+  end function position_of
+
+  !> The value of the unknown with a role; `otherwise` where there is none.
+  pure real(wp) function number_of(self, value, role, otherwise) result(number)
+    class(modelled_curve_t), intent(in) :: self
+    real(wp), intent(in) :: value(:), otherwise
+    integer, intent(in) :: role
+    integer :: i
+
+    number = otherwise
+    i = findloc(self%unknown%role, role, 1)
+    if (i > 0) number = value(i)
+  end function number_of
+
+end module modelled_curve
