@@ -1,14 +1,16 @@
 !> What the equilibrium path shows from bodies far apart, or a given h0, to a contact at a given h0:
-!> stable and unstable states, every fold in h0, every extremum of the load.
+!> stable and unstable states, every fold in h0, every extremum of the load, and between these
+!> points as many more as make the curve smooth.
 module path
   use kinds, only: wp
   use dimensionless_problem, only: spacing_over_neck
-  use equilibrium, only: state_t
+  use frozen_jacobian, only: frozen_jacobian_t
   use traced_path, only: traced_path_t
   use ending, only: ending_t, state_lost
   use known_path, only: known_path_t, interval_at
   use locked_meshes, only: h0_control
   use path_stepper, only: path_stepper_t
+  use path_rows, only: row_t, row_of_point, row_at_h0, rows_between
   use reported, only: reported_t, reported_state, error_probe_t, add_reported
   use records, only: observer_t, record_of, stable_yes, stable_no
   implicit none
@@ -32,14 +34,6 @@ module path
     type(ending_t) :: ending
   end type path_t
 
-  !> One row: its state and mesh, the point of the path that it is (0: none), its unstable modes,
-  !> and whether it is solved.
-  type :: row_t
-    type(state_t) :: state
-    integer :: mesh = 1, point = 0, modes = 0
-    logical :: converged = .true.
-  end type row_t
-
 contains
 
   !> The part of the path that `steps` knows from h0_start, or where that is absent from its
@@ -52,8 +46,9 @@ contains
     type(path_t), intent(out) :: path
     real(wp), intent(in), optional :: h0_start
     type(row_t) :: row
-    real(wp), allocatable :: stops(:)
-    real(wp) :: from, until
+    type(row_t), allocatable :: between(:)
+    type(frozen_jacobian_t) :: frozen
+    real(wp) :: until, widest
     integer :: i, k, first, last
     logical :: ends_between
 
@@ -63,24 +58,26 @@ contains
     first = 1
     if (present(h0_start)) first = first_crossing(steps%known%path, h0_start)
     call find_end(steps%known, h0_end, last, ends_between)
+    if (last < first) return
+    widest = steps%known%path%point(last)%state%scale
     do i = first, last
       row = row_of_point(steps, i)
-      if (i == first .and. present(h0_start)) row = row_between(steps, i, h0_start)
+      if (i == first .and. present(h0_start)) row = row_at_h0(steps, i, h0_start)
       if (i == first) path%first_piece = piece_of(steps%known, i)
-      call take(steps, row, any(abs(profiles - row%state%h0) <= 0), observer, path)
+      row%profile = any(abs(profiles - row%state%h0) <= 0)
+      call take(steps, row, observer, path)
       if (i == last .and. .not. ends_between) exit
-      from = row%state%h0
       until = h0_end
       if (i < last) until = steps%known%path%point(i + 1)%state%h0
-      stops = along(pack(profiles, (profiles - from)*(profiles - until) < 0), from)
-      do k = 1, size(stops)
-        call take(steps, row_between(steps, i, stops(k)), .true., observer, path)
+      call rows_between(steps, i, row%state%h0, until, widest, profiles, frozen, between)
+      do k = 1, size(between)
+        call take(steps, between(k), observer, path)
       end do
       if (i < last) cycle
-      row = row_between(steps, i, h0_end)
-      call take(steps, row, any(abs(profiles - h0_end) <= 0), observer, path)
+      row = row_at_h0(steps, i, h0_end)
+      row%profile = any(abs(profiles - h0_end) <= 0)
+      call take(steps, row, observer, path)
     end do
-    if (path%states == 0) return
     path%last_piece = piece_of(steps%known, last)
     if (row%modes == 0 .and. row%converged) path%finish = reported_row(steps, row)
     steps%cost%states = steps%cost%states + path%states
@@ -117,24 +114,6 @@ contains
     end do
   end subroutine find_end
 
-  !> Values in the order in which h0 passes them from `start`, all on one side of it.
-  pure function along(values, start) result(sorted)
-    real(wp), intent(in) :: values(:), start
-    real(wp), allocatable :: sorted(:)
-    real(wp) :: value
-    integer :: i, j
-
-    sorted = values
-    do i = 2, size(sorted)
-      value = sorted(i)
-      do j = i - 1, 1, -1
-        if (abs(sorted(j) - start) <= abs(value - start)) exit
-        sorted(j + 1) = sorted(j)
-      end do
-      sorted(j + 1) = value
-    end do
-  end function along
-
   !> The stable piece on which the path goes on from point i; 0 where it is unstable.
   pure integer function piece_of(known, i) result(k)
     type(known_path_t), intent(in) :: known
@@ -144,28 +123,6 @@ contains
       if (i >= known%piece(k)%first .and. i <= known%piece(k)%last) return
     end do
   end function piece_of
-
-  function row_of_point(steps, i) result(row)
-    type(path_stepper_t), intent(in) :: steps
-    integer, intent(in) :: i
-    type(row_t) :: row
-
-    row%point = i
-    row%modes = steps%known%path%modes_at(i)
-    row%mesh = steps%known%path%point(i)%mesh
-    row%state = steps%known%path%point(i)%state
-  end function row_of_point
-
-  !> The row at h0 between point i and the next.
-  function row_between(steps, i, h0) result(row)
-    class(path_stepper_t), intent(inout) :: steps
-    integer, intent(in) :: i
-    real(wp), intent(in) :: h0
-    type(row_t) :: row
-
-    row%modes = steps%known%path%point(i)%modes
-    call steps%state_at_h0(i, h0, row%mesh, row%state, row%converged)
-  end function row_between
 
   !> A row as one that is reported.
   function reported_row(steps, row) result(reported)
@@ -185,10 +142,9 @@ contains
   end function reported_row
 
   !> Gives a row to the observer and keeps what is reported of it.
-  subroutine take(steps, row, profile, observer, path)
+  subroutine take(steps, row, observer, path)
     type(path_stepper_t), intent(in) :: steps
     type(row_t), intent(in) :: row
-    logical, intent(in) :: profile
     class(observer_t), intent(inout) :: observer
     type(path_t), intent(inout) :: path
     type(reported_t) :: reported
@@ -196,7 +152,7 @@ contains
     associate (grid => steps%meshes%grid(row%mesh), state => row%state)
       call observer%take(record_of('path', steps%problem, grid, state, &
         merge(stable_yes, stable_no, row%modes == 0), row%converged), steps%problem, grid, state, &
-        profile)
+        row%profile)
       path%states = path%states + 1
       path%worst_residual = max(path%worst_residual, state%residual)
       if (steps%meshes%in_contact(row%mesh)) path%worst_spacing = max(path%worst_spacing, &
@@ -206,8 +162,9 @@ contains
       if (.not. path%ending%early()) path%ending%cause = state_lost
       return
     end if
+    if (row%for_curve) return
     reported = reported_row(steps, row)
-    if (profile) call add_reported(path%profile, reported)
+    if (row%profile) call add_reported(path%profile, reported)
     if (lowers(path%lowest)) path%lowest = reported
     if (row%point == 0) return
     associate (point => steps%known%path%point(row%point))

@@ -3,8 +3,9 @@
 !> to four points have.
 module path_span
   use kinds, only: wp
-  use interpolation, only: most_hermite_nodes
+  use interpolation, only: hermite_t, most_hermite_nodes
   use equilibrium, only: state_t
+  use arc, only: of_h0, of_load
   use solve_at_h0, only: neighbours_t, neighbours_of, coordinate_at_h0
   use traced_path, only: traced_path_t
   implicit none
@@ -16,11 +17,13 @@ module path_span
     integer :: point = 0, mesh = 1
     real(wp) :: ends(2) = 0
     type(neighbours_t), private :: near
+    type(hermite_t), private :: h0, load
     !> Those of the neighbours that the polynomial fits.
     integer, private :: nodes(most_hermite_nodes) = 0, held = 0
   contains
     procedure :: at_h0
     procedure :: guess
+    procedure :: h0_and_load
   end type path_span_t
 
 contains
@@ -30,12 +33,16 @@ contains
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     type(path_span_t) :: span
+    real(wp) :: middle
 
     span%near = neighbours_of(path, i)
     span%point = i
     span%mesh = span%near%mesh
     span%ends = span%near%coordinate(span%near%lower:span%near%lower + 1)
-    call span%near%support(0.5_wp*sum(span%ends), span%nodes, span%held)
+    middle = 0.5_wp*sum(span%ends)
+    call span%near%support(middle, span%nodes, span%held)
+    span%h0 = span%near%curve(of_h0, middle)
+    span%load = span%near%curve(of_load, middle)
   end function new_path_span
 
   !> Where between the ends H0 has a value.
@@ -54,5 +61,14 @@ contains
 
     state = self%near%guess_from(self%nodes(:self%held), s)
   end function guess
+
+  !> H0 and load that are expected at s.
+  pure function h0_and_load(self, s) result(values)
+    class(path_span_t), intent(in) :: self
+    real(wp), intent(in) :: s
+    real(wp) :: values(2)
+
+    values = [self%h0%value(s), self%load%value(s)]
+  end function h0_and_load
 
 end module path_span
