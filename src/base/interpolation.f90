@@ -5,7 +5,7 @@ module interpolation
   use root_finding, only: bracket_t
   implicit none
   private
-  public :: polynomial_weights, polynomial_value, polynomial_slope, interpolated_maximum
+  public :: polynomial_weights, polynomial_slope, interpolated_maximum
   public :: hermite_t, hermite_through, hermite_weights, most_hermite_nodes
 
   integer, parameter :: most_hermite_nodes = 4

@@ -8,204 +8,206 @@ module device
   use known_path, only: known_path_t
   use curve_states, only: curve_solver_t, curve_state_t
   use driven_pieces, only: drive_t, driven_piece_t, find_pieces, state_driven
+  use driven_cycle, only: driven_t, leg_t, jump_t
   implicit none
   private
-  public :: driven_t, leg_t, jump_t, drive_bodies
+  public :: drive_bodies
 
-  !> A way along one stable piece, of this number in `driven_t`.
-  type :: leg_t
-    logical :: inward = .true.
-    integer :: piece = 0
-    type(curve_state_t) :: from, to
-  end type leg_t
-
-  !> A jump and the energy that it loses, in units of load times length; landed = .false.: nothing
-  !> that is known of the path catches the bodies.
-  type :: jump_t
-    logical :: inward = .true., landed = .false.
-    type(curve_state_t) :: before, after
-    real(wp) :: energy = 0, uncertainty = 0
-    !> Derivatives of the energy by each parameter of &sensitivity, SI units.
-    real(wp), allocatable :: energy_rate(:)
-  end type jump_t
-
-  !> What a drive does to the bodies. Lost in all jumps, and over the cycle, the area between the
-  !> ways in and out, by another route; NaN where they do not come back to where they began.
-  type :: driven_t
-    type(drive_t) :: drive
-    !> As the deck has it [N/m]; infinite where h0 is prescribed.
-    real(wp) :: stiffness = 0
-    !> All that is stable, from afar inward.
-    type(driven_piece_t), allocatable :: piece(:)
-    type(leg_t), allocatable :: leg(:)
-    type(jump_t), allocatable :: jump(:)
-    real(wp) :: energy_lost = 0, cycle_energy = 0, uncertainty = 0
-    !> Whether every state was solved, and every jump had an end.
-    logical :: solved = .true., caught = .true.
+  !> Bodies on their way: what solves their states, where they are to go from and to, and the piece
+  !> and the state that they are in.
+  type :: travel_t
+    type(curve_solver_t), pointer :: solver => null()
+    type(equations_t), pointer :: equations => null()
+    type(known_path_t), pointer :: known => null()
+    real(wp) :: h0_end = 0
+    real(wp), allocatable :: start, finish
+    integer :: piece = 1
+    type(curve_state_t) :: state
   contains
-    procedure :: jumps_after
-  end type driven_t
+    procedure :: begin
+    procedure :: go
+    procedure :: move_to
+    procedure :: find_limit
+    procedure :: find_innermost
+    procedure :: leap
+  end type travel_t
 
 contains
 
   !> Drives the bodies from afar, or from `start`, to `finish` or, where that is absent, to the
   !> innermost piece at h0_end, and back. Positions are those of the drive (`driven_pieces`).
   subroutine drive_bodies(solver, equations, known, drive, h0_end, start, finish, driven)
-    type(curve_solver_t), intent(inout) :: solver
-    type(equations_t), intent(inout) :: equations
-    type(known_path_t), intent(in) :: known
+    type(curve_solver_t), intent(inout), target :: solver
+    type(equations_t), intent(inout), target :: equations
+    type(known_path_t), intent(in), target :: known
     type(drive_t), intent(in) :: drive
     real(wp), intent(in) :: h0_end
     real(wp), allocatable, intent(in) :: start, finish
     type(driven_t), intent(out) :: driven
-    type(driven_piece_t), allocatable :: pieces(:)
-    type(curve_state_t) :: state
-    integer :: piece, outermost
+    type(travel_t) :: travel
+    integer :: outermost
 
     allocate (driven%leg(0), driven%jump(0))
     driven%drive = drive
     driven%energy_lost = ieee_value(1.0_wp, ieee_quiet_nan)
     driven%cycle_energy = driven%energy_lost
-    call find_pieces(solver, equations, known, drive, pieces, driven%solved)
-    driven%piece = pieces
-    if (size(pieces) == 0) return
-    piece = 1
-    state = pieces(1)%first
-    if (allocated(start)) call begin_at(start)
-    outermost = piece
-    call go(.true.)
-    call go(.false.)
+    call find_pieces(solver, equations, known, drive, driven%piece, driven%solved)
+    if (size(driven%piece) == 0) return
+    travel%solver => solver
+    travel%equations => equations
+    travel%known => known
+    travel%h0_end = h0_end
+    if (allocated(start)) travel%start = start
+    if (allocated(finish)) travel%finish = finish
+    call travel%begin(driven)
+    outermost = travel%piece
+    call travel%go(.true., driven)
+    call travel%go(.false., driven)
     driven%energy_lost = sum(driven%jump%energy)
     driven%uncertainty = sum(driven%jump%uncertainty)
     driven%caught = all(driven%jump%landed)
-    if (piece == outermost .and. driven%caught .and. driven%solved) &
-      driven%cycle_energy = area(solver, drive, driven%leg)
-
-  contains
-
-    !> Takes the outermost stable state at a position.
-    subroutine begin_at(position)
-      real(wp), intent(in) :: position
-      integer :: k
-
-      k = piece_with(pieces, drive, position, 1, 1)
-      if (k == 0) return
-      piece = k
-      call state_driven(solver, equations, known, drive, pieces(k), position, state)
-      driven%solved = driven%solved .and. state%converged
-    end subroutine begin_at
-
-    !> Goes inward or outward over all jumps.
-    subroutine go(inward)
-      logical, intent(in) :: inward
-      type(jump_t) :: jump
-      type(leg_t) :: leg
-      real(wp) :: stop_at
-      logical :: stops
-
-      do
-        leg%inward = inward
-        leg%piece = piece
-        leg%from = state
-        stop_at = limit(inward, stops)
-        if (stops) then
-          call state_driven(solver, equations, known, drive, pieces(piece), stop_at, state)
-        else
-          state = pieces(piece)%last
-          if (.not. inward) state = pieces(piece)%first
-        end if
-        driven%solved = driven%solved .and. state%converged
-        leg%to = state
-        driven%leg = [driven%leg, leg]
-        if (stops .or. .not. driven%solved) return
-        if (.not. merge(pieces(piece)%last_turns, pieces(piece)%first_turns, inward)) return
-        call leap(inward, jump)
-        driven%jump = [driven%jump, jump]
-        if (.not. jump%landed) return
-      end do
-    end subroutine go
-
-    !> The position at which the way along the present piece ends; stops = .false.: at its end.
-    real(wp) function limit(inward, stops) result(at)
-      logical, intent(in) :: inward
-      logical, intent(out) :: stops
-
-      at = 0
-      if (.not. inward) then
-        stops = allocated(start)
-        if (stops) at = start
-        if (stops) stops = at <= drive%position(pieces(piece)%first)
-        return
-      end if
-      if (allocated(finish)) then
-        at = finish
-        stops = at >= drive%position(pieces(piece)%last)
-      else
-        stops = piece == size(pieces)
-        if (stops) call find_innermost(at, stops)
-      end if
-      ! What lies behind already is here.
-      if (stops) at = min(at, drive%position(state))
-    end function limit
-
-    !> The position at h0_end on the innermost piece, or at the end of what is known of it;
-    !> there_is = .false.: it ends in a jump before.
-    subroutine find_innermost(at, there_is)
-      real(wp), intent(out) :: at
-      logical, intent(out) :: there_is
-      type(curve_state_t) :: there
-      real(wp) :: ends(2)
-      integer :: i
-
-      at = drive%position(pieces(piece)%last)
-      there_is = .not. pieces(piece)%last_turns
-      do i = pieces(piece)%last%interval, pieces(piece)%first%interval, -1
-        associate (begin => solver%curve%begin_of(i), end => solver%curve%end_of(i))
-          if (.not. (begin%h0 >= h0_end .and. end%h0 <= h0_end)) cycle
-          ends = [begin%x, end%x]
-        end associate
-        call solver%root_of(equations, known, i, [1.0_wp, 0.0_wp], ends(1), ends(2), there, h0_end)
-        there_is = there_is .or. there%converged
-        if (there%converged) at = max(at, drive%position(there))
-        exit
-      end do
-    end subroutine find_innermost
-
-    !> Jumps from the present state to the nearest stable piece with the same position.
-    subroutine leap(inward, jump)
-      logical, intent(in) :: inward
-      type(jump_t), intent(out) :: jump
-      integer :: k, sense
-
-      jump%inward = inward
-      jump%before = state
-      sense = merge(1, -1, inward)
-      k = piece_with(pieces, drive, drive%position(state), piece + sense, sense)
-      if (k > 0) then
-        call state_driven(solver, equations, known, drive, pieces(k), drive%position(state), &
-          jump%after)
-        jump%landed = jump%after%converged
-        driven%solved = driven%solved .and. jump%landed
-      end if
-      jump%energy = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (.not. jump%landed) return
-      jump%energy = drive%energy(jump%before) - drive%energy(jump%after)
-      jump%uncertainty = jump%before%uncertainty + jump%after%uncertainty
-      piece = k
-      state = jump%after
-    end subroutine leap
-
+    if (travel%piece == outermost .and. driven%caught .and. driven%solved) &
+      driven%cycle_energy = driven%area(solver%curve)
   end subroutine drive_bodies
 
-  !> Whether a leg ends where a jump starts.
-  pure logical function jumps_after(self, leg)
-    class(driven_t), intent(in) :: self
-    type(leg_t), intent(in) :: leg
+  !> Takes the outermost stable state, or that at the position to start from.
+  subroutine begin(self, driven)
+    class(travel_t), intent(inout) :: self
+    type(driven_t), intent(inout) :: driven
+    integer :: k
 
-    jumps_after = any((self%jump%inward .eqv. leg%inward) .and. &
-      self%jump%before%interval == leg%to%interval .and. &
-      abs(self%jump%before%x - leg%to%x) <= 0)
-  end function jumps_after
+    self%state = driven%piece(1)%first
+    if (.not. allocated(self%start)) return
+    k = piece_with(driven%piece, driven%drive, self%start, 1, 1)
+    if (k == 0) return
+    self%piece = k
+    call self%move_to(self%start, driven)
+  end subroutine begin
+
+  !> Goes inward or outward over all jumps.
+  subroutine go(self, inward, driven)
+    class(travel_t), intent(inout) :: self
+    logical, intent(in) :: inward
+    type(driven_t), intent(inout) :: driven
+    type(jump_t) :: jump
+    type(leg_t) :: leg
+    real(wp) :: stop_at
+    logical :: stops, turns
+
+    do
+      leg%inward = inward
+      leg%piece = self%piece
+      leg%from = self%state
+      call self%find_limit(inward, driven, stop_at, stops)
+      associate (piece => driven%piece(self%piece))
+        turns = merge(piece%last_turns, piece%first_turns, inward)
+        if (.not. stops) then
+          self%state = piece%last
+          if (.not. inward) self%state = piece%first
+        end if
+      end associate
+      if (stops) call self%move_to(stop_at, driven)
+      driven%solved = driven%solved .and. self%state%converged
+      leg%to = self%state
+      driven%leg = [driven%leg, leg]
+      if (stops .or. .not. driven%solved .or. .not. turns) return
+      call self%leap(inward, driven, jump)
+      driven%jump = [driven%jump, jump]
+      if (.not. jump%landed) return
+    end do
+  end subroutine go
+
+  !> Solves the state at a position on the present piece, and is there.
+  subroutine move_to(self, position, driven)
+    class(travel_t), intent(inout) :: self
+    real(wp), intent(in) :: position
+    type(driven_t), intent(inout) :: driven
+
+    call state_driven(self%solver, self%equations, self%known, driven%drive, &
+      driven%piece(self%piece), position, self%state)
+    driven%solved = driven%solved .and. self%state%converged
+  end subroutine move_to
+
+  !> The position at which the way along the present piece ends; stops = .false.: at its end.
+  subroutine find_limit(self, inward, driven, at, stops)
+    class(travel_t), intent(inout) :: self
+    logical, intent(in) :: inward
+    type(driven_t), intent(in) :: driven
+    real(wp), intent(out) :: at
+    logical, intent(out) :: stops
+
+    at = 0
+    associate (piece => driven%piece(self%piece), drive => driven%drive)
+      if (.not. inward) then
+        stops = allocated(self%start)
+        if (stops) at = self%start
+        if (stops) stops = at <= drive%position(piece%first)
+        return
+      end if
+      if (allocated(self%finish)) then
+        at = self%finish
+        stops = at >= drive%position(piece%last)
+      else
+        stops = self%piece == size(driven%piece)
+        if (stops) call self%find_innermost(drive, piece, at, stops)
+      end if
+      ! What lies behind already is here.
+      if (stops) at = min(at, drive%position(self%state))
+    end associate
+  end subroutine find_limit
+
+  !> The position at h0_end on the innermost piece, or at the end of what is known of it;
+  !> there_is = .false.: it ends in a jump before.
+  subroutine find_innermost(self, drive, piece, at, there_is)
+    class(travel_t), intent(inout) :: self
+    type(drive_t), intent(in) :: drive
+    type(driven_piece_t), intent(in) :: piece
+    real(wp), intent(out) :: at
+    logical, intent(out) :: there_is
+    type(curve_state_t) :: there
+    real(wp) :: ends(2)
+    integer :: i
+
+    at = drive%position(piece%last)
+    there_is = .not. piece%last_turns
+    do i = piece%last%interval, piece%first%interval, -1
+      associate (begin => self%solver%curve%begin_of(i), end => self%solver%curve%end_of(i))
+        if (.not. (begin%h0 >= self%h0_end .and. end%h0 <= self%h0_end)) cycle
+        ends = [begin%x, end%x]
+      end associate
+      call self%solver%root_of(self%equations, self%known, i, [1.0_wp, 0.0_wp], ends(1), ends(2), &
+        there, self%h0_end)
+      there_is = there_is .or. there%converged
+      if (there%converged) at = max(at, drive%position(there))
+      exit
+    end do
+  end subroutine find_innermost
+
+  !> Jumps from the present state to the nearest stable piece with the same position.
+  subroutine leap(self, inward, driven, jump)
+    class(travel_t), intent(inout) :: self
+    logical, intent(in) :: inward
+    type(driven_t), intent(inout) :: driven
+    type(jump_t), intent(out) :: jump
+    integer :: k, sense
+
+    jump%inward = inward
+    jump%before = self%state
+    jump%energy = ieee_value(1.0_wp, ieee_quiet_nan)
+    sense = merge(1, -1, inward)
+    k = piece_with(driven%piece, driven%drive, driven%drive%position(self%state), &
+      self%piece + sense, sense)
+    if (k == 0) return
+    call state_driven(self%solver, self%equations, self%known, driven%drive, driven%piece(k), &
+      driven%drive%position(self%state), jump%after)
+    jump%landed = jump%after%converged
+    driven%solved = driven%solved .and. jump%landed
+    if (.not. jump%landed) return
+    jump%energy = driven%drive%energy(jump%before) - driven%drive%energy(jump%after)
+    jump%uncertainty = jump%before%uncertainty + jump%after%uncertainty
+    self%piece = k
+    self%state = jump%after
+  end subroutine leap
 
   !> The first piece from number k on, counting by `sense`, with a state at a position; 0: none.
   pure integer function piece_with(pieces, drive, position, k, sense) result(found)
@@ -222,22 +224,5 @@ contains
     end do
     found = 0
   end function piece_with
-
-  !> The energy put in along all legs: minus the integral of the conjugate over the position.
-  pure real(wp) function area(solver, drive, legs)
-    type(curve_solver_t), intent(in) :: solver
-    type(drive_t), intent(in) :: drive
-    type(leg_t), intent(in) :: legs(:)
-    integer :: i
-
-    area = 0
-    do i = 1, size(legs)
-      if (legs(i)%inward) then
-        area = area - drive%work_between(solver%curve, legs(i)%from, legs(i)%to)
-      else
-        area = area + drive%work_between(solver%curve, legs(i)%to, legs(i)%from)
-      end if
-    end do
-  end function area
 
 end module device

@@ -9,7 +9,8 @@ module path_readings
   use path_sensitivity, only: rate_t
   use curve_states, only: curve_solver_t
   use driven_pieces, only: drive_t, through_spring
-  use device, only: driven_t, drive_bodies
+  use driven_cycle, only: driven_t
+  use device, only: drive_bodies
   use fixed_loads, only: loaded_state_t, find_loaded
   use path_demand, only: farthest_wanted
   use path_stepper, only: path_stepper_t

@@ -14,7 +14,8 @@ module path_model
   use path_sensitivity, only: rate_t, rates_along
   use curve_states, only: curve_solver_t
   use driven_pieces, only: driven_piece_t, through_spring
-  use device, only: driven_t, drive_bodies
+  use driven_cycle, only: driven_t
+  use device, only: drive_bodies
   use experiment_request, only: request_t, numerics_t
   use h0_range, only: range_of
   use experiment, only: prepare

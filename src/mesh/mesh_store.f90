@@ -1,7 +1,7 @@
 !> Meshes kept for use again: most of what a mesh takes is its kernel, and the problems of a sweep
 !> often need the same (`mesh_rule` gives their numbers few values).
 module mesh_store
-  use kinds, only: wp, long
+  use kinds, only: long
   use discretisation, only: discretisation_t
   use mapped_mesh, only: mapped_shape_t, same_shape, new_mapped_mesh
   implicit none

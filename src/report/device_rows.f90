@@ -7,7 +7,7 @@ module device_rows
   use path_curve, only: curve_t, curve_node_t
   use curve_states, only: curve_state_t
   use driven_pieces, only: drive_t
-  use device, only: driven_t, leg_t
+  use driven_cycle, only: driven_t, leg_t
   use place_sensitivity, only: of_load
   use reading_sensitivities, only: weights_of
   use path_readings, only: path_readings_t
