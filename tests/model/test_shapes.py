@@ -102,8 +102,8 @@ def test_the_derivative_along_the_path_is_that_of_loads_at_stepped_h0(run, tmp_p
     load = run(scene(shape, 0.3, loading=steps, numerics=numerics)).curve["load"]
     difference = (8 * (load[3] - load[1]) - (load[4] - load[0])) / (12 * step)
     # Path and steps have meshes of their own, which agree as well as the accuracy lets them. A
-    # punch's kink moves across the panels as the contact grows, and takes digits; where the accuracy
-    # is 1e-3, a third of it is left.
+    # punch's kink moves across the panels as the contact grows, and takes digits; where the
+    # accuracy is 1e-3, a third of it is left.
     digits = 1e-5 if shape["kind"] == "rounded_punch" else 1e-7
     assert difference == pytest.approx(stiffness, rel=3e-4 if ends else digits)
 

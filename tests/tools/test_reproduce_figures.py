@@ -130,7 +130,9 @@ def test_the_approximation_is_good_until_near_the_jump(tools, quick):
     import fig08
 
     found = fig08.numbers(quick)
-    assert found["load_far"] < 4 and found["displacement_far"] < 2
+    # At 4 nm, of a state solved there: 4.08 and 2.85 %. Straight lines between rows of the path,
+    # which these were once read from, flatter a formula that is on the side they are.
+    assert found["load_far"] < 4.2 and found["displacement_far"] < 3
     assert found["parts"] < 0.05
     # Of the approximation itself: its fold and the jump by (29) come before the true one.
     assert found["closed"] > found["fold"] and found["early"] > 0

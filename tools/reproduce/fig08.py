@@ -65,11 +65,13 @@ def _path(runs):
 def numbers(runs):
     """Return what the caption quotes."""
     summary, path, full = runs["fig08"].summary, _path(runs), _form(runs, "closed_form")
+    # One of these is at the h0 far from the jump.
+    before = _before(runs)
     part, paper = _form(runs, "attractive_only"), runs.draws("fig10c_paper")
     at, far = full["h0"][-1], 4e-9
 
-    def off(name, h0):
-        return 100 * (_at(full, name, h0) / _at(path, name, h0) - 1)
+    def off(name, h0, states):
+        return 100 * (_at(full, name, h0) / _at(states, name, h0) - 1)
 
     def off_at_gap(name):
         gap = path["h0"] + path["displacement"]
@@ -79,8 +81,9 @@ def numbers(runs):
 
     return {
         "sigma": summary["sigma"], "fold": summary["jump_in_h0"] * 1e9,
-        "displacement": abs(off("displacement", at)), "load": abs(off("load", at)),
-        "load_far": abs(off("load", far)), "displacement_far": abs(off("displacement", far)),
+        "displacement": abs(off("displacement", at, path)),
+        "load": abs(off("load", at, path)), "load_far": abs(off("load", far, before)),
+        "displacement_far": abs(off("displacement", far, before)),
         "at": at * 1e9, "load_gap": abs(off_at_gap("load")),
         "displacement_gap": abs(off_at_gap("displacement")),
         "parts": 100 * abs(_at(part, "load", part["h0"][-1]) / _at(full, "load", part["h0"][-1])
