@@ -4,7 +4,7 @@ module fixed_loads
   use equilibrium, only: equations_t
   use known_path, only: known_path_t
   use curve_states, only: curve_solver_t, curve_state_t
-  use stable_stretches, only: find_turning_places
+  use curve_turns, only: find_turning_places
   implicit none
   private
   public :: loaded_state_t, find_loaded

@@ -29,6 +29,8 @@ module edge_locked
   !> and more bands have more meshes. Under a law that oscillates or has a step, short panels lie
   !> wherever its gaps are at any radius of the band.
   real(wp), parameter :: widest_band = 30, narrow_band = 2_wp
+  !> A mesh of more panels has short ones (`mesh_rule`).
+  integer, parameter :: long_panels = 2
   !> Part of the radius at which a front becomes sharp, from which on a mesh is locked to it.
   real(wp), parameter :: early = 0.25_wp
 
@@ -152,18 +154,25 @@ contains
     self%grid(mesh) = new_mapped_mesh(self%shape(mesh), elastic=.true.)
   end subroutine halve_panels
 
-  !> Makes meshes that were refined in another family, where they have fewer digits, those of it
-  !> with more nodes.
-  subroutine follow(self, other, more_digits)
+  !> Makes meshes of short panels, and those that were refined, in another family, where they have
+  !> fewer digits, those of it with more nodes: panels laid out anew for more digits may be fewer,
+  !> and then no better. store: of meshes.
+  subroutine follow(self, other, more_digits, store)
     class(mesh_family_t), intent(inout) :: self
     class(mesh_family_t), intent(in) :: other
     real(wp), intent(in) :: more_digits
+    type(mesh_store_t), intent(inout), optional :: store
     integer :: k
 
     do k = 1, size(other%grid)
-      if (.not. other%refined(k)) cycle
+      if (.not. allocated(other%grid(k)%kernel)) cycle
+      if (.not. (other%refined(k) .or. size(other%shape(k)%order) > long_panels)) cycle
       self%shape(k) = other%shape(k)%enriched(ceiling(short_orders*more_digits), more_digits)
-      self%grid(k) = new_mapped_mesh(self%shape(k), elastic=.true.)
+      if (present(store)) then
+        call store%obtain(self%shape(k), self%grid(k))
+      else
+        self%grid(k) = new_mapped_mesh(self%shape(k), elastic=.true.)
+      end if
     end do
   end subroutine follow
 
