@@ -76,7 +76,8 @@ def test_rigid_and_jkr_limits_have_the_powers_of_their_theories(run):
 
 @pytest.mark.parametrize(("shape", "lengths"), [
     ({"kind": "sphere", "radius": 1e-7}, ["radius"]),
-    ({"kind": "rounded_punch", "radius": 1e-6, "flat_radius": 6e-8}, ["radius", "flat_radius"]),
+    pytest.param({"kind": "rounded_punch", "radius": 1e-6, "flat_radius": 6e-8},
+                 ["radius", "flat_radius"], marks=pytest.mark.long),
 ])
 def test_derivatives_for_other_shapes_obey_the_dimensions_too(run, shape, lengths):
     """Loads are w times a length, and what has no dimension depends on w/(E L)."""

@@ -39,10 +39,10 @@ def quicker(groups):
     """The deck with fewer steps, nodes and cases."""
     numerics = groups.get("numerics", {})
     if numerics.get("grid") == "uniform":
-        numerics["nodes"] = min(numerics.get("nodes", 250), 250)
+        numerics["nodes"] = min(numerics.get("nodes", 160), 160)
         for name in ("loading", "unloading"):
             if "h0_step" in groups.get(name, {}):
-                groups[name]["h0_step"] *= 2
+                groups[name]["h0_step"] *= 3
     sweep = groups.get("sweep", {})
     if "count" in sweep:
         sweep["count"] = (sweep["count"] - 1) // 5 + 1
