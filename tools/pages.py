@@ -34,7 +34,8 @@ PAGES = {
 # What reads decks, writes files or talks changes no number. A new file counts until it is here.
 _NO_NUMBERS = (
     "namelist_writer", "clock", "command_line", "c_library", "decimal", "deck", "deck_keys",
-    "deck_number", "deck_scan", "deck_source", "deck_store", "text", "deck_token", "deck_values",
+    "deck_number", "deck_numbers", "deck_scan", "deck_source", "deck_store", "text", "deck_token",
+    "deck_values",
     "failure", "checksums", "files", "finished_run", "folder_lock", "forecast", "journal", "memory",
     "preflight", "result_listing", "result_rows", "state_records", "byte_record", "progress",
     "publication", "run_identity", "snapin", "text_file",

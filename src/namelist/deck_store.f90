@@ -1,20 +1,16 @@
 !> A deck in memory: what each key holds, where it stands in the file, and the deck written out.
 module deck_store
   use kinds, only: wp
-  use failure, only: failure_t, fail, bad_input
-  use text, only: lower, quoted, brief, guess, listing, clip
+  use failure, only: failure_t
   use checksums, only: checksum
   use files, only: whole_path
   use text_file, only: plain
   use deck_source, only: source_t
-  use deck_keys, only: key_spec, group_row, real_value, real_list, integer_value, allowed
-  use deck_values, only: value_t, unset, assumed, given, outside, assignment_text
+  use deck_keys, only: key_spec, group_row
+  use deck_values, only: value_t, unset, assumed, given, assignment_text
   implicit none
   private
   public :: deck_t
-
-  !> Kinds of keys that a sweep may vary.
-  integer, parameter :: numeric(3) = [real_value, real_list, integer_value]
 
   !> A deck that has been read. The components are `read_deck`'s to fill; use the procedures.
   type :: deck_t
@@ -38,8 +34,7 @@ module deck_store
     generic :: get_optional => get_optional_real, get_optional_integer
     procedure :: path_of
     procedure :: note_file
-    procedure :: find_number
-    procedure :: set_real
+    procedure :: in_use
     procedure :: drop_group
     procedure :: mistake
     procedure :: resolved
@@ -228,113 +223,13 @@ contains
     self%values(row)%remark = 'checksum ' // number
   end subroutine note_file
 
-  !> Row of the key `path` ("force.hamaker"), and the term that it names of a list
-  !> ("hydration.pressure(2)"); 0: none. Fails where the table has no such key, the key does not
-  !> hold numbers or so many, or the deck lacks its group; `error` then says so without a place in
-  !> the file, which is the caller's to add.
-  subroutine find_number(self, path, row, term, error)
-    class(deck_t), intent(in) :: self
-    character(len=*), intent(in) :: path
-    integer, intent(out) :: row, term
-    type(failure_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: name, group
-    integer :: dot
-
-    name = trim(lower(path))
-    call take_off_term(name, term)
-    dot = index(name // '.', '.')
-    group = name(:dot - 1)
-    row = 0
-    if (dot < len(name)) row = self%row_of(group, name(dot + 1:))
-    if (row > 0) then
-      if (all(self%specs(row)%kind /= numeric)) row = 0
-    end if
-    if (row == 0) then
-      call fail(error, bad_input, quoted(clip(path)) // ' is not a key that holds a number' // &
-                guess(name, numbers_of(self), '') // '; allowed: ' // &
-                listing(numbers_of(self), '', ''))
-    else if (.not. in_use(self, group)) then
-      call fail(error, bad_input, 'the deck has no &' // group // ' for ' // quoted(name))
-    else if (term > terms_in(self%values(row))) then
-      call fail(error, bad_input, quoted(name) // ' has no such term as ' // quoted(clip(path)))
-    end if
-  end subroutine find_number
-
-  !> Takes "(2)" off the end of a name; 0 where there is none.
-  subroutine take_off_term(name, term)
-    character(len=:), allocatable, intent(inout) :: name
-    integer, intent(out) :: term
-    integer :: opens, status
-
-    term = 0
-    opens = index(name, '(')
-    if (opens < 2 .or. index(name, ')') /= len(name)) return
-    read (name(opens + 1:len(name) - 1), '(i9)', iostat=status) term
-    if (status /= 0 .or. term < 1) term = huge(term)
-    name = name(:opens - 1)
-  end subroutine take_off_term
-
-  !> How many numbers a key holds.
-  pure integer function terms_in(value)
-    type(value_t), intent(in) :: value
-
-    terms_in = 0
-    if (allocated(value%reals)) terms_in = size(value%reals)
-  end function terms_in
-
   !> Whether the deck has a group or its defaults always hold.
   pure logical function in_use(self, group)
-    type(deck_t), intent(in) :: self
+    class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group
 
     in_use = self%has_group(group) .or. self%specs(self%row_of(group, ''))%always
   end function in_use
-
-  !> Blank-separated 'group.key' of every key that holds numbers, of the groups in use.
-  pure function numbers_of(self) result(names)
-    type(deck_t), intent(in) :: self
-    character(len=:), allocatable :: names
-    integer :: i
-
-    names = ''
-    do i = 1, size(self%specs)
-      if (all(self%specs(i)%kind /= numeric)) cycle
-      if (.not. in_use(self, trim(self%specs(i)%group))) cycle
-      names = names // ' ' // trim(self%specs(i)%group) // '.' // trim(self%specs(i)%key)
-    end do
-  end function numbers_of
-
-  !> Gives the key `path` another value (a list: this one value, or one of its terms), as if the
-  !> deck said so. Fails as `find_number` does and where the value is out of range.
-  subroutine set_real(self, path, value, error)
-    class(deck_t), intent(inout) :: self
-    character(len=*), intent(in) :: path
-    real(wp), intent(in) :: value
-    type(failure_t), allocatable, intent(out) :: error
-    integer :: row, term
-    logical :: refused
-
-    call self%find_number(path, row, term, error)
-    if (allocated(error)) return
-    associate (spec => self%specs(row), stored => self%values(row))
-      refused = outside(spec, value)
-      ! Steps of a range make whole numbers only up to rounding.
-      if (spec%kind == integer_value .and. .not. refused) &
-        refused = abs(value - anint(value)) > 1e-9_wp*abs(value)
-      if (refused) then
-        call fail(error, bad_input, brief(value) // ' is out of range for ' // quoted(path) // &
-                  '; allowed: ' // allowed(spec))
-        return
-      end if
-      if (spec%kind == integer_value) stored%whole = nint(value)
-      if (term > 0) then
-        stored%reals(term) = value
-      else if (spec%kind /= integer_value) then
-        stored%reals = [value]
-      end if
-      stored%status = given
-    end associate
-  end subroutine set_real
 
   !> Forgets `&group` and everything in it.
   subroutine drop_group(self, group)

@@ -5,6 +5,7 @@ module deck_family
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, clip, listing, word_count, word_of
   use deck, only: deck_t
+  use deck_numbers, only: find_number, set_number
   use deck_keys, only: key_spec, real_value, real_list
   use dimensionless_problem, only: problem_t
   use problem_family, only: problem_family_t, parameter_t
@@ -52,7 +53,7 @@ contains
 
     scene%deck = self%deck
     do i = 1, size(value)
-      call scene%deck%set_real(self%parameter(i)%name, value(i), error)
+      call set_number(scene%deck, self%parameter(i)%name, value(i), error)
       if (allocated(error)) return
     end do
     call take_model(scene, error)
@@ -73,7 +74,7 @@ contains
         'bodies, shape or forces that this deck has; allowed: ' // listing(names, '', ''))
       return
     end if
-    call deck%find_number(parameter%name, row, term, error)
+    call find_number(deck, parameter%name, row, term, error)
     if (allocated(error)) return
     parameter%value = deck%values(row)%reals(max(1, term))
     if (abs(parameter%value) > 0) then

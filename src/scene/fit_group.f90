@@ -4,6 +4,7 @@ module fit_group
   use failure, only: failure_t
   use text, only: lower, quoted, word_count, word_of
   use deck, only: deck_t
+  use deck_numbers, only: find_number
   use deck_source, only: source_t, load_source
   use deck_keys, only: key_spec, group, real_key, list_key, text_key, word_key, names_key
   use fit_request, only: unknown_t, of_contact_point, of_sensitivity, of_spring
@@ -161,7 +162,7 @@ contains
           own = own + 1
           unknown%value = family%parameter(own)%value
           unknown%scale = family%parameter(own)%scale
-          call scene%deck%find_number(unknown%name, row, term, trouble)
+          call find_number(scene%deck, unknown%name, row, term, trouble)
           unknown%in_log = unknown%value > 0 .and. scene%deck%specs(row)%low >= 0
           unknown%origin = unknown%value
         end if

@@ -4,6 +4,7 @@ module scene
   use failure, only: failure_t
   use text, only: brief, listing
   use deck, only: deck_t, read_deck
+  use deck_numbers, only: find_number, set_number
   use scene_keys, only: keys_of_scene
   use scene_groups, only: scene_t
   use scene_problem, only: take_model
@@ -94,7 +95,7 @@ contains
 
     deck = scene%deck
     call deck%drop_group('sweep')
-    call deck%set_real(scene%sweep%key, value, error)
+    call set_number(deck, scene%sweep%key, value, error)
     if (allocated(error)) return
     call make_scene(deck, variant, error)
   end subroutine swept_scene
@@ -113,7 +114,7 @@ contains
 
     trial = scene%deck
     call trial%drop_group('sweep')
-    call trial%find_number(scene%sweep%key, row, term, trouble)
+    call find_number(trial, scene%sweep%key, row, term, trouble)
     if (allocated(trouble)) then
       call scene%deck%mistake('sweep', 'key', trouble%message, error)
       return
@@ -121,7 +122,7 @@ contains
     key = 'from'
     if (scene%deck%is_set('sweep', 'values')) key = 'values'
     do i = 1, size(scene%sweep%values)
-      call trial%set_real(scene%sweep%key, scene%sweep%values(i), trouble)
+      call set_number(trial, scene%sweep%key, scene%sweep%values(i), trouble)
       if (.not. allocated(trouble)) cycle
       call scene%deck%mistake('sweep', key, trouble%message, error)
       return

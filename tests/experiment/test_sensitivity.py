@@ -55,9 +55,10 @@ def test_derivatives_obey_the_dimensions_of_the_problem(run, sigma):
         kind = next(end for end in powers if quantity.split("(")[0].endswith(end))
         strength = -rate["bodies.stiffness"]
         expected = np.add(powers[kind], strength * np.array([1, 0.5, -3.5]))
-        # A load at a fold takes second derivatives, which are differences, and is as good as the
-        # place of the fold: of the narrow pair at sigma = 8.7 that is known to some 1e-6.
-        bound = 5e-6 if kind == "_load" else 1e-7
+        # A load at a fold and the place of the largest tension take second derivatives, which are
+        # differences, and are as good as the place: of the narrow pair of folds at sigma = 8.7 that
+        # is known to some 1e-6, of the tension at sigma = 1000 rounding leaves up to 5e-7.
+        bound = 5e-6 if kind == "_load" or quantity == "max_tension_h0" else 1e-7
         np.testing.assert_allclose([rate[name] for name in names[:3]], expected, rtol=bound,
                                    atol=bound, err_msg=quantity)
         tried += 1

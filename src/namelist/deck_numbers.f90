@@ -1,0 +1,119 @@
+!> The numbers of a deck by their names, "group.key" or "group.key(2)": what sweeps, sensitivities
+!> and fits vary.
+module deck_numbers
+  use kinds, only: wp
+  use failure, only: failure_t, fail, bad_input
+  use text, only: lower, quoted, brief, guess, listing, clip
+  use deck_keys, only: real_value, real_list, integer_value, allowed
+  use deck_values, only: value_t, given, outside
+  use deck_store, only: deck_t
+  implicit none
+  private
+  public :: find_number, set_number
+
+  !> Kinds of keys that hold numbers.
+  integer, parameter :: numeric(3) = [real_value, real_list, integer_value]
+
+contains
+
+  !> Row of the key `path` ("force.hamaker"), and the term that it names of a list
+  !> ("hydration.pressure(2)"); 0: none. Fails where the table has no such key, the key does not
+  !> hold numbers or so many, or the deck lacks its group; `error` then says so without a place in
+  !> the file, which is the caller's to add.
+  subroutine find_number(deck, path, row, term, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: row, term
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: name, group
+    integer :: dot
+
+    name = trim(lower(path))
+    call take_off_term(name, term)
+    dot = index(name // '.', '.')
+    group = name(:dot - 1)
+    row = 0
+    if (dot < len(name)) row = deck%row_of(group, name(dot + 1:))
+    if (row > 0) then
+      if (all(deck%specs(row)%kind /= numeric)) row = 0
+    end if
+    if (row == 0) then
+      call fail(error, bad_input, quoted(clip(path)) // ' is not a key that holds a number' // &
+                guess(name, numbers_of(deck), '') // '; allowed: ' // &
+                listing(numbers_of(deck), '', ''))
+    else if (.not. deck%in_use(group)) then
+      call fail(error, bad_input, 'the deck has no &' // group // ' for ' // quoted(name))
+    else if (term > terms_in(deck%values(row))) then
+      call fail(error, bad_input, quoted(name) // ' has no such term as ' // quoted(clip(path)))
+    end if
+  end subroutine find_number
+
+  !> Takes "(2)" off the end of a name; 0 where there is none.
+  subroutine take_off_term(name, term)
+    character(len=:), allocatable, intent(inout) :: name
+    integer, intent(out) :: term
+    integer :: opens, status
+
+    term = 0
+    opens = index(name, '(')
+    if (opens < 2 .or. index(name, ')') /= len(name)) return
+    read (name(opens + 1:len(name) - 1), '(i9)', iostat=status) term
+    if (status /= 0 .or. term < 1) term = huge(term)
+    name = name(:opens - 1)
+  end subroutine take_off_term
+
+  !> How many numbers a key holds.
+  pure integer function terms_in(value)
+    type(value_t), intent(in) :: value
+
+    terms_in = 0
+    if (allocated(value%reals)) terms_in = size(value%reals)
+  end function terms_in
+
+  !> Blank-separated 'group.key' of every key that holds numbers, of the groups in use.
+  pure function numbers_of(deck) result(names)
+    type(deck_t), intent(in) :: deck
+    character(len=:), allocatable :: names
+    integer :: i
+
+    names = ''
+    do i = 1, size(deck%specs)
+      if (all(deck%specs(i)%kind /= numeric)) cycle
+      if (.not. deck%in_use(trim(deck%specs(i)%group))) cycle
+      names = names // ' ' // trim(deck%specs(i)%group) // '.' // trim(deck%specs(i)%key)
+    end do
+  end function numbers_of
+
+  !> Gives the key `path` another value (a list: this one value, or one of its terms), as if the
+  !> deck said so. Fails as `find_number` does and where the value is out of range.
+  subroutine set_number(deck, path, value, error)
+    type(deck_t), intent(inout) :: deck
+    character(len=*), intent(in) :: path
+    real(wp), intent(in) :: value
+    type(failure_t), allocatable, intent(out) :: error
+    integer :: row, term
+    logical :: refused
+
+    call find_number(deck, path, row, term, error)
+    if (allocated(error)) return
+    associate (spec => deck%specs(row), stored => deck%values(row))
+      refused = outside(spec, value)
+      ! Steps of a range make whole numbers only up to rounding.
+      if (spec%kind == integer_value .and. .not. refused) &
+        refused = abs(value - anint(value)) > 1e-9_wp*abs(value)
+      if (refused) then
+        call fail(error, bad_input, brief(value) // ' is out of range for ' // quoted(path) // &
+                  '; allowed: ' // allowed(spec))
+        return
+      end if
+      if (spec%kind == integer_value) stored%whole = nint(value)
+      if (term > 0) then
+        stored%reals(term) = value
+      else if (spec%kind /= integer_value) then
+        stored%reals = [value]
+      end if
+      stored%status = given
+    end associate
+  end subroutine set_number
+
+end module deck_numbers
