@@ -56,8 +56,7 @@ contains
     ! less.
     judge%fine%margin = merge(margin, margin_unlocked, steps%problem%law%edge_gap > 0)
     judge%fine%meshes = new_mesh_family(steps%problem, high, low, &
-      outcome%chosen%digits + more_digits, store=store)
-    call judge%fine%meshes%follow(steps%meshes, more_digits, store)
+      outcome%chosen%digits + more_digits, store=store, coarser=steps%meshes)
     call count_kernel(judge)
     if (allocated(outcome%path)) call judge_path(judge, outcome%path)
     if (allocated(outcome%stepped_path)) call judge_branch(judge, outcome%stepped_path)

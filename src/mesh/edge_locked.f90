@@ -37,6 +37,8 @@ module edge_locked
   type :: mesh_family_t
     !> The meshes in the order of the path.
     type(discretisation_t), allocatable :: grid(:)
+    !> The digits that they are good for.
+    real(wp) :: digits = 0
     !> What these are like, and whether panels of them were halved.
     type(mapped_shape_t), allocatable :: shape(:)
     logical, allocatable :: refined(:)
@@ -54,19 +56,22 @@ module edge_locked
     procedure :: in_contact
     procedure :: locked_gap
     procedure :: halve_panels
-    procedure :: follow
   end type mesh_family_t
 
 contains
 
   !> Meshes for H0 from h0_high down to h0_low, good for so many digits (`mesh_rule`).
   !> shape_only leaves the kernels out, to learn how large they would be. store: meshes made before,
-  !> to which these are added.
-  function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store) result(meshes)
+  !> to which these are added. coarser: meshes of fewer digits for the same problem and range.
+  !> Where these have short panels, or were refined, the same panels get more nodes: laid out anew
+  !> for more digits they may be fewer, and then no better.
+  function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store, coarser) &
+    result(meshes)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, h0_low, digits
     logical, intent(in), optional :: shape_only
     type(mesh_store_t), intent(inout), optional :: store
+    type(mesh_family_t), intent(in), optional :: coarser
     type(mesh_family_t) :: meshes
     real(wp) :: widest
     real(wp), allocatable :: low(:), high(:)
@@ -94,6 +99,7 @@ contains
     end if
     allocate (meshes%grid(approach + size(low)), meshes%shape(approach + size(low)))
     meshes%refined = spread(.false., 1, size(meshes%grid))
+    meshes%digits = digits
     meshes%passage = [low, widest]
     if (meshes%traceable) meshes%shape(approach) = &
       approach_shape(problem, max(h0_high, calm_gap(problem)), digits)
@@ -102,6 +108,7 @@ contains
         merge(about_edge, about_front, meshes%in_contact(k)), low(k - 1), high(k - 1), &
         meshes%level, digits)
     end do
+    if (present(coarser)) call follow(meshes, coarser)
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
       call add_mesh(meshes%shape(k), meshes%grid(k))
     end do
@@ -154,25 +161,19 @@ contains
     self%grid(mesh) = new_mapped_mesh(self%shape(mesh), elastic=.true.)
   end subroutine halve_panels
 
-  !> Makes meshes of short panels, and those that were refined, in another family, where they have
-  !> fewer digits, those of it with more nodes: panels laid out anew for more digits may be fewer,
-  !> and then no better. store: of meshes.
-  subroutine follow(self, other, more_digits, store)
-    class(mesh_family_t), intent(inout) :: self
-    class(mesh_family_t), intent(in) :: other
-    real(wp), intent(in) :: more_digits
-    type(mesh_store_t), intent(inout), optional :: store
+  !> Lets meshes, not made yet, be what coarser ones are with more nodes, where these have short
+  !> panels or were refined.
+  pure subroutine follow(self, coarser)
+    type(mesh_family_t), intent(inout) :: self
+    type(mesh_family_t), intent(in) :: coarser
+    real(wp) :: more_digits
     integer :: k
 
-    do k = 1, size(other%grid)
-      if (.not. allocated(other%grid(k)%kernel)) cycle
-      if (.not. (other%refined(k) .or. size(other%shape(k)%order) > long_panels)) cycle
-      self%shape(k) = other%shape(k)%enriched(ceiling(short_orders*more_digits), more_digits)
-      if (present(store)) then
-        call store%obtain(self%shape(k), self%grid(k))
-      else
-        self%grid(k) = new_mapped_mesh(self%shape(k), elastic=.true.)
-      end if
+    more_digits = self%digits - coarser%digits
+    do k = 1, size(coarser%grid)
+      if (.not. allocated(coarser%grid(k)%kernel)) cycle
+      if (coarser%refined(k) .or. size(coarser%shape(k)%order) > long_panels) self%shape(k) = &
+        coarser%shape(k)%enriched(ceiling(short_orders*more_digits), more_digits)
     end do
   end subroutine follow
 
