@@ -29,6 +29,8 @@ contains
     associate (fitted => outcome%fitted, unknown => outcome%curve%unknown)
       if (.not. fitted%found) call add(lines, 'the search for the best values ended before it ' // &
         'had them')
+      if (.not. outcome%resolved) call add(lines, 'the meshes do not resolve the force law, ' // &
+        'and the model is not exact; smoother forces are resolved')
       if (fitted%chi_squared > poor**2*fitted%freedom) call add(lines, 'what the model leaves ' // &
         'is ' // rounded(sqrt(fitted%chi_squared/fitted%freedom)) // ' times the noise: it ' // &
         'does not describe these data, and the true errors are larger than the standard errors')

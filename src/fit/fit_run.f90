@@ -13,6 +13,7 @@ module fit_run
   use measured_checks, only: check_measured
   use noise, only: white_noise
   use far_samples, only: find_far, fewest_far
+  use refinement, only: unresolved_from
   use path_model, only: path_model_t
   use classical_model, only: classical_model_t, theories
   use modelled_curve, only: modelled_curve_t
@@ -33,6 +34,8 @@ module fit_run
     character(len=:), allocatable :: trouble
     type(modelled_curve_t) :: curve
     type(fitted_t) :: fitted
+    !> Whether the meshes of the model resolve the force law.
+    logical :: resolved = .true.
     type(theory_fit_t), allocatable :: theory(:)
   end type fit_outcome_t
 
@@ -66,6 +69,7 @@ contains
     allocate (model%family, source=family)
     model%numerics = numerics
     call fit_curve(curve, model, curve%unknown%value, outcome%fitted)
+    outcome%resolved = model%panel_tail <= unresolved_from(numerics%accuracy)
     outcome%curve = curve
     if (.not. outcome%fitted%has_curve) then
       outcome%trouble = 'with the values of the deck the path could not be solved as ' // &

@@ -48,6 +48,8 @@ module path_model
     type(driven_t), private :: driven
     real(wp), private :: stiffness = 0, farthest = 0, largest = 0
     logical, private :: solved = .false.
+    !> What its meshes leave of the largest pressure between nodes (`refinement`).
+    real(wp) :: panel_tail = 0
   contains
     procedure :: respond
     procedure, private :: solve_trial
@@ -103,7 +105,7 @@ contains
     type(listener_t) :: silent
     type(failure_t), allocatable :: error
     real(wp), allocatable :: anywhere
-    real(wp) :: low, high, panel_tail
+    real(wp) :: low, high
 
     self%value = value
     self%stiffness = stiffness
@@ -126,7 +128,7 @@ contains
     if (self%steps%options%method == 'mixing') self%steps%options%method = 'anderson'
     self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits, store=self%store)
     call trace_resolved(self%steps, high, low, .true., .true., self%numerics%accuracy, silent, &
-      panel_tail)
+      self%panel_tail)
     solver%options = self%steps%options
     call new_curve(self%steps%equations_t, self%steps%known, farthest_wanted(request, problem), &
       contact_level_of(problem), solver%curve, self%solved)
