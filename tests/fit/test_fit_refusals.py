@@ -1,0 +1,96 @@
+"""What is said where a fit cannot work: of the data, their file, the parameters and the deck."""
+
+import numpy as np
+import pytest
+import snapin
+from support.measured import LENNARD_JONES, Branches, fit_deck, run, write
+
+POINT = "measurement.contact_point"
+STRENGTH = "force.hamaker"
+
+
+@pytest.fixture(scope="module")
+def branches():
+    return Branches(LENNARD_JONES)
+
+
+def flat(rng, z):
+    return 1e-11 * rng.standard_normal(len(z))
+
+
+BAD_DATA = {
+    "no contact": (lambda z, f, s, rng: (z, flat(rng, z), s), "no contact in the data"),
+    "wrong sign": (lambda z, f, s, rng: (z, -f, s), "repulsion is positive"),
+    "too few": (lambda z, f, s, rng: (z[:10], f[:10], s[:10]), "fewer than 20 samples"),
+    "segments": (lambda z, f, s, rng: (z, f, 2 + s), "neither 0, approach, nor 1, retreat"),
+    "same way": (lambda z, f, s, rng: (np.append(z[:300], z[:300]), np.append(f[:300], f[:300]), s),
+                 "z goes the same way"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_DATA)
+def test_data_that_cannot_be_fitted_are_refused_with_the_reason(branches, tmp_path, case):
+    change, message = BAD_DATA[case]
+    z, force, segment = branches.measure(300, noise=1e-11)
+    file = write(tmp_path / "a.csv", *change(z, force, segment, np.random.default_rng(1)))
+    result = run(fit_deck(LENNARD_JONES, file, [STRENGTH, POINT]))
+    assert not result.converged
+    assert not result.fitted
+    assert any(message in text for text in result.summary["warnings"]), result.summary["warnings"]
+
+
+BAD_FILES = {
+    "no such column": ("z,load,segment\n1,2,0\n", "no column 'force'"),
+    "cells": ("z,force,segment\n1,2,0\n1,2\n", "2 columns where 3 columns are expected"),
+    "words": ("z,force,segment\n1,two,0\n", "two is not a number"),
+    "nan": ("z,force,segment\n1,nan,0\n", "not a finite number"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_FILES)
+def test_files_that_cannot_be_read_are_refused_with_the_line(tmp_path, case):
+    text, message = BAD_FILES[case]
+    file = tmp_path / "a.csv"
+    file.write_text(text)
+    result = run(fit_deck(LENNARD_JONES, str(file), [STRENGTH, POINT]))
+    assert not result.converged
+    assert any(message in warning for warning in result.summary["warnings"])
+
+
+def test_a_parameter_without_effect_is_named(branches, tmp_path):
+    """A repulsion that is nothing beside the force's own."""
+    z, force, segment = branches.measure(300, noise=1e-11)
+    file = write(tmp_path / "a.csv", z, force, segment)
+    groups = {**LENNARD_JONES, "hydration": {"energy": 1e-12, "decay_length": 2e-10}}
+    result = run(fit_deck(groups, file, ["hydration.energy", POINT],
+                          {"lower": [1e-13, -1e-8], "upper": [1e-11, 1e-8]}))
+    assert any("hydration.energy has no effect" in text
+               for text in result.summary["warnings"]), result.summary["warnings"]
+
+
+BAD_DECKS = {
+    "no file": ({"measurement": {"file": "nowhere.csv", "spring_constant": 1.0}}, "no such file"),
+    "no measurement": ({"measurement": None}, "needs &measurement"),
+    "no fit": ({"fit": None}, "needs &fit"),
+    "name": ({"fit": {"parameters": ["force.strength", POINT]}}, "force.strength"),
+    "numerics": ({"fit": {"parameters": ["numerics.accuracy", POINT]}}, "numerics.accuracy"),
+    "twice": ({"fit": {"parameters": [STRENGTH, STRENGTH, POINT]}}, "is there twice"),
+    "no contact point": ({"fit": {"parameters": [STRENGTH]}}, "contact_point is neither here"),
+    "no volts": ({"fit": {"parameters": [POINT, "measurement.sensitivity"]}},
+                 "the signal is a force"),
+    "not to be fitted": ({"fit": {"parameters": [POINT, "measurement.file"]}}, "cannot be fitted"),
+    "bounds": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-21]}}, "one for each"),
+    "below": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-18, -1.0]}}, "is below it"),
+    "above": ({"fit": {"parameters": [STRENGTH, POINT], "upper": [1e-20, 1.0]}}, "is above it"),
+    "rigid": ({"bodies": {"radius": 1.0, "rigid": True}}, "needs elastic bodies"),
+    "sweep": ({"sweep": {"key": STRENGTH, "values": [1e-19]}}, "not together with &sweep"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_DECKS)
+def test_a_wrong_deck_is_refused(case, tmp_path):
+    change, message = BAD_DECKS[case]
+    file = write(tmp_path / "a.csv", [0.0], [0.0], [0])
+    deck = fit_deck(LENNARD_JONES, file, [STRENGTH, POINT])
+    with pytest.raises(snapin.DeckError, match=message.replace("&", ".")):
+        snapin.run({**deck, **change})
