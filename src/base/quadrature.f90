@@ -39,14 +39,15 @@ contains
     real(wp), intent(in) :: x(:)
     integer, intent(in) :: count
     real(wp) :: values(size(x), count)
-    real(wp) :: z(size(x))
+    real(wp) :: z(size(x)), forward
     integer :: m
 
     z = 2*x - 1
     values(:, 1) = 1
     if (count > 1) values(:, 2) = z
     do m = 2, count - 1
-      values(:, m + 1) = ((2*m - 1)*z*values(:, m) - (m - 1)*values(:, m - 1))/m
+      forward = (2*m - 1)*(1.0_wp/m)
+      values(:, m + 1) = forward*z*values(:, m) - (forward - 1)*values(:, m - 1)
     end do
   end function legendre_values
 

@@ -35,8 +35,10 @@ contains
     integer, allocatable :: others(:)
     integer :: i, k
 
+    moments = 0
+    if (rule%cells > 1) call add_far(panel, rule, centre, target, own, moments)
     call add_nodes(panel, rule, centre, target, own, moments)
-    legendre = legendre_values(rule%step, rule%order)
+    legendre = legendre_values(rule%reach()*rule%step, rule%order)
     others = [(i, i=1, own - 1), (i, i=own + rule%order, size(target))]
     call add_others(.true., pack(others, target(others) <= panel%left))
     call add_others(.false., pack(others, .not. target(others) <= panel%left))
@@ -64,15 +66,50 @@ contains
       end do
       call multiply_transposed(legendre, f, of_these)
       do j = 1, size(which)
-        moments(:, which(j)) = of_these(:, j)
-        if (.not. left) moments(:, which(j)) = rule%parity*of_these(:, j)
+        if (.not. left) of_these(:, j) = rule%parity*of_these(:, j)
+        moments(:, which(j)) = moments(:, which(j)) + of_these(:, j)
       end do
     end subroutine add_others
 
   end subroutine add_panel
 
-  !> Moments of the panel's own nodes: the part after node k and, its mirror image, the part before
-  !> the image of node k have their points at the same local distances.
+  !> Adds what the cells far from a target give: for targets beyond an end, all but those near it.
+  subroutine add_far(panel, rule, centre, target, own, moments)
+    type(panel_map_t), intent(in) :: panel
+    type(graded_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: centre, target(:)
+    integer, intent(in) :: own
+    real(wp), intent(inout) :: moments(:, :)
+    real(wp) :: f(size(rule%far), size(target)), of_these(rule%order, size(target))
+    real(wp), dimension(size(rule%far)) :: offset, weight
+    integer :: i, last_before, first_after
+
+    offset = panel%offset(rule%far)
+    weight = rule%far_weight*panel%speed(rule%far)*(centre + offset)
+    do i = 1, size(target)
+      call rule%far_from(i - own + 1, target(i) <= panel%left, last_before, first_after)
+      call fill(f(:last_before, i), 1, last_before)
+      f(last_before + 1:first_after - 1, i) = 0
+      call fill(f(first_after:, i), first_after, size(offset))
+    end do
+    call multiply_transposed(legendre_values(rule%far, rule%order), f, of_these)
+    moments = moments + of_these
+
+  contains
+
+    !> Weights times kernel of the points from `first` to `last`.
+    subroutine fill(part, first, last)
+      real(wp), intent(out) :: part(:)
+      integer, intent(in) :: first, last
+
+      part = weight(first:last)*kernel(2*centre + target(i) + offset(first:last), &
+        abs(target(i) - offset(first:last)))
+    end subroutine fill
+
+  end subroutine add_far
+
+  !> Moments of what is near the panel's own nodes: the part after node k and, its mirror image, the
+  !> part before the image of node k have their points at the same local distances.
   subroutine add_nodes(panel, rule, centre, target, own, moments)
     type(panel_map_t), intent(in) :: panel
     type(graded_rule_t), intent(in) :: rule
@@ -84,10 +121,9 @@ contains
     real(wp), dimension(size(rule%step)) :: growth, chord
     integer :: k, image
 
-    moments(:, own:own + rule%order - 1) = 0
     do k = 1, rule%order
       image = rule%order + 1 - k
-      length = 1 - rule%node(k)
+      length = real(rule%last_near(k), wp)/rule%cells - rule%node(k)
       if (panel%kind == sinh_map) &
         call exponentials(0.5_wp*panel%z_length*length*rule%step, growth, chord)
       legendre = legendre_values(rule%node(k) + length*rule%step, rule%order)
@@ -125,12 +161,12 @@ contains
       return
     end if
     z = merge(panel%z_left, -(panel%z_left + panel%z_length), left)
-    call exponentials(0.5_wp*panel%z_length*rule%step, growth, chord)
+    call exponentials(0.5_wp*panel%z_length*rule%reach()*rule%step, growth, chord)
     points = points_along_sinh(panel%d, exp(z), growth, chord)
     ! On the axis centre and end cancel, and the distance is the position.
     points%t = merge((centre + panel%left) + points%distance, &
       (centre + panel%right) - points%distance, left)
-    points%weight = points%weight*panel%z_length*rule%step_weight*points%t
+    points%weight = points%weight*panel%z_length*rule%reach()*rule%step_weight*points%t
   end function points_from_end
 
   !> Points graded towards node k: over the part `length` of the panel after it or, below zero,
