@@ -65,7 +65,7 @@ contains
     if (.not. scene%finds_states()) return
     problem = problem_of(scene)
     call range_of(scene, problem, low, high)
-    chosen = choose(scene%numerics, problem, low)
+    chosen = choose(scene%numerics, problem, low, allocated(scene%profiles))
     locked = chosen%grid == 'edge_locked'
     ! A cycle goes along the path too.
     known = locked .and. has_path(problem)

@@ -49,7 +49,7 @@ contains
 
     if (.not. (allocated(request%path) .or. allocated(request%loading))) return
     call range_of(request, problem, low, high)
-    outcome%chosen = choose(request%numerics, problem, low)
+    outcome%chosen = choose(request%numerics, problem, low, allocated(request%profiles))
     fixed = outcome%chosen%grid /= 'edge_locked'
     if (allocated(request%path) .or. .not. fixed) &
       call run_locked(request, problem, high, low, .not. fixed, observer, outcome, keeper, store)

@@ -35,11 +35,12 @@ module numerics_choice
 
 contains
 
-  !> For H0 down to h0_low (law's lengths).
-  function choose(numerics, problem, h0_low) result(chosen)
+  !> For H0 down to h0_low (law's lengths); profiles: whether some are asked for.
+  function choose(numerics, problem, h0_low, profiles) result(chosen)
     type(numerics_t), intent(in) :: numerics
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_low
+    logical, intent(in) :: profiles
     type(choice_t) :: chosen
     real(wp) :: widest, feature
 
@@ -65,7 +66,7 @@ contains
     end associate
 
     widest = largest_radius(problem, h0_low, contact_level(problem))
-    chosen%digits = digits_for(problem, widest, numerics%accuracy)
+    chosen%digits = digits_for(problem, widest, numerics%accuracy, profiles)
     chosen%panel_order = panel_order_for(numerics%accuracy)
     if (allocated(numerics%panel_order)) chosen%panel_order = numerics%panel_order
     if (numerics%grid == 'uniform') then

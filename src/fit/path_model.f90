@@ -123,7 +123,7 @@ contains
     request%device%z_start = farthest
     request%fixed_load%load = [largest]
     call range_of(request, problem, low, high)
-    chosen = choose(self%numerics, problem, low)
+    chosen = choose(self%numerics, problem, low, .false.)
     call prepare(self%steps, problem, chosen, self%numerics%accuracy)
     if (self%steps%options%method == 'mixing') self%steps%options%method = 'anderson'
     self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits, store=self%store)

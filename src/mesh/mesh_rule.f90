@@ -39,27 +39,34 @@ module mesh_rule
   real(wp), parameter :: digits_of_broken = 4
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
   !> which come the nearer to one another the stronger adhesion is.
-  real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.8_wp, most_for_folds = 9, &
-    most_digits = 13
+  real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.5_wp, most_for_folds = 9, &
+    more_for_profiles = 2, more_for_narrow_necks = 0.3_wp, more_for_kinks = 1.5_wp, most_digits = 13
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; a factor in it.
   real(wp), parameter :: onset = 0.29_wp, near_onset = 1.15_wp
 
 contains
 
-  !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy:
-  !> folds and extrema, the gap on the axis between nodes, and most of all profiles, which feel
-  !> every error of the edge's place, are more sensitive. widest: the largest contact radius. No
-  !> more than rounding leaves of the deformation.
-  pure real(wp) function digits_for(problem, widest, accuracy) result(digits)
+  !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy.
+  !> Fitted so that error estimates of loads, h0 and displacements, at folds and extrema too, are
+  !> within the accuracy, from 1e-2 to 1e-10 and sigma 1e-4 to 1e4. profiles: whether some are asked
+  !> for; these feel every error of the edge's place, the more the narrower the neck. widest: the
+  !> largest contact radius. No more than rounding leaves of the deformation.
+  pure real(wp) function digits_for(problem, widest, accuracy, profiles) result(digits)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
+    logical, intent(in) :: profiles
     real(wp) :: left, for_folds
 
     for_folds = fewest_digits + more_for_folds*log10(1 + strength(problem))
     ! Where jumps have just begun the two folds are so near each other that coarse meshes lose them.
     if (abs(log(max(strength(problem), tiny(1.0_wp))/onset)) < log(near_onset)) &
       for_folds = max(for_folds, most_for_folds)
-    digits = max(2.2_wp - 1.05_wp*log10(accuracy), 0.2_wp - 1.38_wp*log10(accuracy), for_folds)
+    digits = max(2.5_wp - 0.75_wp*log10(accuracy), -0.2_wp - 1.2_wp*log10(accuracy))
+    if (profiles) digits = digits + more_for_profiles + &
+      more_for_narrow_necks*log10(1 + strength(problem))
+    ! So do extrema of the load where the edge passes a kink of the bodies.
+    if (problem%shape%smooth_from() > 0) digits = digits + more_for_kinks
+    digits = max(digits, for_folds)
     left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
     digits = max(fewest_digits, min(digits, left, most_digits))
     ! Folds have to be told apart as long as there is a contact at all.
