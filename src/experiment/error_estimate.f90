@@ -7,6 +7,7 @@
 !> folds.
 module error_estimate
   use kinds, only: wp
+  use mesh_store, only: mesh_store_t
   use regridding, only: regrid
   use equilibrium, only: control_t, state_t, equations_t, gap_at, far_gap
   use solver, only: solver_t
@@ -16,11 +17,14 @@ module error_estimate
   public :: finer_t, judge_at_h0, unknown_error, profile_error, rounding, worst_residual, &
     what_is_left
 
-  !> Solves on finer meshes. Differences count `margin` times.
+  !> Solves on finer meshes, which get their kernels when they are needed. Differences count
+  !> `margin` times. store: of meshes, if there is one.
   type, extends(solver_t) :: finer_t
     real(wp) :: margin = 1
+    type(mesh_store_t), pointer :: store => null()
   contains
     procedure :: take_over
+    procedure :: prepare
     procedure :: find
   end type finer_t
 
@@ -47,6 +51,21 @@ contains
     self%options%tolerance = 0
     self%options%patience = 2
   end subroutine take_over
+
+  !> Sees that a mesh has its kernel.
+  subroutine prepare(self, mesh)
+    class(finer_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+
+    if (self%problem%rigid .or. allocated(self%meshes%grid(mesh)%kernel)) return
+    if (associated(self%store)) then
+      call self%meshes%complete(mesh, self%store)
+    else
+      call self%meshes%complete(mesh)
+    end if
+    self%cost%kernel_entries = self%cost%kernel_entries + &
+      self%meshes%grid(mesh)%kernel_entries()
+  end subroutine prepare
 
   !> Solves as well as rounding allows. found: it leaves no doubt which state it is.
   subroutine find(self, control, state, found)
@@ -81,6 +100,7 @@ contains
     associate (witness => reported%witness, error => reported%error)
       ! What did not converge has no counterpart.
       if (.not. witness%state%residual < 1) return
+      call fine%prepare(witness%mesh)
       state = regrid(own%problem%shape, witness%state, own%meshes%grid(witness%mesh), &
         fine%meshes%grid(witness%mesh), witness%state%scale)
       fine%frozen%factors%valid = .false.

@@ -135,6 +135,7 @@ contains
     on_fine = measure
     call energy_of(own, sought%mesh, state, on_fine%energy, uncertainty)
     s = coordinate_of(own%problem, sought%mesh, state)
+    call fine%prepare(sought%mesh)
     near = expansion_about(path%arc_about(sought%mesh, s), s, regrid(own%problem%shape, state, &
       own%meshes%grid(sought%mesh), fine%meshes%grid(sought%mesh), state%scale))
     call move_to(fine, sought%mesh, sought%kind, sought%h0, near, distance, found)

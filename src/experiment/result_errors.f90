@@ -46,7 +46,7 @@ contains
     class(locked_stepper_t), intent(inout), target :: steps
     real(wp), intent(in) :: high, low
     type(experiment_result_t), intent(inout) :: outcome
-    type(mesh_store_t), intent(inout), optional :: store
+    type(mesh_store_t), intent(inout), target, optional :: store
     type(judge_t) :: judge
 
     if (.not. reports(outcome)) return
@@ -56,8 +56,8 @@ contains
     ! less.
     judge%fine%margin = merge(margin, margin_unlocked, steps%problem%law%edge_gap > 0)
     judge%fine%meshes = new_mesh_family(steps%problem, high, low, &
-      outcome%chosen%digits + more_digits, store=store, coarser=steps%meshes)
-    call count_kernel(judge)
+      outcome%chosen%digits + more_digits, shape_only=.true., coarser=steps%meshes)
+    if (present(store)) judge%fine%store => store
     if (allocated(outcome%path)) call judge_path(judge, outcome%path)
     if (allocated(outcome%stepped_path)) call judge_branch(judge, outcome%stepped_path)
     call judge_cycle(judge, outcome)
@@ -83,19 +83,12 @@ contains
     judge%fine%meshes%grid(1) = fixed_mesh(companion(outcome%chosen), steps%problem, low)
     judge%fine%margin = merge(margin_fixed, margin_coarser, &
       judge%fine%meshes%grid(1)%nodes > steps%meshes%grid(1)%nodes)
-    call count_kernel(judge)
+    associate (cost => judge%fine%cost)
+      cost%kernel_entries = cost%kernel_entries + judge%fine%meshes%grid(1)%kernel_entries()
+    end associate
     call judge_cycle(judge, outcome)
     call conclude(judge, outcome)
   end subroutine judge_fixed
-
-  !> What the finer meshes cost.
-  subroutine count_kernel(judge)
-    type(judge_t), intent(inout) :: judge
-
-    associate (cost => judge%fine%cost)
-      cost%kernel_entries = cost%kernel_entries + sum(judge%fine%meshes%grid%kernel_entries())
-    end associate
-  end subroutine count_kernel
 
   !> Whether there is anything to judge.
   pure logical function reports(outcome)

@@ -56,12 +56,14 @@ module edge_locked
     procedure :: in_contact
     procedure :: locked_gap
     procedure :: halve_panels
+    procedure :: complete
   end type mesh_family_t
 
 contains
 
   !> Meshes for H0 from h0_high down to h0_low, good for so many digits (`mesh_rule`).
-  !> shape_only leaves the kernels out, to learn how large they would be. store: meshes made before,
+  !> shape_only leaves the kernels out: to learn how large they would be, or until they are needed
+  !> (`complete`). store: meshes made before,
   !> to which these are added. coarser: meshes of fewer digits for the same problem and range.
   !> Where these have short panels, or were refined, the same panels get more nodes: laid out anew
   !> for more digits they may be fewer, and then no better.
@@ -110,23 +112,32 @@ contains
     end do
     if (present(coarser)) call follow(meshes, coarser)
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
-      call add_mesh(meshes%shape(k), meshes%grid(k))
+      call make_mesh(meshes%shape(k), elastic, meshes%grid(k), store)
     end do
-
-  contains
-
-    subroutine add_mesh(shape, grid)
-      type(mapped_shape_t), intent(in) :: shape
-      type(discretisation_t), intent(inout) :: grid
-
-      if (present(store) .and. elastic) then
-        call store%obtain(shape, grid)
-      else
-        grid = new_mapped_mesh(shape, elastic)
-      end if
-    end subroutine add_mesh
-
   end function new_mesh_family
+
+  !> Makes a mesh; elastic: with its kernel, from the store if there is one.
+  subroutine make_mesh(shape, elastic, grid, store)
+    type(mapped_shape_t), intent(in) :: shape
+    logical, intent(in) :: elastic
+    type(discretisation_t), intent(out) :: grid
+    type(mesh_store_t), intent(inout), optional :: store
+
+    if (present(store) .and. elastic) then
+      call store%obtain(shape, grid)
+    else
+      grid = new_mapped_mesh(shape, elastic)
+    end if
+  end subroutine make_mesh
+
+  !> Gives a mesh that was made for its shape alone a kernel, for bodies that yield.
+  subroutine complete(self, mesh, store)
+    class(mesh_family_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+    type(mesh_store_t), intent(inout), optional :: store
+
+    call make_mesh(self%shape(mesh), .true., self%grid(mesh), store)
+  end subroutine complete
 
   !> How many bands of equal ratio there are between two radii.
   pure integer function bands_for(law, first, last) result(bands)
