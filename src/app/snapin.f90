@@ -8,6 +8,7 @@ program snapin
   use scene, only: scene_t, read_scene
   use scene_keys, only: keys_of_scene
   use c_library, only: c_prepare
+  use blas_threads, only: begin_with_one_thread
   use result_listing, only: write_result_listing
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
   use simulation, only: run_scene
@@ -28,6 +29,7 @@ program snapin
   type(failure_t), allocatable :: error
 
   call c_prepare()
+  call begin_with_one_thread()
   call read_command_line(options, error)
   if (allocated(error)) then
     call print_line(error_unit, 'snapin: ' // error%message)

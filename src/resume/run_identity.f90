@@ -2,12 +2,11 @@
 !> run can only be continued by one that would have done the same.
 module run_identity
   use, intrinsic :: iso_c_binding, only: c_int
-  use kinds, only: wp, long
+  use kinds, only: wp
   use build_info, only: version, compiler, blas, options
-  use c_library, only: c_openblas_config
+  use c_library, only: c_openblas_config, c_build_id
   use text, only: brief
   use deck_number, only: parse_real
-  use checksums, only: checksum
   implicit none
   private
   public :: identity_of, difference_between
@@ -121,23 +120,15 @@ contains
     if (text == '') text = blas
   end function blas_in_use
 
-  !> Tells programs of the same version apart: a checksum of the running program's file, where the
-  !> system gives it.
+  !> Tells programs of the same version apart: the linker makes it of all that it links, so that the
+  !> same sources give the same. The first digits of what `readelf -n` shows.
   function build_number() result(text)
-    character(len=8) :: text
-    integer(long), allocatable :: words(:)
-    integer(long) :: length
-    integer :: unit, status
+    character(len=:), allocatable :: text
+    character(len=16) :: digits
 
-    text = 'unknown'
-    open (newunit=unit, file='/proc/self/exe', status='old', action='read', access='stream', &
-      form='unformatted', iostat=status)
-    if (status /= 0) return
-    inquire (unit, size=length)
-    allocate (words(max(length, 0_long)/8))
-    read (unit, iostat=status) words
-    close (unit)
-    if (status == 0) write (text, '(z8.8)') checksum(words)
+    call c_build_id(digits, len(digits, kind=c_int))
+    text = trim(digits)
+    if (text == '') text = 'unknown'
   end function build_number
 
 end module run_identity

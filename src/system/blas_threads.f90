@@ -3,11 +3,11 @@
 module blas_threads
   use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
-  use c_library, only: c_openblas_threads
+  use c_library, only: c_openblas_threads, c_openblas_end_threads
   !$ use omp_lib, only: omp_get_max_threads, omp_in_parallel
   implicit none
   private
-  public :: use_threads_for, thread_count, blas_buffers
+  public :: begin_with_one_thread, use_threads_for, thread_count, blas_buffers
 
   !> Order of the matrix from which threads pay, even on a machine with other work.
   integer, parameter :: worthwhile = 2500
@@ -17,6 +17,16 @@ module blas_threads
   real(wp), parameter :: of_buffer = 136.0e6_wp, of_thread = 76.0e6_wp
 
 contains
+
+  !> For the beginning of a program. OpenBLAS starts a thread for every further core when it is
+  !> loaded, and each looks for work for some 25 ms as fast as it can, as long as a short run takes.
+  !> They are ended; `use_threads_for` has them started where a matrix is large enough.
+  subroutine begin_with_one_thread()
+    integer(c_int) :: known
+
+    known = c_openblas_threads(1_c_int)
+    call c_openblas_end_threads()
+  end subroutine begin_with_one_thread
 
   !> Chooses the threads for matrices of the given order, where the library is OpenBLAS; any other
   !> keeps to its own rules. Where several cases are computed at once each has one.

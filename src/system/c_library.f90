@@ -8,7 +8,7 @@ module c_library
   private
   public :: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, c_make_folder, &
     c_current_folder, c_lock, c_kind, c_rename, c_remove, c_is_terminal, c_prepare, &
-    c_openblas_threads, c_openblas_config
+    c_openblas_threads, c_openblas_end_threads, c_openblas_config, c_build_id
   public :: explain, system_failure, nul
   public :: as_input, as_output, as_kept_output, as_folder
   public :: too_large, disk_full, in_the_way, not_there, locked_elsewhere
@@ -123,12 +123,25 @@ module c_library
       integer(c_int), value :: count
     end function c_openblas_threads
 
+    !> Ends OpenBLAS's threads, which are started again when it is given more than one. Not where
+    !> others may be computing with it.
+    subroutine c_openblas_end_threads() bind(c, name='snapin_openblas_end_threads')
+    end subroutine c_openblas_end_threads
+
     !> How OpenBLAS describes itself; blank where it is another library.
     subroutine c_openblas_config(text, size) bind(c, name='snapin_openblas_config')
       import :: c_char, c_int
       character(kind=c_char), intent(out) :: text(*)
       integer(c_int), value :: size
     end subroutine c_openblas_config
+
+    !> The first digits of the linker's id of the program or library that this is part of; blank
+    !> where it has none.
+    subroutine c_build_id(text, size) bind(c, name='snapin_build_id')
+      import :: c_char, c_int
+      character(kind=c_char), intent(out) :: text(*)
+      integer(c_int), value :: size
+    end subroutine c_build_id
 
     integer(c_int) function c_explain(status, reason, size) bind(c, name='snapin_explain')
       import :: c_char, c_int

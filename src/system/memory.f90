@@ -1,6 +1,8 @@
 !> How much memory there is to be had, as far as the system says.
 module memory
+  use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp
+  use c_library, only: c_open, c_read, c_close, as_input, nul
   implicit none
   private
   public :: available_memory
@@ -29,26 +31,28 @@ contains
     bytes = max(bytes, 0.0_wp)
   end function available_memory
 
-  !> The number that follows a name at the beginning of a line of a file; `otherwise` where there is
-  !> none ("max", "unlimited", no such line or file).
+  !> The number that follows a name at the beginning of a line of a small file; `otherwise` where
+  !> there is none ("max", "unlimited", no such line or file). Fortran's `open` would load the
+  !> system's messages for every file that is not there.
   real(wp) function number_after(file, name, otherwise) result(number)
     character(len=*), intent(in) :: file, name
     real(wp), intent(in) :: otherwise
-    character(len=256) :: line
-    integer :: unit, status
+    character(len=1), parameter :: nl = new_line('a')
+    character(len=8192) :: text
+    integer(c_int) :: descriptor, closed
+    integer :: length, first, last, status
 
     number = otherwise
-    open (newunit=unit, file=file, action='read', status='old', iostat=status)
-    if (status /= 0) return
-    do
-      read (unit, '(a)', iostat=status) line
-      if (status /= 0) exit
-      if (index(line, name) /= 1) cycle
-      read (line(len(name) + 1:), *, iostat=status) number
-      if (status /= 0) number = otherwise
-      exit
-    end do
-    close (unit, iostat=status)
+    descriptor = c_open(file // nul, as_input)
+    if (descriptor < 0) return
+    length = int(max(c_read(descriptor, text, len(text, kind=c_long)), 0_c_long))
+    closed = c_close(descriptor)
+    first = index(nl // text(:length), nl // name)
+    if (first == 0) return
+    first = first + len(name)
+    last = first + index(text(first:length) // nl, nl) - 2
+    read (text(first:last), *, iostat=status) number
+    if (status /= 0) number = otherwise
   end function number_after
 
 end module memory

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -191,12 +192,23 @@ void snapin_prepare(void) {
 }
 
 /* The library that does the linear algebra may or may not be OpenBLAS: it is asked at run time, so
-   that nothing depends on it. 1 where it is; count > 0: it gets so many threads. */
+   that nothing depends on it. 1 where it is; count > 0: it gets so many threads. To set a number
+   starts threads that have been ended, even if it is 1. */
 int snapin_openblas_threads(int count) {
   void (*set)(int) = (void (*)(int))dlsym(RTLD_DEFAULT, "openblas_set_num_threads");
-  if (set != NULL && count > 0)
+  int (*get)(void) = (int (*)(void))dlsym(RTLD_DEFAULT, "openblas_get_num_threads");
+  if (set != NULL && count > 0 && (get == NULL || get() != count))
     set(count);
   return set != NULL;
+}
+
+/* Ends OpenBLAS's threads; it starts them again when it is to use more than one. Where the process
+   may not have all addresses that it asks for they stay, since it might not get them again. */
+void snapin_openblas_end_threads(void) {
+  int (*end)(void) = (int (*)(void))dlsym(RTLD_DEFAULT, "blas_thread_shutdown_");
+  struct rlimit limit;
+  if (end != NULL && getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY)
+    end();
 }
 
 /* How OpenBLAS describes itself; blank where it is another library. */

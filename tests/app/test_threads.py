@@ -1,9 +1,11 @@
-"""Claims about cases of a sweep that are computed at the same time."""
+"""Claims about threads: those that wait, and cases of a sweep computed at the same time."""
 
+import os
 import pathlib
 import re
 import shutil
 import subprocess
+import time
 
 import pytest
 from conftest import ROOT
@@ -46,3 +48,20 @@ def test_what_cases_do_at_the_same_time_keeps_no_string_length_in_static_storage
         if re.search(r"\bslen\.", listing.stdout):
             guilty.append(file.name)
     assert not guilty
+
+
+def test_no_thread_waits_for_work_that_small_matrices_do_not_give(snapin_path, tmp_path):
+    """OpenBLAS starts its threads as it is loaded, and they look for work at full speed."""
+    env = dict(os.environ, OMP_NUM_THREADS="2", OPENBLAS_NUM_THREADS="2")
+    with subprocess.Popen([snapin_path, "--check", "missing.nml", "/dev/stdin"], cwd=tmp_path,
+                          env=env, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        # Having missed the first deck it waits for the second.
+        assert b"missing.nml" in process.stderr.readline()
+        # What has ended may be listed for a moment.
+        for _ in range(1000):
+            left = len(os.listdir(f"/proc/{process.pid}/task"))
+            if left == 1:
+                break
+            time.sleep(0.01)
+        assert left == 1
+        process.communicate()

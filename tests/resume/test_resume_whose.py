@@ -8,7 +8,7 @@ import subprocess
 import time
 
 import pytest
-from support.interrupted import Bench, environment, frames, heading, owner, rows, SWEEP
+from support.interrupted import Bench, environment, frames, heading, linked_id, owner, rows, SWEEP
 from support.scenes import lennard_jones, loading
 
 
@@ -59,6 +59,11 @@ def test_another_program_is_refused(sweep, line, advice):
     assert advice in done.stderr
     # The heading is read as it was written.
     sweep.check(heading(owner(first)) + cases[0])
+
+
+def test_the_program_is_known_by_what_was_linked(sweep):
+    """Sources that differ link to another id, the same ones to the same."""
+    assert f"(build {linked_id(sweep.path)})\n" in owner(frames(sweep.journal)[0])
 
 
 # --- With nothing to go on with

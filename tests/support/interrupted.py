@@ -55,6 +55,14 @@ def owner(frame):
     return frame[4 * WORD : 4 * WORD + length].decode()
 
 
+def linked_id(file):
+    """The first half of the id that the linker gave a program or library, as headings have it."""
+    note = struct.pack("<3I4s", 4, 20, 3, b"GNU")
+    _, found, after = file.read_bytes().partition(note)
+    assert found, f"{file} has no build id"
+    return after[:8].hex()
+
+
 def rows(lines):
     """The rows of a table, without what comes before them."""
     return [line for line in lines if not line.startswith(b"#")][1:]

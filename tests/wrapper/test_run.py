@@ -2,12 +2,15 @@
 nothing left on the disk or said that was not asked for."""
 
 import os
+import pathlib
 import tempfile
 
+import _snapin
 import f90nml
 import numpy as np
 import pytest
 import snapin
+from support.interrupted import frames, linked_id, owner
 from support.processes import answer
 from support.scenes import lennard_jones, loading, runner
 
@@ -186,6 +189,15 @@ def test_a_finished_run_is_left_as_it_is_with_resume(tmp_path):
     second = snapin.run(CURVE, out=tmp_path, resume=True)
     assert (tmp_path / "curve.csv").stat().st_mtime_ns == written
     assert second.cost == first.cost
+
+
+def test_what_was_interrupted_belongs_to_the_module_and_not_to_the_interpreter(tmp_path):
+    """Built of other sources, it would be refused."""
+    (tmp_path / "summary.nml").mkdir()
+    with pytest.raises(snapin.SnapinError, match="is a folder"):
+        snapin.run(CURVE, out=tmp_path)
+    heading, *_ = frames((tmp_path / "journal.partial").read_bytes())
+    assert f"(build {linked_id(pathlib.Path(_snapin.__file__))})\n" in owner(heading)
 
 
 def test_resume_needs_a_folder():
