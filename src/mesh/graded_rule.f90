@@ -22,8 +22,10 @@ module graded_rule
   !> either side of a place: its own and the next.
   real(wp), parameter :: cell_length = 1.8_wp
   integer, parameter :: fewest_cells = 4, near_cells = 2
-  !> Points for each degree of the nodes' polynomials: on graded points and on a cell's.
-  real(wp), parameter :: near_share = 1, far_share = .5_wp
+  !> Points for each degree of the nodes' polynomials: on graded points and on a cell's; and what a
+  !> cell has besides, where the polynomials' last digits are of higher degrees.
+  real(wp), parameter :: near_share = 1.4_wp, far_share = 0.5_wp
+  integer, parameter :: least_points = 3
 
   type :: graded_rule_t
     integer :: order = 0
@@ -133,8 +135,8 @@ contains
     end do
   end subroutine add_cells
 
-  !> Gauss points of the k-th cell: half as many as the degrees that the nodes' polynomials amount to
-  !> there, and more for a kernel that is singular a cell away or, beyond an axis at the panel's
+  !> Gauss points of the k-th cell: half as many as the degrees that the nodes' polynomials amount
+  !> to there, and more for a kernel that is singular a cell away or, beyond an axis at the panel's
   !> end, at t = -r.
   pure integer function far_points(rule, k, z_length, digits) result(points)
     type(graded_rule_t), intent(in) :: rule
@@ -147,7 +149,8 @@ contains
     if (k == 1 .or. k == rule%cells) distance = 1 + 2*log(2.0_wp)*rule%cells/z_length
     distance = min(3.0_wp, distance)
     degrees = 0.5_wp*rule%order*(angle(k) - angle(k - 1))
-    points = 2 + ceiling(far_share*degrees + points_against(distance + sqrt(distance**2 - 1), digits))
+    points = least_points + &
+      ceiling(far_share*degrees + points_against(distance + sqrt(distance**2 - 1), digits))
 
   contains
 
@@ -160,9 +163,10 @@ contains
 
   end function far_points
 
-  !> Points that integrate a logarithm times the nodes' polynomials over what is near, to the digits.
-  !> The kernel is singular not only at t = r but at t = -r too, which comes as near to the end of a
-  !> panel at the axis as ln(2) in z: that end is where the substitution has the fewest points.
+  !> Points that integrate a logarithm times the nodes' polynomials over what is near, to the
+  !> digits. The kernel is singular not only at t = r but at t = -r too, which comes as near to the
+  !> end of a panel at the axis as ln(2) in z: that end is where the substitution has the fewest
+  !> points.
   pure integer function points_for(order, cells, z_length, digits) result(points)
     integer, intent(in) :: order, cells
     real(wp), intent(in) :: z_length, digits

@@ -40,7 +40,8 @@ module mesh_rule
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
   !> which come the nearer to one another the stronger adhesion is.
   real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.5_wp, most_for_folds = 9, &
-    more_for_profiles = 2, more_for_narrow_necks = 0.3_wp, more_for_kinks = 1.5_wp, most_digits = 13
+    more_for_profiles = 2, more_for_narrow_necks = 0.3_wp, more_for_jumps = 1, &
+    more_at_onset = 2, more_for_kinks = 1.5_wp, most_digits = 13
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; a factor in it.
   real(wp), parameter :: onset = 0.29_wp, near_onset = 1.15_wp
 
@@ -58,14 +59,18 @@ contains
     real(wp) :: left, for_folds
 
     for_folds = fewest_digits + more_for_folds*log10(1 + strength(problem))
-    ! Where jumps have just begun the two folds are so near each other that coarse meshes lose them.
-    if (abs(log(max(strength(problem), tiny(1.0_wp))/onset)) < log(near_onset)) &
-      for_folds = max(for_folds, most_for_folds)
     digits = max(2.5_wp - 0.75_wp*log10(accuracy), -0.2_wp - 1.2_wp*log10(accuracy))
+    ! Without jumps nothing is as sensitive as they are.
+    if (strength(problem) < onset) digits = digits - more_for_jumps
     if (profiles) digits = digits + more_for_profiles + &
       more_for_narrow_necks*log10(1 + strength(problem))
     ! So do extrema of the load where the edge passes a kink of the bodies.
     if (problem%shape%smooth_from() > 0) digits = digits + more_for_kinks
+    ! Where jumps have just begun the two folds are so near each other that coarse meshes lose them.
+    if (abs(log(max(strength(problem), tiny(1.0_wp))/onset)) < log(near_onset)) then
+      for_folds = max(for_folds, most_for_folds)
+      digits = digits + more_at_onset
+    end if
     digits = max(digits, for_folds)
     left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
     digits = max(fewest_digits, min(digits, left, most_digits))
@@ -79,8 +84,9 @@ contains
     real(wp), intent(in) :: h0_high, digits
     real(wp) :: density, reach, feature
 
+    ! Where adhesion is strong folds come near to one another, the first of them before contact.
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
-      (1 + 0.03_wp*log(1 + strength(problem)))
+      (1 + 0.03_wp*log(1 + strength(problem)))*(1 - 0.3_wp/(1 + strength(problem)))
     reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
     feature = smallest_feature(problem, 1.0_wp)
@@ -90,7 +96,7 @@ contains
     call add_panels(problem, shape, about_axis, 1, asinh(reach/shape%d), density, digits, 0.0_wp, &
       0.0_wp)
     call refine_axis(problem, digits, 3.0_wp, shape)
-    shape%digits = kernel_digits(digits)
+    shape%digits = kernel_digits(problem, digits)
   end function approach_shape
 
   !> In contact, about the edge, for contact radii from `low` to `high` (lateral units); or before,
@@ -101,36 +107,38 @@ contains
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about
     real(wp), intent(in) :: low, high, level, digits
-    real(wp) :: density, outer, reach
+    real(wp) :: inner, outer, reach, repulsion
 
+    inner = 0.15_wp + digits*(0.24_wp + 0.0105_wp*digits)
     if (problem%law%adhesion > 0) then
-      ! Where the repulsion is strong it begins inside the edge, and where adhesion is, a small
-      ! contact is drawn out far: both need more nodes.
-      density = (0.15_wp + digits*(0.24_wp + 0.0105_wp*digits))* &
-        (1 + 0.25_wp*log(1 + high/(pi*strength(problem))))* &
-        (1 + 0.03_wp*log(1 + strength(problem)/(1 + high)**2))
+      ! Where adhesion is strong a small contact is drawn out far, and where the repulsion is it
+      ! begins inside the edge: that needs more nodes, there most of all.
+      inner = inner*(1 + 0.03_wp*log(1 + strength(problem)/(1 + high)**2))
+      repulsion = log(1 + high/(pi*strength(problem)))
+      outer = inner*(1 + 0.5_wp*log(1 + 0.75_wp*repulsion))
+      inner = inner*(0.85_wp + 0.3_wp*repulsion)
     else
-      density = 1.5_wp*(0.15_wp + digits*(0.24_wp + 0.0105_wp*digits))
+      inner = 1.5_wp*inner
+      outer = inner
     end if
     reach = max(nearest_tail, beyond_poles*problem%shape%position_of(0.5_wp*calm_gap(problem)))
-    outer = density
     ! As long as a contact is smaller than its neck, the pressure around it is that before contact;
     ! where the neck is wider than the force reaches, this is smooth enough.
     if (problem%law%adhesion > 0 .and. neck_width(problem) < 1) &
-      outer = density*(1 + 0.5_wp/(1 + 3*(low/neck_width(problem))**2))
+      outer = outer*(1 + 0.5_wp/(1 + 3*(low/neck_width(problem))**2))
     call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)
     reach = max(tail_of_contact, reach/low)
     shape%centre = 1
     shape%even = is_even(problem%shape)
     shape%d = min(finer*smallest_feature(problem, high)/high, 1.0_wp)
     if (about == about_front) shape%d = finer*front_width(problem, high)
-    call add_panels(problem, shape, about, -1, asinh(1/shape%d), density, digits, low, high)
+    call add_panels(problem, shape, about, -1, asinh(1/shape%d), inner, digits, low, high)
     call refine_axis(problem, digits, 1.0_wp, shape)
     shape%inner = size(shape%order)
     ! Panels of a whole number of nodes are a little longer, and end on the axis.
     shape%d = 1/sinh(sum(shape%z_length))
     call add_panels(problem, shape, about, 1, asinh(reach/shape%d), outer, digits, low, high)
-    shape%digits = kernel_digits(digits)
+    shape%digits = kernel_digits(problem, digits)
   end function contact_shape
 
   !> The tail of the pressure: an algebraic panel where it falls as a power; otherwise the mesh ends
@@ -256,11 +264,13 @@ contains
     strength = problem%coupling*problem%law%adhesion
   end function strength
 
-  !> Digits of the kernel: its errors matter less than those of the pressure's polynomials.
-  pure real(wp) function kernel_digits(digits)
+  !> Digits of the kernel: its errors matter less than those of the pressure's polynomials, and
+  !> more where bodies yield more.
+  pure real(wp) function kernel_digits(problem, digits)
+    type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits
 
-    kernel_digits = max(5, ceiling(1.2_wp*digits - 2))
+    kernel_digits = max(5, ceiling(1.2_wp*digits - 2 + 0.5_wp*log10(1 + strength(problem))))
   end function kernel_digits
 
 end module mesh_rule

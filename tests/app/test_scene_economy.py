@@ -125,16 +125,17 @@ def test_theories_cost_no_equilibrium(run):
     assert rows == plain_rows
 
 
-def test_profiles_on_the_steps_cost_their_error_estimate_alone(run):
+def test_profiles_on_the_steps_cost_finer_meshes_and_no_state(run):
     plain = run(lennard_jones(1.0, **PLAIN))
     more = run(lennard_jones(1.0, **PLAIN, profiles={"h0": [1.0, -2.0]}))
     assert more.files == sorted([*plain.files, "profiles.csv"])
     assert more.cost["states"] == plain.cost["states"]
-    assert more.cost["kernel_entries"] == plain.cost["kernel_entries"]
-    assert more.cost["operator_products"] <= plain.cost["operator_products"] + 2 * 12
-    # The same digits, too.
-    plain_rows, rows = ((r.folder / "curve.csv").read_bytes() for r in (plain, more))
-    assert rows == plain_rows
+    # A profile feels errors of the edge's place that no load feels.
+    assert plain.cost["nodes"] < more.cost["nodes"] <= 1.5 * plain.cost["nodes"]
+    assert more.cost["operator_products"] <= 1.05 * plain.cost["operator_products"] + 2 * 12
+    for column in ("load", "displacement"):
+        size = abs(plain.curve[column]).max()
+        assert abs(more.curve[column] - plain.curve[column]).max() <= 1e-6 * size
 
 
 def test_a_profile_off_the_steps_costs_one_state(run):
