@@ -41,6 +41,7 @@ module mesh_rule
   !> which come the nearer to one another the stronger adhesion is.
   real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.5_wp, most_for_folds = 9, &
     more_for_profiles = 2, more_for_narrow_necks = 0.3_wp, more_for_jumps = 1, &
+    more_for_lengths = 0.6_wp, &
     more_at_onset = 2, more_for_kinks = 1.5_wp, most_digits = 13
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; a factor in it.
   real(wp), parameter :: onset = 0.29_wp, near_onset = 1.15_wp
@@ -60,8 +61,9 @@ contains
 
     for_folds = fewest_digits + more_for_folds*log10(1 + strength(problem))
     digits = max(2.5_wp - 0.75_wp*log10(accuracy), -0.2_wp - 1.2_wp*log10(accuracy))
-    ! Without jumps nothing is as sensitive as they are.
-    if (strength(problem) < onset) digits = digits - more_for_jumps
+    ! Without jumps nothing is as sensitive as they are, but for the load of rigid bodies.
+    if (strength(problem) < onset .and. .not. problem%rigid) digits = digits - more_for_jumps
+    if (.not. problem%law%of_paper) digits = digits + more_for_lengths
     if (profiles) digits = digits + more_for_profiles + &
       more_for_narrow_necks*log10(1 + strength(problem))
     ! So do extrema of the load where the edge passes a kink of the bodies.
@@ -84,9 +86,11 @@ contains
     real(wp), intent(in) :: h0_high, digits
     real(wp) :: density, reach, feature
 
-    ! Where adhesion is strong folds come near to one another, the first of them before contact.
+    ! Where adhesion is strong folds come near to one another, the first of them before contact;
+    ! where it is weak, bodies that yield are not pressed hard on this mesh.
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
-      (1 + 0.03_wp*log(1 + strength(problem)))*(1 - 0.3_wp/(1 + strength(problem)))
+      (1 + 0.03_wp*log(1 + strength(problem)))
+    if (.not. problem%rigid) density = density*(1 - 0.3_wp/(1 + strength(problem)))
     reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
     feature = smallest_feature(problem, 1.0_wp)
