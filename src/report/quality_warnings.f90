@@ -11,8 +11,9 @@ module quality_warnings
   public :: judge_resolution, judge_accuracy, judge_stopping, short_number
 
   !> Nodes may lie this many necks apart at the contact edge: beyond it the edge is pinned between
-  !> them.
-  real(wp), parameter :: resolved_spacing = 0.2_wp
+  !> them. To a mesh that moves with the edge, whose panels meet there, that does not happen: some
+  !> two nodes in a neck make a polynomial of it.
+  real(wp), parameter :: resolved_spacing = 0.2_wp, resolved_locked = 0.4_wp
 
   !> Relative error above which the numbers of a grid that the deck has chosen get a warning; it is
   !> chosen to show such errors.
@@ -25,15 +26,21 @@ module quality_warnings
 
 contains
 
-  !> Whether the neck is resolved, and what to do if not.
-  subroutine judge_resolution(summary)
+  !> Whether the neck is resolved, and what to do if not. locked: on a mesh locked to the edge.
+  subroutine judge_resolution(locked, summary)
+    logical, intent(in) :: locked
     type(summary_t), intent(inout) :: summary
     real(wp) :: spacing
 
     if (.not. summary%has('spacing_over_neck')) return
     spacing = summary%number('spacing_over_neck')
-    call summary%set('resolved', spacing <= resolved_spacing)
-    if (spacing <= resolved_spacing) return
+    call summary%set('resolved', spacing <= merge(resolved_locked, resolved_spacing, locked))
+    if (summary%is_true('resolved')) return
+    if (locked) then
+      call summary%warn('under-resolved: nodes are '//short_number(spacing)// &
+        ' neck widths apart at the contact edge; use a higher accuracy')
+      return
+    end if
     call summary%warn('under-resolved: nodes are '//short_number(spacing)// &
       ' neck widths apart at the contact edge, which is then pinned between them; use '// &
       short_number(spacing/resolved_spacing)// &
