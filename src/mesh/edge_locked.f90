@@ -12,7 +12,7 @@ module edge_locked
   use discretisation, only: discretisation_t
   use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
   use mesh_store, only: mesh_store_t
-  use mesh_rule, only: approach_shape, contact_shape, short_orders
+  use mesh_rule, only: approach_shape, contact_shape
   use law_panels, only: about_front, about_edge
   use step_front, only: front_leads, first_front, last_front
   use force_law, only: force_law_t
@@ -29,8 +29,6 @@ module edge_locked
   !> and more bands have more meshes. Under a law that oscillates or has a step, short panels lie
   !> wherever its gaps are at any radius of the band.
   real(wp), parameter :: widest_band = 30, narrow_band = 2_wp
-  !> A mesh of more panels has short ones (`mesh_rule`).
-  integer, parameter :: long_panels = 2
   !> Part of the radius at which a front becomes sharp, from which on a mesh is locked to it.
   real(wp), parameter :: early = 0.25_wp
 
@@ -65,7 +63,7 @@ contains
   !> shape_only leaves the kernels out: to learn how large they would be, or until they are needed
   !> (`complete`). store: meshes made before,
   !> to which these are added. coarser: meshes of fewer digits for the same problem and range.
-  !> Where these have short panels, or were refined, the same panels get more nodes: laid out anew
+  !> Where these have halved or short panels the same panels get more nodes: laid out anew
   !> for more digits they may be fewer, and then no better.
   function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store, coarser) &
     result(meshes)
@@ -172,19 +170,19 @@ contains
     self%grid(mesh) = new_mapped_mesh(self%shape(mesh), elastic=.true.)
   end subroutine halve_panels
 
-  !> Lets meshes, not made yet, be what coarser ones are with more nodes, where these have short
-  !> panels or were refined.
+  !> Lets meshes, not made yet, be what coarser ones are with more nodes, where these have more than
+  !> one panel on a side of the centre.
   pure subroutine follow(self, coarser)
     type(mesh_family_t), intent(inout) :: self
     type(mesh_family_t), intent(in) :: coarser
-    real(wp) :: more_digits
     integer :: k
 
-    more_digits = self%digits - coarser%digits
     do k = 1, size(coarser%grid)
       if (.not. allocated(coarser%grid(k)%kernel)) cycle
-      if (coarser%refined(k) .or. size(coarser%shape(k)%order) > long_panels) self%shape(k) = &
-        coarser%shape(k)%enriched(ceiling(short_orders*more_digits), more_digits)
+      associate (shape => coarser%shape(k))
+        if (size(shape%order) > merge(2, 1, shape%inner > 0)) self%shape(k) = &
+          shape%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
+      end associate
     end do
   end subroutine follow
 

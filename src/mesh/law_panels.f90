@@ -11,32 +11,41 @@ module law_panels
   use step_front, only: front_leads, gap_about_front
   implicit none
   private
-  public :: fitting_panels, longest
+  public :: fitting_panels, nodes_on
   public :: about_axis, about_front, about_edge
 
   !> What a mesh is mapped to: the axis, the front of a step, the contact edge.
   integer, parameter :: about_axis = 1, about_front = 2, about_edge = 3
 
-  !> Longest panel in z; how often one is halved; gaps on the axis, or radii, that are tried.
-  real(wp), parameter :: longest = 0.7_wp
-  integer, parameter :: most_halvings = 6, tried = 9
+  !> Nodes that a panel needs beside those in proportion to its length in z.
+  real(wp), parameter :: more_nodes = 3
+  !> No panel shorter than twice this is halved; gaps on the axis, or radii, that are tried.
+  real(wp), parameter :: shortest = 0.01_wp
+  integer, parameter :: tried = 9
 
 contains
 
-  !> Lengths in z of panels of so many nodes at positions centre + side*d sinh(z), z up to z_length,
-  !> for radii of the front or the edge from low to high; `about`: what is at the centre.
-  function fitting_panels(problem, about, side, d, z_length, low, high, order, digits) &
+  !> Nodes of panels of these lengths in z, at so many a unit of z, and never fewer than `fewest`.
+  elemental integer function nodes_on(length, density, fewest) result(order)
+    real(wp), intent(in) :: length, density
+    integer, intent(in) :: fewest
+
+    order = max(fewest, ceiling(density*length + more_nodes))
+  end function nodes_on
+
+  !> Lengths in z of panels of `nodes_on` nodes at positions centre + side*d sinh(z): those given, or
+  !> halves of them, for radii of the front or the edge from low to high; `about`: what is at the
+  !> centre.
+  function fitting_panels(problem, about, side, d, first, low, high, density, fewest, digits) &
     result(lengths)
     type(problem_t), intent(in) :: problem
-    integer, intent(in) :: about, side, order
-    real(wp), intent(in) :: d, z_length, low, high, digits
+    integer, intent(in) :: about, side, fewest
+    real(wp), intent(in) :: d, first(:), low, high, density, digits
     real(wp), allocatable :: lengths(:)
-    type(local_nodes_t) :: local
     real(wp), allocatable :: parameter(:)
     real(wp) :: largest(1)
-    integer :: panels, k
+    integer :: k
 
-    local = gauss_nodes(order)
     largest = abs(problem%law%pressure([problem%law%edge_gap]))
     if (about == about_axis) then
       parameter = axis_gaps(problem)
@@ -44,21 +53,19 @@ contains
       parameter = between(low, high)
     end if
     allocate (lengths(0))
-    panels = ceiling(z_length/longest)
-    do k = 1, panels
-      call add((k - 1)*z_length/panels, z_length/panels, 0)
+    do k = 1, size(first)
+      call add(sum(first(:k - 1)), first(k))
     end do
 
   contains
 
     !> Adds the panel from z on, or its halves.
-    recursive subroutine add(z, length, halvings)
+    recursive subroutine add(z, length)
       real(wp), intent(in) :: z, length
-      integer, intent(in) :: halvings
 
-      if (halvings < most_halvings .and. tail_on(z, length) > 10.0_wp**(-digits)*largest(1)) then
-        call add(z, 0.5_wp*length, halvings + 1)
-        call add(z + 0.5_wp*length, 0.5_wp*length, halvings + 1)
+      if (length > 2*shortest .and. tail_on(z, length) > 10.0_wp**(-digits)*largest(1)) then
+        call add(z, 0.5_wp*length)
+        call add(z + 0.5_wp*length, 0.5_wp*length)
       else
         lengths = [lengths, length]
       end if
@@ -67,13 +74,15 @@ contains
     !> The largest of the last two Legendre coefficients of the pressure on a panel.
     real(wp) function tail_on(z, length) result(tail)
       real(wp), intent(in) :: z, length
-      real(wp) :: pressure(order), offset(order)
+      type(local_nodes_t) :: local
+      real(wp), allocatable :: pressure(:), offset(:)
       integer :: j
 
       tail = 0
+      local = gauss_nodes(nodes_on(length, density, fewest))
       offset = side*d*sinh(z + length*local%node)
       do j = 1, size(parameter)
-        pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset))
+        pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset, d))
         tail = max(tail, local%tail(pressure))
       end do
     end function tail_on
@@ -106,11 +115,12 @@ contains
   end function between
 
   !> The gap at an offset from the centre: before contact with the gap h on the axis; about a front
-  !> of radius h; outside a JKR contact of radius h, whose edge has the gap of largest tension.
-  elemental real(wp) function gap_at(problem, about, h, offset) result(gap)
+  !> of radius h; outside a JKR contact of radius h, whose edge has the gap of largest tension and is
+  !> rounded over d, as cohesion rounds it: the root of the distance is no gap that bodies have.
+  elemental real(wp) function gap_at(problem, about, h, offset, d) result(gap)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about
-    real(wp), intent(in) :: h, offset
+    real(wp), intent(in) :: h, offset, d
     real(wp) :: x, angle
 
     select case (about)
@@ -119,7 +129,7 @@ contains
     case (about_front)
       gap = gap_about_front(problem, h, 1 + offset)
     case default
-      x = 1 + offset
+      x = 1 + offset**2/(d + sqrt(d**2 + offset**2))
       angle = acos(min(1/x, 1.0_wp))
       gap = problem%law%edge_gap + problem%shape%hertz_gap(h, x) + &
         2/pi*sqrt(4*pi*problem%coupling*problem%law%adhesion*h)*angle

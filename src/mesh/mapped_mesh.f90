@@ -52,15 +52,14 @@ contains
     shape%inner = self%inner + count(which(:self%inner))
   end function halved
 
-  !> The shape with so many nodes more on each panel, and digits of the kernel.
-  pure type(mapped_shape_t) function enriched(self, nodes, digits) result(shape)
+  !> The shape with so many times the nodes on each panel, and digits more of the kernel.
+  pure type(mapped_shape_t) function enriched(self, times, digits) result(shape)
     class(mapped_shape_t), intent(in) :: self
-    integer, intent(in) :: nodes
-    real(wp), intent(in) :: digits
+    real(wp), intent(in) :: times, digits
 
     shape = self
-    shape%order = self%order + nodes
-    if (self%tail_order > 0) shape%tail_order = self%tail_order + nodes
+    shape%order = ceiling(times*self%order)
+    shape%tail_order = ceiling(times*self%tail_order)
     shape%digits = self%digits + digits
   end function enriched
 

@@ -7,17 +7,15 @@ module mesh_rule
   use shape, only: shape_t
   use dimensionless_problem, only: problem_t, calm_gap, neck_width
   use contact_scales, only: smallest_feature
-  use law_panels, only: fitting_panels, longest, about_axis, about_front, about_edge
+  use law_panels, only: fitting_panels, nodes_on, about_axis, about_front, about_edge
   use step_front, only: front_leads, first_front, front_width
   use mapped_mesh, only: mapped_shape_t
   implicit none
   private
-  public :: approach_shape, contact_shape, digits_for, short_orders
+  public :: approach_shape, contact_shape, digits_for
 
   !> d over the smallest feature: errors change little from half of it to twice.
   real(wp), parameter :: finer = 0.5_wp
-  !> Nodes that a panel needs beside those in proportion to its length in z.
-  real(wp), parameter :: more_nodes = 3
   !> Where the tail begins, as a multiple of where the bodies are H0 high: for a parabola the poles
   !> of the pressure, at rho**2 = -2 H0, are as far from there as the axis; never nearer than the
   !> next two, in lateral units and in units of the contact radius from the edge.
@@ -27,9 +25,11 @@ module mesh_rule
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
-  !> Nodes of the short panels (`law_panels`) under a law with lengths of its own: so many,
-  !> and more for each digit.
-  real(wp), parameter :: short_order = 4, short_orders = 0.9_wp
+  !> Short panels: their length in z, so many nodes, and more for each digit.
+  real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
+  !> Digits of load and h0 beyond those of the pressure's last Legendre coefficients on a panel: so
+  !> many or more under the paper's laws, since nodes integrate polynomials of twice the degree.
+  real(wp), parameter :: beyond_tail = 3
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
@@ -187,41 +187,47 @@ contains
     gap = bracket%middle()
   end function fading_gap
 
-  !> Adds sinh panels over z_length: one for the paper's laws, which are powers of the gap or one
-  !> exponential, and bodies that are parabolas near the axis: the density was fitted to these.
-  !> Other laws have lengths of their own anywhere within their reach: short panels follow them, but
-  !> inside the edge those that fit the law. So they do other shapes. about, side, low, high: as for
-  !> `fitting_panels`.
+  !> Adds sinh panels over z_length. One is enough for the paper's laws, which are powers of the gap
+  !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
+  !> these. Other laws have lengths of their own anywhere within their reach, and where these are
+  !> seen the panel is halved. Laws that oscillate or end in a step, and other shapes, have short
+  !> panels from the beginning. about, side, low, high: as for `fitting_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
     integer, intent(in) :: about, side
     real(wp), intent(in) :: z_length, density, digits, low, high
     real(wp), allocatable :: lengths(:)
-    integer :: panels, order
+    real(wp) :: smoothness
+    integer :: panels, fewest
     logical :: broken
 
     broken = problem%shape%smooth_from() > 0
     if (side > 0) broken = broken .or. &
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0) > &
       problem%shape%ends
-    if (problem%law%of_paper .and. .not. (abs(problem%shape%exponent - 2) > 0 .or. broken)) then
-      call add_panel(shape, z_length, density)
-      return
-    end if
-    order = ceiling(short_order + short_orders*digits)
-    if (problem%law%edge_gap > 0 .and. .not. problem%law%of_paper .and. &
-      .not. (about == about_edge .and. side < 0)) then
-      lengths = fitting_panels(problem, about, side, shape%d, z_length, low, high, order, &
-        merge(min(digits, digits_of_broken), digits, broken))
-    else
-      panels = ceiling(z_length/longest)
-      lengths = spread(z_length/panels, 1, panels)
-    end if
+    fewest = ceiling(short_order + short_orders*digits)
+    smoothness = merge(min(digits, digits_of_broken), digits, broken)
+    associate (law => problem%law)
+      if (law%period > 0 .or. law%step_width > 0 .or. broken .or. &
+        abs(problem%shape%exponent - 2) > 0) then
+        panels = ceiling(z_length/short)
+        lengths = spread(z_length/panels, 1, panels)
+      else
+        lengths = [rung*ceiling(z_length/rung)]
+        fewest = min(fewest, nodes_on(lengths(1), density, 0))
+        smoothness = smoothness - beyond_tail
+      end if
+      ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
+      if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
+        .not. (about == about_edge .and. side < 0)) &
+        lengths = fitting_panels(problem, about, side, shape%d, lengths, low, high, density, &
+        fewest, smoothness)
+    end associate
     ! From the axis outward.
     if (side < 0) lengths = lengths(size(lengths):1:-1)
     if (.not. allocated(shape%order)) allocate (shape%order(0), shape%z_length(0))
-    shape%order = [shape%order, spread(order, 1, size(lengths))]
+    shape%order = [shape%order, nodes_on(lengths, density, fewest)]
     shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
 
@@ -248,18 +254,6 @@ contains
 
     is_even = .not. abs(shape%exponent - 2*nint(0.5_wp*shape%exponent)) > 0
   end function is_even
-
-  !> Adds a sinh panel of at least z_length at so many nodes a unit of z.
-  pure subroutine add_panel(shape, z_length, density)
-    type(mapped_shape_t), intent(inout) :: shape
-    real(wp), intent(in) :: z_length, density
-    real(wp) :: length
-
-    if (.not. allocated(shape%order)) allocate (shape%order(0), shape%z_length(0))
-    length = rung*ceiling(z_length/rung)
-    shape%order = [shape%order, ceiling(density*length + more_nodes)]
-    shape%z_length = [shape%z_length, length]
-  end subroutine add_panel
 
   !> sigma (40): the coupling times the surface energy; 0 without adhesion.
   pure real(wp) function strength(problem)
