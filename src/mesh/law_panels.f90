@@ -71,7 +71,8 @@ contains
       end if
     end subroutine add
 
-    !> The largest of the last two Legendre coefficients of the pressure on a panel.
+    !> The largest of the last two Legendre coefficients of the pressure on a panel, which counts as
+    !> the area does on which it acts.
     real(wp) function tail_on(z, length) result(tail)
       real(wp), intent(in) :: z, length
       type(local_nodes_t) :: local
@@ -83,7 +84,8 @@ contains
       offset = side*d*sinh(z + length*local%node)
       do j = 1, size(parameter)
         pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset, d))
-        tail = max(tail, local%tail(pressure))
+        tail = max(tail, local%tail(pressure*(1 + (offset*merge(1.0_wp, parameter(j), &
+          about == about_axis))**2)))
       end do
     end function tail_on
 

@@ -27,9 +27,9 @@ module mesh_rule
   real(wp), parameter :: farthest = 60
   !> Short panels: their length in z, so many nodes, and more for each digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
-  !> Digits of load and h0 beyond those of the pressure's last Legendre coefficients on a panel: so
-  !> many or more under the paper's laws, since nodes integrate polynomials of twice the degree.
-  real(wp), parameter :: beyond_tail = 3
+  !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0, as
+  !> it is under the paper's laws: nodes integrate polynomials of twice the degree.
+  real(wp), parameter :: of_tail = 0.65_wp
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
@@ -216,7 +216,7 @@ contains
       else
         lengths = [rung*ceiling(z_length/rung)]
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
-        smoothness = smoothness - beyond_tail
+        smoothness = of_tail*smoothness
       end if
       ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
       if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
