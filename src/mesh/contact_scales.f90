@@ -8,12 +8,16 @@ module contact_scales
   use convex_contact, only: jkr_like_detachment
   implicit none
   private
-  public :: largest_radius, beyond_contact, hertz_scale, contact_level, smallest_feature, &
+  public :: largest_radius, beyond_contact, hertz_scale, contact_level, cohesive_width, &
+    smallest_feature, &
     lost_in_rounding, largest_floor
 
   !> Smallest feature over the contact radius that a mesh follows: where adhesion makes smaller
   !> ones, rounding hides them, and the mesh would grow for nothing.
   real(wp), parameter :: finest = 1.0e-13_wp
+
+  !> Range of the Lennard-Jones law, its adhesion over its largest tension, in its length.
+  real(wp), parameter :: usual_range = 0.97_wp
 
   !> A residual that rounding excuses, in the law's lengths: beyond it the law is not resolved.
   real(wp), parameter :: largest_floor = 1.0e-3_wp
@@ -75,6 +79,18 @@ contains
     level = bracket%middle()
   end function contact_level
 
+  !> Width of the zone outside the edge over which the tension decays: the neck, as (27) gives it for
+  !> a law whose range is its length; it goes with the square of the range, adhesion over tension.
+  pure real(wp) function cohesive_width(problem) result(width)
+    type(problem_t), intent(in) :: problem
+    real(wp) :: tension(1)
+
+    width = neck_width(problem)
+    if (.not. problem%law%edge_gap > 0) return
+    tension = -problem%law%pressure([problem%law%edge_gap])
+    width = width*min(1.0_wp, (problem%law%adhesion/(usual_range*tension(1)))**2)
+  end function cohesive_width
+
   !> The smallest lateral feature of the pressure up to the contact radius c: the neck, or where
   !> that is wide, the half-width of the pressure between bodies near contact and the boundary
   !> layer of a Hertz contact, whose gap opens as the power 3/2 of the distance from the edge and
@@ -83,7 +99,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
 
-    smallest_feature = max(finest*max(c, 1.0_wp), min(neck_width(problem), 0.5_wp, &
+    smallest_feature = max(finest*max(c, 1.0_wp), min(cohesive_width(problem), 0.5_wp, &
       (problem%law%repulsion_length**2/problem%shape%opening(max(c, 1.0_wp)))**(1.0_wp/3)))
   end function smallest_feature
 

@@ -8,7 +8,7 @@
 !> in the same way.
 module edge_locked
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t, neck_width, calm_gap
+  use dimensionless_problem, only: problem_t, calm_gap
   use discretisation, only: discretisation_t
   use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
   use mesh_store, only: mesh_store_t
@@ -16,7 +16,7 @@ module edge_locked
   use law_panels, only: about_front, about_edge
   use step_front, only: front_leads, first_front, last_front
   use force_law, only: force_law_t
-  use contact_scales, only: largest_radius, contact_level, lost_in_rounding
+  use contact_scales, only: largest_radius, contact_level, cohesive_width, lost_in_rounding
   implicit none
   private
   public :: mesh_family_t, new_mesh_family
@@ -214,7 +214,7 @@ contains
       c = 0.5_wp*last_front(problem)
       return
     end if
-    c = 0.25_wp*neck_width(problem)
+    c = 0.25_wp*cohesive_width(problem)
     if (problem%law%edge_gap > 0) &
       c = min(c, 0.25_wp*problem%shape%position_of( &
       0.5_wp*(problem%law%edge_gap - problem%law%rest_gap)))

@@ -11,7 +11,7 @@ module law_panels
   use step_front, only: front_leads, gap_about_front
   implicit none
   private
-  public :: fitting_panels, nodes_on
+  public :: fit_panels, nodes_on
   public :: about_axis, about_front, about_edge
 
   !> What a mesh is mapped to: the axis, the front of a step, the contact edge.
@@ -22,6 +22,8 @@ module law_panels
   !> No panel shorter than twice this is halved; gaps on the axis, or radii, that are tried.
   real(wp), parameter :: shortest = 0.01_wp
   integer, parameter :: tried = 9
+  !> How many times the nodes are tried before a panel is halved.
+  real(wp), parameter :: times(3) = [1.0_wp, 1.3_wp, 1.7_wp]
 
 contains
 
@@ -33,63 +35,74 @@ contains
     order = max(fewest, ceiling(density*length + more_nodes))
   end function nodes_on
 
-  !> Lengths in z of panels of `nodes_on` nodes at positions centre + side*d sinh(z): those given, or
-  !> halves of them, for radii of the front or the edge from low to high; `about`: what is at the
-  !> centre.
-  function fitting_panels(problem, about, side, d, first, low, high, density, fewest, digits) &
-    result(lengths)
+  !> Lengths in z and nodes of panels at positions centre + side*d sinh(z): those given, with
+  !> `nodes_on` them or more, or halves of them. For radii of the front or the edge from low to high;
+  !> `about`: what is at the centre.
+  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, length, order)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about, side, fewest
-    real(wp), intent(in) :: d, first(:), low, high, density, digits
-    real(wp), allocatable :: lengths(:)
-    real(wp), allocatable :: parameter(:)
-    real(wp) :: largest(1)
+    real(wp), intent(in) :: d, low, high, density, digits
+    real(wp), allocatable, intent(inout) :: length(:)
+    integer, allocatable, intent(out) :: order(:)
+    real(wp), allocatable :: given(:), parameter(:)
+    real(wp) :: most(1)
     integer :: k
 
-    largest = abs(problem%law%pressure([problem%law%edge_gap]))
+    most = 10.0_wp**(-digits)*abs(problem%law%pressure([problem%law%edge_gap]))
     if (about == about_axis) then
       parameter = axis_gaps(problem)
     else
       parameter = between(low, high)
     end if
-    allocate (lengths(0))
-    do k = 1, size(first)
-      call add(sum(first(:k - 1)), first(k))
+    call move_alloc(length, given)
+    allocate (length(0), order(0))
+    do k = 1, size(given)
+      call add(sum(given(:k - 1)), given(k))
     end do
 
   contains
 
     !> Adds the panel from z on, or its halves.
-    recursive subroutine add(z, length)
-      real(wp), intent(in) :: z, length
+    recursive subroutine add(z, z_length)
+      real(wp), intent(in) :: z, z_length
+      integer :: nodes, before, k
 
-      if (length > 2*shortest .and. tail_on(z, length) > 10.0_wp**(-digits)*largest(1)) then
-        call add(z, 0.5_wp*length)
-        call add(z + 0.5_wp*length, 0.5_wp*length)
-      else
-        lengths = [lengths, length]
-      end if
+      before = 0
+      do k = 1, size(times)
+        nodes = nodes_on(z_length, times(k)*density, fewest)
+        if (nodes == before) cycle
+        if (tail_on(z, z_length, nodes) <= most(1) .or. z_length < 2*shortest) then
+          length = [length, z_length]
+          order = [order, nodes]
+          return
+        end if
+        before = nodes
+      end do
+      call add(z, 0.5_wp*z_length)
+      call add(z + 0.5_wp*z_length, 0.5_wp*z_length)
     end subroutine add
 
     !> The largest of the last two Legendre coefficients of the pressure on a panel, which counts as
     !> the area does on which it acts.
-    real(wp) function tail_on(z, length) result(tail)
-      real(wp), intent(in) :: z, length
+    real(wp) function tail_on(z, z_length, nodes) result(tail)
+      real(wp), intent(in) :: z, z_length
+      integer, intent(in) :: nodes
       type(local_nodes_t) :: local
-      real(wp), allocatable :: pressure(:), offset(:)
+      real(wp) :: pressure(nodes), offset(nodes)
       integer :: j
 
       tail = 0
-      local = gauss_nodes(nodes_on(length, density, fewest))
-      offset = side*d*sinh(z + length*local%node)
+      local = gauss_nodes(nodes)
+      offset = side*d*sinh(z + z_length*local%node)
       do j = 1, size(parameter)
-        pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset, d))
-        tail = max(tail, local%tail(pressure*(1 + (offset*merge(1.0_wp, parameter(j), &
-          about == about_axis))**2)))
+        associate (unit => merge(1.0_wp, parameter(j), about == about_axis))
+          pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset, d))
+          tail = max(tail, local%tail(pressure*(1 + (unit*offset)**2)))
+        end associate
       end do
     end function tail_on
 
-  end function fitting_panels
+  end subroutine fit_panels
 
   !> Gaps on the axis that bodies have before contact: down to that of most tension, or where a step
   !> has a front before that, through the step.

@@ -11,6 +11,9 @@ module mapped_mesh
   private
   public :: mapped_shape_t, same_shape, new_mapped_mesh
 
+  !> A panel of more nodes is a long one.
+  integer, parameter :: long = 16
+
   !> What a mapped mesh is like.
   type :: mapped_shape_t
     !> Position of the centre (0: the axis, 1: the contact edge), and d.
@@ -34,7 +37,8 @@ module mapped_mesh
 
 contains
 
-  !> The shape with some of its sinh panels halved.
+  !> The shape with some of its sinh panels halved: half of a long one has fewer nodes, though more
+  !> for its length.
   pure type(mapped_shape_t) function halved(self, which) result(shape)
     class(mapped_shape_t), intent(in) :: self
     logical, intent(in) :: which(:)
@@ -44,8 +48,9 @@ contains
     deallocate (shape%order, shape%z_length)
     allocate (shape%order(0), shape%z_length(0))
     do k = 1, size(self%order)
-      associate (parts => merge(2, 1, which(k)))
-        shape%order = [shape%order, spread(self%order(k), 1, parts)]
+      associate (parts => merge(2, 1, which(k)), order => self%order(k))
+        shape%order = [shape%order, spread(merge(max(min(order, long), ceiling(0.7_wp*order)), &
+          order, which(k)), 1, parts)]
         shape%z_length = [shape%z_length, spread(self%z_length(k)/parts, 1, parts)]
       end associate
     end do

@@ -5,9 +5,9 @@ module mesh_rule
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
   use shape, only: shape_t
-  use dimensionless_problem, only: problem_t, calm_gap, neck_width
-  use contact_scales, only: smallest_feature
-  use law_panels, only: fitting_panels, nodes_on, about_axis, about_front, about_edge
+  use dimensionless_problem, only: problem_t, calm_gap
+  use contact_scales, only: smallest_feature, cohesive_width
+  use law_panels, only: fit_panels, nodes_on, about_axis, about_front, about_edge
   use step_front, only: front_leads, first_front, front_width
   use mapped_mesh, only: mapped_shape_t
   implicit none
@@ -25,6 +25,9 @@ module mesh_rule
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
+  !> How many times the nodes laws have to which the rule was not fitted, where no pressure is tried
+  !> or none as sharp as between bodies that pull each other together.
+  real(wp), parameter :: for_others = 1.3_wp
   !> Short panels: their length in z, so many nodes, and more for each digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
   !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0, as
@@ -91,6 +94,7 @@ contains
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
       (1 + 0.03_wp*log(1 + strength(problem)))
     if (.not. problem%rigid) density = density*(1 - 0.3_wp/(1 + strength(problem)))
+    if (.not. problem%law%of_paper) density = for_others*density
     reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
     feature = smallest_feature(problem, 1.0_wp)
@@ -125,11 +129,12 @@ contains
       inner = 1.5_wp*inner
       outer = inner
     end if
+    if (.not. problem%law%of_paper) inner = for_others*inner
     reach = max(nearest_tail, beyond_poles*problem%shape%position_of(0.5_wp*calm_gap(problem)))
     ! As long as a contact is smaller than its neck, the pressure around it is that before contact;
     ! where the neck is wider than the force reaches, this is smooth enough.
-    if (problem%law%adhesion > 0 .and. neck_width(problem) < 1) &
-      outer = outer*(1 + 0.5_wp/(1 + 3*(low/neck_width(problem))**2))
+    if (problem%law%adhesion > 0 .and. cohesive_width(problem) < 1) &
+      outer = outer*(1 + 0.5_wp/(1 + 3*(low/cohesive_width(problem))**2))
     call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)
     reach = max(tail_of_contact, reach/low)
     shape%centre = 1
@@ -191,7 +196,7 @@ contains
   !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
   !> these. Other laws have lengths of their own anywhere within their reach, and where these are
   !> seen the panel is halved. Laws that oscillate or end in a step, and other shapes, have short
-  !> panels from the beginning. about, side, low, high: as for `fitting_panels`.
+  !> panels from the beginning. about, side, low, high: as for `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -199,6 +204,7 @@ contains
     real(wp), intent(in) :: z_length, density, digits, low, high
     real(wp), allocatable :: lengths(:)
     real(wp) :: smoothness
+    integer, allocatable :: orders(:)
     integer :: panels, fewest
     logical :: broken
 
@@ -220,14 +226,20 @@ contains
       end if
       ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
       if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
-        .not. (about == about_edge .and. side < 0)) &
-        lengths = fitting_panels(problem, about, side, shape%d, lengths, low, high, density, &
-        fewest, smoothness)
+        .not. (about == about_edge .and. side < 0)) then
+        call fit_panels(problem, about, side, shape%d, low, high, density, fewest, smoothness, &
+          lengths, orders)
+      else
+        orders = nodes_on(lengths, density, fewest)
+      end if
     end associate
-    ! From the axis outward.
-    if (side < 0) lengths = lengths(size(lengths):1:-1)
     if (.not. allocated(shape%order)) allocate (shape%order(0), shape%z_length(0))
-    shape%order = [shape%order, nodes_on(lengths, density, fewest)]
+    ! From the axis outward.
+    if (side < 0) then
+      lengths = lengths(size(lengths):1:-1)
+      orders = orders(size(orders):1:-1)
+    end if
+    shape%order = [shape%order, orders]
     shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
 
