@@ -66,7 +66,10 @@ contains
     digits = max(2.5_wp - 0.75_wp*log10(accuracy), -0.2_wp - 1.2_wp*log10(accuracy))
     ! Without jumps nothing is as sensitive as they are, but for the load of rigid bodies.
     if (strength(problem) < onset .and. .not. problem%rigid) digits = digits - more_for_jumps
-    if (.not. problem%law%of_paper) digits = digits + more_for_lengths
+    if (.not. problem%law%of_paper) then
+      digits = digits + more_for_lengths
+      for_folds = for_folds + more_for_lengths
+    end if
     if (profiles) digits = digits + more_for_profiles + &
       more_for_narrow_necks*log10(1 + strength(problem))
     ! So do extrema of the load where the edge passes a kink of the bodies.
