@@ -32,7 +32,8 @@ module mesh_rule
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
   !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0, as
   !> it is under the paper's laws: nodes integrate polynomials of twice the degree.
-  real(wp), parameter :: of_tail = 0.65_wp
+  !> Where adhesion is strong, what is far from the edge deforms the bodies more.
+  real(wp), parameter :: of_tail = 0.65_wp, more_of_strong = 0.5_wp
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
@@ -218,14 +219,14 @@ contains
     fewest = ceiling(short_order + short_orders*digits)
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
     associate (law => problem%law)
-      if (law%period > 0 .or. law%step_width > 0 .or. broken .or. &
+      if (law%period > 0 .or. law%step_width > 0 .or. law%has_kink .or. broken .or. &
         abs(problem%shape%exponent - 2) > 0) then
         panels = ceiling(z_length/short)
         lengths = spread(z_length/panels, 1, panels)
       else
         lengths = [rung*ceiling(z_length/rung)]
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
-        smoothness = of_tail*smoothness
+        smoothness = of_tail*smoothness + more_of_strong*log10(1 + strength(problem))
       end if
       ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
       if (law%edge_gap > 0 .and. .not. law%of_paper .and. &

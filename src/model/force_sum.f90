@@ -141,6 +141,7 @@ contains
     law%repulsion_length = huge(1.0_wp)
     law%tail_power = huge(1.0_wp)
     law%period = 0
+    law%has_kink = .false.
     law%step_at = 0
     law%step_width = 0
     do i = 1, size(law%term)
@@ -151,6 +152,7 @@ contains
         law%smallest_gap = max(law%smallest_gap, (part%smallest_gap - term%shift)/term%stretch)
         law%repulsion_length = min(law%repulsion_length, part%repulsion_length/term%stretch)
         law%tail_power = min(law%tail_power, part%tail_power)
+        law%has_kink = law%has_kink .or. part%has_kink
         if (part%period > 0) law%period = part%period/term%stretch
         if (.not. part%step_width > 0) cycle
         law%step_at = (part%step_at - term%shift)/term%stretch
