@@ -35,7 +35,7 @@ module anderson
 
   !> Iterations that a state takes anyway, and those that a factorisation of so many unknowns costs
   !> as much as: one is renewed when states took more than this beyond that.
-  integer, parameter :: few_iterations = 3, unknowns_an_iteration = 6
+  integer, parameter :: few_iterations = 2, unknowns_an_iteration = 6
   !> Steps rejected before a solution is given up.
   integer, parameter :: most_rejections = 4
 

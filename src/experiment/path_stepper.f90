@@ -202,14 +202,44 @@ contains
   !> The state that is expected at h0, where the span has the coordinate s: that of the span, and by
   !> how much it missed the last states, extrapolated.
   subroutine expect(self, h0, s, position, state)
-    class(path_stepper_t), intent(in) :: self
+    class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0, s
     type(branch_point_t), intent(in) :: position
     type(state_t), intent(out) :: state
-    real(wp), dimension(position%held) :: at, weight
-    real(wp) :: missed
-    type(state_t) :: there(position%held)
-    integer :: k, first
+    real(wp), dimension(position%held) :: at, weight, missed
+    real(wp) :: place
+    integer :: there(position%held)
+    integer :: k, first, round
+
+    call choose_past(self, s, position, at, first)
+    do k = first, position%held
+      call self%span%recall(at(k), there(k))
+      missed(k) = position%h0(k) - self%span%recalled(there(k))%h0
+    end do
+    ! What it missed by says where the state is, and the place says what it misses by.
+    place = s
+    do round = 1, 2
+      weight(first:) = polynomial_weights(at(first:), place)
+      place = self%span%at_h0(h0 - dot_product(weight(first:), missed(first:)))
+    end do
+    state = self%span%guess(place)
+    do k = first, position%held
+      associate (past => position%past(k), guessed => self%span%recalled(there(k)))
+        state%gap = state%gap + weight(k)*(past%gap - guessed%gap)
+        state%scale = state%scale + weight(k)*(past%scale - guessed%scale)
+      end associate
+    end do
+  end subroutine expect
+
+  !> The first of the past states from which it can be extrapolated to the coordinate s by how much
+  !> the span missed them; one more than there are: none. at: their coordinates.
+  pure subroutine choose_past(self, s, position, at, first)
+    class(path_stepper_t), intent(in) :: self
+    real(wp), intent(in) :: s
+    type(branch_point_t), intent(in) :: position
+    real(wp), intent(out) :: at(:)
+    integer, intent(out) :: first
+    integer :: k
 
     first = position%held + 1
     if (position%mesh == self%span%mesh) first = 1
@@ -221,20 +251,9 @@ contains
       ! rounding alone tell nothing of a third.
       if (abs(at(first) - s) > abs(self%span%ends(2) - self%span%ends(1))) cycle
       if (any(abs(at(first + 1:) - at(first:position%held - 1)) <= 0)) cycle
-      weight(first:) = polynomial_weights(at(first:), s)
-      if (sum(abs(weight(first:))) <= most_weight) exit
+      if (sum(abs(polynomial_weights(at(first:), s))) <= most_weight) exit
     end do
-    missed = 0
-    do k = first, position%held
-      there(k) = self%span%guess(at(k))
-      missed = missed + weight(k)*(position%h0(k) - there(k)%h0)
-    end do
-    state = self%span%guess(self%span%at_h0(h0 - missed))
-    do k = first, position%held
-      state%gap = state%gap + weight(k)*(position%past(k)%gap - there(k)%gap)
-      state%scale = state%scale + weight(k)*(position%past(k)%scale - there(k)%scale)
-    end do
-  end subroutine expect
+  end subroutine choose_past
 
   !> Whether the coordinate s in the piece after point i, between `ends`, is so near a fold that h0
   !> hardly moves.
