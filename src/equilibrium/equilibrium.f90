@@ -271,7 +271,8 @@ contains
     real(wp), intent(in) :: tolerance
     type(state_t), intent(in) :: state
 
-    holds = state%residual <= max(tolerance, residual_floor(problem, state))
+    holds = state%residual <= tolerance
+    if (.not. holds) holds = state%residual <= residual_floor(problem, state)
   end function holds
 
   !> The residual that rounding alone leaves: a few units in the last place of the gaps and of the

@@ -19,7 +19,7 @@ module arc
   !> What the path is asked about: h0 or the load.
   integer, parameter :: of_h0 = 1, of_load = 2
   !> States that a state beyond an end is extrapolated from.
-  integer, parameter :: extrapolated_from = 3
+  integer, parameter :: extrapolated_from = 4
   !> A neighbour nearer to an interval than this part of its width makes its polynomial worse.
   real(wp), parameter :: well_apart = 0.1_wp
 
