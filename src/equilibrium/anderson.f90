@@ -33,9 +33,9 @@ module anderson
     type(history_t) :: history
   end type iterate_t
 
-  !> Iterations that a state takes anyway, and those that a factorisation of so many unknowns costs
-  !> as much as: one is renewed when states took more than this beyond that.
-  integer, parameter :: few_iterations = 2, unknowns_an_iteration = 6
+  !> Unknowns for each iteration that a factorisation costs as much as: it is renewed when states
+  !> took more than these beyond what they took while it was new.
+  integer, parameter :: unknowns_an_iteration = 3
   !> Steps rejected before a solution is given up.
   integer, parameter :: most_rejections = 4
 
@@ -52,7 +52,7 @@ contains
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
     type(iterate_t) :: now
-    integer :: iteration
+    integer :: iteration, renewals
 
     if (.not. equations%problem%coupling > 0 .and. control%kind == at_h0) then
       call solve_rigid(equations, control, state)
@@ -64,6 +64,7 @@ contains
     now%z_least = now%z
     allocate (now%g(size(now%z)))
     frozen%factors%valid = frozen%serves(control, size(now%z))
+    renewals = frozen%renewals
     converged = .false.
     do iteration = 1, options%most_iterations
       call residual(equations, control, now%z, now%g, state)
@@ -83,8 +84,12 @@ contains
     end do
     if (.not. converged .and. now%least < state%residual) &
       call residual(equations, control, now%z_least, now%g, state)
+    if (frozen%renewals > renewals) then
+      frozen%usual = now%since_renewal + 1
+    else
+      frozen%excess = frozen%excess + max(0, state%iterations - frozen%usual)
+    end if
     ! The next state is better off with a new one.
-    frozen%excess = frozen%excess + max(0, state%iterations - few_iterations)
     if (unknowns_an_iteration*frozen%excess > size(now%z)) frozen%factors%valid = .false.
   end subroutine solve_anderson
 
@@ -194,9 +199,9 @@ contains
 
     step = -f
     if (depth == 0) return
-    if (.not. allocated(history%dz)) &
-      allocate (history%dz(size(z), depth), history%df(size(z), depth))
     if (allocated(history%f_before)) then
+      if (.not. allocated(history%dz)) &
+        allocate (history%dz(size(z), depth), history%df(size(z), depth))
       if (history%held == depth) then
         history%dz(:, :depth - 1) = history%dz(:, 2:)
         history%df(:, :depth - 1) = history%df(:, 2:)

@@ -107,13 +107,14 @@ contains
       end if
       state%pressure = problem%law%pressure(state%gap)
       cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
-      raised = 0
       if (problem%coupling > 0) then
         columns = acting_columns(state%pressure)
         call multiply(grid%kernel, columns, state%pressure, raised)
         raised = 2*problem%coupling*state%scale*raised
         cost%operator_products = cost%operator_products + 1
         cost%operator_columns = cost%operator_columns + columns
+      else
+        raised = 0
       end if
       g(:n) = state%gap - state%h0 - problem%shape%height(state%scale*grid%x(:n)) - &
         raised(first_node:)

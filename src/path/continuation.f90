@@ -29,7 +29,7 @@ module continuation
     rung = 1.2_wp
   integer, parameter :: order = 8
   !> The same of a path whose points are to make a smooth curve, and its longest step.
-  real(wp), parameter :: miss_of_curve = 1.0e-6_wp, step_of_curve = 0.12_wp
+  real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   !> The least contact radius over that of a passage for a state to be taken to the next mesh; the
   !> largest that a step may lead to on a mesh, which is no good beyond, and how short it is made
   !> for that.
