@@ -33,9 +33,9 @@ module anderson
     type(history_t) :: history
   end type iterate_t
 
-  !> Unknowns for each iteration that a factorisation costs as much as: it is renewed when states
-  !> took more than these beyond what they took while it was new.
-  integer, parameter :: unknowns_an_iteration = 3
+  !> Iterations that a state takes anyway; and unknowns for each iteration beyond these that a
+  !> factorisation serves before it is renewed. It costs half of that, and saves them for a while.
+  integer, parameter :: few_iterations = 2, unknowns_an_iteration = 3
   !> Steps rejected before a solution is given up.
   integer, parameter :: most_rejections = 4
 
@@ -52,7 +52,7 @@ contains
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
     type(iterate_t) :: now
-    integer :: iteration, renewals
+    integer :: iteration
 
     if (.not. equations%problem%coupling > 0 .and. control%kind == at_h0) then
       call solve_rigid(equations, control, state)
@@ -64,7 +64,6 @@ contains
     now%z_least = now%z
     allocate (now%g(size(now%z)))
     frozen%factors%valid = frozen%serves(control, size(now%z))
-    renewals = frozen%renewals
     converged = .false.
     do iteration = 1, options%most_iterations
       call residual(equations, control, now%z, now%g, state)
@@ -84,12 +83,8 @@ contains
     end do
     if (.not. converged .and. now%least < state%residual) &
       call residual(equations, control, now%z_least, now%g, state)
-    if (frozen%renewals > renewals) then
-      frozen%usual = now%since_renewal + 1
-    else
-      frozen%excess = frozen%excess + max(0, state%iterations - frozen%usual)
-    end if
     ! The next state is better off with a new one.
+    frozen%excess = frozen%excess + max(0, state%iterations - few_iterations)
     if (unknowns_an_iteration*frozen%excess > size(now%z)) frozen%factors%valid = .false.
   end subroutine solve_anderson
 

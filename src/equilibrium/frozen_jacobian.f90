@@ -13,9 +13,8 @@ module frozen_jacobian
     !> The control, and of the state what the Jacobian depends on: gaps, H0 and scale.
     type(control_t) :: control
     type(state_t) :: state
-    !> Iterations that a state took with it when it was new, and those that states took since beyond
-    !> as many each.
-    integer :: usual = 0, excess = 0
+    !> Iterations that states solved with it took beyond those that they take anyway.
+    integer :: excess = 0
     !> Jacobians that were frozen here, this one included.
     integer :: renewals = 0
   contains

@@ -46,7 +46,7 @@ contains
     end do
   end function neighbours_of
 
-  !> Where between the ends of the piece the curve of h0 through the neighbours is at h0: by Newton's
+  !> Where between the ends of the piece the curve that h0 is there has a value: by Newton's
   !> method, kept between the ends by halving.
   pure real(wp) function coordinate_at_h0(near, curve, h0) result(s)
     type(neighbours_t), intent(in) :: near

@@ -227,7 +227,6 @@ contains
     logical, intent(in) :: known
 
     call record%put(frozen%factors%valid)
-    call record%put(frozen%usual)
     call record%put(frozen%excess)
     call record%put(frozen%control%kind)
     call record%put(frozen%control%mesh)
@@ -246,7 +245,6 @@ contains
     logical :: known
 
     call record%take(frozen%factors%valid)
-    call record%take(frozen%usual)
     call record%take(frozen%excess)
     call record%take(frozen%control%kind)
     call record%take(frozen%control%mesh)
