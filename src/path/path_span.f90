@@ -12,7 +12,7 @@ module path_span
   private
   public :: path_span_t, new_path_span
 
-  !> Expected states that are kept: no step asks for more.
+  !> Expected states that are kept: more than are asked for at once.
   integer, parameter :: most_recalled = 8
 
   type :: path_span_t
@@ -23,10 +23,9 @@ module path_span
     type(hermite_t), private :: h0, load
     !> Those of the neighbours that the polynomial fits.
     integer, private :: nodes(most_hermite_nodes) = 0, held = 0
-    !> The last states that were recalled, where, and which of them is the newest.
+    !> States that were recalled, and where.
     type(state_t) :: recalled(most_recalled)
     real(wp), private :: recalled_at(most_recalled) = huge(1.0_wp)
-    integer, private :: newest = 0
   contains
     procedure :: at_h0
     procedure :: recall
@@ -70,20 +69,26 @@ contains
     state = self%near%guess_from(self%nodes(:self%held), s)
   end function guess
 
-  !> Lets recalled(k) be the state that is expected at s, made anew only where it is not among the
-  !> last ones: what a step asks about its past the steps before have asked.
-  pure subroutine recall(self, s, k)
+  !> Lets recalled(slot(k)) be the state that is expected at s(k), made anew only where it is not
+  !> among those kept: what a step asks about its past the steps before have asked.
+  pure subroutine recall(self, s, slot)
     class(path_span_t), intent(inout) :: self
-    real(wp), intent(in) :: s
-    integer, intent(out) :: k
+    real(wp), intent(in) :: s(:)
+    integer, intent(out) :: slot(:)
+    integer :: j, k
 
-    do k = 1, most_recalled
-      if (abs(self%recalled_at(k) - s) <= 0) return
+    do k = 1, size(s)
+      slot(k) = findloc(self%recalled_at, s(k), 1)
     end do
-    self%newest = mod(self%newest, most_recalled) + 1
-    k = self%newest
-    self%recalled_at(k) = s
-    self%recalled(k) = self%guess(s)
+    do k = 1, size(s)
+      if (slot(k) > 0) cycle
+      do j = 1, most_recalled - 1
+        if (.not. any(slot == j)) exit
+      end do
+      slot(k) = j
+      self%recalled_at(j) = s(k)
+      self%recalled(j) = self%guess(s(k))
+    end do
   end subroutine recall
 
   !> H0 and load that are expected at s.
