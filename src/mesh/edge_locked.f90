@@ -54,6 +54,7 @@ module edge_locked
     integer :: fronts = 0
   contains
     procedure :: in_contact
+    procedure :: has_short_panels
     procedure :: locked_gap
     procedure :: halve_panels
     procedure :: complete
@@ -183,10 +184,20 @@ contains
     more_digits = self%digits - coarser%digits
     do k = 1, size(coarser%grid)
       if (.not. allocated(coarser%grid(k)%kernel)) cycle
-      if (coarser%refined(k) .or. size(coarser%shape(k)%order) > long_panels) self%shape(k) = &
+      if (coarser%refined(k) .or. coarser%has_short_panels(k)) self%shape(k) = &
         coarser%shape(k)%enriched(ceiling(short_orders*more_digits), more_digits)
     end do
   end subroutine follow
+
+  !> Whether a mesh has panels that are short, for a law with lengths of its own.
+  pure logical function has_short_panels(self, mesh)
+    class(mesh_family_t), intent(in) :: self
+    integer, intent(in) :: mesh
+
+    has_short_panels = .false.
+    if (allocated(self%shape(mesh)%order)) &
+      has_short_panels = size(self%shape(mesh)%order) > long_panels
+  end function has_short_panels
 
   !> Whether a mesh is locked to the contact edge.
   pure logical function in_contact(self, mesh)
