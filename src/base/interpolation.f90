@@ -143,10 +143,13 @@ contains
   pure function own_slopes(at) result(slope)
     real(wp), intent(in) :: at(:)
     real(wp) :: slope(size(at))
-    integer :: j
+    integer :: j, k
 
+    slope = 0
     do j = 1, size(at)
-      slope(j) = sum(1/pack(at(j) - at, abs(at(j) - at) > 0))
+      do k = 1, size(at)
+        if (k /= j) slope(j) = slope(j) + 1/(at(j) - at(k))
+      end do
     end do
   end function own_slopes
 

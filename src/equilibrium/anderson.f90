@@ -33,9 +33,9 @@ module anderson
     type(history_t) :: history
   end type iterate_t
 
-  !> Iterations that a state takes anyway, and those that a factorisation of so many unknowns costs
-  !> as much as: one is renewed when states took more than this beyond that.
-  integer, parameter :: few_iterations = 3, unknowns_an_iteration = 6
+  !> Iterations that a state takes anyway; and unknowns for each iteration beyond these that a
+  !> factorisation serves before it is renewed. It costs half of that, and saves them for a while.
+  integer, parameter :: few_iterations = 2, unknowns_an_iteration = 3
   !> Steps rejected before a solution is given up.
   integer, parameter :: most_rejections = 4
 
@@ -194,9 +194,9 @@ contains
 
     step = -f
     if (depth == 0) return
-    if (.not. allocated(history%dz)) &
-      allocate (history%dz(size(z), depth), history%df(size(z), depth))
     if (allocated(history%f_before)) then
+      if (.not. allocated(history%dz)) &
+        allocate (history%dz(size(z), depth), history%df(size(z), depth))
       if (history%held == depth) then
         history%dz(:, :depth - 1) = history%dz(:, 2:)
         history%df(:, :depth - 1) = history%df(:, 2:)

@@ -107,13 +107,14 @@ contains
       end if
       state%pressure = problem%law%pressure(state%gap)
       cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
-      raised = 0
       if (problem%coupling > 0) then
         columns = acting_columns(state%pressure)
         call multiply(grid%kernel, columns, state%pressure, raised)
         raised = 2*problem%coupling*state%scale*raised
         cost%operator_products = cost%operator_products + 1
         cost%operator_columns = cost%operator_columns + columns
+      else
+        raised = 0
       end if
       g(:n) = state%gap - state%h0 - problem%shape%height(state%scale*grid%x(:n)) - &
         raised(first_node:)
@@ -131,12 +132,30 @@ contains
       state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
       if (grid%is_bounded()) state%load = state%load + 2*pi*load_beyond(problem, &
         gap_at_end(problem%shape, grid, state), load_reach(grid, state))
-      state%residual = maxval(abs(g(n + 1:)))
-      state%residual = max(state%residual, maxval(abs(g(:n))/max(1.0_wp, state%gap/far_gap)))
-      ! maxval passes over NaN, and neither NaN nor infinity must ever look converged.
-      if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)
+      state%residual = largest_error(g, state%gap)
     end associate
   end subroutine residual
+
+  !> The largest |G|; what belongs to gaps beyond `far_gap` as a part of them. Neither NaN nor
+  !> infinity must ever look converged: they are huge.
+  pure real(wp) function largest_error(g, gap) result(largest)
+    real(wp), intent(in) :: g(:), gap(:)
+    real(wp) :: error
+    integer :: i
+
+    largest = 0
+    do i = 1, size(g)
+      error = abs(g(i))
+      if (.not. error <= huge(error)) then
+        largest = huge(error)
+        return
+      end if
+      if (i <= size(gap)) then
+        if (gap(i) > far_gap) error = error*(far_gap/gap(i))
+      end if
+      largest = max(largest, error)
+    end do
+  end function largest_error
 
   !> Whether unknowns are such that pressures, and all that follows from them, are numbers.
   pure logical function defined(problem, z, state)
@@ -271,7 +290,8 @@ contains
     real(wp), intent(in) :: tolerance
     type(state_t), intent(in) :: state
 
-    holds = state%residual <= max(tolerance, residual_floor(problem, state))
+    holds = state%residual <= tolerance
+    if (.not. holds) holds = state%residual <= residual_floor(problem, state)
   end function holds
 
   !> The residual that rounding alone leaves: a few units in the last place of the gaps and of the

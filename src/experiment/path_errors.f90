@@ -3,7 +3,8 @@
 module path_errors
   use kinds, only: wp
   use regridding, only: regrid
-  use equilibrium, only: state_t, equations_t
+  use dimensionless_problem, only: problem_t
+  use equilibrium, only: state_t, equations_t, residual_floor
   use path_coordinate, only: coordinate_of
   use potential_energy, only: energy_of
   use traced_path, only: path_point_t, traced_path_t
@@ -53,8 +54,8 @@ contains
     else if (reported%point > 0 .and. with_profile) then
       ! The point's own errors leave the profile out.
       associate (point => known%path%point(reported%point))
-        call judge(own, fine, known%path, sought_at(point, .true.), point%state, on_fine, &
-          reported%error)
+        call judge(own, fine, known%path, sought_at(own%problem, point, .true.), point%state, &
+          on_fine, reported%error)
       end associate
     else if (reported%point > 0) then
       call judge_point(own, fine, known, reported%point)
@@ -67,13 +68,15 @@ contains
     end if
   end subroutine judge_on_path
 
-  !> What defines a point of the path that is reported.
-  pure type(sought_t) function sought_at(point, with_profile) result(sought)
+  !> What defines a point of the path that is reported. Of its h0 rounding leaves more than the
+  !> search where bodies yield much.
+  pure type(sought_t) function sought_at(problem, point, with_profile) result(sought)
+    type(problem_t), intent(in) :: problem
     type(path_point_t), intent(in) :: point
     logical, intent(in) :: with_profile
 
     sought = sought_t(point%mesh, merge(extremum_of_h0, extremum_of_load, point%fold), &
-      point%state%h0, tight, with_profile)
+      point%state%h0, max(tight, residual_floor(problem, point%state)), with_profile)
   end function sought_at
 
   !> Errors of a fold or an extremum of the load, kept in the path.
@@ -87,7 +90,8 @@ contains
 
     associate (point => known%path%point(i))
       if (allocated(point%error)) return
-      call judge(own, fine, known%path, sought_at(point, .false.), point%state, on_fine, error)
+      call judge(own, fine, known%path, sought_at(own%problem, point, .false.), point%state, &
+        on_fine, error)
       point%fine = on_fine
       point%error = error
     end associate

@@ -7,7 +7,6 @@
 !> factorisation for many steps; beside a fold the state is looked for along the path.
 module path_stepper
   use kinds, only: wp
-  use interpolation, only: polynomial_weights
   use listener, only: listener_t
   use equilibrium, only: state_t
   use locked_stepper, only: locked_stepper_t
@@ -16,6 +15,7 @@ module path_stepper
   use traced_path, only: traced_path_t
   use solve_at_h0, only: neighbours_t, neighbours_of, solve_between
   use path_span, only: path_span_t, new_path_span
+  use path_prediction, only: expect
   use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
   use stepper, only: branch_point_t, step_result_t, extreme_t, remember
   implicit none
@@ -39,9 +39,6 @@ module path_stepper
   !> Beside a fold h0 moves with the square of the coordinate and iterations at fixed h0 do not
   !> converge: the part of the last piece before one in which a state is looked for along the path.
   real(wp), parameter :: beside_fold = 0.3_wp
-  !> The largest sum of the weights of states that tell by how much a span misses the next: an
-  !> extrapolation far beyond them tells nothing.
-  real(wp), parameter :: most_weight = 30
   !> Change of the path's coordinate by which a state may miss its piece: meshes of more or fewer
   !> nodes differ by their errors.
   real(wp), parameter :: slack = 1.0e-3_wp
@@ -187,7 +184,7 @@ contains
     associate (ends => self%span%ends)
       s = self%span%at_h0(h0)
       if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
-        call expect(self, h0, s, position, state)
+        call expect(self%problem, self%span, h0, s, position, state)
         call self%attempt(h0, state, mesh, event)
         if (event%converged) then
           s = coordinate_of(self%problem, mesh, state)
@@ -198,43 +195,6 @@ contains
     if (.not. event%converged) call self%state_at_h0(i, h0, mesh, state, event%converged)
     call remember(position, state, mesh, jumped)
   end subroutine solve_on_piece
-
-  !> The state that is expected at h0, where the span has the coordinate s: that of the span, and by
-  !> how much it missed the last states, extrapolated.
-  subroutine expect(self, h0, s, position, state)
-    class(path_stepper_t), intent(in) :: self
-    real(wp), intent(in) :: h0, s
-    type(branch_point_t), intent(in) :: position
-    type(state_t), intent(out) :: state
-    real(wp), dimension(position%held) :: at, weight
-    real(wp) :: missed
-    type(state_t) :: there(position%held)
-    integer :: k, first
-
-    first = position%held + 1
-    if (position%mesh == self%span%mesh) first = 1
-    do k = first, position%held
-      at(k) = coordinate_of(self%problem, self%span%mesh, position%past(k))
-    end do
-    do first = first, position%held
-      ! A span's polynomial is good for no more than its length; and states whose places differ in
-      ! rounding alone tell nothing of a third.
-      if (abs(at(first) - s) > abs(self%span%ends(2) - self%span%ends(1))) cycle
-      if (any(abs(at(first + 1:) - at(first:position%held - 1)) <= 0)) cycle
-      weight(first:) = polynomial_weights(at(first:), s)
-      if (sum(abs(weight(first:))) <= most_weight) exit
-    end do
-    missed = 0
-    do k = first, position%held
-      there(k) = self%span%guess(at(k))
-      missed = missed + weight(k)*(position%h0(k) - there(k)%h0)
-    end do
-    state = self%span%guess(self%span%at_h0(h0 - missed))
-    do k = first, position%held
-      state%gap = state%gap + weight(k)*(position%past(k)%gap - there(k)%gap)
-      state%scale = state%scale + weight(k)*(position%past(k)%scale - there(k)%scale)
-    end do
-  end subroutine expect
 
   !> Whether the coordinate s in the piece after point i, between `ends`, is so near a fold that h0
   !> hardly moves.

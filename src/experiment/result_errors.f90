@@ -27,7 +27,7 @@ module result_errors
   !> because other states may be somewhat worse than those compared. Against a grid twice as coarse
   !> the difference itself is two to three times the error.
   real(wp), parameter :: margin = 3, margin_fixed = 2.5_wp, margin_coarser = 1.2_wp, &
-    margin_unlocked = 6
+    margin_less_gained = 6
 
   !> How a reported state is judged: again on the path of `steps`, if it has one, or else at its h0,
   !> on the finer meshes.
@@ -48,13 +48,16 @@ contains
     type(experiment_result_t), intent(inout) :: outcome
     type(mesh_store_t), intent(inout), target, optional :: store
     type(judge_t) :: judge
+    integer :: k
 
     if (.not. reports(outcome)) return
     judge%steps => steps
     call judge%fine%take_over(steps)
-    ! Without a contact edge nothing locks the mesh to what is sharp in a fall, and more nodes gain
-    ! less.
-    judge%fine%margin = merge(margin, margin_unlocked, steps%problem%law%edge_gap > 0)
+    ! Without a contact edge nothing locks the mesh to what is sharp in a fall, and short panels may
+    ! hold what is not smooth, a law's or a body's: more nodes gain less.
+    judge%fine%margin = margin
+    if (.not. steps%problem%law%edge_gap > 0 .or. any([(steps%meshes%has_short_panels(k), &
+      k=1, size(steps%meshes%grid))])) judge%fine%margin = margin_less_gained
     judge%fine%meshes = new_mesh_family(steps%problem, high, low, &
       outcome%chosen%digits + more_digits, shape_only=.true., coarser=steps%meshes)
     if (present(store)) judge%fine%store => store

@@ -37,9 +37,8 @@ module edge_locked
     type(discretisation_t), allocatable :: grid(:)
     !> The digits that they are good for.
     real(wp) :: digits = 0
-    !> What these are like, and whether panels of them were halved.
+    !> What these are like.
     type(mapped_shape_t), allocatable :: shape(:)
-    logical, allocatable :: refined(:)
     !> Radius of what the next mesh is locked to at which the path passes to it, lateral units; of
     !> the last it is the largest that is expected.
     real(wp), allocatable :: passage(:)
@@ -52,6 +51,7 @@ module edge_locked
     integer :: fronts = 0
   contains
     procedure :: in_contact
+    procedure :: has_short_panels
     procedure :: locked_gap
     procedure :: halve_panels
     procedure :: complete
@@ -98,7 +98,6 @@ contains
       end associate
     end if
     allocate (meshes%grid(approach + size(low)), meshes%shape(approach + size(low)))
-    meshes%refined = spread(.false., 1, size(meshes%grid))
     meshes%digits = digits
     meshes%passage = [low, widest]
     if (meshes%traceable) meshes%shape(approach) = &
@@ -165,13 +164,12 @@ contains
     integer, intent(in) :: mesh
     logical, intent(in) :: which(:)
 
-    self%refined(mesh) = .true.
     self%shape(mesh) = self%shape(mesh)%halved(which)
     self%grid(mesh) = new_mapped_mesh(self%shape(mesh), elastic=.true.)
   end subroutine halve_panels
 
-  !> Lets meshes, not made yet, be what coarser ones are with more nodes, where these have more than
-  !> one panel on a side of the centre.
+  !> Lets meshes, not made yet, be what coarser ones are with more nodes, where these have short
+  !> panels or halves.
   pure subroutine follow(self, coarser)
     type(mesh_family_t), intent(inout) :: self
     type(mesh_family_t), intent(in) :: coarser
@@ -179,12 +177,22 @@ contains
 
     do k = 1, size(coarser%grid)
       if (.not. allocated(coarser%grid(k)%kernel)) cycle
-      associate (shape => coarser%shape(k))
-        if (size(shape%order) > merge(2, 1, shape%inner > 0)) self%shape(k) = &
-          shape%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
-      end associate
+      if (coarser%has_short_panels(k)) self%shape(k) = &
+        coarser%shape(k)%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
     end do
   end subroutine follow
+
+  !> Whether a mesh has short panels or halves: more than one on a side of its centre.
+  pure logical function has_short_panels(self, mesh)
+    class(mesh_family_t), intent(in) :: self
+    integer, intent(in) :: mesh
+
+    has_short_panels = .false.
+    associate (shape => self%shape(mesh))
+      if (allocated(shape%order)) &
+        has_short_panels = size(shape%order) > merge(2, 1, shape%inner > 0)
+    end associate
+  end function has_short_panels
 
   !> Whether a mesh is locked to the contact edge.
   pure logical function in_contact(self, mesh)

@@ -12,9 +12,10 @@ module elastic_kernel
   public :: kernel, kernel_log_coefficient
 
   !> Steps of the mean that reach double precision from the first of these ratios upward, from the
-  !> next with one more, and so on; from 1e-14 with three.
-  integer, parameter :: fewest_steps = 4
-  real(wp), parameter :: one_more(3) = [0.06_wp, 9.0e-4_wp, 2.0e-7_wp]
+  !> next with one more, and so on; from 1e-14 with four.
+  integer, parameter :: fewest_steps = 3
+  real(wp), parameter :: one_more(4) = [0.45_wp, 0.06_wp, 9.0e-4_wp, 2.0e-7_wp]
+  !> Means that are found at once.
   integer, parameter :: at_once = 16
 
 contains

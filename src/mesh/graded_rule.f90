@@ -15,9 +15,10 @@ module graded_rule
   private
   public :: graded_rule_t, new_graded_rule
 
-  !> Exponent of the substitution: v**3 ln(v) leaves 1e-13 with 40 points, and at the far end, which
-  !> the substitution thins out, the points still resolve polynomials of as many degrees.
+  !> Exponent of the substitution, and points with which v**(power - 1) ln(v) leaves some parts of
+  !> one: the error falls with twice the exponent.
   integer, parameter :: power = 4
+  real(wp), parameter :: least_graded = 1.75_wp
   !> Length of a cell in z, about; a panel of fewer cells is all near. How many cells are near on
   !> either side of a place: its own and the next.
   real(wp), parameter :: cell_length = 1.8_wp
@@ -173,8 +174,9 @@ contains
     real(wp) :: part
 
     part = min(1.0_wp, real(near_cells, wp)/cells)
-    points = ceiling(near_share*order*acos(1 - 2*part)/pi + &
-      points_against(1 + sqrt(log(2.0_wp)/max(part*z_length, 1.0_wp)), digits))
+    points = ceiling(max(least_graded*10.0_wp**(digits/(2*power)), &
+      near_share*order*acos(1 - 2*part)/pi + &
+      points_against(1 + sqrt(log(2.0_wp)/max(part*z_length, 1.0_wp)), digits)))
   end function points_for
 
   !> Gauss points against a singularity on a Bernstein ellipse of that sum of half axes.

@@ -44,7 +44,7 @@ module mesh_rule
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
   !> which come the nearer to one another the stronger adhesion is.
   real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.5_wp, most_for_folds = 9, &
-    more_for_profiles = 2, more_for_narrow_necks = 0.3_wp, more_for_jumps = 1, &
+    more_for_profiles = 2, more_for_narrow_necks = 0.3_wp, more_for_jumps = 0.5_wp, &
     more_for_lengths = 0.6_wp, &
     more_at_onset = 2, more_for_kinks = 1.5_wp, most_digits = 13
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; a factor in it.
@@ -93,11 +93,8 @@ contains
     real(wp), intent(in) :: h0_high, digits
     real(wp) :: density, reach, feature
 
-    ! Where adhesion is strong folds come near to one another, the first of them before contact;
-    ! where it is weak, bodies that yield are not pressed hard on this mesh.
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
       (1 + 0.03_wp*log(1 + strength(problem)))
-    if (.not. problem%rigid) density = density*(1 - 0.3_wp/(1 + strength(problem)))
     if (.not. problem%law%of_paper) density = for_others*density
     reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
@@ -164,7 +161,7 @@ contains
     type(mapped_shape_t), intent(inout) :: shape
 
     if (problem%law%tail_power < huge(1.0_wp)) then
-      shape%tail_order = ceiling(1 + 0.6_wp*digits)
+      shape%tail_order = ceiling(1.5_wp + 0.6_wp*digits)
       shape%decay = problem%shape%growth*problem%law%tail_power
       ! Of other shapes what is left of the power need not be a polynomial in the inverse position.
       if (.not. is_even(problem%shape) .or. problem%shape%ends < huge(1.0_wp)) &

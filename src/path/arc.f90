@@ -19,7 +19,7 @@ module arc
   !> What the path is asked about: h0 or the load.
   integer, parameter :: of_h0 = 1, of_load = 2
   !> States that a state beyond an end is extrapolated from.
-  integer, parameter :: extrapolated_from = 3
+  integer, parameter :: extrapolated_from = 4
   !> A neighbour nearer to an interval than this part of its width makes its polynomial worse.
   real(wp), parameter :: well_apart = 0.1_wp
 
@@ -196,14 +196,12 @@ contains
     real(wp), intent(in) :: s
     type(state_t) :: expected
     real(wp), dimension(size(nodes)) :: at, of_value, of_slope
-    real(wp), allocatable :: gap(:)
-    real(wp) :: h0, scale
+    real(wp) :: gap(size(self%state(nodes(1))%gap)), h0, scale
     integer :: j
 
     at = self%coordinate(nodes)
     call hermite_weights(at, s, of_value, of_slope)
-    expected = self%state(nodes(minloc(abs(at - s), 1)))
-    allocate (gap(size(expected%gap)), source=0.0_wp)
+    gap = 0
     h0 = 0
     scale = 0
     do j = 1, size(nodes)
@@ -213,6 +211,7 @@ contains
         scale = scale + of_value(j)*state%scale + of_slope(j)*tangent%scale
       end associate
     end do
+    expected = self%state(nodes(minloc(abs(at - s), 1)))
     call take_if_sound(gap, h0, scale, expected)
   end function guess_from
 

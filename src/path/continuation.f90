@@ -20,16 +20,16 @@ module continuation
 
   !> States kept for the extrapolation; the first step, the shortest and the longest (changes of the
   !> coordinate).
-  integer, parameter :: memory = 3
+  integer, parameter :: memory = 4
   real(wp), parameter :: first_step = 0.04_wp, shortest_step = 1.0e-6_wp, longest_step = 0.5_wp
   !> How far a guess may be from the state, relative or in the law's lengths, for two or three
-  !> iterations to correct it; the power of the step that an extrapolation from three states with
+  !> iterations to correct it; the power of the step that an extrapolation from four states with
   !> tangents misses by; limits of the change of a step, and its ladder.
-  real(wp), parameter :: wanted_miss = 3.0e-4_wp, growth = 1.7_wp, shrinkage = 0.3_wp, &
+  real(wp), parameter :: wanted_miss = 3.0e-4_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
-  integer, parameter :: order = 6
+  integer, parameter :: order = 8
   !> The same of a path whose points are to make a smooth curve, and its longest step.
-  real(wp), parameter :: miss_of_curve = 1.0e-6_wp, step_of_curve = 0.12_wp
+  real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   !> The least contact radius over that of a passage for a state to be taken to the next mesh; the
   !> largest that a step may lead to on a mesh, which is no good beyond, and how short it is made
   !> for that.

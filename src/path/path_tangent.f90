@@ -19,8 +19,8 @@ module path_tangent
     real(wp) :: h0 = 0, scale = 0, axis_gap = 0, load = 0
   end type tangent_t
 
-  !> The last correction of a tangent, relative; how much smaller than the one before it each has to
-  !> be, and how many there may be, for factors to be worth keeping.
+  !> The next correction of a tangent, relative, for which none is made; how much smaller than the
+  !> one before it each has to be, and how many there may be, for factors to be worth keeping.
   real(wp), parameter :: refined = 1.0e-11_wp, shrinking = 0.3_wp
   integer, parameter :: most_corrections = 12
 
@@ -83,7 +83,7 @@ contains
       call solve(frozen%factors, correction)
       dz = dz + correction
       size_now = relative(correction)
-      done = size_now <= refined*relative(dz)
+      done = size_now**2 <= refined*relative(dz)*max(size_now, size_before)
       if (done .or. .not. size_now <= shrinking*size_before) return
       size_before = size_now
     end do

@@ -46,20 +46,19 @@ contains
     end do
   end function neighbours_of
 
-  !> Where between the ends of the piece the curve through the neighbours is at h0: by Newton's
+  !> Where between the ends of the piece the curve that h0 is there has a value: by Newton's
   !> method, kept between the ends by halving.
-  pure real(wp) function coordinate_at_h0(near, h0) result(s)
+  pure real(wp) function coordinate_at_h0(near, curve, h0) result(s)
     type(neighbours_t), intent(in) :: near
+    type(hermite_t), intent(in) :: curve
     real(wp), intent(in) :: h0
     type(bracket_t) :: bracket
-    type(hermite_t) :: curve
     real(wp) :: missing, before
     logical :: rising
 
     associate (x => near%coordinate(near%lower:near%lower + 1), &
       ends => near%state(near%lower:near%lower + 1)%h0)
       bracket = bracket_t(minval(x), maxval(x))
-      curve = near%curve(of_h0, 0.5_wp*sum(x))
       rising = (ends(2) - ends(1))*(x(2) - x(1)) > 0
       s = bracket%within(x(1) + (x(2) - x(1))*(h0 - ends(1))/(ends(2) - ends(1)))
     end associate
@@ -132,7 +131,7 @@ contains
       inside = (ends(1) - h0)*(ends(2) - h0) <= 0 .and. &
         abs(at(2) - at(1)) > 4*spacing(maxval(abs(at)))
       if (.not. inside) return
-      s = coordinate_at_h0(near, h0)
+      s = coordinate_at_h0(near, near%curve(of_h0, 0.5_wp*sum(at)), h0)
       ! Interpolation approaches from one side; halving brings the other end nearer.
       if (mod(round, 4) == 0 .and. abs(at(2) - at(1)) > 0.5_wp*width) s = 0.5_wp*(at(1) + at(2))
       width = abs(at(2) - at(1))

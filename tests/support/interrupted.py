@@ -26,12 +26,18 @@ def frames(journal):
 
 def checksum(words):
     """The checksum of 64-bit words, as src/base/checksums.f90 has it."""
-    value = len(words)
-    for word in words:
-        for half in (word & 0xFFFFFFFF, word >> 32):
+    def added(value, halves):
+        for half in halves:
             value = (value ^ half) * 0x5BD1E995 & 0xFFFFFFFF
             value ^= value >> 15
-    return value
+        return value
+
+    def halves(some):
+        return [half for word in some for half in (word & 0xFFFFFFFF, word >> 32)]
+
+    whole = len(words) - len(words) % 4
+    lanes = [added(0, halves(words[k:whole:4])) for k in range(4)]
+    return added(added(len(words), halves(words[whole:])), lanes)
 
 
 def sealed(frame):

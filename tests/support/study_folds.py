@@ -2,6 +2,7 @@
 
 The distance is kept from the program's own fold, which a first run of the same range reports, and
 in the reference from its own: the folds themselves differ by the error of the program's mesh.
+Profiles are asked for in that run too where they are afterwards: they call for a finer mesh.
 """
 
 import collections
@@ -66,11 +67,12 @@ def examine(job):
         groups["unloading"] = {"from_": [DEPTH], "h0_end": far}
     else:
         groups["equilibrium_path"] = {"h0_end": DEPTH}
-    first = report(job.sigma, groups, job.folder, "first")
+    profiled = {**groups, "profiles": {"h0": [DEPTH]}}
+    first = {way: report(job.sigma, profiled if way == "profile" else groups, job.folder, way)
+             for way in ({*WAYS["in"]} if job.experiment == "cycle" else {"profile"})}
     findings = []
     for fold in ("in", "out"):
         ways = WAYS[fold] if job.experiment == "cycle" else ("profile",)
-        mine = first.numbers.get(f"jump_{fold}_h0")
         theirs = path.jump_in.h0 if fold == "in" else path.jump_out.h0
         width = path.jump_out.h0 - path.jump_in.h0
         for way, power, side in (
@@ -79,6 +81,7 @@ def examine(job):
             # Farther than to the other fold is not beside this one.
             if 10.0**-power > 0.5 * width:
                 continue
+            mine = first[way].numbers.get(f"jump_{fold}_h0")
             wrong = ["no fold in the first run"]
             if mine is not None:
                 place, true = mine + side * 10.0**-power, theirs + side * 10.0**-power
