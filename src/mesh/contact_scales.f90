@@ -79,8 +79,9 @@ contains
     level = bracket%middle()
   end function contact_level
 
-  !> Width of the zone outside the edge over which the tension decays: the neck, as (27) gives it for
-  !> a law whose range is its length; it goes with the square of the range, adhesion over tension.
+  !> Width of the zone outside the edge over which the tension decays, lateral units: that of
+  !> `neck_width`, which takes the range of the law to be its length, times the square of the range
+  !> over that of the Lennard-Jones law where it is shorter.
   pure real(wp) function cohesive_width(problem) result(width)
     type(problem_t), intent(in) :: problem
     real(wp) :: tension(1)
