@@ -161,14 +161,15 @@ contains
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: a, x
     integer, parameter :: nodes = 12
-    real(wp) :: node(nodes), weight(nodes), angle
+    real(wp) :: node(nodes), weight(nodes), angle, of_contact
     integer :: k
 
     call gauss_legendre(node, weight)
     angle = acos(min(1/x, 1.0_wp))
+    of_contact = depth(a)
     gap = 0
     do k = 1, nodes
-      gap = gap + 2/pi*angle*weight(k)*(depth(a*x*cos(angle*node(k))) - depth(a))
+      gap = gap + 2/pi*angle*weight(k)*(depth(a*x*cos(angle*node(k))) - of_contact)
     end do
 
   contains
