@@ -30,6 +30,9 @@ module mesh_rule
   real(wp), parameter :: for_others = 1.3_wp
   !> Short panels: their length in z, so many nodes, and more for each digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
+  !> Strongest adhesion at which long panels were found to do under other laws: beyond it states at
+  !> a given h0 may not converge on them.
+  real(wp), parameter :: strongest = 300
   !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0, as
   !> it is under the paper's laws: nodes integrate polynomials of twice the degree.
   !> Where adhesion is strong, what is far from the edge deforms the bodies more.
@@ -196,8 +199,8 @@ contains
   !> Adds sinh panels over z_length. One is enough for the paper's laws, which are powers of the gap
   !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
   !> these. Other laws have lengths of their own anywhere within their reach, and where these are
-  !> seen the panel is halved. Laws that oscillate or end in a step, and other shapes, have short
-  !> panels from the beginning. about, side, low, high: as for `fit_panels`.
+  !> seen the panel is halved. Laws that oscillate, have a kink or end in a step, other shapes, and
+  !> strong adhesion have short panels from the beginning. about, side, low, high: as for `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -217,7 +220,8 @@ contains
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
     associate (law => problem%law)
       if (law%period > 0 .or. law%step_width > 0 .or. law%has_kink .or. broken .or. &
-        abs(problem%shape%exponent - 2) > 0) then
+        abs(problem%shape%exponent - 2) > 0 .or. &
+        .not. law%of_paper .and. strength(problem) > strongest) then
         panels = ceiling(z_length/short)
         lengths = spread(z_length/panels, 1, panels)
       else
