@@ -36,8 +36,8 @@ contains
   end function nodes_on
 
   !> Lengths in z and nodes of panels at positions centre + side*d sinh(z): those given, with
-  !> `nodes_on` them or more, or halves of them. For radii of the front or the edge from low to high;
-  !> `about`: what is at the centre.
+  !> `nodes_on` them or more, or halves of them. Radii of front or edge go from low to high; `about`:
+  !> what is at the centre.
   subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, length, order)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about, side, fewest
@@ -130,7 +130,7 @@ contains
   end function between
 
   !> The gap at an offset from the centre: before contact with the gap h on the axis; about a front
-  !> of radius h; outside a JKR contact of radius h, whose edge has the gap of largest tension and is
+  !> of radius h; outside a JKR contact of radius h, at whose edge is the gap of largest tension,
   !> rounded over d, as cohesion rounds it: the root of the distance is no gap that bodies have.
   elemental real(wp) function gap_at(problem, about, h, offset, d) result(gap)
     type(problem_t), intent(in) :: problem

@@ -200,7 +200,7 @@ contains
   !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
   !> these. Other laws have lengths of their own anywhere within their reach, and where these are
   !> seen the panel is halved. Laws that oscillate, have a kink or end in a step, other shapes, and
-  !> strong adhesion have short panels from the beginning. about, side, low, high: as for `fit_panels`.
+  !> strong adhesion have short panels from the beginning. about, side, low, high: see `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
