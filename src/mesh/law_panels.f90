@@ -36,7 +36,7 @@ contains
   end function nodes_on
 
   !> Lengths in z and nodes of panels at positions centre + side*d sinh(z): those given, with
-  !> `nodes_on` them or more, or halves of them. Radii of front or edge go from low to high; `about`:
+  !> `nodes_on` them or more, or halves of them. Radii go from low to high; `about`:
   !> what is at the centre.
   subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, length, order)
     type(problem_t), intent(in) :: problem
