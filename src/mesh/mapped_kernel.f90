@@ -200,7 +200,7 @@ contains
     square = x**2
     chord = 1
     do k = 15, 3, -2
-      chord = 1 + chord*square/(k*(k - 1))
+      chord = 1 + chord*(square*(1.0_wp/(k*(k - 1))))
     end do
     chord = merge(2*x*chord, growth - 1/growth, x < small)
   end subroutine exponentials

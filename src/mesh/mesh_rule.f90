@@ -128,7 +128,7 @@ contains
       inner = inner*(1 + 0.03_wp*log(1 + strength(problem)/(1 + high)**2))
       repulsion = log(1 + high/(pi*strength(problem)))
       outer = inner*(1 + 0.5_wp*log(1 + 0.75_wp*repulsion))
-      inner = inner*(0.85_wp + 0.3_wp*repulsion)
+      inner = inner*(0.85_wp + 0.25_wp/(1 + 0.3_wp*strength(problem)) + 0.3_wp*repulsion)
     else
       inner = 1.5_wp*inner
       outer = inner

@@ -28,7 +28,7 @@ module path_extremum
   !> Corrections of an extremum's place, and the one below which it is found; below which rounding
   !> may keep the slope from falling.
   integer, parameter :: most_rounds = 60
-  real(wp), parameter :: root_tolerance = 1.0e-10_wp, rounding_rules = 1.0e-6_wp
+  real(wp), parameter :: root_tolerance = 1.0e-12_wp, rounding_rules = 1.0e-6_wp
   !> The part of an interval over which a tangent tells a state better than the curve does.
   real(wp), parameter :: near_enough = 1.0e-3_wp
 

@@ -19,9 +19,10 @@ module path_tangent
     real(wp) :: h0 = 0, scale = 0, axis_gap = 0, load = 0
   end type tangent_t
 
-  !> The next correction of a tangent, relative, for which none is made; how much smaller than the
-  !> one before it each has to be, and how many there may be, for factors to be worth keeping.
-  real(wp), parameter :: refined = 1.0e-11_wp, shrinking = 0.3_wp
+  !> The last correction of a tangent, relative, or the next, if that would be so small: slopes of a
+  !> load are differences of larger ones. How much smaller than the one before it each has to be, and
+  !> how many there may be, for factors to be worth keeping.
+  real(wp), parameter :: refined = 1.0e-11_wp, next_refined = 1.0e-13_wp, shrinking = 0.3_wp
   integer, parameter :: most_corrections = 12
 
 contains
@@ -83,7 +84,8 @@ contains
       call solve(frozen%factors, correction)
       dz = dz + correction
       size_now = relative(correction)
-      done = size_now**2 <= refined*relative(dz)*max(size_now, size_before)
+      done = size_now <= refined*relative(dz) .or. &
+        size_now**2 <= next_refined*relative(dz)*max(size_now, size_before)
       if (done .or. .not. size_now <= shrinking*size_before) return
       size_before = size_now
     end do

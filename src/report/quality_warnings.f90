@@ -30,6 +30,7 @@ contains
   subroutine judge_resolution(locked, summary)
     logical, intent(in) :: locked
     type(summary_t), intent(inout) :: summary
+    character(len=:), allocatable :: advice
     real(wp) :: spacing
 
     if (.not. summary%has('spacing_over_neck')) return
@@ -37,14 +38,13 @@ contains
     call summary%set('resolved', spacing <= merge(resolved_locked, resolved_spacing, locked))
     if (summary%is_true('resolved')) return
     if (locked) then
-      call summary%warn('under-resolved: nodes are '//short_number(spacing)// &
-        ' neck widths apart at the contact edge; use a higher accuracy')
-      return
+      advice = '; ask for a higher accuracy'
+    else
+      advice = ', which is then pinned between them; use '// &
+        short_number(spacing/resolved_spacing)//' times as many nodes or grid = ''panels'''
     end if
     call summary%warn('under-resolved: nodes are '//short_number(spacing)// &
-      ' neck widths apart at the contact edge, which is then pinned between them; use '// &
-      short_number(spacing/resolved_spacing)// &
-      ' times as many nodes or grid = ''panels''')
+      ' neck widths apart at the contact edge'//advice)
   end subroutine judge_resolution
 
   !> Whether the numbers are as good as the deck asks for; on a grid that the deck has chosen,

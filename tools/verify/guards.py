@@ -55,7 +55,7 @@ GUARDS = {
         "if (.not. defined(problem, z, state)) then",
         "if (.false.) then",
         (NOT_PASSED,),
-        also=("if (.not. all(abs(g) <= huge(1.0_wp))) state%residual = huge(1.0_wp)", ""),
+        also=("if (.not. error <= huge(error)) then", "if (.false.) then"),
     ),
     "largest_step": Guard(
         "a step keeps every gap within the law's closure limit",
