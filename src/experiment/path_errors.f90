@@ -26,8 +26,8 @@ module path_errors
     logical :: with_profile = .false.
   end type sought_t
 
-  !> Tolerance of states that are looked for along the path (law's lengths).
-  real(wp), parameter :: tight = 1.0e-12_wp
+  !> What the search for a state along the path leaves of its place (law's lengths).
+  real(wp), parameter :: tight = 3.0e-11_wp
 
 contains
 

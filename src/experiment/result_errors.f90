@@ -27,7 +27,7 @@ module result_errors
   !> because other states may be somewhat worse than those compared. Against a grid twice as coarse
   !> the difference itself is two to three times the error.
   real(wp), parameter :: margin = 3, margin_fixed = 2.5_wp, margin_coarser = 1.2_wp, &
-    margin_less_gained = 6
+    margin_less_gained = 6, margin_kinks = 12
 
   !> How a reported state is judged: again on the path of `steps`, if it has one, or else at its h0,
   !> on the finer meshes.
@@ -58,6 +58,7 @@ contains
     judge%fine%margin = margin
     if (.not. steps%problem%law%edge_gap > 0 .or. any([(steps%meshes%has_short_panels(k), &
       k=1, size(steps%meshes%grid))])) judge%fine%margin = margin_less_gained
+    if (steps%problem%law%has_kink) judge%fine%margin = margin_kinks
     judge%fine%meshes = new_mesh_family(steps%problem, high, low, &
       outcome%chosen%digits + more_digits, shape_only=.true., coarser=steps%meshes)
     if (present(store)) judge%fine%store => store

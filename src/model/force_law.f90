@@ -38,7 +38,7 @@ module force_law
     !> Period of gap in which the pressure oscillates, and the gap of a step of it and its width,
     !> for meshes; 0: none.
     real(wp) :: period = 0, step_at = 0, step_width = 0
-    !> Whether the force begins or ends at some gap, and is not smooth there.
+    !> Whether the force is not smooth at some gaps: where it begins or ends, at a table's points.
     logical :: has_kink = .false.
     !> How many forces are evaluated at a gap.
     integer :: terms = 1

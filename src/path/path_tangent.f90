@@ -20,8 +20,8 @@ module path_tangent
   end type tangent_t
 
   !> The last correction of a tangent, relative, or the next, if that would be so small: slopes of a
-  !> load are differences of larger ones. How much smaller than the one before it each has to be, and
-  !> how many there may be, for factors to be worth keeping.
+  !> load are differences of larger ones. How much smaller than the one before it each has to be,
+  !> and how many there may be, for factors to be worth keeping.
   real(wp), parameter :: refined = 1.0e-11_wp, next_refined = 1.0e-13_wp, shrinking = 0.3_wp
   integer, parameter :: most_corrections = 12
 

@@ -181,6 +181,7 @@ contains
     this%repulsion_length = 0.9_wp/max(this%fine%power, 1.0_wp)
     this%closure_fraction = 2.7_wp/max(this%fine%power, 9.0_wp)
     this%group = 'tabulated'
+    this%has_kink = .true.
     this%strength_key = 'file'
     this%length_key = 'file'
     this%has_units = .false.
