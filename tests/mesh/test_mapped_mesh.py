@@ -176,8 +176,8 @@ def test_entries_are_those_of_adaptive_quadrature(grid):
         for row in rows:
             for column in {2, grid.order[0] - 1, grid.size - 1}:
                 exact = float(reference(grid, row, column))
-                # The tail's last polynomial is large where its factor is nearly gone: rounding, which
-                # is another on other processors, leaves up to 5e-11 of its integral.
+                # The tail's last polynomial is large where its factor is nearly gone: rounding,
+                # which is another on other processors, leaves up to 5e-11 of its integral.
                 assert abs(matrix[row, column] - exact) < 2e-10 * abs(exact), (row, column)
 
 
