@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measure what accuracy costs: tables and pictures in docs/bench/, tables in docs/accuracy.md.
 
-    ./bench                          everything, a quarter of an hour
+    ./bench                          everything, five minutes
     ./bench --quick                  everything, coarser, in two minutes, into results/bench/
     ./bench --only work_precision    one part
     ./bench --resume                 what an interrupted run left undone
