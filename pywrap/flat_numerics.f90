@@ -1,5 +1,5 @@
-!> The numerics as f2py can see them: kernel, quadrature, product integration, meshes and one state
-!> of equilibrium. Conventions as in `flat_deck`.
+!> The numerics as f2py can see them: linear algebra, kernel, quadrature, product integration,
+!> meshes and one state of equilibrium. Conventions as in `flat_deck`.
 !>
 !> A mesh is described by its kind, its centre, lengths and orders: 'panels' has lengths from the
 !> centre to the ends of panels, and orders(1) nodes on each; 'uniform' ends at the last length and
@@ -10,11 +10,27 @@ module flat_numerics
   use iso_c_binding, only: c_double, c_int
   implicit none
   private
-  public :: kernel_values, gauss_rule, panel_integrals
+  public :: linear_solution, kernel_values, gauss_rule, panel_integrals
   public :: mesh_nodes, mesh_matrix, mesh_interpolation
   public :: equilibrium_state
 
 contains
+
+  !> x = a^{-1} b by LU factors; regular = 0 where there are none.
+  subroutine linear_solution(a, b, x, regular, n)
+    use linear_algebra, only: factorisation_t, factorise, solve
+    integer(c_int), intent(in) :: n
+    real(c_double), intent(in) :: a(n, n), b(n)
+    real(c_double), intent(out) :: x(n)
+    integer(c_int), intent(out) :: regular
+    type(factorisation_t) :: factors
+
+    factors%lu = a
+    call factorise(factors)
+    regular = merge(1, 0, factors%valid)
+    x = b
+    if (factors%valid) call solve(factors, x)
+  end subroutine linear_solution
 
   !> k and the coefficient of its logarithm for sums r + t and distances |r - t|, all positive, the
   !> distance no larger than the sum. Same unit for both, results in one over that.

@@ -1,6 +1,8 @@
 !> Thin wrappers over BLAS and LAPACK.
 module linear_algebra
   use kinds, only: wp
+  use lapack, only: dgemv, dgemm, dgetrf, dgetrs, dgtsv, dgeev, dgesvd
+  use small_lu, only: lu_factorise, lu_solve, most_rows
   implicit none
   private
   public :: multiply, multiply_transposed, factorisation_t, factorise, solve, determinant_sign, &
@@ -13,59 +15,6 @@ module linear_algebra
     !> .false. where no factors are held or the matrix was singular.
     logical :: valid = .false.
   end type factorisation_t
-
-  interface
-    subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
-      import :: wp
-      character, intent(in) :: trans
-      integer, intent(in) :: m, n, lda, incx, incy
-      real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
-      real(wp), intent(inout) :: y(*)
-    end subroutine dgemv
-    subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
-      import :: wp
-      character, intent(in) :: transa, transb
-      integer, intent(in) :: m, n, k, lda, ldb, ldc
-      real(wp), intent(in) :: alpha, beta, a(lda, *), b(ldb, *)
-      real(wp), intent(inout) :: c(ldc, *)
-    end subroutine dgemm
-    subroutine dgetrf(m, n, a, lda, ipiv, info)
-      import :: wp
-      integer, intent(in) :: m, n, lda
-      real(wp), intent(inout) :: a(lda, *)
-      integer, intent(out) :: ipiv(*), info
-    end subroutine dgetrf
-    subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
-      import :: wp
-      character, intent(in) :: trans
-      integer, intent(in) :: n, nrhs, lda, ldb, ipiv(*)
-      real(wp), intent(in) :: a(lda, *)
-      real(wp), intent(inout) :: b(ldb, *)
-      integer, intent(out) :: info
-    end subroutine dgetrs
-    subroutine dgtsv(n, nrhs, dl, d, du, b, ldb, info)
-      import :: wp
-      integer, intent(in) :: n, nrhs, ldb
-      real(wp), intent(inout) :: dl(*), d(*), du(*), b(ldb, *)
-      integer, intent(out) :: info
-    end subroutine dgtsv
-    subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, info)
-      import :: wp
-      character, intent(in) :: jobvl, jobvr
-      integer, intent(in) :: n, lda, ldvl, ldvr, lwork
-      real(wp), intent(inout) :: a(lda, *)
-      real(wp), intent(out) :: wr(*), wi(*), vl(ldvl, *), vr(ldvr, *), work(*)
-      integer, intent(out) :: info
-    end subroutine dgeev
-    subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
-      import :: wp
-      character, intent(in) :: jobu, jobvt
-      integer, intent(in) :: m, n, lda, ldu, ldvt, lwork
-      real(wp), intent(inout) :: a(lda, *)
-      real(wp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *), work(*)
-      integer, intent(out) :: info
-    end subroutine dgesvd
-  end interface
 
 contains
 
@@ -110,8 +59,12 @@ contains
       if (size(factors%pivot) /= n) deallocate (factors%pivot)
     end if
     if (.not. allocated(factors%pivot)) allocate (factors%pivot(n))
-    call dgetrf(n, n, factors%lu, n, factors%pivot, info)
-    factors%valid = info == 0
+    if (n <= most_rows) then
+      call lu_factorise(n, factors%lu, factors%pivot, factors%valid)
+    else
+      call dgetrf(n, n, factors%lu, n, factors%pivot, info)
+      factors%valid = info == 0
+    end if
   end subroutine factorise
 
   !> Overwrites b with the solution; factors must be valid.
@@ -121,7 +74,11 @@ contains
     integer :: info, n
 
     n = size(b)
-    call dgetrs('n', n, 1, factors%lu, n, factors%pivot, b, n, info)
+    if (n <= most_rows) then
+      call lu_solve(n, factors%lu, factors%pivot, b)
+    else
+      call dgetrs('n', n, 1, factors%lu, n, factors%pivot, b, n, info)
+    end if
   end subroutine solve
 
   !> Overwrites b with the solution of a regular tridiagonal system, and the three diagonals.
