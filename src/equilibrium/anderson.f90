@@ -34,8 +34,8 @@ module anderson
   end type iterate_t
 
   !> Iterations that a state takes anyway; and unknowns for each iteration beyond these that a
-  !> factorisation serves before it is renewed. It costs half of that, and saves them for a while.
-  integer, parameter :: few_iterations = 2, unknowns_an_iteration = 3
+  !> factorisation serves before it is renewed: that takes as long as they do.
+  integer, parameter :: few_iterations = 2, unknowns_an_iteration = 20
   !> Steps rejected before a solution is given up.
   integer, parameter :: most_rejections = 4
 
