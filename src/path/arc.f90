@@ -51,8 +51,9 @@ contains
 
   !> Derivatives by the coordinate s at the equilibrium there; found = .false. where the Jacobian is
   !> singular.
-  subroutine tangent_along(equations, mesh, s, state, frozen, tangent, found)
+  subroutine tangent_along(equations, options, mesh, s, state, frozen, tangent, found)
     type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
     integer, intent(in) :: mesh
     real(wp), intent(in) :: s
     type(state_t), intent(in) :: state
@@ -60,8 +61,8 @@ contains
     type(tangent_t), intent(out) :: tangent
     logical, intent(out) :: found
 
-    call tangent_at(equations, path_control(equations%problem, mesh, s), state, frozen, tangent, &
-      found)
+    call tangent_at(equations, options, path_control(equations%problem, mesh, s), state, frozen, &
+      tangent, found)
     ! The control's value is exp(s) and a constant.
     if (found) tangent = scaled(tangent, exp(s))
   end subroutine tangent_along
@@ -85,7 +86,8 @@ contains
     call solve_anderson(equations, options, frozen, path_control(equations%problem, self%mesh, s), &
       state, converged)
     if (present(miss)) miss = maxval(abs(state%gap - guessed)/(1 + abs(guessed)))
-    if (converged) call tangent_along(equations, self%mesh, s, state, frozen, tangent, converged)
+    if (converged) call tangent_along(equations, options, self%mesh, s, state, frozen, tangent, &
+      converged)
   end subroutine state_at
 
   !> The same to rounding or, where that is not reached, to the tolerance of the options: for states
@@ -102,7 +104,7 @@ contains
 
     call self%state_at(equations, tightened(options), frozen, s, state, tangent, converged)
     if (converged .or. .not. state%residual <= options%tolerance) return
-    call tangent_along(equations, self%mesh, s, state, frozen, tangent, converged)
+    call tangent_along(equations, options, self%mesh, s, state, frozen, tangent, converged)
   end subroutine exact_state_at
 
   !> Puts a state in its place, in the order of the arc; where there is no room, or it is one of the

@@ -28,6 +28,8 @@ module continuation
   real(wp), parameter :: wanted_miss = 3.0e-4_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
   integer, parameter :: order = 8
+  !> Relative error of slopes that are only to guess states from.
+  real(wp), parameter :: slope_error = 1.0e-7_wp
   !> The same of a path whose points are to make a smooth curve, and its longest step.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   !> The least contact radius over that of a passage for a state to be taken to the next mesh; the
@@ -37,7 +39,8 @@ module continuation
 
   !> The last states on the mesh in use, newest last.
   type, extends(arc_t) :: continuation_t
-    real(wp) :: step = first_step, longest_step = longest_step, wanted_miss = wanted_miss
+    real(wp) :: step = first_step, longest_step = longest_step, wanted_miss = wanted_miss, &
+      slope_error = slope_error
     type(frozen_jacobian_t) :: frozen
   contains
     procedure :: follow_closely
@@ -45,6 +48,7 @@ module continuation
     procedure :: advance
     procedure :: change_mesh
     procedure, private :: next_step
+    procedure, private :: options_for
     procedure, private :: step_past_step
   end type continuation_t
 
@@ -56,23 +60,36 @@ contains
 
     self%longest_step = step_of_curve
     self%wanted_miss = miss_of_curve
+    self%slope_error = 0
   end subroutine follow_closely
 
+  !> The options by which the next state is solved.
+  pure type(solver_options_t) function options_for(self, options) result(own)
+    class(continuation_t), intent(in) :: self
+    type(solver_options_t), intent(in) :: options
+
+    own = options
+    own%slope_error = max(options%slope_error, self%slope_error)
+  end function options_for
+
   !> Begins with an equilibrium on a mesh. lost: it has no tangent.
-  subroutine begin_with(self, equations, state, mesh, lost)
+  subroutine begin_with(self, equations, options, state, mesh, lost)
     class(continuation_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
     type(state_t), intent(in) :: state
     integer, intent(in) :: mesh
     logical, intent(out) :: lost
 
     self%mesh = mesh
-    call add_with_tangent(equations, self%frozen, state, self%arc_t, lost)
+    call add_with_tangent(equations, self%options_for(options), self%frozen, state, self%arc_t, &
+      lost)
   end subroutine begin_with
 
   !> Adds a state to an arc of its mesh. lost: it has no tangent.
-  subroutine add_with_tangent(equations, frozen, state, arc, lost)
+  subroutine add_with_tangent(equations, options, frozen, state, arc, lost)
     type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
     type(frozen_jacobian_t), intent(inout) :: frozen
     type(state_t), intent(in) :: state
     type(arc_t), intent(inout) :: arc
@@ -82,7 +99,7 @@ contains
     logical :: found
 
     s = coordinate_of(equations%problem, arc%mesh, state)
-    call tangent_along(equations, arc%mesh, s, state, frozen, tangent, found)
+    call tangent_along(equations, options, arc%mesh, s, state, frozen, tangent, found)
     lost = .not. found
     if (found) call arc%add(s, state, tangent)
   end subroutine add_with_tangent
@@ -103,7 +120,8 @@ contains
       s = self%coordinate(self%held) + inward(self%mesh)*self%next_step(equations)
       ! A step is so long that factors made before it are of no use.
       self%frozen%factors%valid = .false.
-      call self%state_at(equations, options, self%frozen, s, state, tangent, converged, miss)
+      call self%state_at(equations, self%options_for(options), self%frozen, s, state, tangent, &
+        converged, miss)
       if (converged) exit
       equations%cost%rejected_steps = equations%cost%rejected_steps + 1
       self%step = shrinkage*self%step
@@ -192,7 +210,8 @@ contains
       state = self%state(j)
       call move_to_mesh(equations, options, self%frozen, self%mesh, next%mesh, state, done)
       lost = .not. done
-      if (done) call add_with_tangent(equations, self%frozen, state, next, lost)
+      if (done) call add_with_tangent(equations, self%options_for(options), self%frozen, state, &
+        next, lost)
       if (lost) return
     end do
     associate (here => self%tangent(self%held - 1), there => next%tangent(1), &

@@ -81,7 +81,7 @@ contains
     for_path%tolerance = min(options%tolerance, path_tolerance)
     finished = .false.
     if (closely) call walker%follow_closely()
-    call walker%begin_with(equations, start, approach, lost)
+    call walker%begin_with(equations, for_path, start, approach, lost)
     if (lost) known%ending%cause = path_lost
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, equations, for_path, lost)

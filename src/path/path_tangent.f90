@@ -1,5 +1,5 @@
 !> The tangent of the equilibrium path: derivatives of a state by the value of its control, exact to
-!> the solver's tolerance. The factors that corrected the state serve: refinement brings their
+!> the solver's tolerance or as nearly as is wanted. The factors that corrected the state serve: refinement brings their
 !> solution to the tangent's own equations.
 module path_tangent
   use kinds, only: wp, pi
@@ -7,6 +7,7 @@ module path_tangent
   use equilibrium, only: control_t, state_t, equations_t, at_axis_gap, at_edge_radius, &
     load_reach, gap_at_end
   use jacobian, only: control_derivative, jacobian_times
+  use solver_options, only: solver_options_t
   use linear_algebra, only: solve
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   implicit none
@@ -19,18 +20,20 @@ module path_tangent
     real(wp) :: h0 = 0, scale = 0, axis_gap = 0, load = 0
   end type tangent_t
 
-  !> The last correction of a tangent, relative, or the next, if that would be so small: slopes of a
-  !> load are differences of larger ones. How much smaller than the one before it each has to be,
-  !> and how many there may be, for factors to be worth keeping.
-  real(wp), parameter :: refined = 1.0e-11_wp, next_refined = 1.0e-13_wp, shrinking = 0.3_wp
+  !> The last correction of a tangent over the error that is left, at most: the next would be
+  !> smaller by more. How much smaller than the one before it each has to be, and how many there may
+  !> be, for factors to be worth keeping.
+  real(wp), parameter :: last_over_error = 100, shrinking = 0.3_wp
   integer, parameter :: most_corrections = 12
 
 contains
 
-  !> The derivatives by the value of the control at an equilibrium under it; found = .false. where
-  !> the Jacobian is singular. Factors that are too far from those of the state are renewed.
-  subroutine tangent_at(equations, control, state, frozen, tangent, found)
+  !> The derivatives by the value of the control at an equilibrium under it, with the relative error
+  !> of the options; found = .false. where the Jacobian is singular. Factors that are too far from
+  !> those of the state are renewed.
+  subroutine tangent_at(equations, options, control, state, frozen, tangent, found)
     type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(frozen_jacobian_t), intent(inout) :: frozen
@@ -42,7 +45,8 @@ contains
     n = size(state%gap)
     right = -control_derivative(equations, control, state)
     found = frozen%serves(control, size(right))
-    if (found) call refine(equations, control, state, frozen, right, dz, found)
+    if (found) call refine(equations, options%slope_error, control, state, frozen, right, &
+      dz, found)
     if (.not. found) then
       call freeze(equations, control, state, frozen)
       found = frozen%factors%valid
@@ -63,10 +67,11 @@ contains
     tangent%load = load_slope(equations, control, state, tangent)
   end subroutine tangent_at
 
-  !> Solves J dz = right with factors of a neighbouring J; done = .false. where these do not bring
-  !> it near fast.
-  subroutine refine(equations, control, state, frozen, right, dz, done)
+  !> Solves J dz = right, but for a relative error, with factors of a neighbouring J;
+  !> done = .false. where these do not bring it near fast.
+  subroutine refine(equations, error, control, state, frozen, right, dz, done)
     type(equations_t), intent(inout) :: equations
+    real(wp), intent(in) :: error
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(frozen_jacobian_t), intent(in) :: frozen
@@ -84,8 +89,8 @@ contains
       call solve(frozen%factors, correction)
       dz = dz + correction
       size_now = relative(correction)
-      done = size_now <= refined*relative(dz) .or. &
-        size_now**2 <= next_refined*relative(dz)*max(size_now, size_before)
+      done = size_now <= last_over_error*error*relative(dz) .or. &
+        size_now**2 <= error*relative(dz)*max(size_now, size_before)
       if (done .or. .not. size_now <= shrinking*size_before) return
       size_before = size_now
     end do
