@@ -18,8 +18,9 @@ module solver_options
     !> Accelerated iterations with one factorisation before it is renewed.
     integer :: patience = 8
     integer :: most_iterations = 60
-    !> How exactly the path's slopes are to be known: their relative error.
-    real(wp) :: slope_error = 1.0e-13_wp
+    !> Errors that are left of the place of an extremum on the path, in its coordinate, and of
+    !> slopes, relative.
+    real(wp) :: place_error = 1.0e-12_wp, slope_error = 1.0e-13_wp
     !> Mixing: largest ratio; whether it stops on a small change of the central displacement, as in
     !> the paper, instead of on the residual, and on which change (in the law's lengths).
     real(wp) :: mixing_limit = 0.2_wp

@@ -50,6 +50,7 @@ contains
     ! The iteration stops at its own floor.
     self%options%tolerance = 0
     self%options%patience = 2
+    self%options%slope_error = steps%options%slope_error
   end subroutine take_over
 
   !> Sees that a mesh has its kernel.

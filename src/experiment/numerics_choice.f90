@@ -30,6 +30,9 @@ module numerics_choice
   integer, parameter :: fewest = 200, most = 1500
   !> Nodes up to which the error of a uniform grid is estimated on a finer one.
   integer, parameter :: largest_doubled = 300
+  !> What may be left of an extremum's place over the accuracy: a load goes with it by some times as
+  !> much.
+  real(wp), parameter :: place_over_accuracy = 1.0e-4_wp
   !> Size of panels fixed in space over the smallest feature.
   real(wp), parameter :: panel_over_feature = 0.5_wp
 
@@ -54,6 +57,9 @@ contains
       if (options%method /= 'mixing' .and. numerics%grid /= 'uniform') &
         options%tolerance = min(options%tolerance, 1.0e-10_wp)
       if (allocated(numerics%residual_tolerance)) options%tolerance = numerics%residual_tolerance
+      options%place_error = min(1.0e-7_wp, max(options%place_error, &
+        place_over_accuracy*numerics%accuracy))
+      options%slope_error = max(options%slope_error, 0.1_wp*options%place_error)
       options%depth = numerics%anderson_depth
       options%mixing_limit = numerics%mixing_limit
       options%stop_on_change = numerics%convergence == 'displacement_change'

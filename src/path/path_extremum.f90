@@ -25,10 +25,10 @@ module path_extremum
   !> Steps of the search for the least slope; part of an interval that is its end.
   integer, parameter :: golden_steps = 30
   real(wp), parameter :: at_end = 1.0e-5_wp
-  !> Corrections of an extremum's place, and the one below which it is found; below which rounding
-  !> may keep the slope from falling.
+  !> Corrections of an extremum's place; the one below which rounding may keep the slope from
+  !> falling; and how exactly the curve is asked for its own extremum.
   integer, parameter :: most_rounds = 60
-  real(wp), parameter :: root_tolerance = 1.0e-12_wp, rounding_rules = 1.0e-6_wp
+  real(wp), parameter :: rounding_rules = 1.0e-6_wp, root_tolerance = 1.0e-12_wp
   !> The part of an interval over which a tangent tells a state better than the curve does.
   real(wp), parameter :: near_enough = 1.0e-3_wp
 
@@ -63,10 +63,14 @@ contains
 
     allocate (extrema(0))
     lost = .false.
-    near = arc
-    i = near%held - 1
     error = huge(1.0_wp)
-    do while (i >= 1 .and. i < near%held)
+    i = arc%held - 1
+    if (i < 1) return
+    ! Of most intervals nothing is to be told, and no copy is made.
+    call look(arc, quantity, i, error, turns, doubt, s)
+    if (.not. (turns .or. doubt)) return
+    near = arc
+    do while (i < near%held)
       call look(near, quantity, i, error, turns, doubt, s)
       if (doubt .and. near%held < most_states) then
         expected = near%slope(quantity, s)
@@ -108,7 +112,7 @@ contains
       curve = near%curve(quantity, x(1) + 0.5_wp*(x(2) - x(1)))
       mean = abs(curve%value(x(2)) - curve%value(x(1)))/abs(x(2) - x(1))
       least = merge(0.0_wp, minval(abs(ends)), turns)
-      s = x(1)
+      s = x(minloc(abs(ends), 1))
       do k = 1, places - 1
         slope = course*curve%slope(x(1) + k*step)
         if (turns .and. slope < 0 .and. course*ends(1) > 0) then
@@ -200,7 +204,7 @@ contains
       end if
       if (.not. abs(slope - slope_before) > tiny(slope)) exit
       s = bracket%within(secant_root(s, slope, s_before, slope_before))
-      if (abs(s - found%coordinate) < root_tolerance) exit
+      if (abs(s - found%coordinate) < options%place_error) exit
       s_before = found%coordinate
       slope_before = slope
       ! So near, the tangent alone tells the next state.
