@@ -8,7 +8,7 @@ module discretisation
   use kinds, only: wp, long
   use panel_map, only: panel_map_t, algebraic_map
   use interpolation, only: polynomial_weights
-  use quadrature, only: gauss_legendre, barycentric_weights, lagrange_basis
+  use quadrature, only: gauss_legendre, barycentric_weights
   implicit none
   private
   public :: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, first_node
@@ -23,6 +23,7 @@ module discretisation
   type :: local_nodes_t
     real(wp), allocatable :: node(:), weight(:), barycentric(:)
   contains
+    procedure :: value => value_at
     procedure :: tail
   end type local_nodes_t
 
@@ -70,6 +71,27 @@ contains
     call gauss_legendre(local%node, local%weight)
     local%barycentric = barycentric_weights(local%node)
   end function gauss_nodes
+
+  !> The polynomial through values on the nodes at s, by the barycentric formula.
+  pure real(wp) function value_at(self, values, s)
+    class(local_nodes_t), intent(in) :: self
+    real(wp), intent(in) :: values(:), s
+    real(wp) :: share, shares
+    integer :: j
+
+    value_at = 0
+    shares = 0
+    do j = 1, size(values)
+      if (abs(s - self%node(j)) <= tiny(s)) then
+        value_at = values(j)
+        return
+      end if
+      share = self%barycentric(j)/(s - self%node(j))
+      shares = shares + share
+      value_at = value_at + share*values(j)
+    end do
+    value_at = value_at/shares
+  end function value_at
 
   !> The larger of the last two Legendre coefficients of a function given on the nodes: small if its
   !> polynomial is the function.
@@ -128,8 +150,8 @@ contains
 
     k = self%panel_at(x)
     associate (local => self%local(self%which(k)), first => self%first(k))
-      value = dot_product(lagrange_basis(local%node, local%barycentric, &
-        self%panel(k)%local(x - self%centre)), values(first:first + size(local%node) - 1))
+      value = local%value(values(first:first + size(local%node) - 1), &
+        self%panel(k)%local(x - self%centre))
     end associate
   end function interpolate
 
