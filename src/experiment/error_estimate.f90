@@ -1,5 +1,5 @@
-!> The error of what is reported: the state that it comes from is solved again on a finer mesh, to
-!> rounding, and compared. What is left out is the error of the finer mesh, smaller by a factor that
+!> The error of what is reported: the state that it comes from is solved again on a finer mesh, well
+!> below the accuracy, and compared. What is left out is the error of the finer mesh, smaller by a factor that
 !> the margin covers. What the iteration has left is added: a residual acts like an h0 that is off
 !> by as much.
 !>
@@ -30,6 +30,10 @@ module error_estimate
 
   !> Rounding of a whole calculation, below which no error is claimed.
   real(wp), parameter :: rounding = 1.0e-13_wp
+  !> What an iteration may leave over what is left of an extremum's place; and how often it goes on
+  !> with factors: they were made nearby.
+  real(wp), parameter :: residual_over_place = 1.0e-3_wp
+  integer, parameter :: patience = 4
   !> A residual that leaves no doubt which state it is of; a change of h0 small enough for a
   !> derivative and large against rounding (law's lengths).
   real(wp), parameter :: nearly_solved = 1.0e-6_wp, shift = 1.0e-5_wp
@@ -47,10 +51,11 @@ contains
 
     self%problem = steps%problem
     self%cost = steps%cost
-    ! The iteration stops at its own floor.
-    self%options%tolerance = 0
-    self%options%patience = 2
-    self%options%slope_error = steps%options%slope_error
+    associate (own => self%options, given => steps%options)
+      own%slope_error = given%slope_error
+      own%tolerance = min(given%tolerance, residual_over_place*given%place_error)
+      own%patience = patience
+    end associate
   end subroutine take_over
 
   !> Sees that a mesh has its kernel.
@@ -68,7 +73,7 @@ contains
       self%meshes%grid(mesh)%kernel_entries()
   end subroutine prepare
 
-  !> Solves as well as rounding allows. found: it leaves no doubt which state it is.
+  !> Solves as well as an error has to be known. found: it leaves no doubt which state it is.
   subroutine find(self, control, state, found)
     class(finer_t), intent(inout) :: self
     type(control_t), intent(in) :: control
