@@ -301,7 +301,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
 
-    residual_floor = 2*epsilon(1.0_wp)*(abs(state%h0) + min(maxval(abs(state%gap)), far_gap) + &
+    residual_floor = 3*epsilon(1.0_wp)*(abs(state%h0) + min(maxval(abs(state%gap)), far_gap) + &
       4*problem%coupling*state%scale*maxval(abs(state%pressure)))
     residual_floor = min(residual_floor, largest_floor)
   end function residual_floor

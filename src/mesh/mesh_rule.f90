@@ -46,12 +46,14 @@ module mesh_rule
   real(wp), parameter :: digits_of_broken = 4
   !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
   !> which come the nearer to one another the stronger adhesion is.
-  real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.5_wp, most_for_folds = 9, &
+  real(wp), parameter :: fewest_digits = 4.25_wp, more_for_folds = 1.5_wp, most_for_folds = 9, &
+    folds_of_others = 0.5_wp, &
     more_for_profiles = 2, more_for_narrow_necks = 0.3_wp, more_for_jumps = 0.5_wp, &
     more_for_lengths = 0.6_wp, &
     more_at_onset = 2, more_for_kinks = 1.5_wp, most_digits = 13
-  !> sigma at which jumps begin under the Lennard-Jones law, about that of others; a factor in it.
-  real(wp), parameter :: onset = 0.29_wp, near_onset = 1.15_wp
+  !> sigma at which jumps begin under the Lennard-Jones law, about that of others; a factor in it up
+  !> to which this is felt, and the part of that, logarithmically, in which it is felt most.
+  real(wp), parameter :: onset = 0.29_wp, about_onset = 1.5_wp, near_onset = 0.35_wp
 
 contains
 
@@ -66,23 +68,25 @@ contains
     logical, intent(in) :: profiles
     real(wp) :: left, for_folds
 
-    for_folds = fewest_digits + more_for_folds*log10(1 + strength(problem))
-    digits = max(2.5_wp - 0.75_wp*log10(accuracy), -0.2_wp - 1.2_wp*log10(accuracy))
+    for_folds = max(fewest_digits, more_for_folds*log10(1 + strength(problem)))
+    associate (wanted => -log10(accuracy))
+      digits = max(min(1.5_wp*wanted - 0.25_wp, 2.5_wp + 0.75_wp*wanted), 1.2_wp*wanted - 0.2_wp)
+    end associate
     ! Without jumps nothing is as sensitive as they are, but for the load of rigid bodies.
     if (strength(problem) < onset .and. .not. problem%rigid) digits = digits - more_for_jumps
     if (.not. problem%law%of_paper) then
       digits = digits + more_for_lengths
-      for_folds = for_folds + more_for_lengths
+      for_folds = fewest_digits + more_for_lengths + folds_of_others*log10(1 + strength(problem))
     end if
     if (profiles) digits = digits + more_for_profiles + &
       more_for_narrow_necks*log10(1 + strength(problem))
     ! So do extrema of the load where the edge passes a kink of the bodies.
     if (problem%shape%smooth_from() > 0) digits = digits + more_for_kinks
     ! Where jumps have just begun the two folds are so near each other that coarse meshes lose them.
-    if (abs(log(max(strength(problem), tiny(1.0_wp))/onset)) < log(near_onset)) then
-      for_folds = max(for_folds, most_for_folds)
-      digits = digits + more_at_onset
-    end if
+    associate (away => abs(log(max(strength(problem), tiny(1.0_wp))/onset))/log(about_onset))
+      if (away < near_onset) for_folds = max(for_folds, most_for_folds)
+      digits = digits + more_at_onset*max(0.0_wp, min(1.0_wp, 1.5_wp*(1 - away)))
+    end associate
     digits = max(digits, for_folds)
     left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
     digits = max(fewest_digits, min(digits, left, most_digits))
