@@ -115,12 +115,14 @@ contains
     real(wp), intent(in) :: z(:)
     real(wp), intent(out) :: value(:), slope(:)
     real(wp), dimension(size(z)) :: before, next
+    real(wp) :: forward
     integer :: m
 
     before = 0
     value = 1
     do m = 1, n
-      next = ((2*m - 1)*z*value - (m - 1)*before)/m
+      forward = (2*m - 1)*(1.0_wp/m)
+      next = forward*z*value - (forward - 1)*before
       before = value
       value = next
     end do

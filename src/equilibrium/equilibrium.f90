@@ -58,6 +58,8 @@ module equilibrium
     real(wp) :: residual = huge(1.0_wp)
     !> Operator products that this state took.
     integer :: iterations = 0
+  contains
+    procedure :: become
   end type state_t
 
   !> What was spent; counted where it is spent.
@@ -77,6 +79,21 @@ module equilibrium
   end type equations_t
 
 contains
+
+  !> Takes over another state, into the arrays that it has: assignment would allocate them anew.
+  pure subroutine become(self, other)
+    class(state_t), intent(inout) :: self
+    type(state_t), intent(in) :: other
+
+    self%gap = other%gap
+    self%pressure = other%pressure
+    self%h0 = other%h0
+    self%scale = other%scale
+    self%axis_gap = other%axis_gap
+    self%load = other%load
+    self%residual = other%residual
+    self%iterations = other%iterations
+  end subroutine become
 
   !> g(:nodes) = G and, where the control has one, g(nodes + 1) = its own equation, for the unknowns
   !> z = (gaps [, H0 or c]). On return `state` is what z stands for, with its load and residual.
@@ -301,7 +318,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
 
-    residual_floor = 2*epsilon(1.0_wp)*(abs(state%h0) + min(maxval(abs(state%gap)), far_gap) + &
+    residual_floor = 3*epsilon(1.0_wp)*(abs(state%h0) + min(maxval(abs(state%gap)), far_gap) + &
       4*problem%coupling*state%scale*maxval(abs(state%pressure)))
     residual_floor = min(residual_floor, largest_floor)
   end function residual_floor

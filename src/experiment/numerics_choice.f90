@@ -5,7 +5,7 @@ module numerics_choice
   use discretisation, only: discretisation_t
   use uniform_grid, only: new_uniform_grid
   use panels, only: new_panel_grid, graded_ends
-  use mesh_rule, only: digits_for
+  use mesh_digits, only: digits_for
   use contact_scales, only: largest_radius, contact_level, smallest_feature
   use experiment_request, only: numerics_t
   use solver_options, only: solver_options_t

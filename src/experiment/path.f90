@@ -176,11 +176,19 @@ contains
 
   contains
 
+    !> Whether the row's tension is the largest so far. Between an extremum and a point that is none,
+    !> such as where the path passes to another mesh, what meshes err by does not decide.
     logical function lowers(lowest)
       type(reported_t), allocatable, intent(in) :: lowest
+      real(wp) :: handicap
 
       lowers = .true.
-      if (allocated(lowest)) lowers = reported%load < lowest%load
+      if (.not. allocated(lowest)) return
+      handicap = 0
+      if (lowest%point > 0 .and. row%point > 0 .and. reported%point == 0) handicap = 1
+      if (lowest%point == 0 .and. reported%point > 0) handicap = -1
+      lowers = reported%load < lowest%load - &
+        handicap*10.0_wp**(-steps%meshes%digits)*abs(lowest%load)
     end function lowers
 
   end subroutine take

@@ -59,7 +59,7 @@ contains
     type(branch_point_t), intent(out) :: kept(:)
     type(branch_t), intent(out) :: branch
     type(tension_search_t) :: search
-    type(branch_point_t) :: previous
+    type(branch_point_t) :: previous, last
     type(step_result_t) :: event
     real(wp) :: last_h0
     integer :: i, k, place(size(keep))
@@ -92,11 +92,13 @@ contains
           steps%problem, steps%grid(position), state, plan%profile(i))
       end associate
       if (event%converged) then
-        branch%finish = reported_state(steps%witness(position))
+        call last%state%become(position%state)
+        last%mesh = position%mesh
         branch%last_piece = position%piece
-        if (plan%profile(i)) call add_reported(branch%profile, branch%finish)
+        if (plan%profile(i)) &
+          call add_reported(branch%profile, reported_state(steps%witness(last)))
         if (position%piece == 0 .and. any(i == [1, (1 + size(plan%h0))/2])) &
-          call add_reported(branch%sample, branch%finish)
+          call add_reported(branch%sample, reported_state(steps%witness(last)))
       end if
       do k = 1, size(keep)
         if (place(k) == i) kept(k) = position
@@ -105,6 +107,7 @@ contains
         call search%note_state(steps, last_h0, plan%h0(i), previous, position, event)
       last_h0 = plan%h0(i)
     end do
+    if (allocated(last%state%gap)) branch%finish = reported_state(steps%witness(last))
     call search%finish(steps, last_h0)
     if (allocated(branch%lowest) .or. .not. allocated(search%lowest)) return
     branch%lowest = search%lowest

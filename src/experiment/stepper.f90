@@ -147,22 +147,29 @@ contains
     ! A turn of the experiment comes back over the same values.
     do j = 1, position%held
       if (abs(position%h0(j) - state%h0) <= 1.0e-12_wp*max(1.0_wp, abs(state%h0))) then
-        position%h0(j:position%held - 1) = position%h0(j + 1:position%held)
-        position%past(j:position%held - 1) = position%past(j + 1:position%held)
-        position%held = position%held - 1
+        call forget(position, j)
         exit
       end if
     end do
-    if (position%held == memory) then
-      position%h0(:memory - 1) = position%h0(2:)
-      position%past(:memory - 1) = position%past(2:)
-      position%held = memory - 1
-    end if
+    if (position%held == memory) call forget(position, 1)
     position%held = position%held + 1
     position%h0(position%held) = state%h0
-    position%past(position%held) = state
-    position%state = state
+    call position%past(position%held)%become(state)
+    call position%state%become(state)
     position%mesh = mesh
   end subroutine remember
+
+  !> Drops a state of the past.
+  pure subroutine forget(position, which)
+    type(branch_point_t), intent(inout) :: position
+    integer, intent(in) :: which
+    integer :: k
+
+    do k = which, position%held - 1
+      position%h0(k) = position%h0(k + 1)
+      call position%past(k)%become(position%past(k + 1))
+    end do
+    position%held = position%held - 1
+  end subroutine forget
 
 end module stepper

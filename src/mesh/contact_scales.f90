@@ -4,7 +4,7 @@ module contact_scales
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
   use shape, only: shape_t
-  use dimensionless_problem, only: problem_t, neck_width
+  use dimensionless_problem, only: problem_t, neck_width, adhesion_strength
   use convex_contact, only: jkr_like_detachment
   implicit none
   private
@@ -40,7 +40,7 @@ contains
     do step = 1, 200
       before = c
       c = problem%shape%contact_radius(max(1 - h0, 0.0_wp) + &
-        sqrt(4*pi*problem%coupling*problem%law%adhesion*c))
+        sqrt(4*pi*adhesion_strength(problem)*c))
       if (.not. abs(c - before) > 0) exit
     end do
     c = max(1.0_wp, 1.2_wp*c)
@@ -52,7 +52,7 @@ contains
     type(problem_t), intent(in) :: problem
 
     beyond_contact = 1.2_wp*(1 + jkr_like_detachment(problem%shape, &
-      problem%coupling*problem%law%adhesion))
+      adhesion_strength(problem)))
   end function beyond_contact
 
   !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins
@@ -110,7 +110,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
 
-    lost_in_rounding = 8*epsilon(1.0_wp)*problem%coupling*problem%law%adhesion*c > largest_floor
+    lost_in_rounding = 8*epsilon(1.0_wp)*adhesion_strength(problem)*c > largest_floor
   end function lost_in_rounding
 
 end module contact_scales

@@ -8,7 +8,7 @@ module discretisation
   use kinds, only: wp, long
   use panel_map, only: panel_map_t, algebraic_map
   use interpolation, only: polynomial_weights
-  use quadrature, only: gauss_legendre, barycentric_weights
+  use quadrature, only: gauss_legendre
   implicit none
   private
   public :: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, first_node
@@ -66,10 +66,13 @@ contains
   pure function gauss_nodes(order) result(local)
     integer, intent(in) :: order
     type(local_nodes_t) :: local
+    integer :: k
 
     allocate (local%node(order), local%weight(order))
     call gauss_legendre(local%node, local%weight)
-    local%barycentric = barycentric_weights(local%node)
+    ! As for any rule of Gauss, the node's weight tells the polynomial's slope there.
+    local%barycentric = [((-1)**k*sqrt(local%node(k)*(1 - local%node(k))*local%weight(k)), &
+      k=1, order)]
   end function gauss_nodes
 
   !> The polynomial through values on the nodes at s, by the barycentric formula.

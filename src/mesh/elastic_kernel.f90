@@ -38,27 +38,27 @@ contains
     a = 4/(pi*total*agm(sqrt((1 - x)*(1 + x))))
   end function kernel_log_coefficient
 
-  !> Arithmetic-geometric means of 1 and x, 0 < x <= 1, to rounding. Steps are taken for some at
-  !> once, so that the loops vectorise: as many as the smallest of these needs. (Points that are
-  !> graded have their small ones together.)
+  !> Arithmetic-geometric means of 1 and x, 0 < x <= 1, to rounding. Steps are taken for a fixed
+  !> number at once, so that the loops vectorise: as many as the smallest of these needs. (Points in
+  !> order have their small ones together.)
   pure function agm(x) result(mean)
     real(wp), intent(in) :: x(:)
-    real(wp), dimension(size(x)) :: mean, g
-    real(wp) :: next(at_once)
+    real(wp) :: mean(size(x))
+    real(wp), dimension(at_once) :: a, b, next
     integer :: step, first, last
 
-    mean = 1
-    g = x
     do first = 1, size(x), at_once
       last = min(first + at_once - 1, size(x))
-      associate (a => mean(first:last), b => g(first:last), new => next(:last - first + 1))
-        do step = 1, fewest_steps + count(minval(x(first:last)) < one_more)
-          new = 0.5_wp*(a + b)
-          b = sqrt(a*b)
-          a = new
-        end do
-        a = 0.5_wp*(a + b)
-      end associate
+      b(:last - first + 1) = x(first:last)
+      b(last - first + 2:) = 1
+      a = 1
+      do step = 1, fewest_steps + count(minval(b) < one_more)
+        next = 0.5_wp*(a + b)
+        b = sqrt(a*b)
+        a = next
+      end do
+      a = 0.5_wp*(a + b)
+      mean(first:last) = a(:last - first + 1)
     end do
   end function agm
 

@@ -6,7 +6,7 @@
 !> which the last Legendre coefficients of that pressure are not small are halved.
 module law_panels
   use kinds, only: wp, pi
-  use dimensionless_problem, only: problem_t, calm_gap
+  use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
   use discretisation, only: local_nodes_t, gauss_nodes
   use step_front, only: front_leads, gap_about_front
   implicit none
@@ -147,7 +147,7 @@ contains
       x = 1 + offset**2/(d + sqrt(d**2 + offset**2))
       angle = acos(min(1/x, 1.0_wp))
       gap = problem%law%edge_gap + problem%shape%hertz_gap(h, x) + &
-        2/pi*sqrt(4*pi*problem%coupling*problem%law%adhesion*h)*angle
+        2/pi*sqrt(4*pi*adhesion_strength(problem)*h)*angle
     end select
   end function gap_at
 

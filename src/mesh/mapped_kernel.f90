@@ -1,235 +1,145 @@
 !> The matrix of the elastic kernel on mapped panels.
+!>
+!> Away from the axis the kernel's logarithm has a coefficient as smooth as the map is, and the
+!> nodes' own rule with what it misses of the logarithm (`logarithm_defect`) integrates kernel and
+!> pressure as exactly as the nodes resolve the pressure. At the axis the coefficient is singular
+!> itself, and in a tail positions are: there points are graded towards the target (`graded_rule`).
 module mapped_kernel
-  use kinds, only: wp
-  use elastic_kernel, only: kernel
+  use kinds, only: wp, pi
+  use elastic_kernel, only: kernel, kernel_log_coefficient
   use linear_algebra, only: multiply_transposed
-  use quadrature, only: legendre_values
+  use logarithm_defect, only: logarithm_defects, feels_logarithm
+  use quadrature, only: gauss_legendre, legendre_values
   use panel_map, only: panel_map_t, sinh_map
-  use graded_rule, only: graded_rule_t
+  use graded_rule, only: new_graded_rule
+  use graded_kernel, only: add_graded
   implicit none
   private
   public :: add_panel
 
-  !> Points of a panel, graded towards a place: distances from it, positions, and weights for
-  !> integrals of f t dt in which f is a tail times a polynomial.
-  type :: points_t
-    real(wp), allocatable :: distance(:), t(:), weight(:)
-  end type points_t
-
-  !> Below it the series of sinh is exact, and exponentials cancel.
-  real(wp), parameter :: small = 0.5_wp
+  !> How far from the axis, in z, points are graded, and the part of a panel that stands for all.
+  real(wp), parameter :: about_axis = 1.8_wp, nearly_all = 0.8_wp
 
 contains
 
-  !> matrix(i, j) = integral of k(r, t) b_j(t) t dt over the panel, for r = centre + target(i) and
-  !> the j-th of its basis functions: Lagrange polynomials of its local coordinate on the rule's
-  !> nodes, times the tail where it has one. own: the place of its first node among the targets.
-  subroutine add_panel(panel, rule, centre, target, own, matrix)
+  !> matrix(i, j) f(j) summed over j is the integral of k(r, t) f(t) t dt over the panel, for
+  !> r = centre + target(i) and f a polynomial of the panel's local coordinate, times the tail where
+  !> it has one, that the nodes resolve. node, weight: of Gauss's rule on [0, 1]. own: the place of
+  !> the panel's first node among the targets.
+  subroutine add_panel(panel, node, weight, digits, centre, target, own, matrix)
     type(panel_map_t), intent(in) :: panel
-    type(graded_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: centre, target(:)
+    real(wp), intent(in) :: node(:), weight(:), digits, centre, target(:)
     integer, intent(in) :: own
     real(wp), intent(out) :: matrix(:, :)
-    ! Integrals against Legendre polynomials, (order, targets).
-    real(wp) :: moments(rule%order, size(target)), legendre(size(rule%step), rule%order)
-    integer, allocatable :: others(:)
-    integer :: i, k
-
-    moments = 0
-    if (rule%cells > 1) call add_far(panel, rule, centre, target, own, moments)
-    call add_nodes(panel, rule, centre, target, own, moments)
-    legendre = legendre_values(rule%reach()*rule%step, rule%order)
-    others = [(i, i=1, own - 1), (i, i=own + rule%order, size(target))]
-    call add_others(.true., pack(others, target(others) <= panel%left))
-    call add_others(.false., pack(others, .not. target(others) <= panel%left))
-    call multiply_transposed(moments, rule%lagrange, matrix)
-    if (.not. panel%decay > 0) return
-    do k = 1, rule%order
-      matrix(:, k) = matrix(:, k)/(1 - rule%node(k))**panel%decay
-    end do
-
-  contains
-
-    !> Moments of targets that are beyond the left end or the right one.
-    subroutine add_others(left, which)
-      logical, intent(in) :: left
-      integer, intent(in) :: which(:)
-      type(points_t) :: points
-      real(wp) :: f(size(rule%step), size(which)), of_these(rule%order, size(which)), gap
-      integer :: j
-
-      if (size(which) == 0) return
-      points = points_from_end(panel, rule, centre, left)
-      do j = 1, size(which)
-        gap = merge(panel%left - target(which(j)), target(which(j)) - panel%right, left)
-        f(:, j) = integrand(points, centre + target(which(j)), gap)
-      end do
-      call multiply_transposed(legendre, f, of_these)
-      do j = 1, size(which)
-        if (.not. left) of_these(:, j) = rule%parity*of_these(:, j)
-        moments(:, which(j)) = moments(:, which(j)) + of_these(:, j)
-      end do
-    end subroutine add_others
-
-  end subroutine add_panel
-
-  !> Adds what the cells far from a target give: for targets beyond an end, all but those near it.
-  subroutine add_far(panel, rule, centre, target, own, moments)
-    type(panel_map_t), intent(in) :: panel
-    type(graded_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: centre, target(:)
-    integer, intent(in) :: own
-    real(wp), intent(inout) :: moments(:, :)
-    real(wp) :: f(size(rule%far), size(target)), of_these(rule%order, size(target))
-    real(wp), dimension(size(rule%far)) :: offset, weight
-    integer :: i, last_before, first_after
-
-    offset = panel%offset(rule%far)
-    weight = rule%far_weight*panel%speed(rule%far)*(centre + offset)
-    do i = 1, size(target)
-      call rule%far_from(i - own + 1, target(i) <= panel%left, last_before, first_after)
-      call fill(f(:last_before, i), 1, last_before)
-      f(last_before + 1:first_after - 1, i) = 0
-      call fill(f(first_after:, i), first_after, size(offset))
-    end do
-    call multiply_transposed(legendre_values(rule%far, rule%order), f, of_these)
-    moments = moments + of_these
-
-  contains
-
-    !> Weights times kernel of the points from `first` to `last`.
-    subroutine fill(part, first, last)
-      real(wp), intent(out) :: part(:)
-      integer, intent(in) :: first, last
-
-      part = weight(first:last)*kernel(2*centre + target(i) + offset(first:last), &
-        abs(target(i) - offset(first:last)))
-    end subroutine fill
-
-  end subroutine add_far
-
-  !> Moments of what is near the panel's own nodes: the part after node k and, its mirror image, the
-  !> part before the image of node k have their points at the same local distances.
-  subroutine add_nodes(panel, rule, centre, target, own, moments)
-    type(panel_map_t), intent(in) :: panel
-    type(graded_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: centre, target(:)
-    integer, intent(in) :: own
-    real(wp), intent(inout) :: moments(:, :)
-    real(wp) :: f(size(rule%step), 2), of_both(rule%order, 2)
-    real(wp) :: legendre(size(rule%step), rule%order), length
-    real(wp), dimension(size(rule%step)) :: growth, chord
-    integer :: k, image
-
-    do k = 1, rule%order
-      image = rule%order + 1 - k
-      length = real(rule%last_near(k), wp)/rule%cells - rule%node(k)
-      if (panel%kind == sinh_map) &
-        call exponentials(0.5_wp*panel%z_length*length*rule%step, growth, chord)
-      legendre = legendre_values(rule%node(k) + length*rule%step, rule%order)
-      f(:, 1) = integrand(points_from_node(panel, rule, centre, k, length, growth, chord), &
-        centre + target(own + k - 1), 0.0_wp)
-      f(:, 2) = integrand(points_from_node(panel, rule, centre, image, -length, growth, chord), &
-        centre + target(own + image - 1), 0.0_wp)
-      call multiply_transposed(legendre, f, of_both)
-      moments(:, own + k - 1) = moments(:, own + k - 1) + of_both(:, 1)
-      moments(:, own + image - 1) = moments(:, own + image - 1) + rule%parity*of_both(:, 2)
-    end do
-  end subroutine add_nodes
-
-  !> Weights times kernel for the target at r, which is `gap` away from where the points begin.
-  pure function integrand(points, r, gap) result(f)
-    type(points_t), intent(in) :: points
-    real(wp), intent(in) :: r, gap
-    real(wp) :: f(size(points%t))
-
-    f = points%weight*kernel(r + points%t, gap + points%distance)
-  end function integrand
-
-  !> Points graded towards the left or the right end.
-  pure function points_from_end(panel, rule, centre, left) result(points)
-    type(panel_map_t), intent(in) :: panel
-    type(graded_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: centre
-    logical, intent(in) :: left
-    type(points_t) :: points
-    real(wp), dimension(size(rule%step)) :: growth, chord
-    real(wp) :: z
-
-    if (panel%kind /= sinh_map) then
-      points = points_of_tail(panel, 0.0_wp, rule%step, rule%step_weight)
-      return
-    end if
-    z = merge(panel%z_left, -(panel%z_left + panel%z_length), left)
-    call exponentials(0.5_wp*panel%z_length*rule%reach()*rule%step, growth, chord)
-    points = points_along_sinh(panel%d, exp(z), growth, chord)
-    ! On the axis centre and end cancel, and the distance is the position.
-    points%t = merge((centre + panel%left) + points%distance, &
-      (centre + panel%right) - points%distance, left)
-    points%weight = points%weight*panel%z_length*rule%reach()*rule%step_weight*points%t
-  end function points_from_end
-
-  !> Points graded towards node k: over the part `length` of the panel after it or, below zero,
-  !> before it. growth, chord: their `exponentials` on a panel mapped by sinh.
-  pure function points_from_node(panel, rule, centre, k, length, growth, chord) result(points)
-    type(panel_map_t), intent(in) :: panel
-    type(graded_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: centre, length, growth(:), chord(:)
-    integer, intent(in) :: k
-    type(points_t) :: points
-    real(wp) :: z
-
-    if (panel%kind == sinh_map) then
-      z = panel%z_left + panel%z_length*rule%node(k)
-      points = points_along_sinh(panel%d, exp(sign(1.0_wp, length)*z), growth, chord)
-      points%t = centre + panel%d*sinh(z) + sign(1.0_wp, length)*points%distance
-      points%weight = points%weight*panel%z_length*abs(length)*rule%step_weight*points%t
-    else
-      points = points_of_tail(panel, rule%node(k), length*rule%step, abs(length)*rule%step_weight)
-    end if
-  end function points_from_node
-
-  !> exp(x) and 2 sinh(x) of x > 0, without cancellation.
-  pure subroutine exponentials(x, growth, chord)
-    real(wp), intent(in) :: x(:)
-    real(wp), intent(out) :: growth(:), chord(:)
-    real(wp), dimension(size(x)) :: square
+    ! Integrals against Legendre polynomials, (order, targets); local coordinates of the targets.
+    real(wp) :: moments(size(node), size(target)), place(size(target)), part
     integer :: k
 
-    growth = exp(x)
-    square = x**2
-    chord = 1
-    do k = 15, 3, -2
-      chord = 1 + chord*(square*(1.0_wp/(k*(k - 1))))
+    part = 1
+    place = 0
+    if (panel%kind == sinh_map) then
+      place = panel%local(target)
+      place(own:own + size(node) - 1) = node
+      part = part_about_axis(panel, centre, size(node), digits)
+      if (.not. part > 0) then
+        matrix = transpose(values_on(panel, node, weight, 0.0_wp, digits, centre, target, place))
+        return
+      end if
+    end if
+    moments = 0
+    call add_graded(panel, node, new_graded_rule(size(node), part, part*panel%z_length, digits), &
+      centre, target, place, own, moments)
+    if (part < 1) call add_rest(panel, part, digits, centre, target, place, moments)
+    call multiply_transposed(moments, lagrange(node, weight), matrix)
+    if (.not. panel%decay > 0) return
+    do k = 1, size(node)
+      matrix(:, k) = matrix(:, k)/(1 - node(k))**panel%decay
     end do
-    chord = merge(2*x*chord, growth - 1/growth, x < small)
-  end subroutine exponentials
+  end subroutine add_panel
 
-  !> Along offset = d sinh(z) from z0 by delta > 0: distances d (sinh(z0 + delta) - sinh(z0)) and,
-  !> as weights, the map's derivative by z; of exp(z0), exp(delta/2) and 2 sinh(delta/2), so that
-  !> nothing cancels. Positions are left to the caller.
-  pure function points_along_sinh(d, grown, growth, chord) result(points)
-    real(wp), intent(in) :: d, grown, growth(:), chord(:)
-    type(points_t) :: points
-    real(wp), dimension(size(growth)) :: middle
-
-    middle = grown*growth
-    points%distance = 0.5_wp*d*chord*(middle + 1/middle)
-    middle = middle*growth
-    points%weight = 0.5_wp*d*(middle + 1/middle)
-  end function points_along_sinh
-
-  !> In the tail from s by `by` (either sign): position = begin/(1 - s).
-  pure function points_of_tail(panel, s, by, weight) result(points)
+  !> The part of a panel, from its left end, on which the axis is felt: where the logarithm's
+  !> coefficient has one itself.
+  pure real(wp) function part_about_axis(panel, centre, nodes, digits) result(part)
     type(panel_map_t), intent(in) :: panel
-    real(wp), intent(in) :: s, by(:), weight(:)
-    type(points_t) :: points
-    real(wp) :: left(size(by))
+    real(wp), intent(in) :: centre, digits
+    integer, intent(in) :: nodes
+    real(wp) :: from_axis
 
-    left = (1 - s) - by
-    points%t = panel%begin/left
-    points%distance = abs(by)*points%t/(1 - s)
-    points%weight = weight*panel%begin**2*left**(panel%decay - 3)
-  end function points_of_tail
+    from_axis = max(0.0_wp, panel%z_left + asinh(centre/panel%d))
+    part = 0
+    if (from_axis < about_axis .and. feels_logarithm(from_axis/panel%z_length, nodes, digits)) &
+      part = (about_axis - from_axis)/panel%z_length
+    ! What little is left of a panel is not worth a rule of its own.
+    if (part > nearly_all) part = 1
+  end function part_about_axis
+
+  !> Weights times kernel, (points, targets), for Gauss points s of the panel beyond the part.
+  !> place: local coordinates of the targets.
+  function values_on(panel, s, weight, part, digits, centre, target, place) result(f)
+    type(panel_map_t), intent(in) :: panel
+    real(wp), intent(in) :: s(:), weight(:), part, digits, centre, target(:), place(:)
+    real(wp) :: f(size(s), size(target))
+    real(wp), dimension(size(s)) :: offset, t, speed, measure, a, total, distance
+    real(wp), allocatable :: defect(:, :)
+    logical :: near(size(target))
+    integer :: i, j, k
+
+    offset = panel%offset(s)
+    t = centre + offset
+    speed = (1 - part)*panel%speed(s)
+    measure = t*speed
+    near = feels_logarithm(max(part - place, place - 1, 0.0_wp)/(1 - part), size(s), digits)
+    defect = logarithm_defects((s - part)/(1 - part), weight, (pack(place, near) - part)/(1 - part))
+    j = 0
+    do i = 1, size(target)
+      total = 2*centre + target(i) + offset
+      distance = abs(target(i) - offset)
+      if (near(i)) then
+        j = j + 1
+        a = kernel_log_coefficient(total, distance)
+        ! Of a point itself what is left of the kernel without its logarithm.
+        k = minloc(abs(s - place(i)), 1)
+        if (.not. abs(s(k) - place(i)) > 0) distance(k) = total(k)
+        f(:, i) = measure*(weight*kernel(total, distance) + a*defect(:, j))
+        if (.not. abs(s(k) - place(i)) > 0) &
+          f(k, i) = measure(k)*a(k)*(weight(k)*log(8*t(k)/speed(k)) + defect(k, j))
+      else
+        f(:, i) = measure*weight*kernel(total, distance)
+      end if
+    end do
+  end function values_on
+
+  !> Adds the moments of the panel beyond the part about the axis.
+  subroutine add_rest(panel, part, digits, centre, target, place, moments)
+    type(panel_map_t), intent(in) :: panel
+    real(wp), intent(in) :: part, digits, centre, target(:), place(:)
+    real(wp), intent(inout) :: moments(:, :)
+    real(wp), allocatable :: s(:), weight(:)
+    real(wp) :: of_these(size(moments, 1), size(moments, 2))
+    integer :: points
+
+    ! Polynomials wave alike in this angle; the kernel and what they pass on to their neighbours
+    ! need a few points more.
+    points = ceiling(size(moments, 1)*(1 - acos(1 - 2*part)/pi) + 4 + 2*digits)
+    allocate (s(points), weight(points))
+    call gauss_legendre(s, weight)
+    s = part + (1 - part)*s
+    call multiply_transposed(legendre_values(s, size(moments, 1)), &
+      values_on(panel, s, weight, part, digits, centre, target, place), of_these)
+    moments = moments + of_these
+  end subroutine add_rest
+
+  !> (m, j): part of the Legendre polynomial of degree m - 1 in the Lagrange polynomial of node j.
+  !> The nodes' own rule is exact for products of two polynomials of theirs.
+  pure function lagrange(node, weight)
+    real(wp), intent(in) :: node(:), weight(:)
+    real(wp) :: lagrange(size(node), size(node))
+    integer :: m
+
+    lagrange = transpose(legendre_values(node, size(node)))
+    do m = 1, size(node)
+      lagrange(m, :) = (2*m - 1)*weight*lagrange(m, :)
+    end do
+  end function lagrange
 
 end module mapped_kernel

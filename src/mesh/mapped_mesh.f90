@@ -5,7 +5,6 @@ module mapped_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t, gauss_nodes, axis_row, centre_row, first_node
   use panel_map, only: sinh_panel, algebraic_panel
-  use graded_rule, only: graded_rule_t, new_graded_rule
   use mapped_kernel, only: add_panel
   implicit none
   private
@@ -83,7 +82,6 @@ contains
     type(mapped_shape_t), intent(in) :: shape
     logical, intent(in) :: elastic
     type(discretisation_t) :: grid
-    type(graded_rule_t) :: rule
     real(wp), allocatable :: offset(:)
     real(wp) :: target(first_node - 1 + sum(shape%order) + shape%tail_order)
     integer :: k
@@ -98,9 +96,8 @@ contains
     allocate (grid%kernel(size(target), grid%nodes))
     do k = 1, size(grid%panel)
       associate (first => grid%first(k), panel => grid%panel(k), local => grid%local(k))
-        rule = new_graded_rule(local%node, local%weight, panel%z_length, shape%digits)
-        call add_panel(panel, rule, grid%centre, target, first_node - 1 + first, &
-          grid%kernel(:, first:first + rule%order - 1))
+        call add_panel(panel, local%node, local%weight, shape%digits, grid%centre, target, &
+          first_node - 1 + first, grid%kernel(:, first:first + size(local%node) - 1))
       end associate
     end do
   end function new_mapped_mesh

@@ -5,14 +5,14 @@ module mesh_rule
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
   use shape, only: shape_t
-  use dimensionless_problem, only: problem_t, calm_gap
+  use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
   use contact_scales, only: smallest_feature, cohesive_width
   use law_panels, only: fit_panels, nodes_on, about_axis, about_front, about_edge
   use step_front, only: front_leads, first_front, front_width
   use mapped_mesh, only: mapped_shape_t
   implicit none
   private
-  public :: approach_shape, contact_shape, digits_for
+  public :: approach_shape, contact_shape
 
   !> d over the smallest feature: errors change little from half of it to twice.
   real(wp), parameter :: finer = 0.5_wp
@@ -44,51 +44,8 @@ module mesh_rule
   real(wp), parameter :: rung = 0.25_wp
   !> Digits that a shape with kinks allows.
   real(wp), parameter :: digits_of_broken = 4
-  !> Digits that the rule is good for; fewer, and the folds of the path are not those that it has,
-  !> which come the nearer to one another the stronger adhesion is.
-  real(wp), parameter :: fewest_digits = 4, more_for_folds = 0.5_wp, most_for_folds = 9, &
-    more_for_profiles = 2, more_for_narrow_necks = 0.3_wp, more_for_jumps = 0.5_wp, &
-    more_for_lengths = 0.6_wp, &
-    more_at_onset = 2, more_for_kinks = 1.5_wp, most_digits = 13
-  !> sigma at which jumps begin under the Lennard-Jones law, about that of others; a factor in it.
-  real(wp), parameter :: onset = 0.29_wp, near_onset = 1.15_wp
 
 contains
-
-  !> Digits at a fixed contact radius or axis gap that give what is reported a relative accuracy.
-  !> Fitted so that error estimates of loads, h0 and displacements, at folds and extrema too, are
-  !> within the accuracy, from 1e-2 to 1e-10 and sigma 1e-4 to 1e4. profiles: whether some are asked
-  !> for; these feel every error of the edge's place, the more the narrower the neck. widest: the
-  !> largest contact radius. No more than rounding leaves of the deformation.
-  pure real(wp) function digits_for(problem, widest, accuracy, profiles) result(digits)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: widest, accuracy
-    logical, intent(in) :: profiles
-    real(wp) :: left, for_folds
-
-    for_folds = fewest_digits + more_for_folds*log10(1 + strength(problem))
-    digits = max(2.5_wp - 0.75_wp*log10(accuracy), -0.2_wp - 1.2_wp*log10(accuracy))
-    ! Without jumps nothing is as sensitive as they are, but for the load of rigid bodies.
-    if (strength(problem) < onset .and. .not. problem%rigid) digits = digits - more_for_jumps
-    if (.not. problem%law%of_paper) then
-      digits = digits + more_for_lengths
-      for_folds = for_folds + more_for_lengths
-    end if
-    if (profiles) digits = digits + more_for_profiles + &
-      more_for_narrow_necks*log10(1 + strength(problem))
-    ! So do extrema of the load where the edge passes a kink of the bodies.
-    if (problem%shape%smooth_from() > 0) digits = digits + more_for_kinks
-    ! Where jumps have just begun the two folds are so near each other that coarse meshes lose them.
-    if (abs(log(max(strength(problem), tiny(1.0_wp))/onset)) < log(near_onset)) then
-      for_folds = max(for_folds, most_for_folds)
-      digits = digits + more_at_onset
-    end if
-    digits = max(digits, for_folds)
-    left = -log10(epsilon(1.0_wp)*max(1.0_wp, strength(problem)*widest))
-    digits = max(fewest_digits, min(digits, left, most_digits))
-    ! Folds have to be told apart as long as there is a contact at all.
-    if (left > fewest_digits) digits = max(digits, min(most_for_folds, for_folds))
-  end function digits_for
 
   !> Before contact, about the axis, for H0 up to h0_high.
   type(mapped_shape_t) function approach_shape(problem, h0_high, digits) result(shape)
@@ -97,7 +54,7 @@ contains
     real(wp) :: density, reach, feature
 
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
-      (1 + 0.03_wp*log(1 + strength(problem)))
+      (1 + 0.03_wp*log(1 + adhesion_strength(problem)))
     if (.not. problem%law%of_paper) density = for_others*density
     reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
@@ -125,10 +82,10 @@ contains
     if (problem%law%adhesion > 0) then
       ! Where adhesion is strong a small contact is drawn out far, and where the repulsion is it
       ! begins inside the edge: that needs more nodes, there most of all.
-      inner = inner*(1 + 0.03_wp*log(1 + strength(problem)/(1 + high)**2))
-      repulsion = log(1 + high/(pi*strength(problem)))
+      inner = inner*(1 + 0.03_wp*log(1 + adhesion_strength(problem)/(1 + high)**2))
+      repulsion = log(1 + high/(pi*adhesion_strength(problem)))
       outer = inner*(1 + 0.5_wp*log(1 + 0.75_wp*repulsion))
-      inner = inner*(0.85_wp + 0.25_wp/(1 + 0.3_wp*strength(problem)) + 0.3_wp*repulsion)
+      inner = inner*(0.85_wp + 0.25_wp/(1 + 0.3_wp*adhesion_strength(problem)) + 0.3_wp*repulsion)
     else
       inner = 1.5_wp*inner
       outer = inner
@@ -221,13 +178,13 @@ contains
     associate (law => problem%law)
       if (law%period > 0 .or. law%step_width > 0 .or. law%has_kink .or. broken .or. &
         abs(problem%shape%exponent - 2) > 0 .or. &
-        .not. law%of_paper .and. strength(problem) > strongest) then
+        .not. law%of_paper .and. adhesion_strength(problem) > strongest) then
         panels = ceiling(z_length/short)
         lengths = spread(z_length/panels, 1, panels)
       else
         lengths = [rung*ceiling(z_length/rung)]
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
-        smoothness = of_tail*smoothness + more_of_strong*log10(1 + strength(problem))
+        smoothness = of_tail*smoothness + more_of_strong*log10(1 + adhesion_strength(problem))
       end if
       ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
       if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
@@ -272,20 +229,14 @@ contains
     is_even = .not. abs(shape%exponent - 2*nint(0.5_wp*shape%exponent)) > 0
   end function is_even
 
-  !> sigma (40): the coupling times the surface energy; 0 without adhesion.
-  pure real(wp) function strength(problem)
-    type(problem_t), intent(in) :: problem
-
-    strength = problem%coupling*problem%law%adhesion
-  end function strength
-
   !> Digits of the kernel: its errors matter less than those of the pressure's polynomials, and
   !> more where bodies yield more.
   pure real(wp) function kernel_digits(problem, digits)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits
 
-    kernel_digits = max(5, ceiling(1.2_wp*digits - 2 + 0.5_wp*log10(1 + strength(problem))))
+    kernel_digits = max(5, ceiling(1.2_wp*digits - 2 + &
+      0.5_wp*log10(1 + adhesion_strength(problem))))
   end function kernel_digits
 
 end module mesh_rule

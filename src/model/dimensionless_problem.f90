@@ -13,7 +13,7 @@ module dimensionless_problem
   implicit none
   private
   public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
-    surface_energy, largest_tension, calm_gap, yielding_gap, contact_level_of
+    adhesion_strength, surface_energy, largest_tension, calm_gap, yielding_gap, contact_level_of
 
   type :: problem_t
     class(force_law_t), allocatable :: law
@@ -56,14 +56,20 @@ contains
       law%pressure_unit/stiffness*sqrt(shape%radius/law%length)
   end function new_problem
 
+  !> sigma (40): the coupling times the surface energy; 0 without adhesion.
+  pure real(wp) function adhesion_strength(problem)
+    type(problem_t), intent(in) :: problem
+
+    adhesion_strength = problem%coupling*problem%law%adhesion
+  end function adhesion_strength
+
   !> Width of the zone outside the contact edge over which the tension decays, lateral units:
   !> 0.75 E* L^2/gamma = 0.375/sigma; huge where bodies are rigid or nothing attracts.
   pure real(wp) function neck_width(problem)
     type(problem_t), intent(in) :: problem
 
     neck_width = huge(1.0_wp)
-    if (problem%coupling*problem%law%adhesion > 0) &
-      neck_width = neck/(problem%coupling*problem%law%adhesion)
+    if (adhesion_strength(problem) > 0) neck_width = neck/adhesion_strength(problem)
   end function neck_width
 
   !> A distance between nodes (lateral units) over the width of the neck; 0 where there is no neck.
@@ -71,7 +77,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: spacing
 
-    spacing_over_neck = spacing*problem%coupling*problem%law%adhesion/neck
+    spacing_over_neck = spacing*adhesion_strength(problem)/neck
   end function spacing_over_neck
 
   !> Tabor's parameter (R gamma^2/(E*^2 L^3))^(1/3) = (4 sigma^2)^(1/3), and for a gap B r^n
@@ -79,7 +85,7 @@ contains
   pure real(wp) function tabor_parameter(problem)
     type(problem_t), intent(in) :: problem
 
-    associate (sigma => problem%coupling*problem%law%adhesion, n => problem%shape%exponent)
+    associate (sigma => adhesion_strength(problem), n => problem%shape%exponent)
       if (abs(n - 2) > 0) then
         tabor_parameter = (2*sigma)**(n/(2*n - 1))
       else
@@ -100,7 +106,7 @@ contains
     if (problem%law%step_width > 0) &
       gap = max(gap, problem%law%step_at + outside*problem%law%step_width)
     if (problem%shape%parabolic) &
-      gap = max(gap, 2*(27*problem%coupling*problem%law%adhesion)**(2.0_wp/7))
+      gap = max(gap, 2*(27*adhesion_strength(problem))**(2.0_wp/7))
   end function calm_gap
 
   !> The largest gap at which bodies yield by more than the part `left` of what makes them jump into

@@ -1,8 +1,8 @@
 !> The curve: one row an equilibrium.
 module curve_rows
   use records, only: record_t
-  use decimal, only: put_whole, longest_whole
-  use tables, only: cells
+  use decimal, only: put_whole, longest_real
+  use tables, only: put_cells
   implicit none
   private
   public :: columns_of_curve, curve_row, curve_columns, stability_columns
@@ -40,17 +40,33 @@ contains
   pure function curve_row(record) result(text)
     type(record_t), intent(in) :: record
     character(len=:), allocatable :: text
-    character(len=longest_whole) :: stable, iterations
-    integer :: of_stable, of_iterations
+    character(len=len(record%branch) + 12*(longest_real + 1)) :: row
+    integer :: held
 
-    call put_whole(record%stable, stable, of_stable)
-    call put_whole(record%iterations, iterations, of_iterations)
-    text = record%branch // ',' // cells([record%h0, record%h_centre, record%displacement, &
-      record%load, record%contact_radius]) // ',' // stable(:of_stable) // ',' // &
-      cells([record%residual]) // ',' // iterations(:of_iterations) // &
-      merge(',1', ',0', record%converged)
-    if (allocated(record%eigenvalue)) text = text // ',' // cells([record%eigenvalue, &
-      record%local_criterion, record%axis_criterion])
+    row(:len(record%branch)) = record%branch
+    held = len(record%branch)
+    call put_cells([record%h0, record%h_centre, record%displacement, record%load, &
+      record%contact_radius], row, held)
+    call put_count(record%stable, row, held)
+    call put_cells([record%residual], row, held)
+    call put_count(record%iterations, row, held)
+    call put_count(merge(1, 0, record%converged), row, held)
+    if (allocated(record%eigenvalue)) call put_cells([record%eigenvalue, record%local_criterion, &
+      record%axis_criterion], row, held)
+    text = row(:held)
+
   end function curve_row
+
+  !> Adds a whole number after a comma.
+  pure subroutine put_count(count, row, held)
+    integer, intent(in) :: count
+    character(len=*), intent(inout) :: row
+    integer, intent(inout) :: held
+    integer :: length
+
+    row(held + 1:held + 1) = ','
+    call put_whole(count, row(held + 2:), length)
+    held = held + 1 + length
+  end subroutine put_count
 
 end module curve_rows

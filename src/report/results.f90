@@ -161,7 +161,7 @@ contains
     end if
     if (allocated(self%trouble)) return
     call self%curve%line(curve_row(record), self%trouble)
-    if (.not. allocated(self%trouble)) call self%curve%flush(self%trouble)
+    if (.not. allocated(self%trouble)) call self%curve%show(self%trouble)
     if (profile .and. .not. allocated(self%trouble)) call write_profile(self%shapes, &
       record%branch, record%h0, problem, grid, state, self%trouble)
   end subroutine take

@@ -2,7 +2,8 @@
 !> is not as it should be.
 module summarise
   use kinds, only: wp, long
-  use dimensionless_problem, only: problem_t, tabor_parameter, surface_energy
+  use dimensionless_problem, only: problem_t, adhesion_strength, tabor_parameter, &
+    surface_energy
   use classical, only: jkr_pull_off, dmt_pull_off
   use convex_contact, only: jkr_like_pull_off
   use scene_groups, only: scene_t
@@ -94,7 +95,7 @@ contains
         call take_pull_offs(problem, summary)
       end if
       if (.not. problem%rigid) then
-        call summary%set('sigma', problem%coupling*problem%law%adhesion)
+        call summary%set('sigma', adhesion_strength(problem))
         if (problem%shape%exponent > 0) call summary%set('tabor', tabor_parameter(problem))
       end if
     else if (problem%law%coupling_name /= '' .and. .not. problem%rigid) then

@@ -7,7 +7,7 @@ module tables
   use text_file, only: output_t, partial, plain
   implicit none
   private
-  public :: table_t, cells
+  public :: table_t, cells, put_cells
 
   !> A table being written, a row a line, made with `cells`.
   type, extends(output_t) :: table_t
@@ -44,19 +44,26 @@ contains
   pure function cells(values) result(text)
     real(wp), intent(in) :: values(:)
     character(len=:), allocatable :: text
-    character(len=(longest_real + 1)*size(values)) :: buffer
-    integer :: i, held, length
+    character(len=(longest_real + 1)*size(values)) :: row
+    integer :: held
 
     held = 0
-    do i = 1, size(values)
-      if (i > 1) then
-        held = held + 1
-        buffer(held:held) = ','
-      end if
-      call put_real(values(i), buffer(held + 1:), length)
-      held = held + length
-    end do
-    text = buffer(:held)
+    call put_cells(values, row, held)
+    text = row(2:held)
   end function cells
+
+  !> Adds numbers to row(:held), a comma before each; the row has room for `longest_real` + 1 each.
+  pure subroutine put_cells(values, row, held)
+    real(wp), intent(in) :: values(:)
+    character(len=*), intent(inout) :: row
+    integer, intent(inout) :: held
+    integer :: i, length
+
+    do i = 1, size(values)
+      row(held + 1:held + 1) = ','
+      call put_real(values(i), row(held + 2:), length)
+      held = held + 1 + length
+    end do
+  end subroutine put_cells
 
 end module tables

@@ -215,14 +215,13 @@ contains
     call self%close()
   end subroutine append
 
-  !> Puts it on the disk and closes it; nothing is done where none is open.
+  !> Closes it; nothing is done where none is open.
   subroutine close_journal(self)
     class(journal_t), intent(inout) :: self
     integer(c_int) :: status
 
     if (.not. self%is_open()) return
-    ! No result depends on it: what could be lost here is time.
-    status = c_sync(self%descriptor)
+    ! No result depends on it: what could be lost is the time since it was synchronised last.
     status = c_close(self%descriptor)
     self%descriptor = -1
   end subroutine close_journal

@@ -4,11 +4,16 @@
 !> compiler note 7.
 module text_file
   use, intrinsic :: iso_c_binding, only: c_int, c_long
+  use kinds, only: wp
+  use clock, only: seconds
   use failure, only: failure_t
   use c_library, only: c_open, c_write, c_sync, c_close, system_failure, as_output, nul
   implicit none
   private
   public :: output_t, partial, plain
+
+  !> How old [s] what is seen of a file may be.
+  real(wp), parameter :: show_interval = 0.1_wp
 
   !> Follows the name of a file that is not complete yet.
   character(len=*), parameter :: partial = '.partial'
@@ -23,12 +28,15 @@ module text_file
     !> What is still to be handed to the system is buffer(:held).
     character(len=8192) :: buffer
     integer :: held = 0
+    !> When something was handed over last [s].
+    real(wp) :: handed = 0
   contains
     procedure :: open => open_output
     procedure :: is_open
     procedure :: put
     procedure :: line
     procedure :: flush => flush_output
+    procedure :: show
     procedure :: close => close_output
     procedure, private :: hand_over
   end type output_t
@@ -92,8 +100,17 @@ contains
     if (.not. self%is_open()) return
     held = self%held
     self%held = 0
+    self%handed = seconds()
     call self%hand_over(self%buffer(:held), error)
   end subroutine flush_output
+
+  !> Flushes for those who watch the file grow: now and then, as often as it is called.
+  subroutine show(self, error)
+    class(output_t), intent(inout) :: self
+    type(failure_t), allocatable, intent(out) :: error
+
+    if (seconds() - self%handed > show_interval) call self%flush(error)
+  end subroutine show
 
   !> Waits until the file is on the disk and closes it; nothing is done where none is open.
   subroutine close_output(self, error)

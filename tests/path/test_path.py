@@ -196,6 +196,16 @@ def test_summary_has_the_extrema_of_the_load(run):
     assert h0[int(np.argmin(load))] == summary["max_tension_h0"]
 
 
+def test_the_largest_tension_is_an_extremum_where_meshes_change_beside_it(run):
+    # At this sigma and 1e-2 the path passes to another mesh three digits from the extremum, and
+    # what the meshes err by made the state there the lower one, with no error of its h0.
+    summary = run(path(0.039763566775, 1e-2, h0_end=-20.0)).summary
+    assert summary["max_tension_h0"] == summary["load_folds_h0"]
+    assert summary["max_tension"] == -summary["load_folds_load"]
+    exact = run(path(0.039763566775, 1e-8, h0_end=-20.0)).summary["max_tension_h0"]
+    assert abs(summary["max_tension_h0"] - exact) < summary["max_tension_h0_error"]
+
+
 # --- Beside the h0-stepped experiment
 
 

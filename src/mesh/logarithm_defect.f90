@@ -1,0 +1,141 @@
+!> What Gauss's rule misses of a logarithm.
+!>
+!> A kernel k = -a ln|u - v| + b with a and b smooth in u is integrated on Gauss-Legendre nodes u_j
+!> of [0, 1], as exactly as polynomials through the nodes stand for a f and b f, by
+!>
+!>     integral k(u) f(u) du = sum_j (w_j k(u_j) + a(u_j) c_j) f(u_j),
+!>
+!> c_j being the integral of -ln|u - v| L_j(u), with L_j the Lagrange polynomials, less what the
+!> rule has for it, -w_j ln|u_j - v|. It depends on nothing but the nodes and v, and far from the
+!> panel it vanishes.
+module logarithm_defect
+  use kinds, only: wp
+  use linear_algebra, only: multiply_transposed
+  use quadrature, only: legendre_values
+  implicit none
+  private
+  public :: logarithm_defects, feels_logarithm
+
+  !> Legendre functions of the second kind fall with their degree beyond the ends. They are found
+  !> from the lowest as long as errors grow by less than this, otherwise from one so much higher
+  !> that nothing is left of it.
+  real(wp), parameter :: tolerable = 1.0e3_wp, nothing = 1.0e-16_wp
+
+contains
+
+  !> c(j, i) for the node j and the place at(i), inside the panel or out. Where they are the same
+  !> the integral itself, without the logarithm that the rule cannot have.
+  function logarithm_defects(node, weight, at) result(c)
+    real(wp), intent(in) :: node(:), weight(:), at(:)
+    real(wp) :: c(size(node), size(at))
+    real(wp) :: series(size(node), size(at)), degrees(size(node), size(node))
+    real(wp) :: distance(size(node))
+    integer :: i
+
+    series = transpose(logarithm_series(2*at - 1, size(node)))
+    degrees = transpose(legendre_values(node, size(node)))
+    call multiply_transposed(degrees, series, c)
+    do i = 1, size(at)
+      distance = abs(node - at(i))
+      c(:, i) = weight*(c(:, i) + log(merge(distance, 1.0_wp, distance > 0)))
+    end do
+  end function logarithm_defects
+
+  !> Whether the defect matters of a place at a distance from the panel, in its lengths, if so many
+  !> digits are wanted on so many nodes: Gauss's rule has twice as many degrees as they have.
+  elemental logical function feels_logarithm(distance, nodes, digits)
+    real(wp), intent(in) :: distance, digits
+    integer, intent(in) :: nodes
+
+    feels_logarithm = nodes*log10(ellipse(1 + 2*distance)) < digits
+  end function feels_logarithm
+
+  !> Coefficients of -ln|s - x|, with s from -1 to 1, in Legendre polynomials of s, on the interval
+  !> of length 1: (place, degree + 1). That of degree l > 0 is Q_(l-1)(x) - Q_(l+1)(x).
+  pure function logarithm_series(x, terms) result(series)
+    real(wp), intent(in) :: x(:)
+    integer, intent(in) :: terms
+    real(wp) :: series(size(x), terms)
+    logical :: at_end(size(x)), is_near(size(x))
+    integer, allocatable :: which(:)
+    integer :: i, l
+
+    at_end = abs(abs(x) - 1) <= 2*epsilon(x)
+    is_near = 2*terms*log(ellipse(abs(x))) < log(tolerable)
+    which = pack([(i, i=1, size(x))], is_near .and. .not. at_end)
+    series(which, :) = differences(upward(x(which), terms))
+    which = pack([(i, i=1, size(x))], .not. is_near)
+    series(which, :) = differences(downward(x(which), terms))
+    do l = 1, terms - 1
+      where (at_end) series(:, l + 1) = sign(1.0_wp, x)**l*(real(2*l + 1, wp)/(l*(l + 1)))
+    end do
+    series(:, 1) = 1 + log(2.0_wp) - 0.5_wp*(x_log_x(1 + x) + x_log_x(1 - x))
+  end function logarithm_series
+
+  pure function differences(q) result(difference)
+    real(wp), intent(in) :: q(:, 0:)
+    real(wp) :: difference(size(q, 1), size(q, 2) - 1)
+
+    difference(:, 1) = 0
+    difference(:, 2:) = q(:, :ubound(q, 2) - 2) - q(:, 2:)
+  end function differences
+
+  !> Q of degrees 0 to `top` by the recurrence in rising degrees: exact between the ends.
+  pure function upward(x, top) result(q)
+    real(wp), intent(in) :: x(:)
+    integer, intent(in) :: top
+    real(wp) :: q(size(x), 0:top), forward
+    integer :: l
+
+    q(:, 0) = lowest(x)
+    q(:, 1) = x*q(:, 0) - 1
+    do l = 1, top - 1
+      forward = (2*l + 1)*(1.0_wp/(l + 1))
+      q(:, l + 1) = forward*x*q(:, l) - (forward - 1)*q(:, l - 1)
+    end do
+  end function upward
+
+  !> The same beyond the ends, in falling degrees from two arbitrary values (Miller).
+  pure function downward(x, top) result(q)
+    real(wp), intent(in) :: x(:)
+    integer, intent(in) :: top
+    real(wp) :: q(size(x), 0:top)
+    real(wp), dimension(size(x)) :: higher, now, lower
+    integer :: l
+
+    higher = 0
+    now = sqrt(tiny(1.0_wp))
+    if (size(x) == 0) return
+    do l = top + ceiling(-log(nothing)/(2*log(ellipse(minval(abs(x)))))), 1, -1
+      lower = ((2*l + 1)*x*now - (l + 1)*higher)/l
+      if (l <= top + 1) q(:, l - 1) = lower
+      higher = now
+      now = lower
+    end do
+    do l = top, 0, -1
+      q(:, l) = q(:, l)*(lowest(x)/q(:, 0))
+    end do
+  end function downward
+
+  elemental real(wp) function lowest(x)
+    real(wp), intent(in) :: x
+
+    lowest = 0.5_wp*log(abs((1 + x)/(1 - x)))
+  end function lowest
+
+  elemental real(wp) function x_log_x(x)
+    real(wp), intent(in) :: x
+
+    x_log_x = 0
+    if (abs(x) > 0) x_log_x = x*log(abs(x))
+  end function x_log_x
+
+  !> Sum of the half axes of the ellipse about [-1, 1] that goes through x; 1 on it.
+  elemental real(wp) function ellipse(x)
+    real(wp), intent(in) :: x
+
+    ellipse = x + sqrt(max(x**2 - 1, 0.0_wp))
+    if (x < 1) ellipse = 1
+  end function ellipse
+
+end module logarithm_defect
