@@ -205,9 +205,10 @@ contains
         nearly_passed*meshes%passage(self%mesh)) return
     end associate
     next%mesh = self%mesh + 1
-    self%frozen%factors%valid = .false.
     do j = self%held - 1, self%held
       state = self%state(j)
+      ! The two are a step apart.
+      self%frozen%factors%valid = .false.
       call move_to_mesh(equations, options, self%frozen, self%mesh, next%mesh, state, done)
       lost = .not. done
       if (done) call add_with_tangent(equations, self%options_for(options), self%frozen, state, &
