@@ -51,6 +51,8 @@ module known_path
 
   !> Most points of a path before it is given up as going nowhere.
   integer, parameter :: longest = 5000
+  !> Steps after which the listener hears of them: to write a message takes a tenth of a step.
+  integer, parameter :: steps_a_message = 8
   !> Residual, in the law's lengths, that the points of the path have at most, whatever the deck
   !> allows the experiment's states.
   real(wp), parameter :: path_tolerance = 1.0e-8_wp
@@ -72,7 +74,7 @@ contains
     type(solver_options_t) :: for_path
     character(len=40) :: so_far
     logical :: lost, blind, finished
-    integer :: k
+    integer :: steps, k
 
     ! Where rounding hides the contact the path is of use up to its first fold.
     blind = lost_in_rounding(equations%problem, &
@@ -80,13 +82,17 @@ contains
     for_path = options
     for_path%tolerance = min(options%tolerance, path_tolerance)
     finished = .false.
+    steps = 0
     if (closely) call walker%follow_closely()
     call walker%begin_with(equations, for_path, start, approach, lost)
     if (lost) known%ending%cause = path_lost
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, equations, for_path, lost)
-      write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
-      call listener%hear(trim(so_far))
+      steps = steps + 1
+      if (mod(steps, steps_a_message) == 0) then
+        write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
+        call listener%hear(trim(so_far))
+      end if
       known%fallen = collapsed(equations%problem, known%path)
       if (lost .or. known%path%held >= longest) then
         known%ending%cause = path_lost
