@@ -189,8 +189,6 @@ contains
     integer, intent(in) :: depth
     real(wp), intent(in) :: z(:), f(:)
     real(wp) :: step(size(z))
-    real(wp) :: q(size(z), depth), p(size(z), depth), r(size(z)), norm, norm_before, along
-    integer :: j, k, used
 
     step = -f
     if (depth == 0) return
@@ -208,14 +206,26 @@ contains
     end if
     history%z_before = z
     history%f_before = f
+    if (history%held > 0) &
+      call combine(history%dz(:, :history%held), history%df(:, :history%held), f, step)
+  end function accelerated_step
 
+  !> Adds to the step -f the combination of differences with the least |f|.
+  pure subroutine combine(dz, df, f, step)
+    real(wp), intent(in), contiguous :: dz(:, :), df(:, :)
+    real(wp), intent(in) :: f(:)
+    real(wp), intent(inout) :: step(:)
     ! q: orthonormal directions of df; p: the combinations of dz that belong to them.
+    real(wp) :: q(size(f), size(df, 2)), p(size(f), size(df, 2)), r(size(f))
+    real(wp) :: norm, norm_before, along
+    integer :: j, k, used
+
     used = 0
     r = f
-    do k = history%held, 1, -1
+    do k = size(df, 2), 1, -1
       used = used + 1
-      q(:, used) = history%df(:, k)
-      p(:, used) = history%dz(:, k)
+      q(:, used) = df(:, k)
+      p(:, used) = dz(:, k)
       norm_before = norm2(q(:, used))
       do j = 1, used - 1
         along = dot_product(q(:, j), q(:, used))
@@ -233,6 +243,6 @@ contains
       r = r - along*q(:, used)
       step = step - along*(p(:, used) - q(:, used))
     end do
-  end function accelerated_step
+  end subroutine combine
 
 end module anderson

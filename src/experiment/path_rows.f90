@@ -76,7 +76,8 @@ contains
         rows(k) = row_for_curve(steps, i, span, places(k), frozen)
       end if
     end do
-    rows = pack(rows, rows%converged .or. rows%profile)
+    if (.not. all(rows%converged .or. rows%profile)) &
+      rows = pack(rows, rows%converged .or. rows%profile)
   end subroutine rows_between
 
   !> The row at the coordinate s of the span after point i, as the path predicts it and, where that
