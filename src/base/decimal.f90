@@ -100,13 +100,15 @@ contains
     integer(long), intent(out) :: significand
     integer, intent(out) :: order
     logical, intent(out) :: found
-    integer(long) :: m
+    integer(long) :: m, bits
     integer :: b
 
     significand = 0
     order = 0
-    found = abs(x) <= 0
-    if (.not. (x >= tiny(x) .and. x <= huge(x))) return
+    ! Bits of positive numbers are in the numbers' order, and a comparison of them traps no NaN.
+    bits = transfer(x, 0_long)
+    found = bits == 0
+    if (bits < transfer(tiny(x), 0_long) .or. bits > transfer(huge(x), 0_long)) return
     m = int(scale(fraction(x), digits(x)), long)
     b = exponent(x) - digits(x)
     ! 2^(exponent - 1) <= x, so that this is right or one too small.

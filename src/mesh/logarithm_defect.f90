@@ -37,7 +37,8 @@ contains
     call multiply_transposed(degrees, series, c)
     do i = 1, size(at)
       distance = abs(node - at(i))
-      c(:, i) = weight*(c(:, i) + log(merge(distance, 1.0_wp, distance > 0)))
+      where (.not. distance > 0) distance = 1
+      c(:, i) = weight*(c(:, i) + log(distance))
     end do
   end function logarithm_defects
 
@@ -126,8 +127,7 @@ contains
   elemental real(wp) function x_log_x(x)
     real(wp), intent(in) :: x
 
-    x_log_x = 0
-    if (abs(x) > 0) x_log_x = x*log(abs(x))
+    x_log_x = x*log(max(abs(x), tiny(x)))
   end function x_log_x
 
   !> Sum of the half axes of the ellipse about [-1, 1] that goes through x; 1 on it.

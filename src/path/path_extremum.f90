@@ -131,7 +131,7 @@ contains
       call descend(curve, course, [max(s - abs(step), minval(x)), &
         min(s + abs(step), maxval(x))], s, least)
       doubt = minval(abs(s - x)) > at_end*abs(x(2) - x(1)) .and. &
-        (least < doubtful*error .or. .not. error < huge(1.0_wp))
+        (least/doubtful < error .or. .not. error < huge(1.0_wp))
     end associate
   end subroutine look
 

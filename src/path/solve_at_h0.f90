@@ -53,12 +53,13 @@ contains
     type(hermite_t), intent(in) :: curve
     real(wp), intent(in) :: h0
     type(bracket_t) :: bracket
-    real(wp) :: missing, before
+    real(wp) :: missing, before, slope, length
     logical :: rising
 
     associate (x => near%coordinate(near%lower:near%lower + 1), &
       ends => near%state(near%lower:near%lower + 1)%h0)
       bracket = bracket_t(minval(x), maxval(x))
+      length = abs(x(2) - x(1))
       rising = (ends(2) - ends(1))*(x(2) - x(1)) > 0
       s = bracket%within(x(1) + (x(2) - x(1))*(h0 - ends(1))/(ends(2) - ends(1)))
     end associate
@@ -66,7 +67,13 @@ contains
       missing = h0 - curve%value(s)
       call bracket%narrow((missing > 0) .eqv. rising, s)
       before = s
-      s = bracket%within(s + missing/curve%slope(s))
+      slope = curve%slope(s)
+      ! At a fold there is none; longer steps than the piece end in its middle too.
+      if (abs(missing) < length*abs(slope)) then
+        s = bracket%within(s + missing/slope)
+      else
+        s = bracket%middle()
+      end if
       if (abs(s - before) <= spacing(s)) exit
     end do
   end function coordinate_at_h0
