@@ -84,8 +84,8 @@ contains
     real(wp) :: uncertainty
 
     call solve_fine(fine, mesh, near%s, near%state, found)
-    if (found) call tangent_along(fine%equations_t, fine%options, mesh, near%s, near%state, fine%frozen, &
-      tangent, found)
+    if (found) call tangent_along(fine%equations_t, fine%options, mesh, near%s, near%state, &
+      fine%frozen, tangent, found)
     if (.not. found) return
     near%h0 = parabola_t(near%state%h0, tangent%h0, near%h0%curvature)
     near%load = parabola_t(near%state%load, tangent%load, near%load%curvature)

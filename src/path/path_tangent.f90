@@ -1,6 +1,6 @@
-!> The tangent of the equilibrium path: derivatives of a state by the value of its control, exact to
-!> the solver's tolerance or as nearly as is wanted. The factors that corrected the state serve: refinement brings their
-!> solution to the tangent's own equations.
+!> The tangent of the equilibrium path: derivatives of a state by the value of its control, as exact
+!> as is wanted. The factors that corrected the state serve: refinement brings their solution to the
+!> tangent's own equations.
 module path_tangent
   use kinds, only: wp, pi
   use beyond_mesh, only: load_slope_beyond

@@ -106,8 +106,9 @@ def test_jump_out_is_found_whether_or_not_the_edge_is_pinned(run):
     assert summary["jump_out_uncertainty"] < 1e-12
 
 
-@pytest.mark.parametrize(("spacing", "a_state"), [(0.2, 12), (0.3, 25), (0.5, 45), (1.0, 45)])
+@pytest.mark.parametrize(("spacing", "a_state"), [(0.2, 12), (0.3, 25), (0.5, 50), (1.0, 45)])
 def test_a_state_on_a_fixed_grid_costs_few_factorisations(run, spacing, a_state):
-    """Following each false fold by halving alone took 125 a state at 0.5, 228 at 1."""
+    """Following each false fold by halving alone took 125 a state at 0.5, 228 at 1. With 52 nodes
+    one takes as long as three iterations, and pays where it saves more."""
     cost = run(cycle(numerics=on_grid(spacing))).cost
     assert cost["factorisations"] < a_state * cost["states"]
