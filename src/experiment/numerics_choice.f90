@@ -32,7 +32,7 @@ module numerics_choice
   integer, parameter :: largest_doubled = 300
   !> What may be left of an extremum's place over the accuracy: a load goes with it by some times as
   !> much.
-  real(wp), parameter :: place_over_accuracy = 1.0e-4_wp
+  real(wp), parameter :: place_over_accuracy = 1.0e-5_wp
   !> Size of panels fixed in space over the smallest feature.
   real(wp), parameter :: panel_over_feature = 0.5_wp
 
