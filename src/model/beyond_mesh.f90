@@ -76,18 +76,16 @@ contains
   !> slowly it falls so slowly, under gap^-3 between cones as r^-2, that its integral has hardly a
   !> limit, or none. Only differences of energies count: that of undeformed bodies at H0 = 1 is
   !> taken off.
-  elemental real(wp) function energy_density(problem, gap, r) result(energy)
+  pure function energy_density(problem, gap, r) result(energy)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: gap, r
+    real(wp), intent(in) :: gap(:), r(:)
     real(wp), parameter :: falls_well = 4
-    real(wp) :: of_gaps(1)
+    real(wp) :: energy(size(gap))
 
-    of_gaps = problem%law%energy([gap])
-    energy = of_gaps(1)
+    energy = problem%law%energy(gap)
     if (problem%shape%parabolic .or. &
       problem%shape%growth*(problem%law%tail_power - 1) >= falls_well) return
-    of_gaps = problem%law%energy([min(1 + problem%shape%height(r), farthest)])
-    energy = energy - of_gaps(1)
+    energy = energy - problem%law%energy(min(1 + problem%shape%height(r), farthest))
   end function energy_density
 
   !> With r = from/x, or in panels from the axis.
