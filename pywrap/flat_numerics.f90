@@ -126,7 +126,8 @@ contains
     start, method, tolerance, most_iterations, depth, patience, mixing_limit, stop_on_change, &
     displacement_tolerance, gap, pressure, numbers, counts, stat, message, nodes, l, m)
     use deck_problem, only: pose
-    use equilibrium, only: control_t, state_t, at_h0, state_from
+    use contact_state, only: state_t, state_from
+    use equilibrium, only: control_t, at_h0
     use solver, only: solver_t
     use solver_options, only: solver_options_t
     character(len=*), intent(in) :: deck, kind, method

@@ -7,8 +7,9 @@
 !> every step and no history.
 module anderson
   use kinds, only: wp
-  use equilibrium, only: control_t, state_t, equations_t, residual, largest_step, &
-    unknowns_of, holds, at_h0, at_h0_with_edge
+  use contact_state, only: state_t
+  use equilibrium, only: control_t, equations_t, residual, largest_step, unknowns_of, holds, &
+    at_h0, at_h0_with_edge
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: solve
   use solver_options, only: solver_options_t

@@ -1,7 +1,8 @@
 !> A factorised Jacobian that serves many states, and where it was made: the same state and control
 !> give the same factors, bit by bit.
 module frozen_jacobian
-  use equilibrium, only: control_t, state_t, equations_t
+  use contact_state, only: state_t
+  use equilibrium, only: control_t, equations_t
   use jacobian, only: factorise_jacobian
   use linear_algebra, only: factorisation_t
   implicit none

@@ -5,8 +5,9 @@ module jacobian
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use linear_algebra, only: factorisation_t, factorise, multiply
-  use equilibrium, only: control_t, state_t, cost_t, equations_t, at_h0, at_axis_gap, &
-    at_edge_radius, at_h0_with_edge
+  use contact_state, only: state_t
+  use equilibrium, only: control_t, cost_t, equations_t, at_h0, at_axis_gap, at_edge_radius, &
+    at_h0_with_edge
   implicit none
   private
   public :: factorise_jacobian, factorise_on, jacobian_times, control_derivative

@@ -7,7 +7,8 @@
 !> there, as an option, to reproduce the paper.
 module mixing
   use kinds, only: wp
-  use equilibrium, only: control_t, state_t, equations_t, residual, largest_step, holds, at_h0
+  use contact_state, only: state_t
+  use equilibrium, only: control_t, equations_t, residual, largest_step, holds, at_h0
   use solver_options, only: solver_options_t
   implicit none
   private

@@ -3,7 +3,7 @@ module regridding
   use kinds, only: wp
   use shape, only: shape_t
   use discretisation, only: discretisation_t
-  use equilibrium, only: state_t, gap_at
+  use contact_state, only: state_t, gap_at
   implicit none
   private
   public :: regrid

@@ -3,7 +3,8 @@
 !> quasi-static experiment would land, and leaves unstable equilibria.
 module relaxation
   use kinds, only: wp
-  use equilibrium, only: control_t, state_t, equations_t, residual, largest_step, holds, at_h0
+  use contact_state, only: state_t
+  use equilibrium, only: control_t, equations_t, residual, largest_step, holds, at_h0
   use jacobian, only: factorise_jacobian
   use linear_algebra, only: factorisation_t, solve, determinant_sign
   use solver_options, only: solver_options_t

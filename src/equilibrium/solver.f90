@@ -1,6 +1,7 @@
 !> A problem on its meshes with an iteration that solves it: from state to state.
 module solver
-  use equilibrium, only: control_t, state_t, equations_t
+  use contact_state, only: state_t
+  use equilibrium, only: control_t, equations_t
   use solver_options, only: solver_options_t, newton_of
   use mixing, only: solve_mixing
   use anderson, only: solve_anderson

@@ -5,7 +5,8 @@ module stability
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, first_node
-  use equilibrium, only: control_t, state_t, cost_t
+  use contact_state, only: state_t
+  use equilibrium, only: control_t, cost_t
   use jacobian, only: factorise_on
   use linear_algebra, only: factorisation_t, solve, determinant_sign, multiply, eigenvalues
   implicit none

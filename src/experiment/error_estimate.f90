@@ -9,7 +9,8 @@ module error_estimate
   use kinds, only: wp
   use mesh_store, only: mesh_store_t
   use regridding, only: regrid
-  use equilibrium, only: control_t, state_t, equations_t, gap_at, far_gap
+  use contact_state, only: state_t, gap_at, far_gap
+  use equilibrium, only: control_t, equations_t
   use solver, only: solver_t
   use reported, only: reported_t, error_t
   implicit none

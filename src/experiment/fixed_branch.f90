@@ -2,7 +2,8 @@
 module fixed_branch
   use kinds, only: wp
   use dimensionless_problem, only: over_neck => spacing_over_neck
-  use equilibrium, only: control_t, state_t
+  use contact_state, only: state_t
+  use equilibrium, only: control_t
   use jacobian, only: control_derivative
   use frozen_jacobian, only: freeze
   use linear_algebra, only: solve, determinant_sign, log_determinant

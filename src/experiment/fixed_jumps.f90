@@ -1,7 +1,8 @@
 !> How a branch on a mesh fixed in space ends, and where the bodies go from there.
 module fixed_jumps
   use kinds, only: wp
-  use equilibrium, only: control_t, state_t, holds, radius_of_gap
+  use contact_state, only: state_t, radius_of_gap
+  use equilibrium, only: control_t, holds
   use solver_options, only: solver_options_t, newton_of
   use anderson, only: solve_anderson
   use relaxation, only: relax

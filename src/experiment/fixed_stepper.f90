@@ -3,7 +3,7 @@
 module fixed_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap, over_neck => spacing_over_neck
-  use equilibrium, only: state_t, state_from
+  use contact_state, only: state_t, state_from
   use fixed_branch, only: change
   use fixed_jumps, only: fixed_jumps_t, locate_jump
   use ending, only: touching, beyond_rounding

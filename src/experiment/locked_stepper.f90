@@ -5,7 +5,7 @@
 module locked_stepper
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, calm_gap
-  use equilibrium, only: state_t, state_from
+  use contact_state, only: state_t, state_from
   use edge_locked, only: approach, contact
   use locked_meshes, only: h0_control, scale_at
   use ending, only: ending_t, touching, nothing_afar

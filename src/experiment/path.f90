@@ -176,8 +176,8 @@ contains
 
   contains
 
-    !> Whether the row's tension is the largest so far. Between an extremum and a point that is none,
-    !> such as where the path passes to another mesh, what meshes err by does not decide.
+    !> Whether the row's tension is the largest so far. Between an extremum and a point that is
+    !> none, such as where the path passes to another mesh, what meshes err by does not decide.
     logical function lowers(lowest)
       type(reported_t), allocatable, intent(in) :: lowest
       real(wp) :: handicap

@@ -4,7 +4,8 @@ module path_errors
   use kinds, only: wp
   use regridding, only: regrid
   use dimensionless_problem, only: problem_t
-  use equilibrium, only: state_t, equations_t, residual_floor
+  use contact_state, only: state_t
+  use equilibrium, only: equations_t, residual_floor
   use path_coordinate, only: coordinate_of
   use potential_energy, only: energy_of
   use traced_path, only: path_point_t, traced_path_t

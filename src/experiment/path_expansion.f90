@@ -4,7 +4,7 @@
 !> little moves the load by much.
 module path_expansion
   use kinds, only: wp
-  use equilibrium, only: state_t
+  use contact_state, only: state_t
   use path_coordinate, only: path_control
   use path_tangent, only: tangent_t
   use arc, only: arc_t, tangent_along, of_h0, of_load

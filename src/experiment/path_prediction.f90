@@ -4,7 +4,7 @@ module path_prediction
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use interpolation, only: polynomial_weights
-  use equilibrium, only: state_t
+  use contact_state, only: state_t
   use path_coordinate, only: coordinate_of
   use path_span, only: path_span_t
   use stepper, only: branch_point_t

@@ -2,7 +2,7 @@
 !> many more as make the curve through them smooth.
 module path_rows
   use kinds, only: wp
-  use equilibrium, only: state_t
+  use contact_state, only: state_t
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
   use path_coordinate, only: path_control

@@ -8,7 +8,7 @@
 module path_stepper
   use kinds, only: wp
   use listener, only: listener_t
-  use equilibrium, only: state_t
+  use contact_state, only: state_t
   use locked_stepper, only: locked_stepper_t
   use path_coordinate, only: coordinate_of
   use ending, only: fallen_before, beyond_path

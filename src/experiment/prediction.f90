@@ -4,7 +4,7 @@ module prediction
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use interpolation, only: polynomial_weights
-  use equilibrium, only: state_t, radius_of_gap
+  use contact_state, only: state_t, radius_of_gap
   use stepper, only: branch_point_t
   use arc, only: between
   implicit none

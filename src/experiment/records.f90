@@ -4,7 +4,7 @@ module records
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t, contact_level_of
   use discretisation, only: discretisation_t
-  use equilibrium, only: state_t, radius_of_gap
+  use contact_state, only: state_t, radius_of_gap
   implicit none
   private
   public :: record_t, observer_t, silent_observer_t, theory_row_t, record_of

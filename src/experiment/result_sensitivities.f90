@@ -2,7 +2,7 @@
 module result_sensitivities
   use kinds, only: wp
   use listener, only: listener_t
-  use equilibrium, only: state_t
+  use contact_state, only: state_t
   use frozen_jacobian, only: frozen_jacobian_t
   use path_coordinate, only: coordinate_of
   use known_path, only: landing_t, landing_over

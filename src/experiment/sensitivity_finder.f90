@@ -1,7 +1,7 @@
 !> What derivatives by the parameters of &sensitivity are found with.
 module sensitivity_finder
   use kinds, only: wp
-  use equilibrium, only: state_t
+  use contact_state, only: state_t
   use traced_path, only: traced_path_t
   use variation, only: variation_t
   use path_stepper, only: path_stepper_t

@@ -4,7 +4,7 @@ module stepper
   use kinds, only: wp
   use dimensionless_problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
-  use equilibrium, only: state_t
+  use contact_state, only: state_t
   use solver, only: solver_t
   use ending, only: ending_t
   use locked_meshes, only: h0_control

@@ -2,7 +2,7 @@
 !> that does not attract, or between rigid bodies.
 module unique_stepper
   use kinds, only: wp
-  use equilibrium, only: state_t
+  use contact_state, only: state_t
   use locked_stepper, only: locked_stepper_t
   use arc, only: between
   use ending, only: touching, steps_lost

@@ -4,7 +4,8 @@ module arc
   use kinds, only: wp
   use interpolation, only: polynomial_weights, hermite_weights, hermite_t, hermite_through, &
     most_hermite_nodes
-  use equilibrium, only: state_t, equations_t
+  use contact_state, only: state_t
+  use equilibrium, only: equations_t
   use solver_options, only: solver_options_t, tightened
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t

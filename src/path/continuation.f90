@@ -5,7 +5,8 @@
 module continuation
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use equilibrium, only: state_t, equations_t, radius_of_gap
+  use contact_state, only: state_t, radius_of_gap
+  use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t

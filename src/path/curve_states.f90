@@ -4,7 +4,8 @@
 module curve_states
   use kinds, only: wp
   use root_finding, only: bracket_t
-  use equilibrium, only: state_t, equations_t, radius_of_gap
+  use contact_state, only: state_t, radius_of_gap
+  use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
   use frozen_jacobian, only: frozen_jacobian_t
   use path_coordinate, only: inward

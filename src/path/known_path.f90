@@ -4,7 +4,8 @@
 module known_path
   use kinds, only: wp
   use listener, only: listener_t
-  use equilibrium, only: state_t, equations_t
+  use contact_state, only: state_t
+  use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
   use edge_locked, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding

@@ -4,7 +4,8 @@
 module path_coordinate
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use equilibrium, only: control_t, state_t, at_axis_gap, at_edge_radius
+  use contact_state, only: state_t
+  use equilibrium, only: control_t, at_axis_gap, at_edge_radius
   use edge_locked, only: approach
   implicit none
   private

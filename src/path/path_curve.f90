@@ -5,7 +5,8 @@
 module path_curve
   use kinds, only: wp
   use interpolation, only: hermite_t, hermite_through
-  use equilibrium, only: equations_t, radius_of_gap
+  use contact_state, only: radius_of_gap
+  use equilibrium, only: equations_t
   use path_coordinate, only: inward
   use arc, only: arc_t
   use known_path, only: known_path_t

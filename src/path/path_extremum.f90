@@ -5,7 +5,8 @@
 !> a state is solved and joins it.
 module path_extremum
   use kinds, only: wp
-  use equilibrium, only: state_t, equations_t
+  use contact_state, only: state_t
+  use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
   use frozen_jacobian, only: frozen_jacobian_t
   use interpolation, only: hermite_t

@@ -4,7 +4,7 @@
 module path_span
   use kinds, only: wp
   use interpolation, only: hermite_t, most_hermite_nodes
-  use equilibrium, only: state_t
+  use contact_state, only: state_t
   use arc, only: of_h0, of_load
   use solve_at_h0, only: neighbours_t, neighbours_of, coordinate_at_h0
   use traced_path, only: traced_path_t

@@ -4,8 +4,8 @@
 module path_tangent
   use kinds, only: wp, pi
   use beyond_mesh, only: load_slope_beyond
-  use equilibrium, only: control_t, state_t, equations_t, at_axis_gap, at_edge_radius, &
-    load_reach, gap_at_end
+  use contact_state, only: state_t, load_reach, gap_at_end
+  use equilibrium, only: control_t, equations_t, at_axis_gap, at_edge_radius
   use jacobian, only: control_derivative, jacobian_times
   use solver_options, only: solver_options_t
   use linear_algebra, only: solve

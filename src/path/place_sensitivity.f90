@@ -8,7 +8,8 @@
 module place_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, contact_level_of
-  use equilibrium, only: state_t, equations_t, gap_at, radius_of_gap
+  use contact_state, only: state_t, gap_at, radius_of_gap
+  use equilibrium, only: equations_t
   use solver_options, only: solver_options_t, tightened
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t

@@ -5,7 +5,8 @@
 module potential_energy
   use kinds, only: wp, pi
   use beyond_mesh, only: energy_beyond, energy_density
-  use equilibrium, only: state_t, equations_t, load_reach, gap_at_end
+  use contact_state, only: state_t, load_reach, gap_at_end
+  use equilibrium, only: equations_t
   implicit none
   private
   public :: energy_of

@@ -1,7 +1,8 @@
 !> States that numbers are reported of, with the errors of these numbers.
 module reported
   use kinds, only: wp
-  use equilibrium, only: control_t, state_t
+  use contact_state, only: state_t
+  use equilibrium, only: control_t
   implicit none
   private
   public :: error_probe_t, error_t, measure_t, reported_t, reported_state, &

@@ -4,7 +4,8 @@ module solve_at_h0
   use kinds, only: wp
   use root_finding, only: bracket_t
   use interpolation, only: hermite_t
-  use equilibrium, only: control_t, state_t, equations_t, holds, residual_floor, at_h0_with_edge
+  use contact_state, only: state_t
+  use equilibrium, only: control_t, equations_t, holds, residual_floor, at_h0_with_edge
   use solver_options, only: solver_options_t
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t

@@ -9,7 +9,8 @@
 module state_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use equilibrium, only: control_t, state_t, equations_t, residual, at_edge_radius, far_gap
+  use contact_state, only: state_t, far_gap
+  use equilibrium, only: control_t, equations_t, residual, at_edge_radius
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: solve
   use path_coordinate, only: path_control

@@ -3,7 +3,8 @@
 module straight_lines
   use kinds, only: wp
   use dimensionless_problem, only: contact_level_of
-  use equilibrium, only: equations_t, control_t, state_t, radius_of_gap, at_axis_gap
+  use contact_state, only: state_t, radius_of_gap
+  use equilibrium, only: equations_t, control_t, at_axis_gap
   use path_coordinate, only: path_control
   use path_span, only: path_span_t
   implicit none

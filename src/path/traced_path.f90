@@ -11,7 +11,8 @@
 module traced_path
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use equilibrium, only: state_t, equations_t
+  use contact_state, only: state_t
+  use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
   use edge_locked, only: approach
   use reported, only: error_t, measure_t

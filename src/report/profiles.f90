@@ -4,7 +4,7 @@ module profiles
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
-  use equilibrium, only: state_t
+  use contact_state, only: state_t
   use tables, only: table_t, cells
   implicit none
   private

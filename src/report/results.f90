@@ -9,7 +9,8 @@ module results
   use failure, only: failure_t, fail, file_trouble
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
-  use equilibrium, only: state_t, cost_t
+  use contact_state, only: state_t
+  use equilibrium, only: cost_t
   use records, only: record_t, observer_t
   use scene_groups, only: scene_t
   use deck, only: deck_t

@@ -6,7 +6,8 @@ module stability_records
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
-  use equilibrium, only: state_t, cost_t
+  use contact_state, only: state_t
+  use equilibrium, only: cost_t
   use records, only: observer_t, record_t, stable_yes, stable_no, stable_unasked
   use text, only: brief
   use summary, only: summary_t

@@ -5,7 +5,8 @@ module resumable_stepper
   use kinds, only: wp
   use discretisation, only: discretisation_t
   use frozen_jacobian, only: freeze
-  use equilibrium, only: control_t, state_t, cost_t
+  use contact_state, only: state_t
+  use equilibrium, only: control_t, cost_t
   use ending, only: ending_t, not_kept
   use stepper, only: keeping_stepper_t, branch_point_t, step_result_t
   use reported, only: error_probe_t

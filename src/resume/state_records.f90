@@ -6,7 +6,8 @@
 module state_records
   use kinds, only: wp, long
   use force_law, only: force_law_t
-  use equilibrium, only: state_t, cost_t
+  use contact_state, only: state_t
+  use equilibrium, only: cost_t
   use stepper, only: branch_point_t, step_result_t
   use frozen_jacobian, only: frozen_jacobian_t
   use byte_record, only: byte_record_t

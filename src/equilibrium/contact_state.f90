@@ -1,0 +1,114 @@
+!> One state of the two bodies on the nodes of a mesh, dimensionless, and where its gap is what.
+module contact_state
+  use kinds, only: wp
+  use shape, only: shape_t
+  use discretisation, only: discretisation_t
+  use root_finding, only: root_search_t, new_root_search
+  implicit none
+  private
+  public :: state_t, state_from, load_reach, gap_at_end, gap_at, radius_of_gap, far_gap
+
+  !> Where gaps are that large, in the law's lengths, no force depends on their last digits.
+  real(wp), parameter :: far_gap = 1000
+
+  type :: state_t
+    real(wp), allocatable :: gap(:), pressure(:)
+    real(wp) :: h0 = 0, scale = 1
+    real(wp) :: axis_gap = 0, load = 0
+    !> Largest |G|, in units of the law's length; of gaps beyond `far_gap` as a part of them.
+    real(wp) :: residual = huge(1.0_wp)
+    !> Operator products that this state took.
+    integer :: iterations = 0
+  contains
+    procedure :: become
+  end type state_t
+
+contains
+
+  !> Takes over another state, into the arrays that it has: assignment would allocate them anew.
+  pure subroutine become(self, other)
+    class(state_t), intent(inout) :: self
+    type(state_t), intent(in) :: other
+
+    self%gap = other%gap
+    self%pressure = other%pressure
+    self%h0 = other%h0
+    self%scale = other%scale
+    self%axis_gap = other%axis_gap
+    self%load = other%load
+    self%residual = other%residual
+    self%iterations = other%iterations
+  end subroutine become
+
+  !> An empty state on so many nodes.
+  pure function state_from(nodes) result(state)
+    integer, intent(in) :: nodes
+    type(state_t) :: state
+
+    allocate (state%gap(nodes), state%pressure(nodes), source=0.0_wp)
+  end function state_from
+
+  !> Where a bounded mesh ends, lateral units.
+  pure real(wp) function load_reach(grid, state)
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+
+    load_reach = state%scale*grid%end
+  end function load_reach
+
+  !> The gap there, the deformation being that of the last node.
+  pure real(wp) function gap_at_end(shape, grid, state) result(gap)
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+
+    gap = state%gap(grid%nodes) + (shape%height(load_reach(grid, state)) - &
+      shape%height(state%scale*grid%x(grid%nodes)))
+  end function gap_at_end
+
+  !> The gap of a state at a position on its mesh. Where that goes on to infinity, what the gap has
+  !> beside the shape is interpolated, which is bounded there.
+  pure real(wp) function gap_at(shape, grid, state, x) result(gap)
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: x
+
+    if (grid%in_tail(x)) then
+      gap = shape%height(state%scale*x) + &
+        grid%interpolate(state%gap - shape%height(state%scale*grid%x), x)
+    else
+      gap = grid%interpolate(state%gap, x)
+    end if
+  end function gap_at
+
+  !> Position, in lateral units, of the outermost point with the given gap; 0 if all gaps are
+  !> larger.
+  pure real(wp) function radius_of_gap(shape, level, grid, state) result(c)
+    class(shape_t), intent(in) :: shape
+    real(wp), intent(in) :: level
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    type(root_search_t) :: search
+    real(wp) :: x
+    integer :: j
+
+    do j = size(state%gap) - 1, 1, -1
+      if (state%gap(j) < level) exit
+    end do
+    c = 0
+    if (j == 0) then
+      if (.not. state%axis_gap < level) return
+      search = new_root_search(0.0_wp, state%axis_gap - level, grid%x(1), state%gap(1) - level)
+    else
+      search = new_root_search(grid%x(j), state%gap(j) - level, grid%x(j + 1), &
+        state%gap(j + 1) - level)
+    end if
+    do while (search%is_open())
+      x = search%place()
+      call search%note(x, gap_at(shape, grid, state, x) - level)
+    end do
+    c = state%scale*search%root
+  end function radius_of_gap
+
+end module contact_state
