@@ -99,8 +99,8 @@ GUARDS = {
     "converged_column": Guard(
         "a row that is no equilibrium says so",
         "report/curve_rows.f90",
-        "merge(',1', ',0', record%converged)",
-        "',1'",
+        "merge(1, 0, record%converged)",
+        "1",
         (STARVED,),
     ),
     "unconverged_stable": Guard(
