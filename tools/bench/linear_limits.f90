@@ -10,7 +10,8 @@ program linear_limits
   use scene_problem, only: problem_of
   use discretisation, only: discretisation_t, first_node
   use uniform_grid, only: new_uniform_grid
-  use equilibrium, only: control_t, state_t, equations_t, state_from, residual
+  use contact_state, only: state_t, state_from
+  use equilibrium, only: control_t, equations_t, residual
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: multiply, factorisation_t, factorise, solve
   use mixing, only: solve_mixing
