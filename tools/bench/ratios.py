@@ -12,11 +12,10 @@ def measure(program, quick, say):
     """Return one row for every claim: measured, limit, goal, and whether it holds."""
     rows = []
 
-    def claim(quantity, case, value, goal, limit=math.nan, least=False):
-        holds = value >= goal if least else value <= goal
+    def claim(quantity, case, value, goal, limit=math.nan):
         rows.append({"quantity": quantity, "case": case, "measured": value, "limit": limit,
-                     "goal": goal, "sense": "at least" if least else "at most",
-                     "holds": "–" if math.isnan(goal) else "yes" if holds else "no"})
+                     "goal": goal, "sense": "at most",
+                     "holds": "–" if math.isnan(goal) else "yes" if value <= goal else "no"})
 
     for row in program.gauge.pieces((400,) if quick else (200, 400, 800)):
         case = f"{row['nodes']:.0f} nodes"
@@ -45,7 +44,8 @@ def measure(program, quick, say):
         claim("kernel assembly / run", case, run.kernel_seconds / run.wall, 0.2)
         if "cycle" in case:
             claim("operator products a state, mean", case, run.products / run.states, 6.0)
-            claim("states a factorisation", case, run.states / run.factorisations, 20.0, least=True)
+            # Factors are renewed as soon as that costs no more than what they lack: no goal.
+            claim("states a factorisation", case, run.states / run.factorisations, math.nan)
     start = program.start_up()
     claim("G, whole run", "start alone (snapin --version)", start, 2)
     scenes = 100 if quick else 1000
