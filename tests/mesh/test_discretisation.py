@@ -178,10 +178,11 @@ def test_panels_converge_spectrally_in_their_order():
         mesh = snapin.panel_mesh(np.arange(0, 4.1, 0.5), order)
         found = mesh.matrix().nodes @ np.exp(-3 * mesh.x**2)
         errors[order] = abs(found - gaussian(mesh.x, 3)).max()
-    # Two more nodes a panel gain well over a digit each time, until rounding is reached at 14.
-    steps = [errors[n] / errors[n + 2] for n in range(4, 14, 2)]
+    # Two more nodes a panel gain well over a digit each time, until rounding is reached at 14: what
+    # is left there is another on other processors.
+    steps = [errors[n] / errors[n + 2] for n in range(4, 12, 2)]
     assert min(steps) > 50
-    assert errors[16] < 1e-14
+    assert max(errors[14], errors[16]) < 1e-14
 
 
 @pytest.mark.parametrize("order", [3, 4, 5, 6])
