@@ -25,7 +25,8 @@ module contact_state
 
 contains
 
-  !> Takes over another state, into the arrays that it has: assignment would allocate them anew.
+  !> Takes over all of another state, into the arrays that it has: assignment would allocate them
+  !> anew.
   pure subroutine become(self, other)
     class(state_t), intent(inout) :: self
     type(state_t), intent(in) :: other

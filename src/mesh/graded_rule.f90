@@ -3,9 +3,6 @@
 !> Towards a logarithm on it or near it points are graded: with distance = length*v**power and Gauss
 !> points in v, a logarithm there is as smooth as v**(power - 1) ln(v), and one a little farther off
 !> stays away from the points in proportion. For targets far off plain Gauss points do.
-!>
-!> Integrals are taken against Legendre polynomials, whose values follow from a recurrence; those
-!> against the panel's Lagrange polynomials are combinations of them.
 module graded_rule
   use kinds, only: wp, pi
   use quadrature, only: gauss_legendre, legendre_values

@@ -14,7 +14,7 @@ def measure(program, quick, say):
 
     def claim(quantity, case, value, goal, limit=math.nan):
         rows.append({"quantity": quantity, "case": case, "measured": value, "limit": limit,
-                     "goal": goal, "sense": "at most",
+                     "goal": goal,
                      "holds": "–" if math.isnan(goal) else "yes" if value <= goal else "no"})
 
     for row in program.gauge.pieces((400,) if quick else (200, 400, 800)):
@@ -75,4 +75,4 @@ def tables(rows, before):
 
 def _goal(row):
     """Return the goal of a claim in words; some figures have none."""
-    return "–" if math.isnan(row["goal"]) else f"{row['sense']} {row['goal']:g}"
+    return "–" if math.isnan(row["goal"]) else f"at most {row['goal']:g}"
