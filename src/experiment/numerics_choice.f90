@@ -55,7 +55,7 @@ contains
       ! thirteenth digit of a load and costs a tenth more products. Mixing would pay more, and on
       ! uniform grids the mesh leaves far larger errors.
       if (options%method /= 'mixing' .and. numerics%grid /= 'uniform') &
-        options%tolerance = min(options%tolerance, 1.0e-10_wp)
+        options%tolerance = min(options%tolerance, max(1.0e-10_wp, 1.0e-4_wp*numerics%accuracy))
       if (allocated(numerics%residual_tolerance)) options%tolerance = numerics%residual_tolerance
       options%place_error = min(1.0e-7_wp, max(options%place_error, &
         place_over_accuracy*numerics%accuracy))

@@ -14,7 +14,7 @@ module path_prediction
 
   !> The largest sum of the weights of states that tell by how much a span misses the next: an
   !> extrapolation far beyond them tells nothing.
-  real(wp), parameter :: most_weight = 30
+  real(wp), parameter :: most_weight = 100
 
 contains
 

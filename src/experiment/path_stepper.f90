@@ -193,7 +193,7 @@ contains
       end if
     end associate
     if (.not. event%converged) call self%state_at_h0(i, h0, mesh, state, event%converged)
-    call remember(position, state, mesh, jumped)
+    call remember(position, state, mesh, jumped, foretold=state%iterations == 1)
   end subroutine solve_on_piece
 
   !> Whether the coordinate s in the piece after point i, between `ends`, is so near a fold that h0

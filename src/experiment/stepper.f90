@@ -135,15 +135,22 @@ contains
   end function witness
 
   !> Makes `state` the position's present one; on another mesh, or after a jump, the past is
-  !> forgotten.
-  subroutine remember(position, state, mesh, jumped)
+  !> forgotten. foretold: the past told it well enough to be taken as it was; then it adds nothing
+  !> to that.
+  subroutine remember(position, state, mesh, jumped, foretold)
     type(branch_point_t), intent(inout) :: position
     type(state_t), intent(in) :: state
     integer, intent(in) :: mesh
     logical, intent(in) :: jumped
+    logical, intent(in), optional :: foretold
     integer :: j
 
     if (mesh /= position%mesh .or. jumped) position%held = 0
+    position%mesh = mesh
+    call position%state%become(state)
+    if (present(foretold)) then
+      if (foretold) return
+    end if
     ! A turn of the experiment comes back over the same values.
     do j = 1, position%held
       if (abs(position%h0(j) - state%h0) <= 1.0e-12_wp*max(1.0_wp, abs(state%h0))) then
@@ -155,8 +162,6 @@ contains
     position%held = position%held + 1
     position%h0(position%held) = state%h0
     call position%past(position%held)%become(state)
-    call position%state%become(state)
-    position%mesh = mesh
   end subroutine remember
 
   !> Drops a state of the past.
