@@ -2,10 +2,10 @@
 !> after it was killed.
 !>
 !> A journal begins with a text that says whose it is; records follow. Each has its length, a
-!> checksum, and the time since the run began, and is handed to the system at once: what follows the
-!> last whole record was being written when the run was killed, and is cut off. Every few seconds it
-!> is put on the disk, so that a power failure costs no more than these. It is written by system
-!> calls for the reason given in `text_file`.
+!> checksum, and the time since the run began. Records are gathered, and handed to the system
+!> several times a second: what follows the last whole record was being written when the run was
+!> killed, and is cut off. Every few seconds the journal is put on the disk, so that a power failure
+!> costs no more than these. It is written by system calls for the reason given in `text_file`.
 module journal
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
@@ -32,8 +32,11 @@ module journal
     integer, private :: waiting = 0
     !> Words in the file when it was opened.
     integer(long), private :: room = 0
-    !> Times [s]: when it was opened, when it was last put on the disk.
-    real(wp), private :: began = 0, synced = 0
+    !> Words that the system is still to be handed: gathered(:held).
+    integer(long), allocatable, private :: gathered(:)
+    integer, private :: held = 0
+    !> Times [s]: when it was opened, when words were last handed over and put on the disk.
+    real(wp), private :: began = 0, handed = 0, synced = 0
   contains
     procedure :: begin
     procedure :: go_on
@@ -45,12 +48,17 @@ module journal
     procedure :: append
     procedure :: close => close_journal
     procedure, private :: read_frame
+    procedure, private :: hand_over
   end type journal_t
 
   !> Words before the packed ones: how many these are, the checksum of all else, the time.
   integer, parameter :: frame = 3, word = storage_size(0_long)/8
   !> Seconds of work that a power failure may cost. Waiting for a disk takes a hundredth of one.
   real(wp), parameter :: sync_interval = 2
+  !> Seconds of work that a killed run may cost, and words that are gathered at most: a call of the
+  !> system takes as long as a third of a small step.
+  real(wp), parameter :: hand_interval = 0.05_wp
+  integer, parameter :: most_gathered = 8192
 
 contains
 
@@ -122,7 +130,10 @@ contains
     self%earlier = 0
     self%waiting = 0
     self%began = seconds()
+    self%handed = self%began
     self%synced = self%began
+    self%held = 0
+    if (.not. allocated(self%gathered)) allocate (self%gathered(most_gathered))
     self%path = path
     self%descriptor = c_open(path // nul, how)
     if (.not. self%is_open()) then
@@ -187,36 +198,64 @@ contains
     call self%close()
   end subroutine reject
 
-  !> Adds a record and hands it to the system, so that it survives this process, and now and then to
-  !> the disk. Not before `next` has handed out all there were.
+  !> Adds a record. Not before `next` has handed out all there were.
   subroutine append(self, record)
     class(journal_t), intent(inout) :: self
     type(byte_record_t), intent(in) :: record
-    integer(long) :: words(frame + record%held)
-    character :: bytes(word*size(words))
-    integer(c_int) :: status
+    integer(long), allocatable :: larger(:)
+    real(wp) :: now
+    integer :: length
 
     if (.not. self%is_open()) return
-    words(1) = record%held
-    words(2) = 0
-    words(3) = transfer(self%earlier + seconds() - self%began, 0_long)
-    words(frame + 1:) = record%words(:record%held)
-    words(2) = checksum(words)
-    bytes = transfer(words, bytes)
+    length = frame + record%held
+    if (self%held + length > size(self%gathered)) then
+      allocate (larger(self%held + length + most_gathered))
+      larger(:self%held) = self%gathered(:self%held)
+      call move_alloc(larger, self%gathered)
+    end if
+    now = seconds()
+    associate (words => self%gathered(self%held + 1:self%held + length))
+      words(1) = record%held
+      words(2) = 0
+      words(3) = transfer(self%earlier + now - self%began, 0_long)
+      words(frame + 1:) = record%words(:record%held)
+      words(2) = checksum(words)
+    end associate
+    self%held = self%held + length
+    if (self%held > most_gathered .or. now - self%handed > hand_interval) call self%hand_over(now)
+  end subroutine append
+
+  !> Hands what was gathered to the system, so that it survives this process, and now and then to
+  !> the disk. now: the time [s].
+  subroutine hand_over(self, now)
+    class(journal_t), intent(inout) :: self
+    real(wp), intent(in) :: now
+    character :: bytes(word*self%held)
+    integer(c_int) :: status
+
+    bytes = transfer(self%gathered(:self%held), bytes)
+    self%held = 0
+    self%handed = now
     status = c_write(self%descriptor, bytes, size(bytes, kind=c_long))
-    if (status == 0) then
-      if (seconds() - self%synced > sync_interval) then
-        status = c_sync(self%descriptor)
-        self%synced = seconds()
-      end if
+    if (status == 0 .and. now - self%synced > sync_interval) then
+      status = c_sync(self%descriptor)
+      self%synced = now
     end if
     if (status == 0) return
     call system_failure('cannot write ' // self%path, status, self%trouble)
-    call self%close()
-  end subroutine append
+    call let_go(self)
+  end subroutine hand_over
 
   !> Closes it; nothing is done where none is open.
   subroutine close_journal(self)
+    class(journal_t), intent(inout) :: self
+
+    if (self%is_open() .and. self%held > 0) call self%hand_over(seconds())
+    call let_go(self)
+  end subroutine close_journal
+
+  !> Closes the file, if it is open.
+  subroutine let_go(self)
     class(journal_t), intent(inout) :: self
     integer(c_int) :: status
 
@@ -224,7 +263,7 @@ contains
     ! No result depends on it: what could be lost is the time since it was synchronised last.
     status = c_close(self%descriptor)
     self%descriptor = -1
-  end subroutine close_journal
+  end subroutine let_go
 
   !> Reads the record at the present place and moves `whole` [bytes] to its end; not found where the
   !> file ends or what is there is not a whole record.
