@@ -12,7 +12,7 @@ module stepper
   implicit none
   private
   public :: stepper_t, keeping_stepper_t, branch_point_t, step_result_t, extreme_t, memory, &
-    remember
+    remember, move_to
 
   !> States kept for extrapolation in h0.
   integer, parameter :: memory = 4
@@ -27,6 +27,8 @@ module stepper
     integer :: held = 0
     real(wp) :: h0(memory) = 0
     type(state_t) :: past(memory)
+    !> The states that an experiment comes to have numbers, in order: those of `state` and `past`.
+    integer :: number = 0, past_number(memory) = 0
   end type branch_point_t
 
   !> The largest tension of a step: the load, where, and the point of the path that it belongs to,
@@ -147,7 +149,7 @@ contains
 
     if (mesh /= position%mesh .or. jumped) position%held = 0
     position%mesh = mesh
-    call position%state%become(state)
+    call move_to(position, state)
     if (present(foretold)) then
       if (foretold) return
     end if
@@ -162,7 +164,17 @@ contains
     position%held = position%held + 1
     position%h0(position%held) = state%h0
     call position%past(position%held)%become(state)
+    position%past_number(position%held) = position%number
   end subroutine remember
+
+  !> Makes `state` the position's present one, and no part of its past.
+  subroutine move_to(position, state)
+    type(branch_point_t), intent(inout) :: position
+    type(state_t), intent(in) :: state
+
+    call position%state%become(state)
+    position%number = position%number + 1
+  end subroutine move_to
 
   !> Drops a state of the past.
   pure subroutine forget(position, which)
@@ -173,6 +185,7 @@ contains
     do k = which, position%held - 1
       position%h0(k) = position%h0(k + 1)
       call position%past(k)%become(position%past(k + 1))
+      position%past_number(k) = position%past_number(k + 1)
     end do
     position%held = position%held - 1
   end subroutine forget

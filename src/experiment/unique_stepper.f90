@@ -6,7 +6,7 @@ module unique_stepper
   use locked_stepper, only: locked_stepper_t
   use arc, only: between
   use ending, only: touching, steps_lost
-  use stepper, only: branch_point_t, step_result_t, remember
+  use stepper, only: branch_point_t, step_result_t, remember, move_to
   implicit none
   private
   public :: unique_stepper_t
@@ -90,7 +90,7 @@ contains
         step = 0.3_wp*step
         if (abs(step) < max(smallest_creep, smallest_part*abs(position%state%h0))) then
           event%ending%cause = steps_lost
-          position%state = state
+          call move_to(position, state)
           return
         end if
       end if

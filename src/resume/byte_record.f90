@@ -41,17 +41,33 @@ contains
   subroutine put_words(self, words)
     class(byte_record_t), intent(inout) :: self
     integer(long), intent(in) :: words(:)
-    integer(long), allocatable :: larger(:)
 
-    if (.not. allocated(self%words)) allocate (self%words(64))
-    if (self%held + size(words) > size(self%words)) then
-      allocate (larger(2*(self%held + size(words))))
-      larger(:self%held) = self%words(:self%held)
-      call move_alloc(larger, self%words)
-    end if
+    call make_room(self, size(words))
     self%words(self%held + 1:self%held + size(words)) = words
     self%held = self%held + size(words)
   end subroutine put_words
+
+  !> Sees to it that so many words more can be put.
+  subroutine make_room(self, more)
+    type(byte_record_t), intent(inout) :: self
+    integer, intent(in) :: more
+    integer(long), allocatable :: larger(:)
+
+    if (.not. allocated(self%words)) allocate (self%words(256))
+    if (self%held + more <= size(self%words)) return
+    allocate (larger(2*(self%held + more)))
+    larger(:self%held) = self%words(:self%held)
+    call move_alloc(larger, self%words)
+  end subroutine make_room
+
+  subroutine put_long(self, value)
+    class(byte_record_t), intent(inout) :: self
+    integer(long), intent(in) :: value
+
+    call make_room(self, 1)
+    self%held = self%held + 1
+    self%words(self%held) = value
+  end subroutine put_long
 
   !> As many words as there are in `words`.
   subroutine take_words(self, words)
@@ -67,52 +83,53 @@ contains
     self%taken = self%taken + size(words)
   end subroutine take_words
 
-  subroutine put_long(self, value)
-    class(byte_record_t), intent(inout) :: self
-    integer(long), intent(in) :: value
-
-    call self%put_words([value])
-  end subroutine put_long
-
   subroutine put_integer(self, value)
     class(byte_record_t), intent(inout) :: self
     integer, intent(in) :: value
 
-    call self%put_words([int(value, long)])
+    call self%put_long(int(value, long))
   end subroutine put_integer
 
   subroutine put_logical(self, value)
     class(byte_record_t), intent(inout) :: self
     logical, intent(in) :: value
 
-    call self%put_words([merge(1_long, 0_long, value)])
+    call self%put_long(merge(1_long, 0_long, value))
   end subroutine put_logical
 
   subroutine put_real(self, value)
     class(byte_record_t), intent(inout) :: self
     real(wp), intent(in) :: value
 
-    call self%put_words([transfer(value, 0_long)])
+    call self%put_long(transfer(value, 0_long))
   end subroutine put_real
 
   !> The number of values goes with them.
   subroutine put_reals(self, values)
     class(byte_record_t), intent(inout) :: self
     real(wp), intent(in) :: values(:)
+    integer :: i
 
     call self%put(size(values))
-    call self%put_words(transfer(values, [0_long], size(values)))
+    call make_room(self, size(values))
+    do i = 1, size(values)
+      self%words(self%held + i) = transfer(values(i), 0_long)
+    end do
+    self%held = self%held + size(values)
   end subroutine put_reals
 
   !> Its length goes with it.
   subroutine put_text(self, text)
     class(byte_record_t), intent(inout) :: self
     character(len=*), intent(in) :: text
-    integer :: count
+    character(len=letters) :: piece
+    integer :: first
 
-    count = (len(text) + letters - 1)/letters
     call self%put(len(text))
-    call self%put_words(transfer(text // repeat(' ', count*letters - len(text)), [0_long], count))
+    do first = 1, len(text), letters
+      piece = text(first:min(first + letters - 1, len(text)))
+      call self%put_long(transfer(piece, 0_long))
+    end do
   end subroutine put_text
 
   subroutine take_long(self, value)

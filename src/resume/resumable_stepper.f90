@@ -49,14 +49,13 @@ contains
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(out) :: position
     type(step_result_t), intent(out) :: event
-    type(branch_point_t) :: nowhere
     real(wp) :: began
 
-    if (self%recall(h0, nowhere, position, event)) return
+    if (self%recall(h0, position, event)) return
     began = seconds()
     call self%catch_up()
     call self%steps%approach_to(h0, position, event)
-    call self%keep(h0, nowhere, position, event, began)
+    call self%keep(h0, 0, position, event, began)
   end subroutine approach_to
 
   subroutine step_to(self, h0, position, event)
@@ -64,25 +63,25 @@ contains
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(out) :: event
-    type(branch_point_t) :: before
     real(wp) :: began
+    integer :: known
 
-    before = position
-    if (self%recall(h0, before, position, event)) return
+    if (self%recall(h0, position, event)) return
     began = seconds()
+    known = position%number
     call self%catch_up()
     call self%steps%step_to(h0, position, event)
-    call self%keep(h0, before, position, event, began)
+    call self%keep(h0, known, position, event, began)
   end subroutine step_to
 
-  !> Takes a step from `before` to h0 out of the journal. .false. where it has no more: then the
-  !> step is to be solved. A journal that cannot be continued ends the experiment.
-  logical function recall(self, h0, before, position, event) result(known)
+  !> Takes the step from the position to h0 out of the journal. .false. where it has no more: then
+  !> the step is to be solved. A journal that cannot be continued ends the experiment.
+  logical function recall(self, h0, position, event) result(known)
     class(resumable_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
-    type(branch_point_t), intent(in) :: before
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(inout) :: event
+    type(branch_point_t) :: before
     type(byte_record_t) :: record
     type(cost_t) :: cost
     real(wp) :: kept_h0
@@ -92,6 +91,7 @@ contains
     if (known) then
       call record%take(kept_h0)
       fits = abs(kept_h0 - h0) <= 0
+      before = position
       call take_position(record, self%problem%law, before, position)
       call take_event(record, event)
       call take_frozen(record, self%steps%frozen)
@@ -130,18 +130,20 @@ contains
     self%known = self%steps%frozen%renewals
   end subroutine catch_up
 
-  !> Adds a step to the journal; it was begun at the time `began`.
-  subroutine keep(self, h0, before, position, event, began)
+  !> Adds a step to the journal; it was begun at the time `began`, in the state with the number
+  !> `known`.
+  subroutine keep(self, h0, known, position, event, began)
     class(resumable_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0, began
-    type(branch_point_t), intent(in) :: before, position
+    integer, intent(in) :: known
+    type(branch_point_t), intent(in) :: position
     type(step_result_t), intent(in) :: event
     type(byte_record_t) :: record
     type(cost_t) :: cost
 
     call record%put(mark)
     call record%put(h0)
-    call put_position(record, self%problem%law, before, position)
+    call put_position(record, self%problem%law, known, position)
     call put_event(record, event)
     call put_frozen(record, self%steps%frozen, self%known == self%steps%frozen%renewals)
     self%known = self%steps%frozen%renewals

@@ -1,8 +1,8 @@
 !> States of an experiment as records of a journal, and back, bit by bit the same.
 !>
-!> A step leaves one new state; the others that a position holds it had before. These are packed as
-!> the place where they were, and a pressure that follows from its gap is not packed at all, so that
-!> a record takes little more than one row of gaps.
+!> A step leaves one new state; the others that a position holds it had before. Of these only the
+!> numbers are packed, and a pressure that follows from its gap is not packed at all, so that a
+!> record takes little more than one row of gaps.
 module state_records
   use kinds, only: wp, long
   use force_law, only: force_law_t
@@ -16,54 +16,30 @@ module state_records
   public :: put_cost, take_cost, put_position, take_position, put_event, take_event, put_frozen, &
     take_frozen
 
-  !> What follows in a record instead of a place: a state of its own, or none.
-  integer, parameter :: new_state = 0, no_state = -1
-
 contains
 
-  !> Packs the position that a step from `before` has led to.
-  subroutine put_position(record, law, before, position)
+  !> Packs the position that a step has led to; known: the number of the state that it began in.
+  subroutine put_position(record, law, known, position)
     type(byte_record_t), intent(inout) :: record
     class(force_law_t), intent(in) :: law
-    type(branch_point_t), intent(in) :: before, position
-    integer :: k, place
+    integer, intent(in) :: known
+    type(branch_point_t), intent(in) :: position
+    integer :: k
 
     call record%put(position%mesh)
     call record%put(position%piece)
     call record%put(position%held)
     do k = 1, position%held
       call record%put(position%h0(k))
-      call put_known(position%past(k))
+      call record%put(position%past_number(k))
+      if (position%past_number(k) > known) call put_state(record, law, position%past(k))
     end do
-    place = 0
-    do k = 1, position%held
-      if (same(position%past(k), position%state)) place = k
-    end do
-    call record%put(place)
-    if (place == 0) call put_known(position%state)
-
-  contains
-
-    !> Packs a state or where `before` has it: its past from 1, the present one after them.
-    subroutine put_known(state)
-      type(state_t), intent(in) :: state
-      integer :: j
-
-      do j = 1, before%held
-        if (.not. same(before%past(j), state)) cycle
-        call record%put(j)
-        return
-      end do
-      if (same(before%state, state)) then
-        call record%put(before%held + 1)
-      else
-        call put_state(record, law, state)
-      end if
-    end subroutine put_known
-
+    call record%put(position%number)
+    if (position%number > known .and. past_with(position, position%number) == 0) &
+      call put_state(record, law, position%state)
   end subroutine put_position
 
-  !> Unpacks what `put_position` packed, with the same `before`.
+  !> Unpacks what `put_position` packed; before: the position that the step began in.
   subroutine take_position(record, law, before, position)
     type(byte_record_t), intent(inout) :: record
     class(force_law_t), intent(in) :: law
@@ -77,45 +53,46 @@ contains
     position%held = min(max(position%held, 0), size(position%past))
     do k = 1, position%held
       call record%take(position%h0(k))
-      call take_known(position%past(k))
+      call record%take(position%past_number(k))
+      call take_known(position%past_number(k), position%past(k))
     end do
-    call record%take(place)
-    if (place >= 1 .and. place <= position%held) then
+    call record%take(position%number)
+    place = past_with(position, position%number)
+    if (place > 0) then
       position%state = position%past(place)
     else
-      call take_known(position%state)
+      call take_known(position%number, position%state)
     end if
 
   contains
 
-    subroutine take_known(state)
+    !> Takes a state from where it was before, or from the record.
+    subroutine take_known(number, state)
+      integer, intent(in) :: number
       type(state_t), intent(out) :: state
       integer :: place
 
-      call record%take(place)
-      if (place >= 1 .and. place <= before%held) then
-        state = before%past(place)
-      else if (place == before%held + 1) then
-        state = before%state
-      else if (place == new_state) then
+      place = past_with(before, number)
+      if (number > before%number) then
         call take_state(record, law, state)
+      else if (place > 0) then
+        state = before%past(place)
+      else if (number == before%number) then
+        state = before%state
+      else
+        record%exhausted = .true.
       end if
     end subroutine take_known
 
   end subroutine take_position
 
-  !> Whether two states are the same, bit by bit.
-  pure logical function same(a, b)
-    type(state_t), intent(in) :: a, b
+  !> Which state of a position's past has a number; 0: none.
+  pure integer function past_with(position, number) result(place)
+    type(branch_point_t), intent(in) :: position
+    integer, intent(in) :: number
 
-    same = .false.
-    if (.not. (allocated(a%gap) .and. allocated(b%gap))) return
-    if (size(a%gap) /= size(b%gap) .or. a%iterations /= b%iterations) return
-    same = identical([a%h0, a%scale, a%axis_gap, a%load, a%residual], &
-      [b%h0, b%scale, b%axis_gap, b%load, b%residual])
-    if (same) same = identical(a%gap, b%gap)
-    if (same) same = identical(a%pressure, b%pressure)
-  end function same
+    place = findloc(position%past_number(:position%held), number, 1)
+  end function past_with
 
   !> Whether numbers are the same, bit by bit.
   pure logical function identical(a, b)
@@ -132,15 +109,13 @@ contains
     end do
   end function identical
 
-  !> Packs a state, if there is one.
+  !> Packs a state.
   subroutine put_state(record, law, state)
     type(byte_record_t), intent(inout) :: record
     class(force_law_t), intent(in) :: law
     type(state_t), intent(in) :: state
     logical :: follows
 
-    call record%put(merge(new_state, no_state, allocated(state%gap)))
-    if (.not. allocated(state%gap)) return
     call record%put(state%gap)
     follows = identical(law%pressure(state%gap), state%pressure)
     call record%put(follows)
@@ -153,7 +128,7 @@ contains
     call record%put(state%iterations)
   end subroutine put_state
 
-  !> Unpacks what `put_state` packed after its first word, which said that there is a state.
+  !> Unpacks what `put_state` packed.
   subroutine take_state(record, law, state)
     type(byte_record_t), intent(inout) :: record
     class(force_law_t), intent(in) :: law
@@ -266,7 +241,7 @@ contains
     type(byte_record_t), intent(inout) :: record
     type(cost_t), intent(in) :: cost
 
-    call record%put_words(transfer(cost, [0_long]))
+    call record%put_words(transfer(cost, [0_long], storage_size(cost)/storage_size(0_long)))
   end subroutine put_cost
 
   !> Unpacks what `put_cost` packed.
