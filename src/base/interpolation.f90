@@ -18,6 +18,7 @@ module interpolation
   contains
     procedure :: value => hermite_value
     procedure :: slope => hermite_slope
+    procedure :: evaluate => hermite_evaluate
   end type hermite_t
 
 contains
@@ -84,11 +85,20 @@ contains
   pure subroutine hermite_weights(at, x, of_value, of_slope)
     real(wp), intent(in) :: at(:), x
     real(wp), intent(out) :: of_value(:), of_slope(:)
-    real(wp) :: squares(size(at))
+    real(wp) :: weight, own_slope
+    integer :: j, k
 
-    squares = polynomial_weights(at, x)**2
-    of_slope = (x - at)*squares
-    of_value = squares - 2*own_slopes(at)*of_slope
+    do j = 1, size(at)
+      weight = 1
+      own_slope = 0
+      do k = 1, size(at)
+        if (k == j) cycle
+        weight = weight*(x - at(k))/(at(j) - at(k))
+        own_slope = own_slope + 1/(at(j) - at(k))
+      end do
+      of_slope(j) = (x - at(j))*weight**2
+      of_value(j) = weight**2 - 2*own_slope*of_slope(j)
+    end do
   end subroutine hermite_weights
 
   !> Hermite's polynomial with the given values and slopes at `at` (all different).
@@ -124,11 +134,11 @@ contains
     end do
   end function hermite_value
 
-  !> Its derivative at x.
-  pure real(wp) function hermite_slope(self, x) result(slope)
+  !> Its value and derivative at x.
+  pure subroutine hermite_evaluate(self, x, y, slope)
     class(hermite_t), intent(in) :: self
     real(wp), intent(in) :: x
-    real(wp) :: y
+    real(wp), intent(out) :: y, slope
     integer :: k
 
     y = 0
@@ -137,20 +147,15 @@ contains
       slope = y + (x - self%node(k))*slope
       y = self%difference(k) + (x - self%node(k))*y
     end do
+  end subroutine hermite_evaluate
+
+  !> Its derivative at x.
+  pure real(wp) function hermite_slope(self, x) result(slope)
+    class(hermite_t), intent(in) :: self
+    real(wp), intent(in) :: x
+    real(wp) :: y
+
+    call self%evaluate(x, y, slope)
   end function hermite_slope
-
-  !> The slope of each Lagrange polynomial where it is one.
-  pure function own_slopes(at) result(slope)
-    real(wp), intent(in) :: at(:)
-    real(wp) :: slope(size(at))
-    integer :: j, k
-
-    slope = 0
-    do j = 1, size(at)
-      do k = 1, size(at)
-        if (k /= j) slope(j) = slope(j) + 1/(at(j) - at(k))
-      end do
-    end do
-  end function own_slopes
 
 end module interpolation

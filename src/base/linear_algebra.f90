@@ -35,9 +35,11 @@ contains
     real(wp), intent(in) :: x(:)
     real(wp), intent(out) :: y(:)
 
-    y = 0
-    if (columns > 0) &
+    if (columns > 0) then
       call dgemv('n', size(y), columns, 1.0_wp, a, size(a, 1), x, 1, 0.0_wp, y, 1)
+    else
+      y = 0
+    end if
   end subroutine multiply
 
   !> c = matmul(transpose(a), b).

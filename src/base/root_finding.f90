@@ -5,7 +5,8 @@ module root_finding
   use kinds, only: wp
   implicit none
   private
-  public :: bracket_t, false_position_t, root_search_t, new_root_search, secant_root, golden
+  public :: bracket_t, false_position_t, root_search_t, new_root_search, secant_root, golden, &
+    resolution
 
   !> An interval that what is searched for lies in, its ends in any order. A root is found by
   !> `narrow` while the bracket `is_open`, a maximum by `keep_larger`.
@@ -163,9 +164,17 @@ contains
     class(root_search_t), intent(in) :: self
 
     root_is_open = .not. self%met .and. self%noted < most_halvings .and. &
-      self%change > spacing(self%root) .and. abs(self%positive - self%negative) > &
-      spacing(max(abs(self%positive), abs(self%negative)))
+      self%change > resolution(self%root) .and. abs(self%positive - self%negative) > &
+      resolution(max(abs(self%positive), abs(self%negative)))
   end function root_is_open
+
+  !> Differences from x that are no more than rounding: between one and two units of its last
+  !> place. (The intrinsic `spacing` takes x to pieces, which takes fifty times as long.)
+  elemental real(wp) function resolution(x)
+    real(wp), intent(in) :: x
+
+    resolution = max(epsilon(x)*abs(x), tiny(x))
+  end function resolution
 
   !> Where the function is to be evaluated next.
   elemental real(wp) function place(self)

@@ -24,11 +24,11 @@ module anderson
     real(wp), allocatable :: z_before(:), f_before(:)
   end type history_t
 
-  !> Where an iteration is: the unknowns, their residual and minus the plain step from them; the
-  !> unknowns with the shortest one so far, and those with the least residual; the lengths of the
-  !> last step and of the shortest, and the least residual.
+  !> Where an iteration is: the unknowns, their residual, minus the plain step from them and the
+  !> step that was made; the unknowns with the shortest plain step so far, and those with the least
+  !> residual; the lengths of the last step and of the shortest, and the least residual.
   type :: iterate_t
-    real(wp), allocatable :: z(:), g(:), f(:), z_best(:), z_least(:)
+    real(wp), allocatable :: z(:), g(:), f(:), step(:), z_best(:), z_least(:)
     real(wp) :: length = huge(1.0_wp), shortest = huge(1.0_wp), least = huge(1.0_wp)
     integer :: since_renewal = 0, rejections = 0
     type(history_t) :: history
@@ -61,8 +61,6 @@ contains
       return
     end if
     now%z = unknowns_of(control, state)
-    now%z_best = now%z
-    now%z_least = now%z
     allocate (now%g(size(now%z)))
     frozen%factors%valid = frozen%serves(control, size(now%z))
     converged = .false.
@@ -70,12 +68,12 @@ contains
       call residual(equations, control, now%z, now%g, state)
       equations%cost%iterations = equations%cost%iterations + 1
       state%iterations = iteration
+      converged = holds(equations%problem, options%tolerance, state)
+      if (converged .or. .not. state%residual < huge(1.0_wp)) exit
       if (state%residual < now%least) then
         now%least = state%residual
         now%z_least = now%z
       end if
-      converged = holds(equations%problem, options%tolerance, state)
-      if (converged .or. .not. state%residual < huge(1.0_wp)) exit
       if (.not. frozen%factors%valid .or. now%since_renewal >= options%patience) &
         call renew(equations, control, state, frozen, now)
       call take_plain_step(equations, control, state, frozen, now)
@@ -160,18 +158,20 @@ contains
     integer, intent(in) :: depth
     type(control_t), intent(in) :: control
     type(iterate_t), intent(inout) :: now
-    real(wp) :: step(size(now%z))
+    real(wp) :: fraction
 
-    step = accelerated_step(now%history, depth, now%z, now%f)
-    step = largest_step(equations%problem, control, now%z, step)*step
-    now%z = now%z + step
+    if (.not. allocated(now%step)) allocate (now%step(size(now%z)))
+    call accelerate(now%history, depth, now%z, now%f, now%step)
+    fraction = largest_step(equations%problem, control, now%z, now%step)
+    now%step = fraction*now%step
+    now%z = now%z + now%step
     now%since_renewal = now%since_renewal + 1
     if (control%kind /= at_h0_with_edge) return
     ! The shape of the bodies is not linear in the scale: what a linear step leaves out is known,
     ! and far out it is large.
-    associate (n => size(step) - 1, grid => equations%meshes%grid(control%mesh))
+    associate (n => size(now%step) - 1, grid => equations%meshes%grid(control%mesh))
       now%z(:n) = now%z(:n) + equations%problem%shape%bend( &
-        (now%z(n + 1) - step(n + 1))*grid%x(:n), step(n + 1)*grid%x(:n))
+        (now%z(n + 1) - now%step(n + 1))*grid%x(:n), now%step(n + 1)*grid%x(:n))
     end associate
   end subroutine advance
 
@@ -185,11 +185,11 @@ contains
   !> The step of Anderson acceleration from z, where the plain step is -f: the combination of
   !> the last `depth` steps with the least |f|, by modified Gram-Schmidt, newest first; a
   !> column that is nearly a combination of newer ones is dropped. Keeps z and f for the next call.
-  function accelerated_step(history, depth, z, f) result(step)
+  subroutine accelerate(history, depth, z, f, step)
     type(history_t), intent(inout) :: history
     integer, intent(in) :: depth
     real(wp), intent(in) :: z(:), f(:)
-    real(wp) :: step(size(z))
+    real(wp), intent(out) :: step(:)
 
     step = -f
     if (depth == 0) return
@@ -209,7 +209,7 @@ contains
     history%f_before = f
     if (history%held > 0) &
       call combine(history%dz(:, :history%held), history%df(:, :history%held), f, step)
-  end function accelerated_step
+  end subroutine accelerate
 
   !> Adds to the step -f the combination of differences with the least |f|.
   pure subroutine combine(dz, df, f, step)

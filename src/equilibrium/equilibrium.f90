@@ -8,6 +8,7 @@
 !> edge) join.
 module equilibrium
   use kinds, only: wp, pi, long
+  use force_law, only: force_law_t
   use dimensionless_problem, only: problem_t
   use beyond_mesh, only: load_beyond
   use discretisation, only: axis_row, centre_row, first_node
@@ -60,6 +61,9 @@ module equilibrium
     type(problem_t) :: problem
     type(mesh_family_t) :: meshes
     type(cost_t) :: cost
+    !> Scratch of `residual`, which is called too often to allocate any: by how much the pressure
+    !> raises the rows of the kernel.
+    real(wp), allocatable, private :: raised(:)
   end type equations_t
 
 contains
@@ -74,13 +78,18 @@ contains
     real(wp), intent(in) :: z(:)
     real(wp), intent(out) :: g(:)
     type(state_t), intent(inout) :: state
-    real(wp) :: raised(first_node - 1 + node_count(control, size(z)))
     real(wp) :: edge_gap
-    integer :: n, columns
+    integer :: i, n, rows, columns
 
+    n = node_count(control, size(z))
+    rows = first_node - 1 + n
+    if (.not. allocated(equations%raised)) allocate (equations%raised(rows))
+    if (size(equations%raised) < rows) then
+      deallocate (equations%raised)
+      allocate (equations%raised(rows))
+    end if
     associate (problem => equations%problem, cost => equations%cost, &
-      grid => equations%meshes%grid(control%mesh))
-      n = node_count(control, size(z))
+      grid => equations%meshes%grid(control%mesh), raised => equations%raised(:rows))
       call unpack(control, z, state%h0, state%scale)
       state%gap = z(:n)
       if (.not. defined(problem, z, state)) then
@@ -91,7 +100,9 @@ contains
         state%residual = huge(1.0_wp)
         return
       end if
-      state%pressure = problem%law%pressure(state%gap)
+      if (.not. allocated(state%pressure)) allocate (state%pressure(n))
+      if (size(state%pressure) /= n) state%pressure = state%gap
+      call evaluate(problem%law, state%gap, state%pressure)
       cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
       if (problem%coupling > 0) then
         columns = acting_columns(state%pressure)
@@ -102,8 +113,10 @@ contains
       else
         raised = 0
       end if
-      g(:n) = state%gap - state%h0 - problem%shape%height(state%scale*grid%x(:n)) - &
-        raised(first_node:)
+      do i = 1, n
+        g(i) = state%gap(i) - state%h0 - problem%shape%height(state%scale*grid%x(i)) - &
+          raised(first_node - 1 + i)
+      end do
       ! In a stiff contact the equation for the axis, which is no node, is off by many times what
       ! the polynomials lack of the pressure between the nodes; their gaps tell it better.
       state%axis_gap = state%h0 + raised(axis_row)
@@ -121,6 +134,16 @@ contains
       state%residual = largest_error(g, state%gap)
     end associate
   end subroutine residual
+
+  !> The pressures of gaps, into the array that there is: assigned to an allocatable one they would
+  !> be made in another first.
+  subroutine evaluate(law, gap, pressure)
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: gap(:)
+    real(wp), intent(out) :: pressure(:)
+
+    pressure = law%pressure(gap)
+  end subroutine evaluate
 
   !> The largest |G|; what belongs to gaps beyond `far_gap` as a part of them. Neither NaN nor
   !> infinity must ever look converged: they are huge.
@@ -189,14 +212,13 @@ contains
     type(state_t), intent(in) :: state
     real(wp), allocatable :: z(:)
 
-    select case (control%kind)
-    case (at_h0)
-      z = state%gap
-    case (at_h0_with_edge)
-      z = [state%gap, state%scale]
-    case default
-      z = [state%gap, state%h0]
-    end select
+    allocate (z(size(state%gap) + merge(0, 1, control%kind == at_h0)))
+    z(:size(state%gap)) = state%gap
+    if (control%kind == at_h0_with_edge) then
+      z(size(z)) = state%scale
+    else if (control%kind /= at_h0) then
+      z(size(z)) = state%h0
+    end if
   end function unknowns_of
 
   !> Whether a state is an equilibrium: to the tolerance, or as well as rounding allows.
@@ -254,10 +276,17 @@ contains
     real(wp), intent(in) :: pressure(:)
     real(wp) :: least
 
-    ! An infinite pressure or NaN must reach the residual.
-    columns = size(pressure)
-    if (.not. all(abs(pressure) <= huge(1.0_wp))) return
-    least = 1.0e-3_wp*epsilon(1.0_wp)*maxval(abs(pressure))
+    least = 0
+    do columns = 1, size(pressure)
+      least = max(least, abs(pressure(columns)))
+      ! An infinite pressure or NaN must reach the residual.
+      if (.not. abs(pressure(columns)) <= huge(1.0_wp)) exit
+    end do
+    if (columns <= size(pressure)) then
+      columns = size(pressure)
+      return
+    end if
+    least = 1.0e-3_wp*epsilon(1.0_wp)*least
     do columns = size(pressure), 1, -1
       if (abs(pressure(columns)) > least) exit
     end do

@@ -7,10 +7,24 @@ module path_prediction
   use contact_state, only: state_t
   use path_coordinate, only: coordinate_of
   use path_span, only: path_span_t
-  use stepper, only: branch_point_t
+  use stepper, only: branch_point_t, memory
   implicit none
   private
-  public :: expect
+  public :: missed_t, expect
+
+  !> By how much a span misses the states of an experiment's past: their numbers, coordinates, and
+  !> what has to be added to H0, scale and gaps (a column a state). It follows from the span and the
+  !> past, and is made anew only where these have changed.
+  type :: missed_t
+    private
+    integer :: held = 0, number(memory) = 0
+    real(wp), dimension(memory) :: at = 0, h0 = 0, scale = 0
+    real(wp), allocatable :: gap(:, :)
+  contains
+    procedure :: clear
+    procedure, private :: follow
+    procedure, private :: first_of_use
+  end type missed_t
 
   !> The largest sum of the weights of states that tell by how much a span misses the next: an
   !> extrapolation far beyond them tells nothing.
@@ -18,62 +32,103 @@ module path_prediction
 
 contains
 
+  !> Forgets what was found with another span.
+  pure subroutine clear(self)
+    class(missed_t), intent(inout) :: self
+
+    self%held = 0
+  end subroutine clear
+
   !> The state that is expected at h0, where the span has the coordinate s: that of the span, and by
   !> how much it missed the last states, extrapolated.
-  subroutine expect(problem, span, h0, s, position, state)
+  subroutine expect(problem, span, missed, h0, s, position, state)
     type(problem_t), intent(in) :: problem
-    type(path_span_t), intent(inout) :: span
+    type(path_span_t), intent(in) :: span
+    type(missed_t), intent(inout) :: missed
     real(wp), intent(in) :: h0, s
     type(branch_point_t), intent(in) :: position
-    type(state_t), intent(out) :: state
-    real(wp), dimension(position%held) :: at, weight, missed
-    real(wp) :: place
-    integer :: there(position%held)
+    type(state_t), intent(inout) :: state
+    real(wp) :: weight(memory), place
     integer :: k, first, round
 
-    call choose_past(problem, span, s, position, at, first)
-    call span%recall(at(first:), there(first:))
-    do k = first, position%held
-      missed(k) = position%h0(k) - span%recalled(there(k))%h0
-    end do
-    ! What it missed by says where the state is, and the place says what it misses by.
+    call missed%follow(problem, span, position)
+    first = missed%first_of_use(span, s)
     place = s
-    do round = 1, 2
-      weight(first:) = polynomial_weights(at(first:), place)
-      place = span%at_h0(h0 - dot_product(weight(first:), missed(first:)))
-    end do
-    state = span%guess(place)
-    do k = first, position%held
-      associate (past => position%past(k), guessed => span%recalled(there(k)))
-        state%gap = state%gap + weight(k)*(past%gap - guessed%gap)
-        state%scale = state%scale + weight(k)*(past%scale - guessed%scale)
-      end associate
+    ! What it missed by says where the state is, and the place says what it misses by.
+    if (first <= missed%held) then
+      do round = 1, 2
+        weight(first:missed%held) = polynomial_weights(missed%at(first:missed%held), place)
+        place = span%at_h0(h0 - dot_product(weight(first:missed%held), &
+          missed%h0(first:missed%held)), place)
+      end do
+    end if
+    call span%guess(place, state)
+    do k = first, missed%held
+      state%gap = state%gap + weight(k)*missed%gap(:, k)
+      state%scale = state%scale + weight(k)*missed%scale(k)
     end do
   end subroutine expect
 
-  !> The first of the past states from which it can be extrapolated to the coordinate s by how much
-  !> the span missed them; one more than there are: none. at: their coordinates.
-  pure subroutine choose_past(problem, span, s, position, at, first)
+  !> Brings it to the position's past; a state that it has already keeps what was found.
+  subroutine follow(self, problem, span, position)
+    class(missed_t), intent(inout) :: self
     type(problem_t), intent(in) :: problem
     type(path_span_t), intent(in) :: span
-    real(wp), intent(in) :: s
     type(branch_point_t), intent(in) :: position
-    real(wp), intent(out) :: at(:)
-    integer, intent(out) :: first
-    integer :: k
+    type(state_t) :: guessed
+    integer :: j, k, n
 
-    first = position%held + 1
-    if (position%mesh == span%mesh) first = 1
-    do k = first, position%held
-      at(k) = coordinate_of(problem, span%mesh, position%past(k))
+    if (position%mesh /= span%mesh) self%held = 0
+    if (position%mesh /= span%mesh .or. position%held == 0) return
+    n = size(position%past(1)%gap)
+    if (self%held == position%held) then
+      if (all(self%number(:self%held) == position%past_number(:self%held))) return
+    end if
+    if (allocated(self%gap)) then
+      if (size(self%gap, 1) /= n) deallocate (self%gap)
+    end if
+    if (.not. allocated(self%gap)) then
+      allocate (self%gap(n, memory))
+      self%held = 0
+    end if
+    ! The past loses states and gains new ones at its end: none moves to a later place.
+    do k = 1, position%held
+      j = findloc(self%number(:self%held), position%past_number(k), 1)
+      if (j == 0) then
+        associate (past => position%past(k))
+          self%at(k) = coordinate_of(problem, span%mesh, past)
+          call span%guess(self%at(k), guessed)
+          self%h0(k) = past%h0 - guessed%h0
+          self%scale(k) = past%scale - guessed%scale
+          self%gap(:, k) = past%gap - guessed%gap
+        end associate
+      else if (j /= k) then
+        self%at(k) = self%at(j)
+        self%h0(k) = self%h0(j)
+        self%scale(k) = self%scale(j)
+        self%gap(:, k) = self%gap(:, j)
+      end if
+      self%number(k) = position%past_number(k)
     end do
-    do first = first, position%held
-      ! A span's polynomial is good for no more than its length; and states whose places differ in
-      ! rounding alone tell nothing of a third.
-      if (abs(at(first) - s) > abs(span%ends(2) - span%ends(1))) cycle
-      if (any(abs(at(first + 1:) - at(first:position%held - 1)) <= 0)) cycle
-      if (sum(abs(polynomial_weights(at(first:), s))) <= most_weight) exit
-    end do
-  end subroutine choose_past
+    self%held = position%held
+  end subroutine follow
+
+  !> The first of the past states from which it can be extrapolated to the coordinate s by how much
+  !> the span missed them; one more than there are: none.
+  pure integer function first_of_use(self, span, s) result(first)
+    class(missed_t), intent(in) :: self
+    type(path_span_t), intent(in) :: span
+    real(wp), intent(in) :: s
+
+    associate (at => self%at(:self%held), last => self%held)
+      do first = 1, last
+        ! A span's polynomial is good for no more than its length; and states whose places differ in
+        ! rounding alone tell nothing of a third.
+        if (abs(at(first) - s) > abs(span%ends(2) - span%ends(1))) cycle
+        if (any(abs(at(first + 1:) - at(first:last - 1)) <= 0)) cycle
+        if (sum(abs(polynomial_weights(at(first:), s))) <= most_weight) exit
+      end do
+    end associate
+  end function first_of_use
 
 end module path_prediction

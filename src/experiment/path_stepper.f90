@@ -15,7 +15,7 @@ module path_stepper
   use traced_path, only: traced_path_t
   use solve_at_h0, only: neighbours_t, neighbours_of, solve_between
   use path_span, only: path_span_t, new_path_span
-  use path_prediction, only: expect
+  use path_prediction, only: missed_t, expect
   use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
   use stepper, only: branch_point_t, step_result_t, extreme_t, remember
   implicit none
@@ -25,8 +25,9 @@ module path_stepper
   type, extends(locked_stepper_t) :: path_stepper_t
     !> The path, once `know_path` has traced it.
     type(known_path_t) :: known
-    !> The part of it that the last step went to.
+    !> The part of it that the last step went to, and by how much that missed the states before.
     type(path_span_t), private :: span
+    type(missed_t), private :: missed
   contains
     procedure :: approach_to
     procedure :: step_to
@@ -179,12 +180,19 @@ contains
 
     jumped = event%jumped
     i = interval_at(self%known, position%piece, h0)
-    if (self%span%point /= i) self%span = new_path_span(self%known%path, i)
+    if (self%span%point /= i) then
+      self%span = new_path_span(self%known%path, i)
+      call self%missed%clear()
+    end if
     mesh = self%span%mesh
     associate (ends => self%span%ends)
-      s = self%span%at_h0(h0)
+      if (position%held > 0 .and. position%mesh == mesh) then
+        s = self%span%at_h0(h0, coordinate_of(self%problem, mesh, position%state))
+      else
+        s = self%span%at_h0(h0)
+      end if
       if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
-        call expect(self%problem, self%span, h0, s, position, state)
+        call expect(self%problem, self%span, self%missed, h0, s, position, state)
         call self%attempt(h0, state, mesh, event)
         if (event%converged) then
           s = coordinate_of(self%problem, mesh, state)

@@ -189,67 +189,72 @@ contains
     integer :: nodes(most_hermite_nodes), n
 
     call self%support(s, nodes, n)
-    expected = self%guess_from(nodes(:n), s)
+    call self%guess_from(nodes(:n), s, expected)
   end function guess
 
-  !> The state that some of the arc's states let expect at s.
-  pure function guess_from(self, nodes, s) result(expected)
+  !> The state that some of the arc's states let expect at s, in the arrays that `expected` has.
+  pure subroutine guess_from(self, nodes, s, expected)
     class(arc_t), intent(in) :: self
     integer, intent(in) :: nodes(:)
     real(wp), intent(in) :: s
-    type(state_t) :: expected
-    real(wp), dimension(size(nodes)) :: at, of_value, of_slope
-    real(wp) :: gap(size(self%state(nodes(1))%gap)), h0, scale
-    integer :: j
+    type(state_t), intent(inout) :: expected
+    real(wp), dimension(most_hermite_nodes) :: at, of_value, of_slope
+    real(wp) :: h0, scale
+    integer :: j, n
 
-    at = self%coordinate(nodes)
-    call hermite_weights(at, s, of_value, of_slope)
-    gap = 0
+    n = size(nodes)
+    at(:n) = self%coordinate(nodes)
+    call hermite_weights(at(:n), s, of_value(:n), of_slope(:n))
+    call expected%become(self%state(nodes(minloc(abs(at(:n) - s), 1))))
+    expected%pressure = 0
     h0 = 0
     scale = 0
-    do j = 1, size(nodes)
+    do j = 1, n
       associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
-        gap = gap + of_value(j)*state%gap + of_slope(j)*tangent%gap
+        expected%pressure = expected%pressure + of_value(j)*state%gap + of_slope(j)*tangent%gap
         h0 = h0 + of_value(j)*state%h0 + of_slope(j)*tangent%h0
         scale = scale + of_value(j)*state%scale + of_slope(j)*tangent%scale
       end associate
     end do
-    expected = self%state(nodes(minloc(abs(at - s), 1)))
-    call take_if_sound(gap, h0, scale, expected)
-  end function guess_from
+    call take_if_sound(h0, scale, expected)
+  end subroutine guess_from
 
   !> The polynomial through states at the given values of some coordinate, evaluated at s.
   pure function between(coordinate, states, s) result(expected)
     real(wp), intent(in) :: coordinate(:), s
     type(state_t), intent(in) :: states(:)
     type(state_t) :: expected
-    real(wp) :: weight(size(states)), gap(size(states(1)%gap)), h0, scale
+    real(wp) :: weight(size(states)), h0, scale
     integer :: j
 
-    gap = 0
+    expected = states(minloc(abs(coordinate - s), 1))
+    expected%pressure = 0
     h0 = 0
     scale = 0
     weight = polynomial_weights(coordinate, s)
     do j = 1, size(states)
-      gap = gap + weight(j)*states(j)%gap
+      expected%pressure = expected%pressure + weight(j)*states(j)%gap
       h0 = h0 + weight(j)*states(j)%h0
       scale = scale + weight(j)*states(j)%scale
     end do
-    expected = states(minloc(abs(coordinate - s), 1))
-    call take_if_sound(gap, h0, scale, expected)
+    call take_if_sound(h0, scale, expected)
   end function between
 
   !> Gives an expected state, now the nearest one that is known, gaps, H0 and scale that were
-  !> extrapolated, unless these leave the law's domain: then they are worth less.
-  pure subroutine take_if_sound(gap, h0, scale, expected)
-    real(wp), intent(in) :: gap(:), h0, scale
+  !> extrapolated, unless these leave the law's domain: then they are worth less. The gaps are where
+  !> its pressures will be, which are made anew from them.
+  pure subroutine take_if_sound(h0, scale, expected)
+    real(wp), intent(in) :: h0, scale
     type(state_t), intent(inout) :: expected
+    real(wp) :: nearest
 
-    expected%pressure = 0*gap
-    if (minval(gap) < 0.5_wp*minval(expected%gap) .and. minval(expected%gap) > 0) return
-    expected%gap = gap
-    expected%h0 = h0
-    if (scale > 0.5_wp*expected%scale) expected%scale = scale
+    nearest = minval(expected%gap)
+    if (.not. (nearest > 0 .and. minval(expected%pressure) < 0.5_wp*nearest)) then
+      expected%gap = expected%pressure
+      expected%h0 = h0
+      if (scale > 0.5_wp*expected%scale) expected%scale = scale
+    end if
+    expected%pressure = 0
   end subroutine take_if_sound
 
   !> The polynomial that h0 or load is about s.

@@ -12,9 +12,6 @@ module path_span
   private
   public :: path_span_t, new_path_span
 
-  !> Expected states that are kept: more than are asked for at once.
-  integer, parameter :: most_recalled = 8
-
   type :: path_span_t
     !> The points: this and the next; 0 before there are any. Their mesh, and coordinates there.
     integer :: point = 0, mesh = 1
@@ -23,12 +20,8 @@ module path_span
     type(hermite_t), private :: h0, load
     !> Those of the neighbours that the polynomial fits.
     integer, private :: nodes(most_hermite_nodes) = 0, held = 0
-    !> States that were recalled, and where.
-    type(state_t) :: recalled(most_recalled)
-    real(wp), private :: recalled_at(most_recalled) = huge(1.0_wp)
   contains
     procedure :: at_h0
-    procedure :: recall
     procedure :: guess
     procedure :: h0_and_load
   end type path_span_t
@@ -52,44 +45,23 @@ contains
     span%load = span%near%curve(of_load, middle)
   end function new_path_span
 
-  !> Where between the ends H0 has a value.
-  pure real(wp) function at_h0(self, h0) result(s)
+  !> Where between the ends H0 has a value; from: a place nearby, if one is known.
+  pure real(wp) function at_h0(self, h0, from) result(s)
     class(path_span_t), intent(in) :: self
     real(wp), intent(in) :: h0
+    real(wp), intent(in), optional :: from
 
-    s = coordinate_at_h0(self%near, self%h0, h0)
+    s = coordinate_at_h0(self%near, self%h0, h0, from)
   end function at_h0
 
   !> The state that is expected at the coordinate s, beyond the ends too.
-  pure function guess(self, s) result(state)
+  pure subroutine guess(self, s, state)
     class(path_span_t), intent(in) :: self
     real(wp), intent(in) :: s
-    type(state_t) :: state
+    type(state_t), intent(inout) :: state
 
-    state = self%near%guess_from(self%nodes(:self%held), s)
-  end function guess
-
-  !> Lets recalled(slot(k)) be the state that is expected at s(k), made anew only where it is not
-  !> among those kept: what a step asks about its past the steps before have asked.
-  pure subroutine recall(self, s, slot)
-    class(path_span_t), intent(inout) :: self
-    real(wp), intent(in) :: s(:)
-    integer, intent(out) :: slot(:)
-    integer :: j, k
-
-    do k = 1, size(s)
-      slot(k) = findloc(self%recalled_at, s(k), 1)
-    end do
-    do k = 1, size(s)
-      if (slot(k) > 0) cycle
-      do j = 1, most_recalled - 1
-        if (.not. any(slot == j)) exit
-      end do
-      slot(k) = j
-      self%recalled_at(j) = s(k)
-      self%recalled(j) = self%guess(s(k))
-    end do
-  end subroutine recall
+    call self%near%guess_from(self%nodes(:self%held), s, state)
+  end subroutine guess
 
   !> H0 and load that are expected at s.
   pure function h0_and_load(self, s) result(values)

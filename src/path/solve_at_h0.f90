@@ -2,7 +2,7 @@
 !> that h0 is met by moving along it, however near a fold is.
 module solve_at_h0
   use kinds, only: wp
-  use root_finding, only: bracket_t
+  use root_finding, only: bracket_t, resolution
   use interpolation, only: hermite_t
   use contact_state, only: state_t
   use equilibrium, only: control_t, equations_t, holds, residual_floor, at_h0_with_edge
@@ -48,13 +48,14 @@ contains
   end function neighbours_of
 
   !> Where between the ends of the piece the curve that h0 is there has a value: by Newton's
-  !> method, kept between the ends by halving.
-  pure real(wp) function coordinate_at_h0(near, curve, h0) result(s)
+  !> method from `from` or a straight line's place, kept between the ends by halving.
+  pure real(wp) function coordinate_at_h0(near, curve, h0, from) result(s)
     type(neighbours_t), intent(in) :: near
     type(hermite_t), intent(in) :: curve
     real(wp), intent(in) :: h0
+    real(wp), intent(in), optional :: from
     type(bracket_t) :: bracket
-    real(wp) :: missing, before, slope, length
+    real(wp) :: missing, before, value, slope, length
     logical :: rising
 
     associate (x => near%coordinate(near%lower:near%lower + 1), &
@@ -62,20 +63,22 @@ contains
       bracket = bracket_t(minval(x), maxval(x))
       length = abs(x(2) - x(1))
       rising = (ends(2) - ends(1))*(x(2) - x(1)) > 0
-      s = bracket%within(x(1) + (x(2) - x(1))*(h0 - ends(1))/(ends(2) - ends(1)))
+      s = x(1) + (x(2) - x(1))*(h0 - ends(1))/(ends(2) - ends(1))
     end associate
+    if (present(from)) s = from
+    s = bracket%within(s)
     do while (bracket%is_open())
-      missing = h0 - curve%value(s)
+      call curve%evaluate(s, value, slope)
+      missing = h0 - value
       call bracket%narrow((missing > 0) .eqv. rising, s)
       before = s
-      slope = curve%slope(s)
       ! At a fold there is none; longer steps than the piece end in its middle too.
       if (abs(missing) < length*abs(slope)) then
         s = bracket%within(s + missing/slope)
       else
         s = bracket%middle()
       end if
-      if (abs(s - before) <= spacing(s)) exit
+      if (abs(s - before) <= resolution(s)) exit
     end do
   end function coordinate_at_h0
 
@@ -137,7 +140,7 @@ contains
     associate (ends => near%state(near%lower:near%lower + 1)%h0, &
       at => near%coordinate(near%lower:near%lower + 1))
       inside = (ends(1) - h0)*(ends(2) - h0) <= 0 .and. &
-        abs(at(2) - at(1)) > 4*spacing(maxval(abs(at)))
+        abs(at(2) - at(1)) > 4*resolution(maxval(abs(at)))
       if (.not. inside) return
       s = coordinate_at_h0(near, near%curve(of_h0, 0.5_wp*sum(at)), h0)
       ! Interpolation approaches from one side; halving brings the other end nearer.

@@ -60,7 +60,7 @@ contains
       if (control%kind /= at_axis_gap) return
       values(3) = 0
       if (control%value >= contact_level_of(equations%problem)) return
-      state = span%guess(s)
+      call span%guess(s, state)
       state%axis_gap = control%value
       values(3) = radius_of_gap(equations%problem%shape, contact_level_of(equations%problem), &
         equations%meshes%grid(span%mesh), state)

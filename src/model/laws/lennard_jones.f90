@@ -138,10 +138,10 @@ contains
     class(lennard_jones_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(size(gap))
-    real(wp) :: cube(size(gap))
 
-    cube = 1/gap**3
-    value = 8*cube/3*(self%repulsive*cube*cube - self%attractive)
+    ! The inverse cube, for which an array of its own would have to be allocated.
+    value = 1/gap**3
+    value = 8*value/3*(self%repulsive*value*value - self%attractive)
   end function pressure
 
   pure function slope(self, gap) result(value)
