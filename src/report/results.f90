@@ -248,7 +248,6 @@ contains
     type(failure_t), allocatable, intent(out) :: error
 
     call self%progress%finish()
-    call self%journal%close()
     if (.not. allocated(self%trouble) .and. allocated(self%journal%trouble)) &
       self%trouble = self%journal%trouble
     call end_table(self%curve, self%trouble)
@@ -259,6 +258,11 @@ contains
     else if (any(self%made)) then
       call self%check_presence(error)
       if (.not. allocated(error)) call publish(self%lock, self%made, error)
+    end if
+    if (allocated(error)) then
+      call self%journal%close()
+    else
+      call self%journal%drop()
     end if
     call self%lock%release()
   end subroutine finish

@@ -47,6 +47,7 @@ module journal
     procedure :: reject
     procedure :: append
     procedure :: close => close_journal
+    procedure :: drop
     procedure, private :: read_frame
     procedure, private :: hand_over
   end type journal_t
@@ -55,10 +56,10 @@ module journal
   integer, parameter :: frame = 3, word = storage_size(0_long)/8
   !> Seconds of work that a power failure may cost. Waiting for a disk takes a hundredth of one.
   real(wp), parameter :: sync_interval = 2
-  !> Seconds of work that a killed run may cost, and words that are gathered at most: a call of the
-  !> system takes as long as a third of a small step.
+  !> Seconds of work that a killed run may cost, and words that are gathered at most: most runs end
+  !> before they have to be handed over.
   real(wp), parameter :: hand_interval = 0.05_wp
-  integer, parameter :: most_gathered = 8192
+  integer, parameter :: most_gathered = 131072
 
 contains
 
@@ -209,7 +210,7 @@ contains
     if (.not. self%is_open()) return
     length = frame + record%held
     if (self%held + length > size(self%gathered)) then
-      allocate (larger(self%held + length + most_gathered))
+      allocate (larger(self%held + length))
       larger(:self%held) = self%gathered(:self%held)
       call move_alloc(larger, self%gathered)
     end if
@@ -219,7 +220,6 @@ contains
       words(2) = 0
       words(3) = transfer(self%earlier + now - self%began, 0_long)
       words(frame + 1:) = record%words(:record%held)
-      words(2) = checksum(words)
     end associate
     self%held = self%held + length
     if (self%held > most_gathered .or. now - self%handed > hand_interval) call self%hand_over(now)
@@ -232,7 +232,14 @@ contains
     real(wp), intent(in) :: now
     character :: bytes(word*self%held)
     integer(c_int) :: status
+    integer :: first, last
 
+    first = 1
+    do while (first < self%held)
+      last = first - 1 + frame + int(self%gathered(first))
+      self%gathered(first + 1) = checksum(self%gathered(first:last))
+      first = last + 1
+    end do
     bytes = transfer(self%gathered(:self%held), bytes)
     self%held = 0
     self%handed = now
@@ -253,6 +260,13 @@ contains
     if (self%is_open() .and. self%held > 0) call self%hand_over(seconds())
     call let_go(self)
   end subroutine close_journal
+
+  !> Closes it where nothing will go on from it: what was gathered last is not handed over.
+  subroutine drop(self)
+    class(journal_t), intent(inout) :: self
+
+    call let_go(self)
+  end subroutine drop
 
   !> Closes the file, if it is open.
   subroutine let_go(self)

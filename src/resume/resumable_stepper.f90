@@ -92,7 +92,7 @@ contains
       call record%take(kept_h0)
       fits = abs(kept_h0 - h0) <= 0
       before = position
-      call take_position(record, self%problem%law, before, position)
+      call take_position(record, before, position)
       call take_event(record, event)
       call take_frozen(record, self%steps%frozen)
       call take_cost(record, cost)
@@ -143,7 +143,7 @@ contains
 
     call record%put(mark)
     call record%put(h0)
-    call put_position(record, self%problem%law, known, position)
+    call put_position(record, known, position)
     call put_event(record, event)
     call put_frozen(record, self%steps%frozen, self%known == self%steps%frozen%renewals)
     self%known = self%steps%frozen%renewals

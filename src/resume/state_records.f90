@@ -1,11 +1,9 @@
 !> States of an experiment as records of a journal, and back, bit by bit the same.
 !>
-!> A step leaves one new state; the others that a position holds it had before. Of these only the
-!> numbers are packed, and a pressure that follows from its gap is not packed at all, so that a
-!> record takes little more than one row of gaps.
+!> A step leaves one new state; the others that a position holds it had before, and only their
+!> numbers are packed.
 module state_records
   use kinds, only: wp, long
-  use force_law, only: force_law_t
   use contact_state, only: state_t
   use equilibrium, only: cost_t
   use stepper, only: branch_point_t, step_result_t
@@ -19,9 +17,8 @@ module state_records
 contains
 
   !> Packs the position that a step has led to; known: the number of the state that it began in.
-  subroutine put_position(record, law, known, position)
+  subroutine put_position(record, known, position)
     type(byte_record_t), intent(inout) :: record
-    class(force_law_t), intent(in) :: law
     integer, intent(in) :: known
     type(branch_point_t), intent(in) :: position
     integer :: k
@@ -32,17 +29,16 @@ contains
     do k = 1, position%held
       call record%put(position%h0(k))
       call record%put(position%past_number(k))
-      if (position%past_number(k) > known) call put_state(record, law, position%past(k))
+      if (position%past_number(k) > known) call put_state(record, position%past(k))
     end do
     call record%put(position%number)
     if (position%number > known .and. past_with(position, position%number) == 0) &
-      call put_state(record, law, position%state)
+      call put_state(record, position%state)
   end subroutine put_position
 
   !> Unpacks what `put_position` packed; before: the position that the step began in.
-  subroutine take_position(record, law, before, position)
+  subroutine take_position(record, before, position)
     type(byte_record_t), intent(inout) :: record
-    class(force_law_t), intent(in) :: law
     type(branch_point_t), intent(in) :: before
     type(branch_point_t), intent(out) :: position
     integer :: k, place
@@ -74,7 +70,7 @@ contains
 
       place = past_with(before, number)
       if (number > before%number) then
-        call take_state(record, law, state)
+        call take_state(record, state)
       else if (place > 0) then
         state = before%past(place)
       else if (number == before%number) then
@@ -94,32 +90,13 @@ contains
     place = findloc(position%past_number(:position%held), number, 1)
   end function past_with
 
-  !> Whether numbers are the same, bit by bit.
-  pure logical function identical(a, b)
-    real(wp), intent(in) :: a(:), b(:)
-    integer :: i
-
-    identical = size(a) == size(b)
-    if (.not. identical) return
-    do i = 1, size(a)
-      if (transfer(a(i), 0_long) /= transfer(b(i), 0_long)) then
-        identical = .false.
-        return
-      end if
-    end do
-  end function identical
-
   !> Packs a state.
-  subroutine put_state(record, law, state)
+  subroutine put_state(record, state)
     type(byte_record_t), intent(inout) :: record
-    class(force_law_t), intent(in) :: law
     type(state_t), intent(in) :: state
-    logical :: follows
 
     call record%put(state%gap)
-    follows = identical(law%pressure(state%gap), state%pressure)
-    call record%put(follows)
-    if (.not. follows) call record%put(state%pressure)
+    call record%put(state%pressure)
     call record%put(state%h0)
     call record%put(state%scale)
     call record%put(state%axis_gap)
@@ -129,19 +106,12 @@ contains
   end subroutine put_state
 
   !> Unpacks what `put_state` packed.
-  subroutine take_state(record, law, state)
+  subroutine take_state(record, state)
     type(byte_record_t), intent(inout) :: record
-    class(force_law_t), intent(in) :: law
     type(state_t), intent(out) :: state
-    logical :: follows
 
     call record%take(state%gap)
-    call record%take(follows)
-    if (follows) then
-      state%pressure = law%pressure(state%gap)
-    else
-      call record%take(state%pressure)
-    end if
+    call record%take(state%pressure)
     call record%take(state%h0)
     call record%take(state%scale)
     call record%take(state%axis_gap)
