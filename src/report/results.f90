@@ -88,8 +88,6 @@ contains
       if (allocated(scene%profiles) .and. .not. allocated(error)) &
         call self%begin(self%shapes, 'profiles.csv', columns_of_profiles(problem), error)
     end if
-    ! What is put on the disk later needs its name there.
-    if (.not. allocated(error)) call self%lock%sync(error)
     if (.not. allocated(error)) return
     self%trouble = error
     call self%lock%release()

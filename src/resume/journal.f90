@@ -4,8 +4,8 @@
 !> A journal begins with a text that says whose it is; records follow. Each has its length, a
 !> checksum, and the time since the run began, and is handed to the system at once: what follows the
 !> last whole record was being written when the run was killed, and is cut off. Every few seconds it
-!> is put on the disk, so that a power failure costs no more than these. It is written by system
-!> calls for the reason given in `text_file`.
+!> is put on the disk, with its name at first, so that a power failure costs no more than these. It
+!> is written by system calls for the reason given in `text_file`.
 module journal
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
@@ -14,6 +14,7 @@ module journal
     as_output, as_kept_output, nul
   use byte_record, only: byte_record_t
   use checksums, only: checksum
+  use files, only: sync_names
   use clock, only: seconds
   implicit none
   private
@@ -34,6 +35,8 @@ module journal
     integer(long), private :: room = 0
     !> Times [s]: when it was opened, when it was last put on the disk.
     real(wp), private :: began = 0, synced = 0
+    !> Whether its name is on the disk.
+    logical, private :: named = .false.
   contains
     procedure :: begin
     procedure :: go_on
@@ -44,6 +47,7 @@ module journal
     procedure :: reject
     procedure :: append
     procedure :: close => close_journal
+    procedure, private :: put_on_disk
     procedure, private :: read_frame
   end type journal_t
 
@@ -123,6 +127,7 @@ contains
     self%waiting = 0
     self%began = seconds()
     self%synced = self%began
+    self%named = .false.
     self%path = path
     self%descriptor = c_open(path // nul, how)
     if (.not. self%is_open()) then
@@ -204,16 +209,24 @@ contains
     words(2) = checksum(words)
     bytes = transfer(words, bytes)
     status = c_write(self%descriptor, bytes, size(bytes, kind=c_long))
-    if (status == 0) then
-      if (seconds() - self%synced > sync_interval) then
-        status = c_sync(self%descriptor)
-        self%synced = seconds()
-      end if
-    end if
+    if (status == 0 .and. seconds() - self%synced > sync_interval) call self%put_on_disk(status)
     if (status == 0) return
     call system_failure('cannot write ' // self%path, status, self%trouble)
     call self%close()
   end subroutine append
+
+  !> Waits until the journal is on the disk; the first time, also for its name and its folder's,
+  !> which runs of less than `sync_interval` do without.
+  subroutine put_on_disk(self, status)
+    class(journal_t), intent(inout) :: self
+    integer(c_int), intent(out) :: status
+
+    status = c_sync(self%descriptor)
+    if (status == 0 .and. .not. self%named) &
+      call sync_names(self%path(:index(self%path, '/', .true.)), .true., status)
+    self%named = .true.
+    self%synced = seconds()
+  end subroutine put_on_disk
 
   !> Closes it; nothing is done where none is open.
   subroutine close_journal(self)

@@ -122,15 +122,7 @@ int snapin_sync_above(int folder) {
   return status;
 }
 
-int snapin_make_folder(const char *path) {
-  int made;
-  if (mkdir(path, 0777) < 0)
-    return -errno;
-  made = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  snapin_sync_above(made);
-  close(made);
-  return 0;
-}
+int snapin_make_folder(const char *path) { return status_of(mkdir(path, 0777)); }
 
 /* Blank where it is not known. */
 void snapin_current_folder(char *text, int size) {

@@ -84,6 +84,14 @@ def test_mending_that_is_interrupted_is_mended(either, code):
             either.mend()
 
 
+def test_files_wait_for_the_disk_no_more_often_than_the_order_of_steps_needs(stand, fresh):
+    files = len(stand.new)
+    # The list of the new files, and the folder four times.
+    assert stand.number("fsync") == files + 1 + 4
+    # The folder three times, and the one above it.
+    assert fresh.number("fsync") == files + 3 + 1
+
+
 def test_every_file_is_on_the_disk_before_it_gets_its_name(either):
     synced, dirty_names, renamed = set(), set(), []
     for name, _, path, *rest in either.log()[:-1]:
@@ -220,10 +228,15 @@ def test_what_is_no_file_is_refused_and_not_opened(stand, make, name):
 def test_the_journal_is_put_on_the_disk_every_few_seconds(snapin_path, stand, tmp_path):
     (tmp_path / "d.nml").write_text(lennard_jones(0.2, loading=loading(4, 1, 1e-5)))
     env = dict(os.environ, OMP_NUM_THREADS="1", LD_PRELOAD=str(stand.library), FAULT_CALL="fsync",
-               FAULT_UNDER="journal", FAULT_LOG=str(tmp_path / "log"))
+               FAULT_UNDER="results/d", FAULT_LOG=str(tmp_path / "log"))
     with subprocess.Popen([snapin_path, "--quiet", "d.nml"], cwd=tmp_path, env=env) as process:
         time.sleep(7)
         process.send_signal(signal.SIGKILL)
-    calls = [line.split("\t")[0] for line in (tmp_path / "log").read_text().splitlines()]
-    assert 2 <= calls.count("fsync") <= 3
-    assert calls.count("write") > 100
+    calls = [line.split("\t") for line in (tmp_path / "log").read_text().splitlines()]
+    journal = [name for name, _, path, *_ in calls if path.endswith("journal.partial")]
+    assert 2 <= journal.count("fsync") <= 3
+    assert journal.count("write") > 100
+    # Its names need that once.
+    synced = [os.path.normpath(path) for name, _, path, *_ in calls if name == "fsync"]
+    assert synced[1:3] == ["results/d", "results"]
+    assert {*synced[:1], *synced[3:]} == {"results/d/journal.partial"}
