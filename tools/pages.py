@@ -38,7 +38,7 @@ _NO_NUMBERS = (
     "deck_values",
     "failure", "checksums", "files", "finished_run", "folder_lock", "forecast", "journal", "memory",
     "preflight", "result_listing", "result_rows", "state_records", "byte_record", "progress",
-    "publication", "run_identity", "snapin", "text_file",
+    "publication", "replacement", "result_names", "run_identity", "snapin", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")
 

@@ -101,11 +101,7 @@ def _as_list(value):
 
 def read_table(folder, name):
     """Return the columns of a table as a dict of arrays, text for `_TEXT_COLUMNS`."""
-    path = pathlib.Path(folder) / name
-    if path.with_name("INCOMPLETE.txt").exists():
-        raise ResultsError(f"files in {folder} may not belong together: see INCOMPLETE.txt there")
-    if not path.is_file():
-        raise ResultsError(f"no {name} in {folder}{_hint(path)}")
+    path = _path_of(folder, name)
     with path.open(encoding="utf-8", newline="") as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))
     if not rows:
@@ -130,13 +126,21 @@ def read_summary(folder):
 
 def _read_groups(folder):
     """Return the groups of summary.nml."""
-    path = pathlib.Path(folder) / "summary.nml"
-    if not path.is_file():
-        raise ResultsError(f"no summary.nml in {folder}{_hint(path)}")
+    path = _path_of(folder, "summary.nml")
     groups = f90nml.read(path)
     if "summary" not in groups:
         raise ResultsError(f"{path}: no group &summary")
     return groups
+
+
+def _path_of(folder, name):
+    """Return the path of a file of complete results."""
+    path = pathlib.Path(folder) / name
+    if path.with_name("INCOMPLETE.txt").exists():
+        raise ResultsError(f"files in {folder} may not belong together: see INCOMPLETE.txt there")
+    if not path.is_file():
+        raise ResultsError(f"no {name} in {folder}{_hint(path)}")
+    return path
 
 
 def _hint(path):

@@ -1,7 +1,7 @@
 !> What `snapin --results` prints: every file of results with its columns, and every entry of
 !> summary.nml. Columns and entries are read from the tables that write the files.
 module result_listing
-  use publication, only: result_files
+  use result_names, only: result_files
   use result_rows, only: row_t, rows, in_summary, in_cost
   use curve_rows, only: curve_columns, stability_columns
   use derived_tables, only: theory_columns

@@ -16,7 +16,8 @@ module results
   use deck, only: deck_t
   use files, only: make_folder, file_exists
   use folder_lock, only: folder_lock_t
-  use publication, only: publish, result_files, journal_name
+  use result_names, only: result_files, journal_name, summary_name
+  use publication, only: publish
   use journal, only: journal_t
   use run_identity, only: difference_between
   use text_file, only: output_t, partial
@@ -87,8 +88,6 @@ contains
       if (allocated(scene%profiles) .and. .not. allocated(error)) &
         call self%begin(self%shapes, 'profiles.csv', columns_of_profiles(problem), error)
     end if
-    ! What is put on the disk later needs its name there.
-    if (.not. allocated(error)) call self%lock%sync(error)
     if (.not. allocated(error)) return
     self%trouble = error
     call self%lock%release()
@@ -237,7 +236,7 @@ contains
       call move_alloc(missing, self%trouble)
       return
     end if
-    call self%write_text('summary.nml', summary_text(complete) // deck%resolved())
+    call self%write_text(summary_name, summary_text(complete) // deck%resolved())
   end subroutine write_summary
 
   !> Ends the progress and gives the files of this run their names; those of an earlier run which

@@ -4,16 +4,18 @@
 !> A journal begins with a text that says whose it is; records follow. Each has its length, a
 !> checksum, and the time since the run began. Records are gathered, and handed to the system
 !> several times a second: what follows the last whole record was being written when the run was
-!> killed, and is cut off. Every few seconds the journal is put on the disk, so that a power failure
-!> costs no more than these. It is written by system calls for the reason given in `text_file`.
+!> killed, and is cut off. Every few seconds the journal is put on the disk, with its name at first,
+!> so that a power failure costs no more than these. It is written by system calls for the reason
+!> given in `text_file`.
 module journal
-  use, intrinsic :: iso_c_binding, only: c_int, c_long
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_loc, c_f_pointer
   use kinds, only: wp, long
   use failure, only: failure_t, fail, file_trouble
   use c_library, only: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, system_failure, &
     as_output, as_kept_output, nul
   use byte_record, only: byte_record_t
   use checksums, only: checksum
+  use files, only: sync_names
   use clock, only: seconds
   implicit none
   private
@@ -37,6 +39,8 @@ module journal
     integer, private :: held = 0
     !> Times [s]: when it was opened, when words were last handed over and put on the disk.
     real(wp), private :: began = 0, handed = 0, synced = 0
+    !> Whether its name is on the disk.
+    logical, private :: named = .false.
   contains
     procedure :: begin
     procedure :: go_on
@@ -48,6 +52,7 @@ module journal
     procedure :: append
     procedure :: close => close_journal
     procedure :: drop
+    procedure, private :: put_on_disk
     procedure, private :: read_frame
     procedure, private :: hand_over
   end type journal_t
@@ -59,7 +64,7 @@ module journal
   !> Seconds of work that a killed run may cost, and words that are gathered at most: most runs end
   !> before they have to be handed over.
   real(wp), parameter :: hand_interval = 0.05_wp
-  integer, parameter :: most_gathered = 131072
+  integer, parameter :: most_gathered = 98304
 
 contains
 
@@ -133,6 +138,7 @@ contains
     self%began = seconds()
     self%handed = self%began
     self%synced = self%began
+    self%named = .false.
     self%held = 0
     if (.not. allocated(self%gathered)) allocate (self%gathered(most_gathered))
     self%path = path
@@ -228,9 +234,9 @@ contains
   !> Hands what was gathered to the system, so that it survives this process, and now and then to
   !> the disk. now: the time [s].
   subroutine hand_over(self, now)
-    class(journal_t), intent(inout) :: self
+    class(journal_t), intent(inout), target :: self
     real(wp), intent(in) :: now
-    character :: bytes(word*self%held)
+    character(kind=c_char), pointer :: bytes(:)
     integer(c_int) :: status
     integer :: first, last
 
@@ -240,18 +246,28 @@ contains
       self%gathered(first + 1) = checksum(self%gathered(first:last))
       first = last + 1
     end do
-    bytes = transfer(self%gathered(:self%held), bytes)
+    call c_f_pointer(c_loc(self%gathered), bytes, [word*self%held])
     self%held = 0
     self%handed = now
     status = c_write(self%descriptor, bytes, size(bytes, kind=c_long))
-    if (status == 0 .and. now - self%synced > sync_interval) then
-      status = c_sync(self%descriptor)
-      self%synced = now
-    end if
+    if (status == 0 .and. now - self%synced > sync_interval) call self%put_on_disk(status)
     if (status == 0) return
     call system_failure('cannot write ' // self%path, status, self%trouble)
     call let_go(self)
   end subroutine hand_over
+
+  !> Waits until the journal is on the disk; the first time, also for its name and its folder's,
+  !> which runs of less than `sync_interval` do without.
+  subroutine put_on_disk(self, status)
+    class(journal_t), intent(inout) :: self
+    integer(c_int), intent(out) :: status
+
+    status = c_sync(self%descriptor)
+    if (status == 0 .and. .not. self%named) &
+      call sync_names(self%path(:index(self%path, '/', .true.)), .true., status)
+    self%named = .true.
+    self%synced = seconds()
+  end subroutine put_on_disk
 
   !> Closes it; nothing is done where none is open.
   subroutine close_journal(self)

@@ -6,8 +6,8 @@ module c_library
   use failure, only: failure_t, fail, file_trouble
   implicit none
   private
-  public :: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, c_make_folder, &
-    c_current_folder, c_lock, c_kind, c_rename, c_remove, c_is_terminal, c_prepare, &
+  public :: c_open, c_read, c_write, c_sync, c_sync_above, c_close, c_size, c_cut, &
+    c_make_folder, c_current_folder, c_lock, c_kind, c_rename, c_remove, c_is_terminal, c_prepare, &
     c_openblas_threads, c_openblas_end_threads, c_openblas_config, c_build_id
   public :: explain, system_failure, nul
   public :: as_input, as_output, as_kept_output, as_folder
@@ -50,6 +50,12 @@ module c_library
       import :: c_int
       integer(c_int), value :: descriptor
     end function c_sync
+
+    !> Waits until the names in the folder above `folder`, its own among them, are on the disk.
+    integer(c_int) function c_sync_above(folder) bind(c, name='snapin_sync_above')
+      import :: c_int
+      integer(c_int), value :: folder
+    end function c_sync_above
 
     integer(c_int) function c_close(descriptor) bind(c, name='snapin_close')
       import :: c_int

@@ -5,17 +5,18 @@ module files
   use kinds, only: long
   use failure, only: failure_t
   use c_library, only: c_make_folder, c_current_folder, c_is_terminal, c_write, &
-    system_failure, nul
+    c_open, c_sync, c_sync_above, c_close, as_folder, system_failure, nul
   implicit none
   private
-  public :: make_folder, file_exists, whole_path, read_file, is_terminal, write_stderr
+  public :: make_folder, sync_names, file_exists, whole_path, read_file, is_terminal, write_stderr
 
   !> Number of standard error.
   integer(c_int), parameter :: standard_error = 2
 
 contains
 
-  !> Makes the folder `path` and those above it, where they do not exist.
+  !> Makes the folder `path` and those above it, where they do not exist. The names of those above
+  !> are put on the disk at once, since other runs may count on them; that of `path` is not.
   subroutine make_folder(path, error)
     character(len=*), intent(in) :: path
     type(failure_t), allocatable, intent(out) :: error
@@ -29,6 +30,7 @@ contains
       if (path(i:i) == '/') cycle
       if (file_exists(path(:i) // '/.')) cycle
       status = c_make_folder(path(:i) // nul)
+      if (status == 0 .and. i < len(path)) call sync_names(path(:i), .false., status)
       if (status == 0) cycle
       ! Another process may have made it meanwhile.
       if (file_exists(path(:i) // '/.')) cycle
@@ -36,6 +38,21 @@ contains
       return
     end do
   end subroutine make_folder
+
+  !> Waits until the name of the folder `path` is on the disk, and with `inside` the names in it.
+  subroutine sync_names(path, inside, status)
+    character(len=*), intent(in) :: path
+    logical, intent(in) :: inside
+    integer(c_int), intent(out) :: status
+    integer(c_int) :: folder, closed
+
+    folder = c_open(path // nul, as_folder)
+    status = min(folder, 0_c_int)
+    if (status < 0) return
+    if (inside) status = c_sync(folder)
+    if (status == 0) status = c_sync_above(folder)
+    closed = c_close(folder)
+  end subroutine sync_names
 
   !> `path` from the root on; as it is where the current folder is not known.
   function whole_path(path) result(whole)

@@ -4,8 +4,8 @@
 module folder_lock
   use, intrinsic :: iso_c_binding, only: c_int
   use failure, only: failure_t, fail, file_trouble
-  use c_library, only: c_open, c_lock, c_kind, c_rename, c_remove, c_sync, c_close, explain, &
-    system_failure, as_folder, locked_elsewhere, nul
+  use c_library, only: c_open, c_lock, c_kind, c_rename, c_remove, c_sync, c_sync_above, c_close, &
+    explain, system_failure, as_folder, locked_elsewhere, nul
   implicit none
   private
   public :: folder_lock_t
@@ -25,6 +25,7 @@ module folder_lock
     procedure :: rename_file
     procedure :: remove_file
     procedure :: sync
+    procedure :: sync_above
     procedure :: release
   end type folder_lock_t
 
@@ -124,6 +125,17 @@ contains
     status = c_sync(self%folder)
     if (status < 0) call system_failure('cannot write the folder ' // self%path, status, error)
   end subroutine sync
+
+  !> Waits until the folder's own name is on the disk.
+  subroutine sync_above(self, error)
+    class(folder_lock_t), intent(in) :: self
+    type(failure_t), allocatable, intent(out) :: error
+    integer(c_int) :: status
+
+    status = c_sync_above(self%folder)
+    if (status < 0) call system_failure('cannot write the folder above ' // self%path, status, &
+      error)
+  end subroutine sync_above
 
   !> Lets others have the folder; nothing is done where no lock is held.
   subroutine release(self)

@@ -112,19 +112,17 @@ int snapin_cut(int fd, long length, long place) {
   return ftruncate(fd, length) < 0 || lseek(fd, place, SEEK_SET) < 0 ? -errno : 0;
 }
 
-/* The new name is to outlive a power failure, where its parent can be opened. */
-int snapin_make_folder(const char *path) {
-  int made, parent;
-  if (mkdir(path, 0777) < 0)
-    return -errno;
-  made = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  parent = openat(made, "..", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (parent >= 0)
-    snapin_sync(parent);
-  close(parent);
-  close(made);
-  return 0;
+/* Nothing is done where the folder above may not be opened. */
+int snapin_sync_above(int folder) {
+  int status, above = openat(folder, "..", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (above < 0)
+    return 0;
+  status = snapin_sync(above);
+  close(above);
+  return status;
 }
+
+int snapin_make_folder(const char *path) { return status_of(mkdir(path, 0777)); }
 
 /* Blank where it is not known. */
 void snapin_current_folder(char *text, int size) {

@@ -120,6 +120,37 @@ int open64(const char *path, int flags, ...) {
   return opened(path, flags | O_LARGEFILE, mode);
 }
 
+/* What is opened from a folder that counts, the one above it for instance, counts too. */
+static int opened_in(int folder, const char *path, int flags, mode_t mode) {
+  const char *from_path = minds(folder);
+  if (from_path && fails("open"))
+    return -1;
+  int fd = syscall(SYS_openat, folder, path, flags, mode);
+  if (from_path && fd >= 0 && fd < most) {
+    char whole[4200];
+    snprintf(whole, sizeof whole, "%s/%s", from_path, path);
+    paths[fd] = strdup(whole);
+    note("open", fd, whole, NULL);
+  }
+  return fd;
+}
+
+int openat(int folder, const char *path, int flags, ...) {
+  va_list rest;
+  va_start(rest, flags);
+  mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
+  va_end(rest);
+  return opened_in(folder, path, flags, mode);
+}
+
+int openat64(int folder, const char *path, int flags, ...) {
+  va_list rest;
+  va_start(rest, flags);
+  mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
+  va_end(rest);
+  return opened_in(folder, path, flags | O_LARGEFILE, mode);
+}
+
 ssize_t write(int fd, const void *bytes, size_t count) {
   const char *path = minds(fd);
   if (path && fails("write")) {

@@ -5,9 +5,10 @@
 tries every call (or every N-th), prints a table of how many were tried and how runs ended, and
 ends with status 1 where what src/system/publication.f90 promises does not hold.
 
-A run is to replace the results of an older deck of the same name. Whatever happens: files with
-final names are the old set or the new one, or INCOMPLETE.txt is there and the run has said so; the
-same deck with --resume then leaves exactly what an undisturbed run does.
+A run is to replace the results of an older deck of the same name, or has a new folder. Whatever
+happens: files with final names are the old set (in a new folder: none) or the new one, or
+INCOMPLETE.txt is there and the run has said so; the same deck with --resume then leaves exactly
+what an undisturbed run does.
 """
 
 import argparse
@@ -56,7 +57,10 @@ def contents(folder):
 
 
 class Stand:
-    """The old and the new results, and a folder where the new are to replace the old."""
+    """The old and the new results, and a folder where the new are to replace the old.
+
+    Without `old` that folder is not there before the run.
+    """
 
     def __init__(self, snapin, folder, old=OLD, new=NEW):
         self.snapin, self.folder = snapin, pathlib.Path(folder)
@@ -64,13 +68,13 @@ class Stand:
         subprocess.run([os.environ.get("CC", "cc"), "-O1", "-shared", "-fPIC", "-o", self.library,
                         HERE / "faults.c", "-ldl"], check=True)
         self.target = self.folder / "try/d"
-        self.sets = []
+        self.before = "old" if old else "none"
         for name, text in (("old", old), ("new", new)):
-            (self.folder / "d.nml").write_text(text)
-            done = self.run(name)
-            require(done.returncode == 0, done.stderr)
-            self.sets.append(contents(self.folder / name / "d"))
-        self.old, self.new = self.sets
+            if text:
+                (self.folder / "d.nml").write_text(text)
+                done = self.run(name)
+                require(done.returncode == 0, done.stderr)
+        self.old, self.new = (contents(self.folder / name / "d") for name in ("old", "new"))
         require(self.old != self.new, "two decks of the same results")
 
     def run(self, out="try", *options, **fault):
@@ -84,7 +88,8 @@ class Stand:
 
     def reset(self):
         shutil.rmtree(self.target.parent, ignore_errors=True)
-        shutil.copytree(self.folder / "old/d", self.target)
+        if self.old:
+            shutil.copytree(self.folder / "old/d", self.target)
 
     def log(self):
         """The calls on files of an undisturbed run, as lists of fields."""
@@ -104,16 +109,19 @@ class Stand:
         return int(path.read_text().splitlines()[-1].split("\t")[1])
 
     def state(self):
-        """What the folder holds: 'old', 'new' or 'told'."""
+        """What the folder holds: 'old' or 'none', 'new', or 'told'."""
         found = contents(self.target)
         if INTENT in found:
+            del found[INTENT]
+            for name, data in found.items():
+                require(data in (self.old.get(name), self.new.get(name)), name, "is not whole")
             return "told"
-        require(found in self.sets, "neither old nor new nor told:", sorted(found))
-        return "old" if found == self.old else "new"
+        require(found in (self.old, self.new), "neither old nor new nor told:", sorted(found))
+        return self.before if found == self.old else "new"
 
-    def mend(self):
+    def mend(self, *options):
         """The next run leaves what an undisturbed one does, and nothing else."""
-        done = self.run("try", "--resume")
+        done = self.run("try", *(options or ["--resume"]))
         require(done.returncode == 0, "no way on:", done.stderr)
         require(contents(self.target) == self.new, "not the same after --resume")
         left = sorted(path.name for path in self.target.iterdir())
@@ -165,21 +173,26 @@ def power_failures(stand, every=1, seed=1):
     calls = stand.log()[:-1]
     rng = random.Random(seed)
     found = collections.Counter()
-    for stop in range(0, len(calls) + 1, every):
+    for stop in [*range(0, len(calls), every), len(calls)]:
         for keep in ("nothing", "all names", "some"):
             lay_out(stand, calls[:stop], keep, rng)
-            found[stand.state()] += 1
+            state = stand.state()
+            require(state == "new" or stop < len(calls), "lost after the run's end")
+            found[state] += 1
             stand.mend()
     return found
 
 
 def lay_out(stand, calls, keep, rng):
     """The folder as a disk may hold it after `calls`."""
-    disk = {path.name: Inode(path.read_bytes()) for path in (stand.folder / "old/d").iterdir()}
-    now, waiting = dict(disk), []
+    old = stand.folder / "old/d"
+    disk = {path.name: Inode(path.read_bytes()) for path in (old.iterdir() if stand.old else ())}
+    now, waiting, lasting = dict(disk), [], bool(stand.old)
     for name, _, path, *rest in calls:
         file = path.rsplit("/", 1)[-1]
-        if name == "create" and file not in now:
+        if name == "fsync" and file == "..":
+            lasting = True
+        elif name == "create" and file not in now:
             now[file] = Inode(b"")
             waiting.append(("link", file, now[file]))
         elif name == "write":
@@ -206,6 +219,8 @@ def lay_out(stand, calls, keep, rng):
         elif kind == "unlink":
             disk.pop(file, None)
     shutil.rmtree(stand.target, ignore_errors=True)
+    if not lasting and (keep == "nothing" or (keep == "some" and rng.random() < 0.5)):
+        return
     stand.target.mkdir(parents=True)
     for file, inode in disk.items():
         count = inode.synced
@@ -216,7 +231,7 @@ def lay_out(stand, calls, keep, rng):
 
 # --- The campaign
 
-KINDS = ("open", "write", "fsync", "close", "rename", "unlink", "ftruncate", "fstat")
+KINDS = ("mkdir", "open", "write", "fsync", "close", "rename", "unlink", "ftruncate", "fstat")
 ERRORS = {"killed": KILL, "EIO": errno.EIO, "ENOSPC": errno.ENOSPC, "EACCES": errno.EACCES}
 
 
@@ -224,6 +239,8 @@ def campaign(stand, kinds=KINDS, errors=tuple(ERRORS), every=1, lasting=True):
     """Yields (call, what happened, how many, how they ended, what was broken)."""
     for call in kinds:
         number = stand.number(call)
+        if number == 0:
+            continue
         for name in errors:
             for lasts in (False, True) if lasting and name != "killed" else (False,):
                 ends, broken = collections.Counter(), []
@@ -242,18 +259,26 @@ def main():
     parser.add_argument("--snapin", default=HERE.parents[1] / "build/snapin")
     options = parser.parse_args()
     bad = 0
-    with tempfile.TemporaryDirectory() as folder:
-        stand = Stand(options.snapin, folder)
-        for call, what, count, ends, broken in campaign(stand, every=options.every):
-            text = "; ".join(f"{number} {end}" for end, number in sorted(ends.items()))
-            print(f"| {call} | {what} | {count} | {text} | {len(broken)} |", flush=True)
-            for line in broken:
-                print("   ", line)
-            bad += len(broken)
-        ends = power_failures(stand, every=options.every)
-        text = "; ".join(f"{number} {end}" for end, number in sorted(ends.items()))
-        print(f"| power fails | | {sum(ends.values())} | {text} | 0 |")
+    for title, old in (("Old results are replaced", OLD), ("A new folder", None)):
+        print(f"{title}\n")
+        with tempfile.TemporaryDirectory() as folder:
+            bad += report(Stand(options.snapin, folder, old), options.every)
     sys.exit(bad > 0)
+
+
+def report(stand, every):
+    """Prints the table of a campaign and returns how many promises were broken."""
+    bad = 0
+    for call, what, count, ends, broken in campaign(stand, every=every):
+        text = "; ".join(f"{number} {end}" for end, number in sorted(ends.items()))
+        print(f"| {call} | {what} | {count} | {text} | {len(broken)} |", flush=True)
+        for line in broken:
+            print("   ", line)
+        bad += len(broken)
+    ends = power_failures(stand, every=every)
+    text = "; ".join(f"{number} {end}" for end, number in sorted(ends.items()))
+    print(f"| power fails | | {sum(ends.values())} | {text} | 0 |\n", flush=True)
+    return bad
 
 
 if __name__ == "__main__":

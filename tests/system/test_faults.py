@@ -17,47 +17,88 @@ def stand(snapin_path, tmp_path_factory):
     return faults.Stand(snapin_path, tmp_path_factory.mktemp("faults"))
 
 
+@pytest.fixture(scope="module")
+def fresh(snapin_path, tmp_path_factory):
+    return faults.Stand(snapin_path, tmp_path_factory.mktemp("fresh"), old=None)
+
+
+@pytest.fixture(params=["stand", "fresh"])
+def either(request):
+    """Old results that are replaced, or a new folder."""
+    return request.getfixturevalue(request.param)
+
+
 # --- A sample; `verify.sh faults` tries every call with every error
 
 
 @pytest.mark.parametrize("code", [faults.KILL, errno.EIO], ids=["killed", "EIO"])
-def test_a_rename_that_fails_leaves_one_set_of_results_or_says_so(stand, code):
-    for at in range(1, stand.number("rename") + 1):
-        end = stand.attempt("rename", at, code)
+def test_a_rename_that_fails_leaves_one_set_of_results_or_says_so(either, code):
+    for at in range(1, either.number("rename") + 1):
+        end = either.attempt("rename", at, code)
         if code:
-            assert end == "status 1, old"
+            assert end == f"status 1, {either.before}"
 
 
 @pytest.mark.parametrize("code", [faults.KILL, errno.ENOSPC], ids=["killed", "ENOSPC"])
-def test_no_failing_call_leaves_results_that_are_not_one_set(stand, code):
-    for at in range(1, stand.number("any") + 1, 7):
-        stand.attempt("any", at, code)
+def test_no_failing_call_leaves_results_that_are_not_one_set(either, code):
+    for at in range(1, either.number("any") + 1, 7):
+        either.attempt("any", at, code)
 
 
-def test_a_disk_that_fails_for_good_amid_the_renames_is_told_and_mended(stand):
-    number = stand.number("rename")
-    ends = [stand.attempt("rename", at, errno.EIO, lasts=True) for at in range(1, number + 1)]
+def test_a_disk_that_fails_for_good_amid_the_renames_is_told_and_mended(either):
+    number = either.number("rename")
+    ends = [either.attempt("rename", at, errno.EIO, lasts=True) for at in range(1, number + 1)]
     # Nothing can be put back either.
     assert ends.count("status 1, told") >= number - 2
 
 
-def test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so(stand):
-    ends = faults.power_failures(stand, every=5)
-    assert ends["old"] and ends["told"]
+def test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so(either):
+    ends = faults.power_failures(either, every=5)
+    assert ends[either.before] and ends["told"] and ends["new"]
 
 
 @pytest.mark.long
-def test_every_call_may_fail(stand):
-    broken = [line for *_, bad in faults.campaign(stand) for line in bad]
+def test_every_call_may_fail(either):
+    broken = [line for *_, bad in faults.campaign(either) for line in bad]
     assert not broken
-    ends = faults.power_failures(stand)
-    assert ends["old"] and ends["new"] and ends["told"]
+    ends = faults.power_failures(either)
+    assert ends[either.before] and ends["new"] and ends["told"]
 
 
-def test_every_file_is_on_the_disk_before_it_gets_its_name(stand):
+@pytest.mark.parametrize("code", [faults.KILL, errno.EIO], ids=["killed", "EIO"])
+def test_mending_that_is_interrupted_is_mended(either, code):
+    def stop():
+        either.reset()
+        either.run(call="rename", at=4, errno=faults.KILL, under="try/d")
+        assert either.state() == "told"
+
+    stop()
+    log = either.folder / "mending.log"
+    either.run("try", "--resume", call="any", under="try/d", log=log)
+    calls = [line.split("\t")[0] for line in log.read_text().splitlines()]
+    for call in ("rename", "fsync"):
+        for at in range(1, min(calls.count(call), 8) + 1):
+            stop()
+            either.run("try", "--resume", call=call, at=at, errno=code, under="try/d")
+            either.state()
+            either.mend()
+
+
+def test_files_wait_for_the_disk_no_more_often_than_the_order_of_steps_needs(stand, fresh):
+    files = len(stand.new)
+    # The list of the new files, and the folder four times.
+    assert stand.number("fsync") == files + 1 + 4
+    # The folder three times, and the one above it.
+    assert fresh.number("fsync") == files + 3 + 1
+
+
+def test_every_file_is_on_the_disk_before_it_gets_its_name(either):
     synced, dirty_names, renamed = set(), set(), []
-    for name, _, path, *rest in stand.log()[:-1]:
+    for name, _, path, *rest in either.log()[:-1]:
         file = path.rsplit("/", 1)[-1]
+        if path == faults.INTENT and name in ("rename", "unlink"):
+            # Now the set is complete.
+            assert not dirty_names
         if name in ("write", "truncate"):
             synced.discard(file)
         elif name == "create":
@@ -66,11 +107,17 @@ def test_every_file_is_on_the_disk_before_it_gets_its_name(stand):
             dirty_names.clear()
         elif name == "fsync":
             synced.add(file)
-        elif name == "rename" and not rest[0].endswith(".old.partial"):
-            assert path in synced and path not in dirty_names
+        elif name == "rename":
+            dirty_names.add(rest[0])
+            if rest[0].endswith(".old.partial"):
+                continue
+            # In a new folder the summary may get lost while it is the only file with a name.
+            first = not renamed and not either.old
+            assert path in synced and (first or path not in dirty_names)
+            synced.add(rest[0])
             renamed.append(rest[0])
     assert renamed[0] == faults.INTENT
-    assert sorted(renamed) == sorted([faults.INTENT, *stand.new])
+    assert sorted(renamed) == sorted([faults.INTENT, *either.new])
     assert renamed[-1] == "summary.nml"
 
 
@@ -92,6 +139,29 @@ def test_a_folder_of_two_sets_tells_how_to_mend_it_by_hand(stand):
         if path.name not in listed:
             path.unlink()
     assert stand.state() == "new"
+
+
+def test_a_new_folder_without_all_its_results_says_so_and_has_no_others(fresh):
+    fresh.reset()
+    fresh.run(call="rename", at=4, errno=faults.KILL, under="try/d")
+    assert "other files may lack their names: run the deck again" in (
+        fresh.target / faults.INTENT).read_text().split("&summary")[0]
+    assert not (fresh.target / "summary.nml").exists()
+
+
+@pytest.mark.parametrize("option", ["--resume", "--quiet"])
+def test_what_was_begun_in_a_new_folder_is_taken_back(fresh, option):
+    for at in range(1, fresh.number("rename") + 1):
+        fresh.reset()
+        fresh.target.mkdir(parents=True)
+        (fresh.target / "sweep.csv.partial").write_text("another run's")
+        fresh.run(call="rename", at=at, errno=faults.KILL, under="try/d")
+        assert fresh.state() == ("told" if at > 1 else "none")
+        # That run and its summary are there no more when the next fails as well.
+        done = fresh.run("try", option, call="write", at=1, errno=errno.ENOSPC, under="try/d")
+        assert done.returncode == 1
+        assert fresh.state() == "none"
+        fresh.mend(option)
 
 
 def test_a_run_without_resume_mends_what_was_interrupted_before_it_starts_over(stand):
@@ -158,10 +228,15 @@ def test_what_is_no_file_is_refused_and_not_opened(stand, make, name):
 def test_the_journal_is_put_on_the_disk_every_few_seconds(snapin_path, stand, tmp_path):
     (tmp_path / "d.nml").write_text(lennard_jones(0.2, loading=loading(4, 1, 1e-5)))
     env = dict(os.environ, OMP_NUM_THREADS="1", LD_PRELOAD=str(stand.library), FAULT_CALL="fsync",
-               FAULT_UNDER="journal", FAULT_LOG=str(tmp_path / "log"))
+               FAULT_UNDER="results/d", FAULT_LOG=str(tmp_path / "log"))
     with subprocess.Popen([snapin_path, "--quiet", "d.nml"], cwd=tmp_path, env=env) as process:
         time.sleep(7)
         process.send_signal(signal.SIGKILL)
-    calls = [line.split("\t")[0] for line in (tmp_path / "log").read_text().splitlines()]
-    assert 2 <= calls.count("fsync") <= 3
-    assert calls.count("write") > 100
+    calls = [line.split("\t") for line in (tmp_path / "log").read_text().splitlines()]
+    journal = [name for name, _, path, *_ in calls if path.endswith("journal.partial")]
+    assert 2 <= journal.count("fsync") <= 3
+    assert journal.count("write") > 100
+    # Its names need that once.
+    synced = [os.path.normpath(path) for name, _, path, *_ in calls if name == "fsync"]
+    assert synced[1:3] == ["results/d", "results"]
+    assert {*synced[:1], *synced[3:]} == {"results/d/journal.partial"}

@@ -183,6 +183,16 @@ def test_results_are_written_where_they_are_asked_for_and_read_again(tmp_path):
     assert again.summary == mine.summary and again.cost == mine.cost
 
 
+def test_results_that_lack_their_names_are_not_read(tmp_path):
+    snapin.run(CURVE, out=tmp_path)
+    (tmp_path / "summary.nml").rename(tmp_path / "INCOMPLETE.txt")
+    with pytest.raises(snapin.SnapinError, match="see INCOMPLETE.txt there"):
+        snapin.read_results(tmp_path)
+    # What the tables belong to cannot be known: the next run takes them back and makes its own.
+    assert len(snapin.run(CURVE, out=tmp_path).curve)
+    assert sorted(os.listdir(tmp_path)) == ["curve.csv", "summary.nml"]
+
+
 def test_a_finished_run_is_left_as_it_is_with_resume(tmp_path):
     first = snapin.run(CURVE, out=tmp_path, resume=True)
     written = (tmp_path / "curve.csv").stat().st_mtime_ns
