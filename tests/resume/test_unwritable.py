@@ -6,6 +6,7 @@ import subprocess
 
 import pytest
 from support.interrupted import Bench, environment, frames, rows, SHORT, SWEEP
+from support.scenes import lennard_jones, loading
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +40,9 @@ def check_stopped(bench, done, folder, words):
 def test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on(name, request):
     bench = request.getfixturevalue(name)
     folder = bench.folder / "cut/deck"
-    largest = len(bench.journal)
+    whole = bench.folder / "whole/deck"
+    (table,) = [*whole.glob("curve.csv"), *whole.glob("sweep.csv")]
+    largest = table.stat().st_size
     for limit in (0, 100, 1500, 2500, largest // 2, largest - 1):
         empty(folder)
 
@@ -55,6 +58,24 @@ def test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on(name, reques
             assert len(rows(table.read_bytes().splitlines())) < 0.8 * len(whole)
         assert bench.run("cut", "--resume").returncode == 0
         assert bench.files("cut") == bench.whole
+
+
+def test_a_journal_that_cannot_grow_stops_a_run_that_then_goes_on(snapin, snapin_path, tmp_path):
+    # Some ten times as long as what is gathered before it is handed over.
+    long = Bench(snapin, snapin_path, tmp_path, lennard_jones(0.2, loading=loading(4, 1, 2e-4)))
+    folder = tmp_path / "cut/deck"
+    table = (tmp_path / "whole/deck/curve.csv").stat().st_size
+    assert len(long.journal) > 4 * table
+    empty(folder)
+
+    def limited():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2 * table, 2 * table))
+
+    check_stopped(long, long.run("cut", preexec_fn=limited), folder, "File too large; raise")
+    done = long.run("cut", "--resume")
+    assert done.returncode == 0
+    assert "going on" in done.stderr
+    assert long.files("cut") == long.whole
 
 
 def test_a_full_disk_stops_a_run_that_then_goes_on(short, tmp_path):

@@ -226,7 +226,7 @@ def test_what_is_no_file_is_refused_and_not_opened(stand, make, name):
 
 @pytest.mark.slow
 def test_the_journal_is_put_on_the_disk_every_few_seconds(snapin_path, stand, tmp_path):
-    (tmp_path / "d.nml").write_text(lennard_jones(0.2, loading=loading(4, 1, 1e-5)))
+    (tmp_path / "d.nml").write_text(lennard_jones(0.2, loading=loading(4, 1, 1e-6)))
     env = dict(os.environ, OMP_NUM_THREADS="1", LD_PRELOAD=str(stand.library), FAULT_CALL="fsync",
                FAULT_UNDER="results/d", FAULT_LOG=str(tmp_path / "log"))
     with subprocess.Popen([snapin_path, "--quiet", "d.nml"], cwd=tmp_path, env=env) as process:
@@ -235,7 +235,8 @@ def test_the_journal_is_put_on_the_disk_every_few_seconds(snapin_path, stand, tm
     calls = [line.split("\t") for line in (tmp_path / "log").read_text().splitlines()]
     journal = [name for name, _, path, *_ in calls if path.endswith("journal.partial")]
     assert 2 <= journal.count("fsync") <= 3
-    assert journal.count("write") > 100
+    # The stand takes a call of its own for every byte; without it there are twenty a second.
+    assert journal.count("write") > 20
     # Its names need that once.
     synced = [os.path.normpath(path) for name, _, path, *_ in calls if name == "fsync"]
     assert synced[1:3] == ["results/d", "results"]
