@@ -101,6 +101,9 @@ contains
     if (j == 0) then
       if (.not. state%axis_gap < level) return
       search = new_root_search(0.0_wp, state%axis_gap - level, grid%x(1), state%gap(1) - level)
+    else if (grid%on_one_panel(j)) then
+      c = state%scale*grid%crossing(state%gap, level, j)
+      return
     else
       search = new_root_search(grid%x(j), state%gap(j) - level, grid%x(j + 1), &
         state%gap(j + 1) - level)

@@ -7,6 +7,7 @@
 module discretisation
   use kinds, only: wp, long
   use panel_map, only: panel_map_t, algebraic_map
+  use root_finding, only: root_search_t, new_root_search
   use interpolation, only: polynomial_weights
   use quadrature, only: gauss_legendre
   implicit none
@@ -52,6 +53,8 @@ module discretisation
     real(wp) :: spacing = 0
   contains
     procedure :: interpolate
+    procedure :: on_one_panel
+    procedure :: crossing
     procedure :: note_axis
     procedure :: is_bounded
     procedure :: in_tail
@@ -157,6 +160,40 @@ contains
         self%panel(k)%local(x - self%centre))
     end associate
   end function interpolate
+
+  !> Whether node j and the next are on one panel, and that does not go on to infinity.
+  pure logical function on_one_panel(self, j)
+    class(discretisation_t), intent(in) :: self
+    integer, intent(in) :: j
+    integer :: k
+
+    k = self%panel_at(self%x(j))
+    on_one_panel = self%panel(k)%kind /= algebraic_map .and. &
+      j + 1 < self%first(k) + size(self%local(self%which(k))%node)
+  end function on_one_panel
+
+  !> Where between node j and the next, which are on one panel, values given on the nodes reach a
+  !> level that lies between those of the two.
+  pure real(wp) function crossing(self, values, level, j) result(x)
+    class(discretisation_t), intent(in) :: self
+    real(wp), intent(in) :: values(:), level
+    integer, intent(in) :: j
+    type(root_search_t) :: search
+    real(wp) :: s
+    integer :: k, here
+
+    k = self%panel_at(self%x(j))
+    associate (local => self%local(self%which(k)), first => self%first(k))
+      here = j + 1 - first
+      search = new_root_search(local%node(here), values(j) - level, local%node(here + 1), &
+        values(j + 1) - level)
+      do while (search%is_open())
+        s = search%place()
+        call search%note(s, local%value(values(first:first + size(local%node) - 1), s) - level)
+      end do
+    end associate
+    x = self%centre + self%panel(k)%offset(search%root)
+  end function crossing
 
   !> The panel of a position; outside the mesh the nearest.
   pure integer function panel_at(self, x) result(low)
