@@ -98,7 +98,7 @@ contains
     if (size(self%known%piece) == 0) event%ending = self%known%ending
     if (event%ending%early()) return
     from = h0
-    if (position%held > 0) from = position%state%h0
+    if (position%number > 0) from = position%state%h0
     do while (h0 > self%known%piece(position%piece)%high .or. &
       h0 < self%known%piece(position%piece)%low)
       call self%step_over(h0 < self%known%piece(position%piece)%low, from, position, lowest, event)
@@ -186,7 +186,7 @@ contains
     end if
     mesh = self%span%mesh
     associate (ends => self%span%ends)
-      if (position%held > 0 .and. position%mesh == mesh) then
+      if (position%number > 0 .and. position%mesh == mesh) then
         s = self%span%at_h0(h0, coordinate_of(self%problem, mesh, position%state))
       else
         s = self%span%at_h0(h0)
