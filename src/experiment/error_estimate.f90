@@ -90,7 +90,7 @@ contains
     type(reported_t), intent(in) :: reported
 
     error = error_t(h0=max(abs(reported%h0), 1.0_wp), load=abs(reported%load), &
-      displacement=max(abs(reported%displacement), 1.0_wp), profile=1.0_wp)
+      displacement=max(abs(reported%displacement), 1.0_wp), profile=1.0_wp, known=.false.)
   end function unknown_error
 
   !> Errors of a reported state by its witness: on the finer mesh, at the same h0.

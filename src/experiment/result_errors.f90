@@ -195,9 +195,10 @@ contains
     type(lost_energy_t) :: lost
     real(wp) :: lowest
     integer :: turned, k
-    logical :: whole
+    logical :: whole, known
 
     turned = 0
+    known = .true.
     lowest = -huge(1.0_wp)
     if (allocated(outcome%path)) then
       if (outcome%path%first_piece == 1 .and. allocated(outcome%path%finish)) then
@@ -221,6 +222,7 @@ contains
     outcome%jumps = lost%fold
     outcome%energy_uncertainty = judge%fine%margin*abs(lost%energy - lost%fine_energy) + &
       lost%rounding
+    if (.not. known) outcome%energy_uncertainty = abs(lost%energy)
 
   contains
 
@@ -232,6 +234,7 @@ contains
       landed%point = fold
       landed%landing = .true.
       call judge_on_path(steps%equations_t, judge%fine, .false., steps%known, landed)
+      known = known .and. landed%error%known .and. steps%known%path%point(fold)%error%known
     end subroutine judge_jump
 
   end subroutine judge_energy

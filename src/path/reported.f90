@@ -22,8 +22,10 @@ module reported
   end type measure_t
 
   !> Errors of the same; and of its profile: the gaps, and the pressures over the largest of them.
+  !> Where they are not known, they are as large as what they are of.
   type :: error_t
     real(wp) :: h0 = 0, displacement = 0, load = 0, profile = 0
+    logical :: known = .true.
   end type error_t
 
   !> A state that numbers are reported of, in the units of `dimensionless_problem`, and where it
