@@ -8,7 +8,7 @@ module decimal
   use kinds, only: wp, long
   implicit none
   private
-  public :: put_real, put_whole, longest_real, longest_whole
+  public :: put_real, put_whole, longest_real
 
   !> Characters that a number takes at most.
   integer, parameter :: longest_real = 24, longest_whole = 11
@@ -54,7 +54,7 @@ contains
     length = length + 5
   end subroutine put_real
 
-  !> Puts a whole number into text(:length); text has room for `longest_whole`.
+  !> Puts a whole number into text(:length); text has room for `longest_whole` characters.
   pure subroutine put_whole(i, text, length)
     integer, intent(in) :: i
     character(len=*), intent(inout) :: text

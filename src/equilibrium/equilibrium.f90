@@ -8,7 +8,6 @@
 !> edge) join.
 module equilibrium
   use kinds, only: wp, pi, long
-  use force_law, only: force_law_t
   use dimensionless_problem, only: problem_t
   use beyond_mesh, only: load_beyond
   use discretisation, only: axis_row, centre_row, first_node
@@ -100,9 +99,7 @@ contains
         state%residual = huge(1.0_wp)
         return
       end if
-      if (.not. allocated(state%pressure)) allocate (state%pressure(n))
-      if (size(state%pressure) /= n) state%pressure = state%gap
-      call evaluate(problem%law, state%gap, state%pressure)
+      state%pressure = problem%law%pressure(state%gap)
       cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
       if (problem%coupling > 0) then
         columns = acting_columns(state%pressure)
@@ -134,16 +131,6 @@ contains
       state%residual = largest_error(g, state%gap)
     end associate
   end subroutine residual
-
-  !> The pressures of gaps, into the array that there is: assigned to an allocatable one they would
-  !> be made in another first.
-  subroutine evaluate(law, gap, pressure)
-    class(force_law_t), intent(in) :: law
-    real(wp), intent(in) :: gap(:)
-    real(wp), intent(out) :: pressure(:)
-
-    pressure = law%pressure(gap)
-  end subroutine evaluate
 
   !> The largest |G|; what belongs to gaps beyond `far_gap` as a part of them. Neither NaN nor
   !> infinity must ever look converged: they are huge.

@@ -5,7 +5,7 @@
 !> stays away from the points in proportion. For targets far off plain Gauss points do.
 module graded_rule
   use kinds, only: wp, pi
-  use quadrature, only: gauss_legendre, legendre_values
+  use quadrature, only: gauss_legendre
   implicit none
   private
   public :: graded_rule_t, new_graded_rule
