@@ -11,7 +11,7 @@ module stability_records
   use records, only: observer_t, record_t, stable_yes, stable_no, stable_unasked
   use text, only: brief
   use summary, only: summary_t
-  use journal, only: journal_t
+  use journal, only: journal_t, of_eigenvalue
   use byte_record, only: byte_record_t
   use state_records, only: put_cost, take_cost
   use stability, only: smallest_eigenvalue, local_criterion, axis_criterion, unknown
@@ -37,8 +37,6 @@ module stability_records
     procedure, private :: find_eigenvalue
   end type stability_recorder_t
 
-  !> What a record of an eigenvalue begins with.
-  character(len=*), parameter :: mark = 'eigenvalue'
   !> An eigenvalue that contradicts nothing, over the accuracy: at a fold it is zero but for what
   !> the mesh leaves, 7e-6 at most where 1e-4 was asked for.
   real(wp), parameter :: zero = 100
@@ -107,7 +105,7 @@ contains
     type(byte_record_t) :: record
     logical :: known
 
-    call self%journal%next_of(mark, record, known)
+    call self%journal%next_of(of_eigenvalue, record, known)
     if (known) then
       call record%take(eigenvalue)
       call take_cost(record, self%cost)
@@ -115,7 +113,7 @@ contains
       certain = .not. ieee_is_nan(eigenvalue)
     else
       call smallest_eigenvalue(problem, grid, state, eigenvalue, certain, self%cost)
-      call record%put(mark)
+      call record%put(of_eigenvalue)
       call record%put(eigenvalue)
       call put_cost(record, self%cost)
       call self%journal%append(record)

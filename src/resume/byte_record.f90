@@ -7,9 +7,10 @@ module byte_record
 
   !> What is put in comes out in the same order.
   type :: byte_record_t
-    !> words(:held) are in use.
+    !> words(:held) are in use, of so many as there is room for. To be read only.
     integer(long), allocatable :: words(:)
     integer :: held = 0
+    integer, private :: room = 0
     !> Whether more was taken out than had been put in; what was taken then is zero or empty.
     logical :: exhausted = .false.
     integer, private :: taken = 0
@@ -53,18 +54,18 @@ contains
     integer, intent(in) :: more
     integer(long), allocatable :: larger(:)
 
-    if (.not. allocated(self%words)) allocate (self%words(256))
-    if (self%held + more <= size(self%words)) return
-    allocate (larger(2*(self%held + more)))
-    larger(:self%held) = self%words(:self%held)
+    if (self%held + more <= self%room) return
+    allocate (larger(max(256, 2*(self%held + more))))
+    if (self%held > 0) larger(:self%held) = self%words(:self%held)
     call move_alloc(larger, self%words)
+    self%room = size(self%words)
   end subroutine make_room
 
   subroutine put_long(self, value)
     class(byte_record_t), intent(inout) :: self
     integer(long), intent(in) :: value
 
-    call make_room(self, 1)
+    if (self%held == self%room) call make_room(self, 1)
     self%held = self%held + 1
     self%words(self%held) = value
   end subroutine put_long

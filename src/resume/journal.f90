@@ -19,7 +19,10 @@ module journal
   use clock, only: seconds
   implicit none
   private
-  public :: journal_t
+  public :: journal_t, of_step, of_eigenvalue
+
+  !> What records of one journal that are of different kinds begin with.
+  integer, parameter :: of_step = 1, of_eigenvalue = 2
 
   !> Not to be copied while it is open. After the first thing that goes wrong, which is kept in
   !> `trouble`, nothing more is written.
@@ -182,18 +185,18 @@ contains
     call self%close()
   end subroutine next
 
-  !> The next record, which must begin with the text `mark`.
-  subroutine next_of(self, mark, record, found)
+  !> The next record, which must begin with its kind.
+  subroutine next_of(self, kind, record, found)
     class(journal_t), intent(inout) :: self
-    character(len=*), intent(in) :: mark
+    integer, intent(in) :: kind
     type(byte_record_t), intent(inout) :: record
     logical, intent(out) :: found
-    character(len=:), allocatable :: kind
+    integer :: first
 
     call self%next(record, found)
     if (.not. found) return
-    call record%take(kind)
-    if (kind /= mark) call self%reject()
+    call record%take(first)
+    if (first /= kind) call self%reject()
   end subroutine next_of
 
   !> Takes the records for those of another run: nothing can be done with them.
@@ -314,8 +317,7 @@ contains
     words(2) = 0
     if (.not. read_words(self%descriptor, words(frame + 1:))) return
     if (checksum(words) /= head(2)) return
-    record%words = words(frame + 1:)
-    record%held = int(head(1))
+    call record%put_words(words(frame + 1:))
     self%earlier = transfer(head(3), self%earlier)
     whole = whole + size(words)*word
     found = .true.

@@ -10,7 +10,7 @@ module resumable_stepper
   use ending, only: ending_t, not_kept
   use stepper, only: keeping_stepper_t, branch_point_t, step_result_t
   use reported, only: error_probe_t
-  use journal, only: journal_t
+  use journal, only: journal_t, of_step
   use byte_record, only: byte_record_t
   use state_records, only: put_cost, take_cost, put_position, take_position, put_event, &
     take_event, put_frozen, take_frozen
@@ -28,6 +28,8 @@ module resumable_stepper
     logical, private :: behind = .false.
     !> The factorisation that the journal knows of, as counted in it.
     integer, private :: known = -1
+    !> The record being packed, whose room serves step after step.
+    type(byte_record_t), private :: record
   contains
     procedure :: approach_to
     procedure :: step_to
@@ -39,8 +41,6 @@ module resumable_stepper
     procedure, private :: keep
   end type resumable_stepper_t
 
-  !> What a record of a step begins with.
-  character(len=*), parameter :: mark = 'step'
 
 contains
 
@@ -87,7 +87,7 @@ contains
     real(wp) :: kept_h0
     logical :: fits
 
-    call self%journal%next_of(mark, record, known)
+    call self%journal%next_of(of_step, record, known)
     if (known) then
       call record%take(kept_h0)
       fits = abs(kept_h0 - h0) <= 0
@@ -138,20 +138,20 @@ contains
     integer, intent(in) :: known
     type(branch_point_t), intent(in) :: position
     type(step_result_t), intent(in) :: event
-    type(byte_record_t) :: record
     type(cost_t) :: cost
 
-    call record%put(mark)
-    call record%put(h0)
-    call put_position(record, known, position)
-    call put_event(record, event)
-    call put_frozen(record, self%steps%frozen, self%known == self%steps%frozen%renewals)
+    call self%record%clear()
+    call self%record%put(of_step)
+    call self%record%put(h0)
+    call put_position(self%record, known, position)
+    call put_event(self%record, event)
+    call put_frozen(self%record, self%steps%frozen, self%known == self%steps%frozen%renewals)
     self%known = self%steps%frozen%renewals
     self%own_seconds = self%own_seconds + seconds() - began
     cost = self%steps%cost
     cost%solve_seconds = self%earlier_seconds + self%own_seconds
-    call put_cost(record, cost)
-    call self%journal%append(record)
+    call put_cost(self%record, cost)
+    call self%journal%append(self%record)
   end subroutine keep
 
   function grid(self, position)
