@@ -5,8 +5,7 @@ module root_finding
   use kinds, only: wp
   implicit none
   private
-  public :: bracket_t, false_position_t, root_search_t, new_root_search, secant_root, golden, &
-    resolution
+  public :: bracket_t, root_search_t, new_root_search, secant_root, golden, resolution
 
   !> An interval that what is searched for lies in, its ends in any order. A root is found by
   !> `narrow` while the bracket `is_open`, a maximum by `keep_larger`.
@@ -22,29 +21,24 @@ module root_finding
     procedure :: keep_larger
   end type bracket_t
 
-  !> A root between places where the function is positive and where it is negative.
-  type :: false_position_t
-    real(wp) :: positive = 0, negative = 0
-    real(wp) :: at_positive = 0, at_negative = 0
-    integer, private :: last_moved = 0
-  contains
-    procedure :: next
-    procedure :: take
-  end type false_position_t
-
   !> The root of a continuous function between two places at which it differs in sign, to rounding:
-  !> by false position, and by halving where that gains little. (A function that jumps over zero is
-  !> searched for the jump.) `note` is told the value at `place` while the search `is_open`.
-  type, extends(false_position_t) :: root_search_t
-    !> The newest place: in the end the root.
+  !> by inverse quadratic interpolation where the last three values allow it, else by halving
+  !> (Chandrupatla). (A function that jumps over zero is searched for the jump.) `note` is told the
+  !> value at `place` while the search `is_open`.
+  type :: root_search_t
+    !> The place with the smallest value: in the end the root.
     real(wp) :: root = 0
-    real(wp), private :: change = huge(1.0_wp), width = huge(1.0_wp)
+    !> The newest place, the one beyond the root, and the one before, with the values there.
+    real(wp), private :: x(3) = 0, f(3) = 0
+    !> The part of the way from the newest to the one beyond the root that the next place is at.
+    real(wp), private :: part = 0.5_wp
     integer, private :: noted = 0
     logical, private :: met = .false.
   contains
     procedure :: place
     procedure :: is_open => root_is_open
     procedure :: note
+    procedure, private :: choose_part
   end type root_search_t
 
   !> The part of an interval that a golden section keeps.
@@ -118,45 +112,16 @@ contains
     end if
   end subroutine keep_larger
 
-  !> Where the line through the two ends is zero.
-  elemental real(wp) function next(self)
-    class(false_position_t), intent(in) :: self
-
-    next = (self%positive*self%at_negative - self%negative*self%at_positive)/ &
-      (self%at_negative - self%at_positive)
-  end function next
-
-  !> Moves the end of the same sign to x. An end that stays twice counts half (Illinois).
-  elemental subroutine take(self, x, value)
-    class(false_position_t), intent(inout) :: self
-    real(wp), intent(in) :: x, value
-
-    if (value > 0) then
-      self%positive = x
-      self%at_positive = value
-      if (self%last_moved == 1) self%at_negative = 0.5_wp*self%at_negative
-      self%last_moved = 1
-    else
-      self%negative = x
-      self%at_negative = value
-      if (self%last_moved == -1) self%at_positive = 0.5_wp*self%at_positive
-      self%last_moved = -1
-    end if
-  end subroutine take
-
   !> A search between a and b, at which the function has the values f_a and f_b.
   elemental type(root_search_t) function new_root_search(a, f_a, b, f_b) result(search)
     real(wp), intent(in) :: a, f_a, b, f_b
 
-    call search%take(a, f_a)
-    call search%take(b, f_b)
-    if (f_a > 0 .eqv. f_b > 0) then
-      ! Rounding at an end that is the root.
-      search%root = merge(a, b, abs(f_a) < abs(f_b))
-      search%met = .true.
-    else
-      search%width = abs(b - a)
-    end if
+    search%x(:2) = [a, b]
+    search%f(:2) = [f_a, f_b]
+    search%root = merge(a, b, abs(f_a) < abs(f_b))
+    ! Of one sign: rounding at an end that is the root.
+    search%met = (f_a > 0 .eqv. f_b > 0) .or. abs(f_a) <= 0 .or. abs(f_b) <= 0
+    if (.not. search%met) search%part = f_a/(f_a - f_b)
   end function new_root_search
 
   !> Whether another value tells anything.
@@ -164,9 +129,54 @@ contains
     class(root_search_t), intent(in) :: self
 
     root_is_open = .not. self%met .and. self%noted < most_halvings .and. &
-      self%change > resolution(self%root) .and. abs(self%positive - self%negative) > &
-      resolution(max(abs(self%positive), abs(self%negative)))
+      abs(self%x(2) - self%x(1)) > resolution(self%root)
   end function root_is_open
+
+  !> Where the function is to be evaluated next.
+  elemental real(wp) function place(self)
+    class(root_search_t), intent(in) :: self
+
+    place = self%x(1) + self%part*(self%x(2) - self%x(1))
+  end function place
+
+  !> Takes the value at x, the place that was asked for.
+  elemental subroutine note(self, x, value)
+    class(root_search_t), intent(inout) :: self
+    real(wp), intent(in) :: x, value
+
+    self%noted = self%noted + 1
+    self%met = abs(value) <= 0
+    if ((value > 0) .eqv. (self%f(1) > 0)) then
+      self%x(3) = self%x(1)
+      self%f(3) = self%f(1)
+    else
+      self%x(2:) = [self%x(1), self%x(2)]
+      self%f(2:) = [self%f(1), self%f(2)]
+    end if
+    self%x(1) = x
+    self%f(1) = value
+    self%root = merge(self%x(1), self%x(2), abs(self%f(1)) < abs(self%f(2)))
+    if (self%is_open()) call self%choose_part()
+  end subroutine note
+
+  !> Interpolates where the place is a monotonic function of the value between the three. No place
+  !> is nearer to another than can be told.
+  elemental subroutine choose_part(self)
+    class(root_search_t), intent(inout) :: self
+    real(wp) :: of_way, of_rise, least
+
+    self%part = 0.5_wp
+    associate (x => self%x, f => self%f)
+      if (abs(f(3) - f(1)) <= 0 .or. abs(f(3) - f(2)) <= 0) return
+      of_way = (x(1) - x(2))/(x(3) - x(2))
+      of_rise = (f(1) - f(2))/(f(3) - f(2))
+      if (of_rise**2 < of_way .and. (1 - of_rise)**2 < 1 - of_way) self%part = &
+        f(1)/(f(2) - f(1))*(f(3)/(f(2) - f(3))) + &
+        (x(3) - x(1))/(x(2) - x(1))*(f(1)/(f(3) - f(1)))*(f(2)/(f(3) - f(2)))
+      least = min(0.5_wp, resolution(self%root)/abs(x(2) - x(1)))
+      self%part = max(least, min(1 - least, self%part))
+    end associate
+  end subroutine choose_part
 
   !> Differences from x that are no more than rounding: between one and two units of its last
   !> place. (The intrinsic `spacing` takes x to pieces, which takes fifty times as long.)
@@ -175,29 +185,6 @@ contains
 
     resolution = max(epsilon(x)*abs(x), tiny(x))
   end function resolution
-
-  !> Where the function is to be evaluated next.
-  elemental real(wp) function place(self)
-    class(root_search_t), intent(in) :: self
-
-    place = self%next()
-    if (mod(self%noted, 3) == 2 .and. abs(self%positive - self%negative) > 0.5_wp*self%width) &
-      place = 0.5_wp*(self%positive + self%negative)
-  end function place
-
-  !> Takes the value at x, the place that was asked for.
-  elemental subroutine note(self, x, value)
-    class(root_search_t), intent(inout) :: self
-    real(wp), intent(in) :: x, value
-
-    if (mod(self%noted, 3) == 2) self%width = abs(self%positive - self%negative)
-    self%change = huge(x)
-    if (self%noted > 0) self%change = abs(x - self%root)
-    self%root = x
-    self%noted = self%noted + 1
-    self%met = abs(value) <= 0
-    call self%take(x, value)
-  end subroutine note
 
   !> Where the line through (x, value) and (x_before, value_before) is zero; the values differ.
   elemental real(wp) function secant_root(x, value, x_before, value_before)
