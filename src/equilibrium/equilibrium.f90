@@ -60,8 +60,8 @@ module equilibrium
     type(problem_t) :: problem
     type(mesh_family_t) :: meshes
     type(cost_t) :: cost
-    !> Scratch of `residual`, which is called too often to allocate any: by how much the pressure
-    !> raises the rows of the kernel.
+    !> Scratch of `residual`, which is called too often to allocate any: the kernel times the
+    !> pressure.
     real(wp), allocatable, private :: raised(:)
   end type equations_t
 
@@ -77,7 +77,7 @@ contains
     real(wp), intent(in) :: z(:)
     real(wp), intent(out) :: g(:)
     type(state_t), intent(inout) :: state
-    real(wp) :: edge_gap
+    real(wp) :: edge_gap, yielding
     integer :: i, n, rows, columns
 
     n = node_count(control, size(z))
@@ -91,7 +91,7 @@ contains
       grid => equations%meshes%grid(control%mesh), raised => equations%raised(:rows))
       call unpack(control, z, state%h0, state%scale)
       state%gap = z(:n)
-      if (.not. defined(problem, z, state)) then
+      if (.not. defined(problem, state)) then
         g = 0
         state%pressure = 0*g(:n)
         state%load = 0
@@ -104,25 +104,25 @@ contains
       if (problem%coupling > 0) then
         columns = acting_columns(state%pressure)
         call multiply(grid%kernel, columns, state%pressure, raised)
-        raised = 2*problem%coupling*state%scale*raised
         cost%operator_products = cost%operator_products + 1
         cost%operator_columns = cost%operator_columns + columns
       else
         raised = 0
       end if
+      yielding = 2*problem%coupling*state%scale
       do i = 1, n
         g(i) = state%gap(i) - state%h0 - problem%shape%height(state%scale*grid%x(i)) - &
-          raised(first_node - 1 + i)
+          yielding*raised(first_node - 1 + i)
       end do
       ! In a stiff contact the equation for the axis, which is no node, is off by many times what
       ! the polynomials lack of the pressure between the nodes; their gaps tell it better.
-      state%axis_gap = state%h0 + raised(axis_row)
+      state%axis_gap = state%h0 + yielding*raised(axis_row)
       if (grid%centre > 0) state%axis_gap = dot_product(grid%at_axis, state%gap)
       select case (control%kind)
       case (at_axis_gap)
         g(n + 1) = state%axis_gap - control%value
       case (at_edge_radius, at_h0_with_edge)
-        edge_gap = state%h0 + problem%shape%height(state%scale) + raised(centre_row)
+        edge_gap = state%h0 + problem%shape%height(state%scale) + yielding*raised(centre_row)
         g(n + 1) = edge_gap - equations%meshes%locked_gap(problem%law, control%mesh)
       end select
       state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
@@ -153,15 +153,20 @@ contains
     end do
   end function largest_error
 
-  !> Whether unknowns are such that pressures, and all that follows from them, are numbers.
-  pure logical function defined(problem, z, state)
+  !> Whether a state is such that pressures, and all that follows from them, are numbers.
+  pure logical function defined(problem, state)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: z(:)
     type(state_t), intent(in) :: state
+    real(wp) :: least
+    integer :: i
 
-    defined = all(abs(z) <= largest_unknown) .and. &
-      abs(state%h0) <= largest_unknown .and. state%scale > 0
-    if (defined) defined = all(state%gap >= problem%law%smallest_gap)
+    defined = abs(state%h0) <= largest_unknown .and. state%scale > 0 .and. &
+      state%scale <= largest_unknown
+    least = max(problem%law%smallest_gap, -largest_unknown)
+    do i = 1, size(state%gap)
+      if (.not. defined) return
+      defined = state%gap(i) >= least .and. state%gap(i) <= largest_unknown
+    end do
   end function defined
 
   !> The fraction (at most 1) of a step dz from z that keeps every gap within the law's closure

@@ -184,6 +184,8 @@ contains
     character(len=*), intent(in) :: key
 
     do row_of = size(rows), 1, -1
+      ! Most differ in the first letter, which is compared without a call.
+      if (rows(row_of)%key(1:1) /= key(1:1)) cycle
       if (rows(row_of)%key == key) return
     end do
   end function row_of
