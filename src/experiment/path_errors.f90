@@ -3,7 +3,6 @@
 module path_errors
   use kinds, only: wp
   use regridding, only: regrid
-  use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
   use equilibrium, only: equations_t, residual_floor
   use path_coordinate, only: coordinate_of
@@ -20,15 +19,17 @@ module path_errors
   public :: judge_on_path
 
   !> The mesh of a state, what defines it, at `h0` if that is it; what the iteration has left, as a
-  !> change of h0; and whether the profile is to be judged too.
+  !> change of h0, and the search for an extremum, of its coordinate; and whether the profile is to be
+  !> judged too.
   type :: sought_t
     integer :: mesh = 1, kind = at_h0
-    real(wp) :: h0 = 0, left = 0
+    real(wp) :: h0 = 0, left = 0, place = 0
     logical :: with_profile = .false.
   end type sought_t
 
-  !> What the search for a state along the path leaves of its place (law's lengths).
-  real(wp), parameter :: tight = 3.0e-11_wp
+  !> What the search for a state along the path leaves of its h0 (law's lengths); and for an
+  !> extremum, of its coordinate over its options' place_error: slopes err too.
+  real(wp), parameter :: tight = 3.0e-11_wp, place_over_error = 2
 
 contains
 
@@ -55,7 +56,7 @@ contains
     else if (reported%point > 0 .and. with_profile) then
       ! The point's own errors leave the profile out.
       associate (point => known%path%point(reported%point))
-        call judge(own, fine, known%path, sought_at(own%problem, point, .true.), point%state, &
+        call judge(own, fine, known%path, sought_at(fine, point, .true.), point%state, &
           on_fine, reported%error)
       end associate
     else if (reported%point > 0) then
@@ -64,20 +65,21 @@ contains
     else
       associate (witness => reported%witness)
         call judge(own, fine, known%path, sought_t(witness%mesh, at_h0, reported%h0, &
-          what_is_left(witness%state), with_profile), witness%state, on_fine, reported%error)
+          what_is_left(witness%state), with_profile=with_profile), witness%state, on_fine, reported%error)
       end associate
     end if
   end subroutine judge_on_path
 
   !> What defines a point of the path that is reported. Of its h0 rounding leaves more than the
   !> search where bodies yield much.
-  pure type(sought_t) function sought_at(problem, point, with_profile) result(sought)
-    type(problem_t), intent(in) :: problem
+  pure type(sought_t) function sought_at(fine, point, with_profile) result(sought)
+    type(finer_t), intent(in) :: fine
     type(path_point_t), intent(in) :: point
     logical, intent(in) :: with_profile
 
     sought = sought_t(point%mesh, merge(extremum_of_h0, extremum_of_load, point%fold), &
-      point%state%h0, max(tight, residual_floor(problem, point%state)), with_profile)
+      point%state%h0, max(tight, residual_floor(fine%problem, point%state)), &
+      place_over_error*fine%options%place_error, with_profile)
   end function sought_at
 
   !> Errors of a fold or an extremum of the load, kept in the path.
@@ -91,7 +93,7 @@ contains
 
     associate (point => known%path%point(i))
       if (allocated(point%error)) return
-      call judge(own, fine, known%path, sought_at(own%problem, point, .false.), point%state, &
+      call judge(own, fine, known%path, sought_at(fine, point, .false.), point%state, &
         on_fine, error)
       point%fine = on_fine
       point%error = error
@@ -113,8 +115,8 @@ contains
         landing%error = unknown_error(reported_t(h0=fold%state%h0))
         return
       end if
-      call judge(own, fine, known%path, sought_t(landing%mesh, at_h0, fold%fine%h0, tight, &
-        .false.), landing%state, on_fine, landing%error)
+      call judge(own, fine, known%path, sought_t(landing%mesh, at_h0, fold%fine%h0, tight), &
+        landing%state, on_fine, landing%error)
       landing%fine = on_fine
       landing%error%h0 = fold%error%h0
     end associate
@@ -172,7 +174,10 @@ contains
       error%load = error%load + abs(moved%load - on_fine%load)
       error%displacement = error%displacement + abs(moved%displacement - on_fine%displacement)
     else
-      error%h0 = error%h0 + sought%left
+      moved = measure_at(near, distance_to(near, sought%kind, own%h0) + sought%place)
+      error%h0 = error%h0 + sought%left + abs(moved%h0 - on_fine%h0)
+      error%load = error%load + abs(moved%load - on_fine%load)
+      error%displacement = error%displacement + abs(moved%displacement - on_fine%displacement)
     end if
     error%load = error%load + (rounding + worst_residual*tight)*abs(own%load)
     error%displacement = error%displacement + sought%left + rounding*abs(own%displacement)
