@@ -1,7 +1,7 @@
 !> The error of what is reported: the state that it comes from is solved again on a finer mesh, well
 !> below the accuracy, and compared. What is left out is the error of the finer mesh, smaller by a
-!> factor that the margin covers. What the iteration has left is added: a residual acts like an h0
-!> that is off by as much.
+!> factor that the margin covers. What the iteration has left on the finer mesh is added: a residual
+!> acts like an h0 that is off by as much. What it has left of the state itself is in the difference.
 !>
 !> Here for states at a given h0, of which there is one; `path_errors` for those of a path with
 !> folds.
@@ -124,7 +124,7 @@ contains
       shifted = state
       call fine%find(control, shifted, found)
       if (.not. found) return
-      left = what_is_left(witness%state)/shift
+      left = what_is_left(state)/shift
       error%load = error%load + left*abs(shifted%load - state%load)
       error%displacement = error%displacement + &
         left*abs((shifted%axis_gap - shifted%h0) - (state%axis_gap - state%h0))

@@ -18,9 +18,8 @@ module path_errors
   private
   public :: judge_on_path
 
-  !> The mesh of a state, what defines it, at `h0` if that is it; what the iteration has left, as a
-  !> change of h0, and the search for an extremum, of its coordinate; and whether the profile is to be
-  !> judged too.
+  !> The mesh of a state, what defines it, at `h0` if that is it; what the search has left of its h0
+  !> and, for an extremum, of its coordinate; and whether the profile is to be judged too.
   type :: sought_t
     integer :: mesh = 1, kind = at_h0
     real(wp) :: h0 = 0, left = 0, place = 0
@@ -65,7 +64,7 @@ contains
     else
       associate (witness => reported%witness)
         call judge(own, fine, known%path, sought_t(witness%mesh, at_h0, reported%h0, &
-          what_is_left(witness%state), with_profile=with_profile), witness%state, on_fine, reported%error)
+          with_profile=with_profile), witness%state, on_fine, reported%error)
       end associate
     end if
   end subroutine judge_on_path
@@ -156,8 +155,9 @@ contains
     if (found) error%profile = fine%margin*profile_error(own, fine, sought%mesh, state, right)
   end subroutine judge
 
-  !> The difference between a state and the same on the finer mesh as an error, with what the
-  !> iteration and rounding leave.
+  !> The difference between a state and the same on the finer mesh as an error, with what search and
+  !> rounding leave, and the iteration on the finer mesh: what it left on the own is in the
+  !> difference.
   pure type(error_t) function error_between(own, near, on_fine, sought, margin) result(error)
     type(measure_t), intent(in) :: own, on_fine
     type(expansion_t), intent(in) :: near
@@ -169,7 +169,8 @@ contains
       displacement=margin*abs(on_fine%displacement - own%displacement))
     if (sought%kind == at_h0) then
       ! What the iteration leaves moves a state at a given h0 as if that were off.
-      moved = measure_at(near, distance_to(near, at_h0, on_fine%h0 + sought%left))
+      moved = measure_at(near, distance_to(near, at_h0, on_fine%h0 + max(sought%left, &
+        what_is_left(near%state))))
       error%h0 = 0
       error%load = error%load + abs(moved%load - on_fine%load)
       error%displacement = error%displacement + abs(moved%displacement - on_fine%displacement)
