@@ -1,7 +1,8 @@
 !> The error of what is reported: the state that it comes from is solved again on a finer mesh, well
 !> below the accuracy, and compared. What is left out is the error of the finer mesh, smaller by a
-!> factor that the margin covers. What the iteration has left on the finer mesh is added: a residual
-!> acts like an h0 that is off by as much. What it has left of the state itself is in the difference.
+!> factor that the margin covers. What the iteration has left of the state itself is in the
+!> difference; what it has left on the finer mesh is added: a residual acts like an h0 that is off
+!> by as much.
 !>
 !> Here for states at a given h0, of which there is one; `path_errors` for those of a path with
 !> folds.

@@ -51,9 +51,9 @@ contains
       options%method = numerics%method
       if (numerics%method == 'auto') options%method = 'anderson'
       options%tolerance = min(1.0e-8_wp, 0.01_wp*numerics%accuracy)
-      ! Rounding decides where below its tolerance an iteration stops, which shows in a load's digits
-      ! from a thousandth of it on: beyond those asked for. Less costs some products. Mixing would
-      ! pay more, and on uniform grids the mesh leaves far larger errors.
+      ! Rounding decides where below its tolerance an iteration stops, which shows in the digits of
+      ! a load from a thousandth of it on: beyond those asked for. Less costs some products. Mixing
+      ! would pay more, and on uniform grids the mesh leaves far larger errors.
       if (options%method /= 'mixing' .and. numerics%grid /= 'uniform') &
         options%tolerance = min(options%tolerance, max(1.0e-10_wp, 1.0e-4_wp*numerics%accuracy))
       if (allocated(numerics%residual_tolerance)) options%tolerance = numerics%residual_tolerance
