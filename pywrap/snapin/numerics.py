@@ -41,7 +41,7 @@ _MOST_DEPTH = 1000
 def bytes_for(nodes):
     """Return the memory that a calculation on so many nodes takes: at most three matrices and, of
     an accelerated iteration, some vectors."""
-    return 8 * (3 * nodes**2 + 120 * nodes)
+    return 8 * (3 * nodes**2 + 100 * nodes)
 
 
 # --- Kernel and quadrature

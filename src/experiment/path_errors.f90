@@ -18,17 +18,16 @@ module path_errors
   private
   public :: judge_on_path
 
-  !> The mesh of a state, what defines it, at `h0` if that is it; what the search has left of its h0
-  !> and, for an extremum, of its coordinate; and whether the profile is to be judged too.
+  !> The mesh of a state, what defines it, at `h0` if that is it; what the search has left of its
+  !> h0; and whether the profile is to be judged too.
   type :: sought_t
     integer :: mesh = 1, kind = at_h0
-    real(wp) :: h0 = 0, left = 0, place = 0
+    real(wp) :: h0 = 0, left = 0
     logical :: with_profile = .false.
   end type sought_t
 
-  !> What the search for a state along the path leaves of its h0 (law's lengths); and for an
-  !> extremum, of its coordinate over its options' place_error: slopes err too.
-  real(wp), parameter :: tight = 3.0e-11_wp, place_over_error = 2
+  !> What the search for a state along the path leaves of its h0 (law's lengths).
+  real(wp), parameter :: tight = 3.0e-11_wp
 
 contains
 
@@ -77,8 +76,7 @@ contains
     logical, intent(in) :: with_profile
 
     sought = sought_t(point%mesh, merge(extremum_of_h0, extremum_of_load, point%fold), &
-      point%state%h0, max(tight, residual_floor(fine%problem, point%state)), &
-      place_over_error*fine%options%place_error, with_profile)
+      point%state%h0, max(tight, residual_floor(fine%problem, point%state)), with_profile)
   end function sought_at
 
   !> Errors of a fold or an extremum of the load, kept in the path.
@@ -175,10 +173,7 @@ contains
       error%load = error%load + abs(moved%load - on_fine%load)
       error%displacement = error%displacement + abs(moved%displacement - on_fine%displacement)
     else
-      moved = measure_at(near, distance_to(near, sought%kind, own%h0) + sought%place)
-      error%h0 = error%h0 + sought%left + abs(moved%h0 - on_fine%h0)
-      error%load = error%load + abs(moved%load - on_fine%load)
-      error%displacement = error%displacement + abs(moved%displacement - on_fine%displacement)
+      error%h0 = error%h0 + sought%left
     end if
     error%load = error%load + (rounding + worst_residual*tight)*abs(own%load)
     error%displacement = error%displacement + sought%left + rounding*abs(own%displacement)
