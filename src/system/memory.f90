@@ -7,6 +7,9 @@ module memory
   private
   public :: available_memory
 
+  !> From here on a limit is none [bytes]: huge numbers stand for that too.
+  real(wp), parameter :: no_limit = 1.0e18_wp
+
 contains
 
   !> Bytes that may still be taken: the least of what the machine has to spare, the process's limit
@@ -15,19 +18,19 @@ contains
   real(wp) function available_memory(mapped) result(bytes)
     real(wp), intent(in) :: mapped
     real(wp), parameter :: kilo = 1024
-    real(wp) :: limit, used
+    real(wp) :: limit
 
     bytes = kilo*number_after('/proc/meminfo', 'MemAvailable:', huge(1.0_wp)/kilo)
     limit = number_after('/proc/self/limits', 'Max address space', huge(1.0_wp))
-    used = kilo*number_after('/proc/self/status', 'VmSize:', 0.0_wp)
-    if (limit < huge(1.0_wp)) bytes = min(bytes, limit - used - mapped)
-    ! Version 2, and version 1 where a huge number stands for none.
+    if (limit < no_limit) bytes = min(bytes, &
+      limit - kilo*number_after('/proc/self/status', 'VmSize:', 0.0_wp) - mapped)
+    ! Version 2, and version 1.
     limit = number_after('/sys/fs/cgroup/memory.max', '', huge(1.0_wp))
-    used = number_after('/sys/fs/cgroup/memory.current', '', 0.0_wp)
-    if (limit < huge(1.0_wp)) bytes = min(bytes, limit - used)
+    if (limit < no_limit) bytes = min(bytes, &
+      limit - number_after('/sys/fs/cgroup/memory.current', '', 0.0_wp))
     limit = number_after('/sys/fs/cgroup/memory/memory.limit_in_bytes', '', huge(1.0_wp))
-    used = number_after('/sys/fs/cgroup/memory/memory.usage_in_bytes', '', 0.0_wp)
-    if (limit < huge(1.0_wp)) bytes = min(bytes, limit - used)
+    if (limit < no_limit) bytes = min(bytes, &
+      limit - number_after('/sys/fs/cgroup/memory/memory.usage_in_bytes', '', 0.0_wp))
     bytes = max(bytes, 0.0_wp)
   end function available_memory
 
