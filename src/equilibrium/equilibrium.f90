@@ -190,10 +190,12 @@ contains
 
     pure real(wp) function limit(gap, step)
       real(wp), intent(in) :: gap(:), step(:)
+      real(wp) :: room(size(gap))
 
       ! Far out a gap may have to close by many of the law's lengths, without any effect.
-      limit = min(1.0_wp, minval(max(problem%law%closure(gap), harmless*(gap - far_gap))/ &
-        max(-step, tiny(1.0_wp)*max(1.0_wp, abs(gap)))))
+      room = max(problem%law%closure(gap), harmless*(gap - far_gap))
+      ! A quotient with a step that opens a gap could overflow.
+      limit = min(1.0_wp, minval(room/max(-step, room, tiny(1.0_wp))))
     end function limit
 
   end function largest_step

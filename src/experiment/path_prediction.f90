@@ -78,8 +78,11 @@ contains
     type(state_t) :: guessed
     integer :: j, k, n
 
-    if (position%mesh /= span%mesh) self%held = 0
-    if (position%mesh /= span%mesh .or. position%held == 0) return
+    if (position%mesh /= span%mesh .or. position%held == 0) then
+      ! What another branch has left here no resumed run would know.
+      self%held = 0
+      return
+    end if
     n = size(position%past(1)%gap)
     if (self%held == position%held) then
       if (all(self%number(:self%held) == position%past_number(:self%held))) return

@@ -73,6 +73,20 @@ def test_exponential_from_one_h0_at_any_lambda(run, big_lambda):
     check(run(exponential(big_lambda, loading=loading(10, -10, 1))))
 
 
+# --- Sums of forces
+
+
+def test_gaps_that_open_beside_a_steep_and_a_long_force_overflow_nothing(run):
+    """A sum lets far gaps close by more than a law of powers does: with -Dtraps=true, as above."""
+    check(run(deck(
+        bodies={"radius": 8.3e-4, "stiffness": 2.94e10},
+        van_der_waals={"hamaker": 1.96e-19},
+        born={"z0": 5e-10},
+        hydration={"energy": 6.45e-2, "decay_length": 1.06e-9},
+        loading=loading(17e-9, -0.5e-9, 1e-9),
+    )))
+
+
 # --- Deep indentation
 
 

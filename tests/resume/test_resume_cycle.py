@@ -116,3 +116,19 @@ def test_times_of_a_run_that_was_interrupted_are_those_of_all_its_parts(short):
     cost = f90nml.read(short.folder / "cut/deck/summary.nml")["cost"]
     assert cost["wall_seconds"] >= cost["kernel_seconds"] + cost["solve_seconds"]
     assert cost["solve_seconds"] > 0
+
+
+def test_a_branch_knows_nothing_of_one_that_ended_beside_its_turn(snapin, snapin_path, tmp_path):
+    """Rows up to both turning points are foretold: the second unloading begins without a past, on
+    the part of the path that the first one ended on, which a resumed run has not seen."""
+    scene = deck(
+        bodies={"radius": 4.3047e-3, "stiffness": 6.7608e11},
+        force={"law": "lennard_jones", "surface_energy": 1.28415e-2, "z0": 5e-10},
+        loading=loading(4e-9, -6.4213730986e-10, 4.6421373099e-11),
+        unloading={"from_": [2.3124055064e-9, 2.4052482526e-9], "h0_end": 2.4516696257e-9,
+                   "h0_step": 2.3210686549e-12},
+        numerics={"accuracy": 1e-2},
+    )
+    bench = Bench(snapin, snapin_path, tmp_path, scene)
+    steps = frames(bench.journal)
+    bench.check(b"".join(steps[: len(steps) - 5]))
