@@ -12,13 +12,14 @@ module path_prediction
   private
   public :: missed_t, expect
 
-  !> By how much a span misses the states of an experiment's past: their numbers, coordinates, and
-  !> what has to be added to H0, scale and gaps (a column a state). It follows from the span and the
+  !> By how much a span misses the states of an experiment's past: their numbers and h0, by which
+  !> they are known again (numbers alone repeat from branch to branch), their coordinates, and what
+  !> has to be added to H0, scale and gaps (a column a state). It follows from the span and the
   !> past, and is made anew only where these have changed.
   type :: missed_t
     private
     integer :: held = 0, number(memory) = 0
-    real(wp), dimension(memory) :: at = 0, h0 = 0, scale = 0
+    real(wp), dimension(memory) :: state_h0 = 0, at = 0, h0 = 0, scale = 0
     real(wp), allocatable :: gap(:, :)
   contains
     procedure :: clear
@@ -85,7 +86,10 @@ contains
     end if
     n = size(position%past(1)%gap)
     if (self%held == position%held) then
-      if (all(self%number(:self%held) == position%past_number(:self%held))) return
+      associate (last => self%held)
+        if (all(self%number(:last) == position%past_number(:last) .and. &
+          abs(self%state_h0(:last) - position%h0(:last)) <= 0)) return
+      end associate
     end if
     if (allocated(self%gap)) then
       if (size(self%gap, 1) /= n) deallocate (self%gap)
@@ -97,6 +101,9 @@ contains
     ! The past loses states and gains new ones at its end: none moves to a later place.
     do k = 1, position%held
       j = findloc(self%number(:self%held), position%past_number(k), 1)
+      if (j > 0) then
+        if (abs(self%state_h0(j) - position%h0(k)) > 0) j = 0
+      end if
       if (j == 0) then
         associate (past => position%past(k))
           self%at(k) = coordinate_of(problem, span%mesh, past)
@@ -112,6 +119,7 @@ contains
         self%gap(:, k) = self%gap(:, j)
       end if
       self%number(k) = position%past_number(k)
+      self%state_h0(k) = position%h0(k)
     end do
     self%held = position%held
   end subroutine follow

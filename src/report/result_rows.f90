@@ -16,7 +16,7 @@ module result_rows
   type :: row_t
     character(len=28) :: key = ''
     character(len=5) :: unit = ''
-    character(len=88) :: meaning = ''
+    character(len=104) :: meaning = ''
     character(len=14) :: sweep = never
     integer :: group = in_summary
     logical :: list = .false.
