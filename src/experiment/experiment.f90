@@ -11,6 +11,7 @@ module experiment
   use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
   use locked_stepper, only: locked_stepper_t, has_path
   use path_stepper, only: path_stepper_t
+  use known_path, only: known_path_t
   use unique_stepper, only: unique_stepper_t
   use fixed_stepper, only: fixed_stepper_t
   use stepped_branch, only: h0_schedule_t, run_branch
@@ -18,7 +19,7 @@ module experiment
   use h0_schedule, only: schedule_of
   use experiment_result, only: experiment_result_t
   use refinement, only: trace_resolved
-  use result_errors, only: judge_locked, judge_fixed
+  use result_errors, only: judge_t, begin_judging, judge_path_points, judge_locked, judge_fixed
   use result_sensitivities, only: find_sensitivities
   use path, only: follow_path
   use path_readings, only: read_path
@@ -31,6 +32,10 @@ module experiment
 
   !> States of a stepped path.
   integer, parameter :: path_states = 100
+  !> How often a path is traced on meshes of more digits where its folds and extrema are not as
+  !> exact as asked for, and the digits more.
+  integer, parameter :: most_rounds = 3
+  real(wp), parameter :: further_digits = 1
 
 contains
 
@@ -72,6 +77,7 @@ contains
     type(path_stepper_t), target :: along_path
     type(unique_stepper_t), target :: one_by_one
     class(locked_stepper_t), pointer :: steps
+    type(judge_t) :: judge
     real(wp) :: began
 
     ! Not allocatable: compiler note 4.
@@ -93,21 +99,23 @@ contains
     began = seconds()
     select type (steps)
     class is (path_stepper_t)
-      call trace_resolved(steps, high, low, allocated(request%path), request%reads_path(), &
-        request%numerics%accuracy, observer, outcome%panel_tail)
+      call trace_exactly(request, steps, high, low, observer, outcome, judge, store)
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
       if (request%reads_path()) call read_path(request, steps, observer, outcome%readings)
     class is (unique_stepper_t)
+      call begin_judging(judge, steps, high, low, outcome%chosen%digits, store)
       if (allocated(request%path)) call run_stepped_path(request, steps, observer, outcome)
     end select
     outcome%nodes = sum(steps%meshes%grid%nodes)
     if (allocated(request%loading) .and. with_cycle) &
       call run_kept_cycle(request, steps, observer, outcome, keeper)
-    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
+    ! Folds and extrema may have been judged meanwhile.
+    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began - &
+      steps%cost%estimate_seconds
     began = seconds()
     call observer%hear('estimating errors')
-    call judge_locked(steps, high, low, outcome, store)
-    steps%cost%estimate_seconds = seconds() - began
+    call judge_locked(judge, outcome)
+    steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     if (allocated(request%sensitivity)) then
       select type (steps)
       class is (path_stepper_t)
@@ -116,6 +124,40 @@ contains
     end if
     outcome%cost = steps%cost
   end subroutine run_locked
+
+  !> Traces the path; where it is shown and its folds and extrema are not as exact as asked for,
+  !> again on meshes of more digits: two extrema that have just come to be move far with small
+  !> errors. Then what was found can be judged.
+  subroutine trace_exactly(request, steps, high, low, observer, outcome, judge, store)
+    class(request_t), intent(in) :: request
+    class(path_stepper_t), intent(inout), target :: steps
+    real(wp), intent(in) :: high, low
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    type(judge_t), intent(out) :: judge
+    type(mesh_store_t), intent(inout), optional :: store
+    type(known_path_t) :: nothing
+    real(wp) :: digits, worst, began
+    integer :: round
+
+    digits = outcome%chosen%digits
+    do round = 1, most_rounds
+      call trace_resolved(steps, high, low, allocated(request%path), request%reads_path(), &
+        request%numerics%accuracy, observer, outcome%panel_tail)
+      began = seconds()
+      call begin_judging(judge, steps, high, low, digits, store)
+      worst = 0
+      if (allocated(request%path) .and. round < most_rounds) &
+        call judge_path_points(judge, steps%known, worst)
+      steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
+      if (.not. worst > request%numerics%accuracy) exit
+      digits = digits + further_digits
+      steps%meshes = new_mesh_family(steps%problem, high, low, digits, store=store)
+      steps%cost%kernel_entries = steps%cost%kernel_entries + &
+        sum(steps%meshes%grid%kernel_entries())
+      steps%known = nothing
+    end do
+  end subroutine trace_exactly
 
   !> The cycle on a mesh fixed in space, for H0 down to low.
   subroutine run_fixed(request, problem, low, observer, outcome, keeper)

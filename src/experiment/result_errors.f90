@@ -7,6 +7,7 @@ module result_errors
   use fixed_stepper, only: fixed_stepper_t
   use locked_stepper, only: locked_stepper_t
   use path_stepper, only: path_stepper_t
+  use known_path, only: known_path_t
   use stepper, only: stepper_t
   use hysteresis, only: lost_energy_t, energy_lost
   use reported, only: reported_t, relative_error
@@ -18,7 +19,7 @@ module result_errors
   use experiment_result, only: experiment_result_t
   implicit none
   private
-  public :: judge_locked, judge_fixed
+  public :: judge_t, begin_judging, judge_path_points, judge_locked, judge_fixed
 
   !> Digits that edge-locked finer meshes have more.
   real(wp), parameter :: more_digits = 1.5_wp
@@ -40,17 +41,15 @@ module result_errors
 
 contains
 
-  !> Judges what edge-locked steps have found, for H0 from high to low. Nothing is set up where
-  !> nothing is reported. store: of meshes.
-  subroutine judge_locked(steps, high, low, outcome, store)
+  !> Prepares to judge what edge-locked steps find on meshes of so many digits, for H0 from high to
+  !> low. store: of meshes.
+  subroutine begin_judging(judge, steps, high, low, digits, store)
+    type(judge_t), intent(out) :: judge
     class(locked_stepper_t), intent(inout), target :: steps
-    real(wp), intent(in) :: high, low
-    type(experiment_result_t), intent(inout) :: outcome
+    real(wp), intent(in) :: high, low, digits
     type(mesh_store_t), intent(inout), target, optional :: store
-    type(judge_t) :: judge
     integer :: k
 
-    if (.not. reports(outcome)) return
     judge%steps => steps
     call judge%fine%take_over(steps)
     ! Without a contact edge nothing locks the mesh to what is sharp in a fall, and short panels may
@@ -59,13 +58,44 @@ contains
     if (.not. steps%problem%law%edge_gap > 0 .or. any([(steps%meshes%has_short_panels(k), &
       k=1, size(steps%meshes%grid))])) judge%fine%margin = margin_less_gained
     if (steps%problem%law%has_kink) judge%fine%margin = margin_kinks
-    judge%fine%meshes = new_mesh_family(steps%problem, high, low, &
-      outcome%chosen%digits + more_digits, shape_only=.true., coarser=steps%meshes)
+    judge%fine%meshes = new_mesh_family(steps%problem, high, low, digits + more_digits, &
+      shape_only=.true., coarser=steps%meshes)
     if (present(store)) judge%fine%store => store
+  end subroutine begin_judging
+
+  !> The largest error of folds and extrema of the path that the steps have traced, relative; of
+  !> those that are known. The points keep them, and the steps count what that cost.
+  subroutine judge_path_points(judge, known, largest)
+    type(judge_t), intent(inout) :: judge
+    type(known_path_t), intent(in) :: known
+    real(wp), intent(out) :: largest
+    type(reported_t) :: reported
+    integer :: i
+
+    largest = 0
+    judge%fine%cost = judge%steps%cost
+    do i = 1, known%path%held
+      associate (point => known%path%point(i))
+        if (.not. (point%fold .or. point%load_extremum)) cycle
+        reported = reported_t(h0=point%state%h0, load=point%state%load, point=i)
+      end associate
+      call judge_one(judge, reported, .false.)
+      if (reported%error%known) largest = max(largest, relative_error(reported))
+    end do
+    judge%steps%cost = judge%fine%cost
+  end subroutine judge_path_points
+
+  !> Judges what edge-locked steps have found. Nothing is done where nothing is reported.
+  subroutine judge_locked(judge, outcome)
+    type(judge_t), intent(inout) :: judge
+    type(experiment_result_t), intent(inout) :: outcome
+
+    if (.not. reports(outcome)) return
+    judge%fine%cost = judge%steps%cost
     if (allocated(outcome%path)) call judge_path(judge, outcome%path)
     if (allocated(outcome%stepped_path)) call judge_branch(judge, outcome%stepped_path)
     call judge_cycle(judge, outcome)
-    select type (steps)
+    select type (steps => judge%steps)
     class is (path_stepper_t)
       call judge_energy(judge, steps, outcome)
     end select

@@ -312,3 +312,15 @@ def test_below_2500_nodes_the_number_of_threads_makes_no_difference_at_all(run, 
         assert tables[0] == tables[1]
         for key in ("max_tension", "jump_in_h0", "jump_out_h0", "folds_h0"):
             assert several(more.summary.get(key)) == several(one.summary.get(key))
+
+
+@pytest.mark.parametrize("sigma,accuracy", [(1.6607746, 1e-8), (1.6607746, 1e-7), (5.475, 1e-6)])
+def test_extrema_that_have_just_come_to_be_are_as_exact_as_asked_for(run, sigma, accuracy):
+    """Small errors move two extrema near each other far: such a path is traced with more digits."""
+    deck = {"equilibrium_path": {"h0_end": -20.0}}
+    found = run(lennard_jones(sigma, numerics={"accuracy": accuracy}, **deck)).summary
+    truth = run(lennard_jones(sigma, numerics={"accuracy": 1e-10}, **deck)).summary
+    assert not several(found.get("warnings", []))
+    assert found["error_estimate"] < accuracy
+    for key in ("load_folds_h0", "load_folds_load", "folds_h0", "folds_load"):
+        assert several(found[key]) == pytest.approx(several(truth[key]), rel=accuracy)
