@@ -179,7 +179,7 @@ contains
   end subroutine choose_part
 
   !> Differences from x that are no more than rounding: between one and two units of its last
-  !> place. (The intrinsic `spacing` takes x to pieces, which takes fifty times as long.)
+  !> place. (The intrinsic `spacing` takes x to pieces by calls, which shows in the rows' cost.)
   elemental real(wp) function resolution(x)
     real(wp), intent(in) :: x
 
