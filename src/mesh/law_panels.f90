@@ -2,16 +2,17 @@
 !> somewhere between the edge and infinity, where no general rule can know of them.
 !>
 !> The pressure is tried over gaps as bodies have them: undeformed before contact; about the front
-!> of a step those of a disk under tension; in contact the gap outside a JKR contact. Panels in z on
-!> which the last Legendre coefficients of that pressure are not small are halved.
+!> of a step those of a disk under tension; in contact the gap outside a JKR contact. Or, once there
+!> is a path, over the gaps seen on it. Panels in z on which the last Legendre coefficients of that
+!> pressure are not small are halved.
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
-  use discretisation, only: local_nodes_t, gauss_nodes
+  use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes
   use step_front, only: front_leads, gap_about_front
   implicit none
   private
-  public :: fit_panels, nodes_on
+  public :: fit_panels, nodes_on, seen_gaps_t
   public :: about_axis, about_front, about_edge
 
   !> What a mesh is mapped to: the axis, the front of a step, the contact edge.
@@ -25,6 +26,13 @@ module law_panels
   !> How many times the nodes are tried before a panel is halved.
   real(wp), parameter :: times(3) = [1.0_wp, 1.3_wp, 1.7_wp]
 
+  !> Gaps that bodies had on a mesh: what they are beside the shape, (nodes, states), and the scale
+  !> of each state.
+  type :: seen_gaps_t
+    type(discretisation_t), pointer :: grid => null()
+    real(wp), allocatable :: beside(:, :), scale(:)
+  end type seen_gaps_t
+
 contains
 
   !> Nodes of panels of these lengths in z, at so many a unit of z, and never fewer than `fewest`.
@@ -37,19 +45,23 @@ contains
 
   !> Lengths in z and nodes of panels at positions centre + side*d sinh(z): those given, with
   !> `nodes_on` them or more, or halves of them. Radii go from low to high; `about`:
-  !> what is at the centre.
-  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, length, order)
+  !> what is at the centre. seen: gaps to try instead of those foreseen.
+  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, length, order, &
+    seen)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about, side, fewest
     real(wp), intent(in) :: d, low, high, density, digits
     real(wp), allocatable, intent(inout) :: length(:)
     integer, allocatable, intent(out) :: order(:)
+    type(seen_gaps_t), intent(in), optional :: seen
     real(wp), allocatable :: given(:), parameter(:)
     real(wp) :: most(1)
     integer :: k
 
     most = 10.0_wp**(-digits)*abs(problem%law%pressure([problem%law%edge_gap]))
-    if (about == about_axis) then
+    if (present(seen)) then
+      parameter = seen%scale
+    else if (about == about_axis) then
       parameter = axis_gaps(problem)
     else
       parameter = between(low, high)
@@ -96,13 +108,32 @@ contains
       offset = side*d*sinh(z + z_length*local%node)
       do j = 1, size(parameter)
         associate (unit => merge(1.0_wp, parameter(j), about == about_axis))
-          pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset, d))
+          if (present(seen)) then
+            pressure = problem%law%pressure(seen_at(problem, seen, j, offset))
+          else
+            pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset, d))
+          end if
           tail = max(tail, local%tail(pressure*(1 + (unit*offset)**2)))
         end associate
       end do
     end function tail_on
 
   end subroutine fit_panels
+
+  !> The gap of the j-th state seen at offsets from the centre.
+  pure function seen_at(problem, seen, j, offset) result(gap)
+    type(problem_t), intent(in) :: problem
+    type(seen_gaps_t), intent(in) :: seen
+    integer, intent(in) :: j
+    real(wp), intent(in) :: offset(:)
+    real(wp) :: gap(size(offset))
+    integer :: i
+
+    associate (x => seen%grid%centre + offset)
+      gap = problem%shape%height(seen%scale(j)*x) + &
+        [(seen%grid%interpolate(seen%beside(:, j), x(i)), i=1, size(offset))]
+    end associate
+  end function seen_at
 
   !> Gaps on the axis that bodies have before contact: down to that of most tension, or where a step
   !> has a front before that, through the step.
