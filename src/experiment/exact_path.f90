@@ -59,7 +59,7 @@ contains
         worst = 0
         if (allocated(request%path)) call judge_path_points(judge, worst)
         cost%estimate_seconds = cost%estimate_seconds + seconds() - began
-        if (round > 1 .and. (steps%known%ending%early() .or. .not. worst < before%worst)) then
+        if (round > 1 .and. (is_lost(steps%known) .or. .not. worst < before%worst)) then
           call go_back(before, steps, judge, panel_tail)
           return
         end if
@@ -79,15 +79,22 @@ contains
     end associate
   end subroutine trace_exactly
 
-  !> Whether a path may become more exact by more digits. One that ends early need not come as far
+  !> Whether a path may become more exact by more digits. One that was lost need not come as far
   !> again; about a kink of the law errors go up and down with the nodes; and rounding has its
   !> digits, too.
   pure logical function digits_help(steps)
     class(path_stepper_t), intent(in) :: steps
 
-    digits_help = .not. (steps%known%ending%early() .or. steps%problem%law%has_kink .or. &
+    digits_help = .not. (is_lost(steps%known) .or. steps%problem%law%has_kink .or. &
       steps%meshes%digits + further_digits > most_digits)
   end function digits_help
+
+  !> Whether a path does not come to its end; of bodies that nothing keeps apart that is their fall.
+  pure logical function is_lost(known)
+    type(known_path_t), intent(in) :: known
+
+    is_lost = known%ending%early() .and. .not. known%fallen
+  end function is_lost
 
   !> Makes the path traced before that of the steps again.
   subroutine go_back(before, steps, judge, panel_tail)
