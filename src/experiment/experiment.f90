@@ -11,15 +11,14 @@ module experiment
   use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
   use locked_stepper, only: locked_stepper_t, has_path
   use path_stepper, only: path_stepper_t
-  use known_path, only: known_path_t
   use unique_stepper, only: unique_stepper_t
   use fixed_stepper, only: fixed_stepper_t
   use stepped_branch, only: h0_schedule_t, run_branch
   use h0_range, only: path_start, range_of
   use h0_schedule, only: schedule_of
   use experiment_result, only: experiment_result_t
-  use refinement, only: trace_resolved
-  use result_errors, only: judge_t, begin_judging, judge_path_points, judge_locked, judge_fixed
+  use exact_path, only: trace_exactly
+  use result_errors, only: judge_t, begin_judging, judge_locked, judge_fixed
   use result_sensitivities, only: find_sensitivities
   use path, only: follow_path
   use path_readings, only: read_path
@@ -32,10 +31,6 @@ module experiment
 
   !> States of a stepped path.
   integer, parameter :: path_states = 100
-  !> How often a path is traced on meshes of more digits where its folds and extrema are not as
-  !> exact as asked for, and the digits more.
-  integer, parameter :: most_rounds = 3
-  real(wp), parameter :: further_digits = 1
 
 contains
 
@@ -73,7 +68,7 @@ contains
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
     class(keeping_stepper_t), intent(inout), optional :: keeper
-    type(mesh_store_t), intent(inout), optional :: store
+    type(mesh_store_t), intent(inout), target, optional :: store
     type(path_stepper_t), target :: along_path
     type(unique_stepper_t), target :: one_by_one
     class(locked_stepper_t), pointer :: steps
@@ -99,11 +94,11 @@ contains
     began = seconds()
     select type (steps)
     class is (path_stepper_t)
-      call trace_exactly(request, steps, high, low, observer, outcome, judge, store)
+      call trace_exactly(request, steps, high, low, observer, judge, outcome%panel_tail, store)
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
       if (request%reads_path()) call read_path(request, steps, observer, outcome%readings)
     class is (unique_stepper_t)
-      call begin_judging(judge, steps, high, low, outcome%chosen%digits, store)
+      call begin_judging(judge, steps, high, low, store)
       if (allocated(request%path)) call run_stepped_path(request, steps, observer, outcome)
     end select
     outcome%nodes = sum(steps%meshes%grid%nodes)
@@ -124,40 +119,6 @@ contains
     end if
     outcome%cost = steps%cost
   end subroutine run_locked
-
-  !> Traces the path; where it is shown and its folds and extrema are not as exact as asked for,
-  !> again on meshes of more digits: two extrema that have just come to be move far with small
-  !> errors. Then what was found can be judged.
-  subroutine trace_exactly(request, steps, high, low, observer, outcome, judge, store)
-    class(request_t), intent(in) :: request
-    class(path_stepper_t), intent(inout), target :: steps
-    real(wp), intent(in) :: high, low
-    class(observer_t), intent(inout) :: observer
-    type(experiment_result_t), intent(inout) :: outcome
-    type(judge_t), intent(out) :: judge
-    type(mesh_store_t), intent(inout), optional :: store
-    type(known_path_t) :: nothing
-    real(wp) :: digits, worst, began
-    integer :: round
-
-    digits = outcome%chosen%digits
-    do round = 1, most_rounds
-      call trace_resolved(steps, high, low, allocated(request%path), request%reads_path(), &
-        request%numerics%accuracy, observer, outcome%panel_tail)
-      began = seconds()
-      call begin_judging(judge, steps, high, low, digits, store)
-      worst = 0
-      if (allocated(request%path) .and. round < most_rounds) &
-        call judge_path_points(judge, steps%known, worst)
-      steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
-      if (.not. worst > request%numerics%accuracy) exit
-      digits = digits + further_digits
-      steps%meshes = new_mesh_family(steps%problem, high, low, digits, store=store)
-      steps%cost%kernel_entries = steps%cost%kernel_entries + &
-        sum(steps%meshes%grid%kernel_entries())
-      steps%known = nothing
-    end do
-  end subroutine trace_exactly
 
   !> The cycle on a mesh fixed in space, for H0 down to low.
   subroutine run_fixed(request, problem, low, observer, outcome, keeper)

@@ -7,7 +7,6 @@ module result_errors
   use fixed_stepper, only: fixed_stepper_t
   use locked_stepper, only: locked_stepper_t
   use path_stepper, only: path_stepper_t
-  use known_path, only: known_path_t
   use stepper, only: stepper_t
   use hysteresis, only: lost_energy_t, energy_lost
   use reported, only: reported_t, relative_error
@@ -41,12 +40,12 @@ module result_errors
 
 contains
 
-  !> Prepares to judge what edge-locked steps find on meshes of so many digits, for H0 from high to
-  !> low. store: of meshes.
-  subroutine begin_judging(judge, steps, high, low, digits, store)
+  !> Prepares to judge what edge-locked steps find on their meshes, which stay what they are, for H0
+  !> from high to low. store: of meshes.
+  subroutine begin_judging(judge, steps, high, low, store)
     type(judge_t), intent(out) :: judge
     class(locked_stepper_t), intent(inout), target :: steps
-    real(wp), intent(in) :: high, low, digits
+    real(wp), intent(in) :: high, low
     type(mesh_store_t), intent(inout), target, optional :: store
     integer :: k
 
@@ -58,30 +57,33 @@ contains
     if (.not. steps%problem%law%edge_gap > 0 .or. any([(steps%meshes%has_short_panels(k), &
       k=1, size(steps%meshes%grid))])) judge%fine%margin = margin_less_gained
     if (steps%problem%law%has_kink) judge%fine%margin = margin_kinks
-    judge%fine%meshes = new_mesh_family(steps%problem, high, low, digits + more_digits, &
-      shape_only=.true., coarser=steps%meshes)
+    judge%fine%meshes = new_mesh_family(steps%problem, high, low, &
+      steps%meshes%digits + more_digits, shape_only=.true., coarser=steps%meshes)
     if (present(store)) judge%fine%store => store
   end subroutine begin_judging
 
-  !> The largest error of folds and extrema of the path that the steps have traced, relative; of
-  !> those that are known. The points keep them, and the steps count what that cost.
-  subroutine judge_path_points(judge, known, largest)
+  !> The largest error of folds and extrema of the path that the steps have traced, relative. The
+  !> points keep their errors, and the steps count what that cost. It is no part of what is
+  !> reported: not every point need be shown.
+  subroutine judge_path_points(judge, largest)
     type(judge_t), intent(inout) :: judge
-    type(known_path_t), intent(in) :: known
     real(wp), intent(out) :: largest
     type(reported_t) :: reported
     integer :: i
 
     largest = 0
     judge%fine%cost = judge%steps%cost
-    do i = 1, known%path%held
-      associate (point => known%path%point(i))
-        if (.not. (point%fold .or. point%load_extremum)) cycle
-        reported = reported_t(h0=point%state%h0, load=point%state%load, point=i)
-      end associate
-      call judge_one(judge, reported, .false.)
-      if (reported%error%known) largest = max(largest, relative_error(reported))
-    end do
+    select type (steps => judge%steps)
+    class is (path_stepper_t)
+      do i = 1, steps%known%path%held
+        associate (point => steps%known%path%point(i))
+          if (.not. (point%fold .or. point%load_extremum)) cycle
+          reported = reported_t(h0=point%state%h0, load=point%state%load, point=i)
+        end associate
+        call judge_on_path(steps%equations_t, judge%fine, .false., steps%known, reported)
+        largest = max(largest, relative_error(reported))
+      end do
+    end select
     judge%steps%cost = judge%fine%cost
   end subroutine judge_path_points
 

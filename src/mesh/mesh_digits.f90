@@ -7,10 +7,10 @@ module mesh_digits
   use dimensionless_problem, only: problem_t, adhesion_strength
   implicit none
   private
-  public :: digits_for
+  public :: digits_for, most_digits
 
   !> No path is traced with fewer; no more can be told from rounding.
-  real(wp), parameter :: fewest = 4.25_wp, most = 13
+  real(wp), parameter :: fewest = 4.25_wp, most_digits = 13
   !> With fewer than these for each decade of sigma the folds are not those that the path has: they
   !> come the nearer to one another the stronger adhesion is. Other laws than the paper's: on top of
   !> the fewest. And as long as there is a contact at all these are enough to tell folds apart.
@@ -51,7 +51,7 @@ contains
     if (away < near_onset) least = max(least, enough_for_folds)
     digits = max(digits, least)
     left = -log10(epsilon(1.0_wp)*max(1.0_wp, sigma*widest))
-    digits = max(fewest, min(digits, left, most))
+    digits = max(fewest, min(digits, left, most_digits))
     if (left > fewest) digits = max(digits, min(enough_for_folds, least))
   end function digits_for
 
