@@ -11,7 +11,7 @@ module refinement
   use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
   use discretisation, only: discretisation_t
   use path_stepper, only: path_stepper_t
-  use law_panels, only: seen_gaps_t
+  use seen_gaps, only: seen_gaps_t
   implicit none
   private
   public :: trace_resolved, unresolved_from
@@ -38,7 +38,7 @@ contains
   !> of it: their meshes were fitted to their errors.
   subroutine trace_resolved(steps, h0_high, h0_low, into_contact, closely, accuracy, listener, &
     panel_tail)
-    class(path_stepper_t), intent(inout), target :: steps
+    class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_high, h0_low, accuracy
     logical, intent(in) :: into_contact, closely
     class(listener_t), intent(inout) :: listener
@@ -65,7 +65,7 @@ contains
   !> path was lost before it had seen all, panels with tails above `most` are halved. fitted: the
   !> meshes that have been laid out for what was seen.
   subroutine refine(steps, most, fitted)
-    class(path_stepper_t), intent(inout), target :: steps
+    class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: most
     logical, intent(inout) :: fitted(:)
     type(mapped_shape_t) :: shape
@@ -90,25 +90,28 @@ contains
     end do
   end subroutine refine
 
-  !> The gaps of all states of the path on a mesh.
+  !> The gaps of all states of the path on a mesh; and as they may be over the rest of the radii
+  !> that it serves: another time the path may come to it elsewhere.
   function gaps_seen(steps, mesh) result(seen)
-    class(path_stepper_t), intent(in), target :: steps
+    class(path_stepper_t), intent(in) :: steps
     integer, intent(in) :: mesh
     type(seen_gaps_t) :: seen
-    integer :: i, k
+    integer :: i, k, states
 
     associate (grid => steps%meshes%grid(mesh), path => steps%known%path, &
-      shape => steps%problem%shape)
-      seen%grid => steps%meshes%grid(mesh)
-      k = count(path%point(:path%held)%mesh == mesh)
-      allocate (seen%beside(grid%nodes, k), seen%scale(k))
+      reach => steps%meshes%reach(:, mesh))
+      states = count(path%point(:path%held)%mesh == mesh)
+      call seen%begin_on(grid, states)
       k = 0
       do i = 1, path%held
         if (path%point(i)%mesh /= mesh) cycle
         k = k + 1
         associate (state => path%point(i)%state)
-          seen%scale(k) = state%scale
-          seen%beside(:, k) = state%gap - shape%height(state%scale*grid%x)
+          call seen%add(steps%problem%shape, state%gap, state%scale)
+          call seen%try(grid%centre*state%scale, state%scale)
+          if (.not. grid%centre > 0) cycle
+          if (k == 1) call seen%try_between(state%scale, reach(1), state%scale)
+          if (k == states) call seen%try_between(state%scale, state%scale, reach(2))
         end associate
       end do
     end associate

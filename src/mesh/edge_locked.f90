@@ -13,7 +13,8 @@ module edge_locked
   use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
   use mesh_store, only: mesh_store_t
   use mesh_rule, only: approach_shape, contact_shape
-  use law_panels, only: seen_gaps_t, about_front, about_edge
+  use law_panels, only: about_front, about_edge
+  use seen_gaps, only: seen_gaps_t
   use step_front, only: front_leads, first_front, last_front
   use force_law, only: force_law_t
   use contact_scales, only: largest_radius, contact_level, cohesive_width, lost_in_rounding
@@ -28,7 +29,7 @@ module edge_locked
   !> Largest ratio of the contact radii that one mesh serves: a mesh for wider bands has more nodes,
   !> and more bands have more meshes. Under a law that oscillates or has a step, short panels lie
   !> wherever its gaps are at any radius of the band.
-  real(wp), parameter :: widest_band = 30, narrow_band = 1.4_wp
+  real(wp), parameter :: widest_band = 30, narrow_band = 1.3_wp
   !> Part of the radius at which a front becomes sharp, from which on a mesh is locked to it.
   real(wp), parameter :: early = 0.25_wp
 
@@ -47,6 +48,9 @@ module edge_locked
     logical :: traceable = .true.
     !> Least and largest radius that each serves, lateral units; of the approach the highest H0.
     real(wp), allocatable :: reach(:, :)
+    !> Whether each waits for the path to come to it, to be laid out for the gaps that bodies have
+    !> there (`lay_out`): until then it has no kernel.
+    logical, allocatable :: waits(:)
     !> Gap at which a law without a contact edge begins to deform the bodies.
     real(wp) :: level = -huge(1.0_wp)
     !> How many meshes next to that of the approach are locked to the front of a step.
@@ -102,6 +106,8 @@ contains
     end if
     allocate (meshes%grid(approach + size(low)), meshes%shape(approach + size(low)), &
       meshes%reach(2, approach + size(low)))
+    allocate (meshes%waits(size(meshes%grid)), source=.false.)
+    if (meshes%traceable) meshes%waits(contact:) = is_narrow(problem%law)
     meshes%digits = digits
     meshes%passage = [low, widest]
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
@@ -111,7 +117,7 @@ contains
     end do
     if (present(coarser)) call follow(meshes, coarser)
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
-      call make_mesh(meshes%shape(k), elastic, meshes%grid(k), store)
+      call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
     end do
   end function new_mesh_family
 
@@ -159,9 +165,15 @@ contains
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: first, last
 
-    bands = ceiling(log(last/first)/log(merge(narrow_band, widest_band, &
-      law%period > 0 .or. law%step_width > 0)))
+    bands = ceiling(log(last/first)/log(merge(narrow_band, widest_band, is_narrow(law))))
   end function bands_for
+
+  !> Whether bands have to be narrow.
+  pure logical function is_narrow(law)
+    class(force_law_t), intent(in) :: law
+
+    is_narrow = law%period > 0 .or. law%step_width > 0
+  end function is_narrow
 
   !> Adds bands between two radii.
   pure subroutine add_bands(first, last, bands, low, high)
@@ -184,6 +196,7 @@ contains
 
     self%shape(mesh) = shape
     self%grid(mesh) = new_mapped_mesh(shape, elastic=.true.)
+    self%waits(mesh) = .false.
   end subroutine renew
 
   !> Lets meshes, not made yet, be what coarser ones are with more nodes, where these have short

@@ -8,11 +8,12 @@
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
-  use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes
+  use discretisation, only: local_nodes_t, gauss_nodes
+  use seen_gaps, only: seen_gaps_t
   use step_front, only: front_leads, gap_about_front
   implicit none
   private
-  public :: fit_panels, nodes_on, seen_gaps_t
+  public :: fit_panels, nodes_on
   public :: about_axis, about_front, about_edge
 
   !> What a mesh is mapped to: the axis, the front of a step, the contact edge.
@@ -25,13 +26,6 @@ module law_panels
   integer, parameter :: tried = 9
   !> How many times the nodes are tried before a panel is halved.
   real(wp), parameter :: times(3) = [1.0_wp, 1.3_wp, 1.7_wp]
-
-  !> Gaps that bodies had on a mesh: what they are beside the shape, (nodes, states), and the scale
-  !> of each state.
-  type :: seen_gaps_t
-    type(discretisation_t), pointer :: grid => null()
-    real(wp), allocatable :: beside(:, :), scale(:)
-  end type seen_gaps_t
 
 contains
 
@@ -60,7 +54,7 @@ contains
 
     most = 10.0_wp**(-digits)*abs(problem%law%pressure([problem%law%edge_gap]))
     if (present(seen)) then
-      parameter = seen%scale
+      parameter = seen%radius
     else if (about == about_axis) then
       parameter = axis_gaps(problem)
     else
@@ -109,7 +103,7 @@ contains
       do j = 1, size(parameter)
         associate (unit => merge(1.0_wp, parameter(j), about == about_axis))
           if (present(seen)) then
-            pressure = problem%law%pressure(seen_at(problem, seen, j, offset))
+            pressure = problem%law%pressure(seen%gap(problem%shape, j, offset))
           else
             pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset, d))
           end if
@@ -119,21 +113,6 @@ contains
     end function tail_on
 
   end subroutine fit_panels
-
-  !> The gap of the j-th state seen at offsets from the centre.
-  pure function seen_at(problem, seen, j, offset) result(gap)
-    type(problem_t), intent(in) :: problem
-    type(seen_gaps_t), intent(in) :: seen
-    integer, intent(in) :: j
-    real(wp), intent(in) :: offset(:)
-    real(wp) :: gap(size(offset))
-    integer :: i
-
-    associate (x => seen%grid%centre + offset)
-      gap = problem%shape%height(seen%scale(j)*x) + &
-        [(seen%grid%interpolate(seen%beside(:, j), x(i)), i=1, size(offset))]
-    end associate
-  end function seen_at
 
   !> Gaps on the axis that bodies have before contact: down to that of most tension, or where a step
   !> has a front before that, through the step.

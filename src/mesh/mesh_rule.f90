@@ -7,7 +7,8 @@ module mesh_rule
   use shape, only: shape_t
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
   use contact_scales, only: smallest_feature, cohesive_width
-  use law_panels, only: fit_panels, nodes_on, seen_gaps_t, about_axis, about_front, about_edge
+  use law_panels, only: fit_panels, nodes_on, about_axis, about_front, about_edge
+  use seen_gaps, only: seen_gaps_t
   use step_front, only: front_leads, first_front, front_width
   use mapped_mesh, only: mapped_shape_t
   implicit none
