@@ -17,10 +17,10 @@ module refinement
   public :: trace_resolved, unresolved_from
 
   !> How often the path is traced again, and a panel halved for that; and the tail over the accuracy
-  !> from which on panels are too long. Tails are of pressures, on the worst panel of the worst state
-  !> that the path happens to have; load and h0 are far better, but at a fold the load feels 7 % of a
-  !> tail (Dugdale's with a hard repulsion), and the states between may have tails three times as
-  !> large. Never below what the iteration leaves of a stiff pressure.
+  !> from which on panels are too long. Tails are of pressures, on the worst panel of the worst
+  !> state that the path happens to have; load and h0 are far better, but at a fold the load feels
+  !> 7 % of a tail (Dugdale's with a hard repulsion), and the states between may have tails three
+  !> times as large. Never below what the iteration leaves of a stiff pressure.
   integer, parameter :: most_rounds = 6, most_halvings = 3
   real(wp), parameter :: times = 30, least = 1.0e-8_wp
 
@@ -65,7 +65,7 @@ contains
   !> path was lost before it had seen all, panels with tails above `most` are halved. fitted: the
   !> meshes that have been laid out for what was seen.
   subroutine refine(steps, most, fitted)
-    class(path_stepper_t), intent(inout) :: steps
+    class(path_stepper_t), intent(inout), target :: steps
     real(wp), intent(in) :: most
     logical, intent(inout) :: fitted(:)
     type(mapped_shape_t) :: shape
@@ -93,7 +93,7 @@ contains
   !> The gaps of all states of the path on a mesh; and as they may be over the rest of the radii
   !> that it serves: another time the path may come to it elsewhere.
   function gaps_seen(steps, mesh) result(seen)
-    class(path_stepper_t), intent(in) :: steps
+    class(path_stepper_t), intent(in), target :: steps
     integer, intent(in) :: mesh
     type(seen_gaps_t) :: seen
     integer :: i, k, states

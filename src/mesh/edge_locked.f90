@@ -28,8 +28,8 @@ module edge_locked
 
   !> Largest ratio of the contact radii that one mesh serves: a mesh for wider bands has more nodes,
   !> and more bands have more meshes. Under a law that oscillates or has a step, short panels lie
-  !> wherever its gaps are at any radius of the band.
-  real(wp), parameter :: widest_band = 30, narrow_band = 1.3_wp
+  !> wherever its gaps are at any radius of the band: of a step few, of oscillations many.
+  real(wp), parameter :: widest_band = 30, narrow_band = 2, narrowest_band = 1.3_wp
   !> Part of the radius at which a front becomes sharp, from which on a mesh is locked to it.
   real(wp), parameter :: early = 0.25_wp
 
@@ -107,7 +107,7 @@ contains
     allocate (meshes%grid(approach + size(low)), meshes%shape(approach + size(low)), &
       meshes%reach(2, approach + size(low)))
     allocate (meshes%waits(size(meshes%grid)), source=.false.)
-    if (meshes%traceable) meshes%waits(contact:) = is_narrow(problem%law)
+    if (meshes%traceable) meshes%waits(contact:) = problem%law%step_width > 0
     meshes%digits = digits
     meshes%passage = [low, widest]
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
@@ -165,15 +165,13 @@ contains
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: first, last
 
-    bands = ceiling(log(last/first)/log(merge(narrow_band, widest_band, is_narrow(law))))
+    real(wp) :: ratio
+
+    ratio = widest_band
+    if (law%period > 0) ratio = narrow_band
+    if (law%step_width > 0) ratio = narrowest_band
+    bands = ceiling(log(last/first)/log(ratio))
   end function bands_for
-
-  !> Whether bands have to be narrow.
-  pure logical function is_narrow(law)
-    class(force_law_t), intent(in) :: law
-
-    is_narrow = law%period > 0 .or. law%step_width > 0
-  end function is_narrow
 
   !> Adds bands between two radii.
   pure subroutine add_bands(first, last, bands, low, high)

@@ -40,8 +40,8 @@ contains
   !> Lengths in z and nodes of panels at positions centre + side*d sinh(z): those given, with
   !> `nodes_on` them or more, or halves of them. Radii go from low to high; `about`:
   !> what is at the centre. seen: gaps to try instead of those foreseen.
-  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, length, order, &
-    seen)
+  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, length, &
+    order, seen)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about, side, fewest
     real(wp), intent(in) :: d, low, high, density, digits

@@ -1,6 +1,6 @@
 !> Gaps that bodies were seen to have on one mesh, to lay out another by. About the contact edge, or
-!> the front of a step, bodies look much the same while it grows: moved to other radii, the gaps of a
-!> state tell about states that were not seen.
+!> the front of a step, bodies look much the same while it grows: moved to other radii, the gaps of
+!> a state tell about states that were not seen.
 module seen_gaps
   use kinds, only: wp
   use shape, only: shape_t
@@ -10,8 +10,8 @@ module seen_gaps
   public :: seen_gaps_t
 
   type :: seen_gaps_t
-    !> Where they were seen, how many states there are, what their gaps are beside the shape, (nodes,
-    !> states), and their scales.
+    !> Where they were seen, how many states there are, what their gaps are beside the shape,
+    !> (nodes, states), and their scales.
     type(discretisation_t), pointer, private :: grid => null()
     integer, private :: held = 0
     real(wp), allocatable, private :: beside(:, :), scale(:)

@@ -229,7 +229,7 @@ contains
 
   !> Lays out the mesh that the path comes to, by the gaps of the state that it comes with.
   subroutine lay_out(equations, from, to, state)
-    type(equations_t), intent(inout) :: equations
+    type(equations_t), intent(inout), target :: equations
     integer, intent(in) :: from, to
     type(state_t), intent(in) :: state
     type(seen_gaps_t) :: seen

@@ -119,8 +119,8 @@ contains
     end do
   end subroutine trace
 
-  !> Whether the contact is much larger than any that is expected: on a mesh that is too coarse folds
-  !> were lost, and no state is taken for stable any more.
+  !> Whether the contact is much larger than any that is expected: on a mesh that is too coarse
+  !> folds were lost, and no state is taken for stable any more.
   pure logical function astray(equations, path)
     type(equations_t), intent(in) :: equations
     type(traced_path_t), intent(in) :: path
