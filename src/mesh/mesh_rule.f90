@@ -160,9 +160,9 @@ contains
   !> Adds sinh panels over z_length. One is enough for the paper's laws, which are powers of the gap
   !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
   !> these. Other laws have lengths of their own anywhere within their reach, and where these are
-  !> seen the panel is halved. Laws that oscillate, have a kink or end in a step have short panels
-  !> from the beginning as long as gaps are only foreseen, and other shapes and strong adhesion
-  !> anyway. about, side, low, high, seen: see `fit_panels`.
+  !> seen the panel is halved. Laws that oscillate or have a kink, other shapes, and strong adhesion
+  !> have short panels from the beginning, and as long as gaps are only foreseen, laws that end in a
+  !> step. about, side, low, high, seen: see `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -182,8 +182,8 @@ contains
     fewest = ceiling(short_order + short_orders*digits)
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
     associate (law => problem%law)
-      if (.not. present(seen) .and. (law%period > 0 .or. law%step_width > 0 .or. law%has_kink) &
-        .or. broken .or. abs(problem%shape%exponent - 2) > 0 .or. &
+      if (law%period > 0 .or. law%has_kink .or. broken .or. &
+        law%step_width > 0 .and. .not. present(seen) .or. abs(problem%shape%exponent - 2) > 0 .or. &
         .not. law%of_paper .and. adhesion_strength(problem) > strongest) then
         panels = ceiling(z_length/short)
         lengths = spread(z_length/panels, 1, panels)
