@@ -1,26 +1,28 @@
 !> The guard over meshes under laws with lengths of their own: where the pressure of a state of the
-!> path is not the polynomial of its panel, the panel is halved and the path traced again.
+!> path is not the polynomial of its panel, the path is traced again. Meshes are laid out for gaps
+!> that were foreseen; by then those that bodies have are known, and only what is sharp in them gets
+!> short panels. Gaps are smoother than pressures, so that those on a mesh that is too coarse tell
+!> what a finer one needs.
 module refinement
   use kinds, only: wp
   use listener, only: listener_t
   use known_path, only: known_path_t
+  use contact_state, only: gap_at
+  use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
+  use discretisation, only: discretisation_t
   use path_stepper, only: path_stepper_t
+  use seen_gaps, only: seen_gaps_t
   implicit none
   private
   public :: trace_resolved, unresolved_from
 
-  !> How often panels are halved, and the tail over the accuracy from which on they are. Tails are
-  !> of pressures, on the worst panel of the worst state that the path happens to have; load and h0
-  !> are far better, but at a fold the load feels 7 % of a tail (Dugdale's with a hard repulsion),
-  !> and the states between may have tails three times as large. Never below what the iteration
-  !> leaves of a stiff pressure.
-  integer, parameter :: most_rounds = 6
+  !> How often the path is traced again, and a panel halved for that; and the tail over the accuracy
+  !> from which on panels are too long. Tails are of pressures, on the worst panel of the worst
+  !> state that the path happens to have; load and h0 are far better, but at a fold the load feels
+  !> 7 % of a tail (Dugdale's with a hard repulsion), and the states between may have tails three
+  !> times as large. Never below what the iteration leaves of a stiff pressure.
+  integer, parameter :: most_rounds = 6, most_halvings = 3
   real(wp), parameter :: times = 30, least = 1.0e-8_wp
-
-  !> The largest tails of the pressure on the panels of a mesh.
-  type :: tails_t
-    real(wp), allocatable :: of_panel(:)
-  end type tails_t
 
 contains
 
@@ -31,9 +33,9 @@ contains
     tail = max(times*accuracy, least)
   end function unresolved_from
 
-  !> Traces the path (`know_path`), again where panels had to be halved; panel_tail: the largest
-  !> tail that is left, but of a fall onto each other, which ends on no mesh. The paper's laws need
-  !> none of it: their meshes were fitted to their errors.
+  !> Traces the path (`know_path`), again where panels were too long; panel_tail: the largest tail
+  !> that is left, but of a fall onto each other, which ends on no mesh. The paper's laws need none
+  !> of it: their meshes were fitted to their errors.
   subroutine trace_resolved(steps, h0_high, h0_low, into_contact, closely, accuracy, listener, &
     panel_tail)
     class(path_stepper_t), intent(inout) :: steps
@@ -41,50 +43,134 @@ contains
     logical, intent(in) :: into_contact, closely
     class(listener_t), intent(inout) :: listener
     real(wp), intent(out) :: panel_tail
-    type(tails_t), allocatable :: tails(:)
+    logical :: fitted(size(steps%meshes%grid))
     type(known_path_t) :: nothing
-    integer :: round, mesh
+    integer :: round
 
     panel_tail = 0
     call steps%know_path(h0_high, h0_low, into_contact, closely, listener)
     if (steps%problem%law%of_paper) return
+    fitted = .false.
     do round = 0, most_rounds
-      tails = tails_on_path(steps)
-      panel_tail = 0
-      do mesh = 1, size(tails)
-        panel_tail = max(panel_tail, maxval(tails(mesh)%of_panel))
-      end do
+      panel_tail = largest_tail(steps)
       if (.not. panel_tail > unresolved_from(accuracy) .or. round == most_rounds) exit
-      do mesh = 1, size(tails)
-        associate (long => tails(mesh)%of_panel > unresolved_from(accuracy), &
-          cost => steps%cost, meshes => steps%meshes)
-          if (.not. any(long)) cycle
-          call meshes%halve_panels(mesh, long)
-          cost%kernel_entries = cost%kernel_entries + meshes%grid(mesh)%kernel_entries()
-        end associate
-      end do
+      call refine(steps, unresolved_from(accuracy), fitted)
       steps%known = nothing
       call steps%know_path(h0_high, h0_low, into_contact, closely, listener)
     end do
     if (steps%known%fallen) panel_tail = 0
   end subroutine trace_resolved
 
-  !> The largest tails over all states of the path.
-  pure function tails_on_path(steps) result(tails)
-    class(path_stepper_t), intent(in) :: steps
-    type(tails_t) :: tails(size(steps%meshes%grid))
-    integer :: i, mesh
+  !> Lays meshes out anew for the gaps that were seen on them; where that was done already, or the
+  !> path was lost before it had seen all, panels with tails above `most` are halved. fitted: the
+  !> meshes that have been laid out for what was seen.
+  subroutine refine(steps, most, fitted)
+    class(path_stepper_t), intent(inout), target :: steps
+    real(wp), intent(in) :: most
+    logical, intent(inout) :: fitted(:)
+    type(mapped_shape_t) :: shape
+    integer :: mesh
+    logical :: seen
 
-    do mesh = 1, size(tails)
-      allocate (tails(mesh)%of_panel(size(steps%meshes%grid(mesh)%panel)), source=0.0_wp)
-    end do
-    do i = 1, steps%known%path%held
-      associate (point => steps%known%path%point(i))
-        associate (largest => tails(point%mesh)%of_panel)
-          largest = max(largest, steps%meshes%grid(point%mesh)%panel_tails(point%state%pressure))
-        end associate
+    do mesh = 1, size(fitted)
+      associate (path => steps%known%path, meshes => steps%meshes, cost => steps%cost)
+        seen = path%point(path%held)%mesh > mesh .or. .not. steps%known%ending%early()
+        if (seen) seen = any(path%point(:path%held)%mesh == mesh)
+        if (seen .and. .not. fitted(mesh)) then
+          fitted(mesh) = .true.
+          shape = meshes%shape_for(steps%problem, mesh, gaps_seen(steps, mesh))
+        else if (any(tails_on(steps, mesh, meshes%grid(mesh)) > most)) then
+          shape = with_short_panels(steps, mesh, most)
+        else
+          cycle
+        end if
+        call meshes%renew(mesh, shape)
+        cost%kernel_entries = cost%kernel_entries + meshes%grid(mesh)%kernel_entries()
       end associate
     end do
-  end function tails_on_path
+  end subroutine refine
+
+  !> The gaps of all states of the path on a mesh; and as they may be over the rest of the radii
+  !> that it serves: another time the path may come to it elsewhere.
+  function gaps_seen(steps, mesh) result(seen)
+    class(path_stepper_t), intent(in), target :: steps
+    integer, intent(in) :: mesh
+    type(seen_gaps_t) :: seen
+    integer :: i, k, states
+
+    associate (grid => steps%meshes%grid(mesh), path => steps%known%path, &
+      reach => steps%meshes%reach(:, mesh))
+      states = count(path%point(:path%held)%mesh == mesh)
+      call seen%begin_on(grid, states)
+      k = 0
+      do i = 1, path%held
+        if (path%point(i)%mesh /= mesh) cycle
+        k = k + 1
+        associate (state => path%point(i)%state)
+          call seen%add(steps%problem%shape, state%gap, state%scale)
+          call seen%try(grid%centre*state%scale, state%scale)
+          if (.not. grid%centre > 0) cycle
+          if (k == 1) call seen%try_between(state%scale, reach(1), state%scale)
+          if (k == states) call seen%try_between(state%scale, state%scale, reach(2))
+        end associate
+      end do
+    end associate
+  end function gaps_seen
+
+  !> What a mesh is like, with panels halved, and halves of them, on which tails are above `most`.
+  function with_short_panels(steps, mesh, most) result(shape)
+    class(path_stepper_t), intent(in) :: steps
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: most
+    type(mapped_shape_t) :: shape
+    type(discretisation_t) :: grid
+    integer :: halving
+
+    shape = steps%meshes%shape(mesh)
+    grid = steps%meshes%grid(mesh)
+    do halving = 1, most_halvings
+      associate (long => tails_on(steps, mesh, grid) > most)
+        if (.not. any(long)) exit
+        shape = shape%halved(long)
+      end associate
+      grid = new_mapped_mesh(shape, elastic=.false.)
+    end do
+  end function with_short_panels
+
+  !> The largest tail of the pressure on the path.
+  pure real(wp) function largest_tail(steps) result(largest)
+    class(path_stepper_t), intent(in) :: steps
+    integer :: mesh
+
+    largest = 0
+    do mesh = 1, size(steps%meshes%grid)
+      largest = max(largest, maxval(tails_on(steps, mesh, steps%meshes%grid(mesh))))
+    end do
+  end function largest_tail
+
+  !> The largest tails of the pressure over all states of a mesh, on its panels, or on those of a
+  !> finer one by the gaps there.
+  pure function tails_on(steps, mesh, grid) result(tails)
+    class(path_stepper_t), intent(in) :: steps
+    integer, intent(in) :: mesh
+    type(discretisation_t), intent(in) :: grid
+    real(wp) :: tails(size(grid%panel))
+    integer :: i, j
+
+    tails = 0
+    associate (own => steps%meshes%grid(mesh), problem => steps%problem)
+      do i = 1, steps%known%path%held
+        associate (point => steps%known%path%point(i))
+          if (point%mesh /= mesh) cycle
+          if (grid%nodes == own%nodes) then
+            tails = max(tails, grid%panel_tails(point%state%pressure))
+          else
+            tails = max(tails, grid%panel_tails(problem%law%pressure( &
+              [(gap_at(problem%shape, own, point%state, grid%x(j)), j=1, grid%nodes)])))
+          end if
+        end associate
+      end do
+    end associate
+  end function tails_on
 
 end module refinement

@@ -14,6 +14,7 @@ module edge_locked
   use mesh_store, only: mesh_store_t
   use mesh_rule, only: approach_shape, contact_shape
   use law_panels, only: about_front, about_edge
+  use seen_gaps, only: seen_gaps_t
   use step_front, only: front_leads, first_front, last_front
   use force_law, only: force_law_t
   use contact_scales, only: largest_radius, contact_level, cohesive_width, lost_in_rounding
@@ -27,8 +28,8 @@ module edge_locked
 
   !> Largest ratio of the contact radii that one mesh serves: a mesh for wider bands has more nodes,
   !> and more bands have more meshes. Under a law that oscillates or has a step, short panels lie
-  !> wherever its gaps are at any radius of the band.
-  real(wp), parameter :: widest_band = 30, narrow_band = 2_wp
+  !> wherever its gaps are at any radius of the band: of a step few, of oscillations many.
+  real(wp), parameter :: widest_band = 30, narrow_band = 2, narrowest_band = 1.3_wp
   !> Part of the radius at which a front becomes sharp, from which on a mesh is locked to it.
   real(wp), parameter :: early = 0.25_wp
 
@@ -45,6 +46,11 @@ module edge_locked
     !> Whether the path can be traced: the law attracts, or the bodies are rigid and it is trivial.
     !> If not, there is one mesh for contact, and its scale is prescribed by `hertz_scale`.
     logical :: traceable = .true.
+    !> Least and largest radius that each serves, lateral units; of the approach the highest H0.
+    real(wp), allocatable :: reach(:, :)
+    !> Whether each waits for the path to come to it, to be laid out for the gaps that bodies have
+    !> there (`lay_out`): until then it has no kernel.
+    logical, allocatable :: waits(:)
     !> Gap at which a law without a contact edge begins to deform the bodies.
     real(wp) :: level = -huge(1.0_wp)
     !> How many meshes next to that of the approach are locked to the front of a step.
@@ -53,7 +59,8 @@ module edge_locked
     procedure :: in_contact
     procedure :: has_short_panels
     procedure :: locked_gap
-    procedure :: halve_panels
+    procedure :: renew
+    procedure :: shape_for
     procedure :: complete
   end type mesh_family_t
 
@@ -97,21 +104,38 @@ contains
         call add_bands(first, widest, bands_for(problem%law, first, widest), low, high)
       end associate
     end if
-    allocate (meshes%grid(approach + size(low)), meshes%shape(approach + size(low)))
+    allocate (meshes%grid(approach + size(low)), meshes%shape(approach + size(low)), &
+      meshes%reach(2, approach + size(low)))
+    allocate (meshes%waits(size(meshes%grid)), source=.false.)
+    if (meshes%traceable) meshes%waits(contact:) = problem%law%step_width > 0
     meshes%digits = digits
     meshes%passage = [low, widest]
-    if (meshes%traceable) meshes%shape(approach) = &
-      approach_shape(problem, max(h0_high, calm_gap(problem)), digits)
-    do k = contact, size(meshes%grid)
-      meshes%shape(k) = contact_shape(problem, &
-        merge(about_edge, about_front, meshes%in_contact(k)), low(k - 1), high(k - 1), &
-        meshes%level, digits)
+    do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
+      meshes%reach(:, k) = [h0_high, 0.0_wp]
+      if (k >= contact) meshes%reach(:, k) = [low(k - 1), high(k - 1)]
+      meshes%shape(k) = meshes%shape_for(problem, k)
     end do
     if (present(coarser)) call follow(meshes, coarser)
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
-      call make_mesh(meshes%shape(k), elastic, meshes%grid(k), store)
+      call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
     end do
   end function new_mesh_family
+
+  !> What a mesh is to be like. seen: gaps that bodies had on it.
+  type(mapped_shape_t) function shape_for(self, problem, mesh, seen) result(shape)
+    class(mesh_family_t), intent(in) :: self
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: mesh
+    type(seen_gaps_t), intent(in), optional :: seen
+
+    if (mesh == approach) then
+      shape = approach_shape(problem, max(self%reach(1, mesh), calm_gap(problem)), self%digits, &
+        seen)
+    else
+      shape = contact_shape(problem, merge(about_edge, about_front, self%in_contact(mesh)), &
+        self%reach(1, mesh), self%reach(2, mesh), self%level, self%digits, seen)
+    end if
+  end function shape_for
 
   !> Makes a mesh; elastic: with its kernel, from the store if there is one.
   subroutine make_mesh(shape, elastic, grid, store)
@@ -141,8 +165,12 @@ contains
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: first, last
 
-    bands = ceiling(log(last/first)/log(merge(narrow_band, widest_band, &
-      law%period > 0 .or. law%step_width > 0)))
+    real(wp) :: ratio
+
+    ratio = widest_band
+    if (law%period > 0) ratio = narrow_band
+    if (law%step_width > 0) ratio = narrowest_band
+    bands = ceiling(log(last/first)/log(ratio))
   end function bands_for
 
   !> Adds bands between two radii.
@@ -158,15 +186,16 @@ contains
     high = [high, border(1:)]
   end subroutine add_bands
 
-  !> Halves panels of a mesh for bodies that yield.
-  subroutine halve_panels(self, mesh, which)
+  !> Makes a mesh anew, for bodies that yield.
+  subroutine renew(self, mesh, shape)
     class(mesh_family_t), intent(inout) :: self
     integer, intent(in) :: mesh
-    logical, intent(in) :: which(:)
+    type(mapped_shape_t), intent(in) :: shape
 
-    self%shape(mesh) = self%shape(mesh)%halved(which)
-    self%grid(mesh) = new_mapped_mesh(self%shape(mesh), elastic=.true.)
-  end subroutine halve_panels
+    self%shape(mesh) = shape
+    self%grid(mesh) = new_mapped_mesh(shape, elastic=.true.)
+    self%waits(mesh) = .false.
+  end subroutine renew
 
   !> Lets meshes, not made yet, be what coarser ones are with more nodes, where these have short
   !> panels or halves.

@@ -2,12 +2,14 @@
 !> somewhere between the edge and infinity, where no general rule can know of them.
 !>
 !> The pressure is tried over gaps as bodies have them: undeformed before contact; about the front
-!> of a step those of a disk under tension; in contact the gap outside a JKR contact. Panels in z on
-!> which the last Legendre coefficients of that pressure are not small are halved.
+!> of a step those of a disk under tension; in contact the gap outside a JKR contact. Or, once there
+!> is a path, over the gaps seen on it. Panels in z on which the last Legendre coefficients of that
+!> pressure are not small are halved.
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
   use discretisation, only: local_nodes_t, gauss_nodes
+  use seen_gaps, only: seen_gaps_t
   use step_front, only: front_leads, gap_about_front
   implicit none
   private
@@ -37,19 +39,23 @@ contains
 
   !> Lengths in z and nodes of panels at positions centre + side*d sinh(z): those given, with
   !> `nodes_on` them or more, or halves of them. Radii go from low to high; `about`:
-  !> what is at the centre.
-  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, length, order)
+  !> what is at the centre. seen: gaps to try instead of those foreseen.
+  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, length, &
+    order, seen)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about, side, fewest
     real(wp), intent(in) :: d, low, high, density, digits
     real(wp), allocatable, intent(inout) :: length(:)
     integer, allocatable, intent(out) :: order(:)
+    type(seen_gaps_t), intent(in), optional :: seen
     real(wp), allocatable :: given(:), parameter(:)
     real(wp) :: most(1)
     integer :: k
 
     most = 10.0_wp**(-digits)*abs(problem%law%pressure([problem%law%edge_gap]))
-    if (about == about_axis) then
+    if (present(seen)) then
+      parameter = seen%radius
+    else if (about == about_axis) then
       parameter = axis_gaps(problem)
     else
       parameter = between(low, high)
@@ -96,7 +102,11 @@ contains
       offset = side*d*sinh(z + z_length*local%node)
       do j = 1, size(parameter)
         associate (unit => merge(1.0_wp, parameter(j), about == about_axis))
-          pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset, d))
+          if (present(seen)) then
+            pressure = problem%law%pressure(seen%gap(problem%shape, j, offset))
+          else
+            pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset, d))
+          end if
           tail = max(tail, local%tail(pressure*(1 + (unit*offset)**2)))
         end associate
       end do

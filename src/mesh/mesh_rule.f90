@@ -8,6 +8,7 @@ module mesh_rule
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
   use contact_scales, only: smallest_feature, cohesive_width
   use law_panels, only: fit_panels, nodes_on, about_axis, about_front, about_edge
+  use seen_gaps, only: seen_gaps_t
   use step_front, only: front_leads, first_front, front_width
   use mapped_mesh, only: mapped_shape_t
   implicit none
@@ -47,10 +48,11 @@ module mesh_rule
 
 contains
 
-  !> Before contact, about the axis, for H0 up to h0_high.
-  type(mapped_shape_t) function approach_shape(problem, h0_high, digits) result(shape)
+  !> Before contact, about the axis, for H0 up to h0_high. seen: gaps that bodies had.
+  type(mapped_shape_t) function approach_shape(problem, h0_high, digits, seen) result(shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, digits
+    type(seen_gaps_t), intent(in), optional :: seen
     real(wp) :: density, reach, feature
 
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
@@ -63,19 +65,20 @@ contains
     shape%d = exp(rung*floor(log(finer*feature)/rung))
     shape%even = is_even(problem%shape)
     call add_panels(problem, shape, about_axis, 1, asinh(reach/shape%d), density, digits, 0.0_wp, &
-      0.0_wp)
+      0.0_wp, seen)
     call refine_axis(problem, digits, 3.0_wp, shape)
     shape%digits = kernel_digits(problem, digits)
   end function approach_shape
 
   !> In contact, about the edge, for contact radii from `low` to `high` (lateral units); or before,
   !> about the front of a step. level: the gap at which a law without adhesion begins to deform the
-  !> bodies.
-  type(mapped_shape_t) function contact_shape(problem, about, low, high, level, digits) &
+  !> bodies. seen: gaps that bodies had.
+  type(mapped_shape_t) function contact_shape(problem, about, low, high, level, digits, seen) &
     result(shape)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about
     real(wp), intent(in) :: low, high, level, digits
+    type(seen_gaps_t), intent(in), optional :: seen
     real(wp) :: inner, outer, reach, repulsion
 
     inner = 0.15_wp + digits*(0.24_wp + 0.0105_wp*digits)
@@ -102,12 +105,13 @@ contains
     shape%even = is_even(problem%shape)
     shape%d = min(finer*smallest_feature(problem, high)/high, 1.0_wp)
     if (about == about_front) shape%d = finer*front_width(problem, high)
-    call add_panels(problem, shape, about, -1, asinh(1/shape%d), inner, digits, low, high)
+    call add_panels(problem, shape, about, -1, asinh(1/shape%d), inner, digits, low, high, &
+      seen)
     call refine_axis(problem, digits, 1.0_wp, shape)
     shape%inner = size(shape%order)
     ! Panels of a whole number of nodes are a little longer, and end on the axis.
     shape%d = 1/sinh(sum(shape%z_length))
-    call add_panels(problem, shape, about, 1, asinh(reach/shape%d), outer, digits, low, high)
+    call add_panels(problem, shape, about, 1, asinh(reach/shape%d), outer, digits, low, high, seen)
     shape%digits = kernel_digits(problem, digits)
   end function contact_shape
 
@@ -156,13 +160,15 @@ contains
   !> Adds sinh panels over z_length. One is enough for the paper's laws, which are powers of the gap
   !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
   !> these. Other laws have lengths of their own anywhere within their reach, and where these are
-  !> seen the panel is halved. Laws that oscillate, have a kink or end in a step, other shapes, and
-  !> strong adhesion have short panels from the beginning. about, side, low, high: see `fit_panels`.
-  subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high)
+  !> seen the panel is halved. Laws that oscillate or have a kink, other shapes, and strong adhesion
+  !> have short panels from the beginning, and as long as gaps are only foreseen, laws that end in a
+  !> step. about, side, low, high, seen: see `fit_panels`.
+  subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
     integer, intent(in) :: about, side
     real(wp), intent(in) :: z_length, density, digits, low, high
+    type(seen_gaps_t), intent(in), optional :: seen
     real(wp), allocatable :: lengths(:)
     real(wp) :: smoothness
     integer, allocatable :: orders(:)
@@ -176,8 +182,8 @@ contains
     fewest = ceiling(short_order + short_orders*digits)
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
     associate (law => problem%law)
-      if (law%period > 0 .or. law%step_width > 0 .or. law%has_kink .or. broken .or. &
-        abs(problem%shape%exponent - 2) > 0 .or. &
+      if (law%period > 0 .or. law%has_kink .or. broken .or. &
+        law%step_width > 0 .and. .not. present(seen) .or. abs(problem%shape%exponent - 2) > 0 .or. &
         .not. law%of_paper .and. adhesion_strength(problem) > strongest) then
         panels = ceiling(z_length/short)
         lengths = spread(z_length/panels, 1, panels)
@@ -188,9 +194,9 @@ contains
       end if
       ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
       if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
-        .not. (about == about_edge .and. side < 0)) then
+        (present(seen) .or. .not. (about == about_edge .and. side < 0))) then
         call fit_panels(problem, about, side, shape%d, low, high, density, fewest, smoothness, &
-          lengths, orders)
+          lengths, orders, seen)
       else
         orders = nodes_on(lengths, density, fewest)
       end if

@@ -11,6 +11,7 @@ module continuation
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
   use edge_locked, only: approach
+  use seen_gaps, only: seen_gaps_t
   use regridding, only: regrid
   use path_coordinate, only: path_control, coordinate_of, inward
   use path_tangent, only: tangent_t
@@ -206,6 +207,8 @@ contains
         nearly_passed*meshes%passage(self%mesh)) return
     end associate
     next%mesh = self%mesh + 1
+    if (equations%meshes%waits(next%mesh)) call lay_out(equations, self%mesh, next%mesh, &
+      self%state(self%held))
     do j = self%held - 1, self%held
       state = self%state(j)
       ! The two are a step apart.
@@ -223,6 +226,23 @@ contains
     self%arc_t = next
     self%step = 0.5_wp*self%step
   end subroutine change_mesh
+
+  !> Lays out the mesh that the path comes to, by the gaps of the state that it comes with.
+  subroutine lay_out(equations, from, to, state)
+    type(equations_t), intent(inout), target :: equations
+    integer, intent(in) :: from, to
+    type(state_t), intent(in) :: state
+    type(seen_gaps_t) :: seen
+
+    associate (problem => equations%problem, meshes => equations%meshes, cost => equations%cost)
+      call seen%begin_on(meshes%grid(from), 1)
+      call seen%add(problem%shape, state%gap, state%scale)
+      call seen%try_between(radius_for(equations, from, to, state), meshes%reach(1, to), &
+        beyond_passage*meshes%reach(2, to))
+      call meshes%renew(to, meshes%shape_for(problem, to, seen))
+      cost%kernel_entries = cost%kernel_entries + meshes%grid(to)%kernel_entries()
+    end associate
+  end subroutine lay_out
 
   !> Solves a state of one mesh again on the other, at the same contact radius or axis gap.
   !> done = .false. where it has no contact edge to lock to, or did not converge.

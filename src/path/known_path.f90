@@ -52,6 +52,8 @@ module known_path
 
   !> Most points of a path before it is given up as going nowhere.
   integer, parameter :: longest = 5000
+  !> Contact radii over the largest expected that no path has.
+  real(wp), parameter :: too_large = 5
   !> Steps after which the listener hears of them: to write a message takes a tenth of a step.
   integer, parameter :: steps_a_message = 8
   !> Residual, in the law's lengths, that the points of the path have at most, whatever the deck
@@ -95,7 +97,8 @@ contains
         call listener%hear(trim(so_far))
       end if
       known%fallen = collapsed(equations%problem, known%path)
-      if (lost .or. known%path%held >= longest) then
+      lost = lost .or. known%path%held >= longest .or. astray(equations, known%path)
+      if (lost) then
         known%ending%cause = path_lost
       else if (known%fallen) then
         known%ending%cause = no_equilibrium
@@ -115,6 +118,18 @@ contains
       call land(equations, options, known, k, .false., known%outward(k))
     end do
   end subroutine trace
+
+  !> Whether the contact is much larger than any that is expected: on a mesh that is too coarse
+  !> folds were lost, and no state is taken for stable any more.
+  pure logical function astray(equations, path)
+    type(equations_t), intent(in) :: equations
+    type(traced_path_t), intent(in) :: path
+
+    associate (last => path%point(path%held), meshes => equations%meshes)
+      astray = meshes%in_contact(last%mesh) .and. &
+        last%state%scale > too_large*meshes%passage(size(meshes%passage))
+    end associate
+  end function astray
 
   !> The stable pieces of a path, from afar inward.
   pure function pieces_of(path) result(pieces)
