@@ -226,13 +226,32 @@ contains
     if (lost .or. walker%mesh == mesh) return
     do k = 1, 2
       do i = path%held, 1, -1
-        if (path%point(i)%mesh == mesh .and. abs(path%point(i)%coordinate - before(k)) <= 0) exit
+        associate (point => path%point(i))
+          if (point%mesh < mesh - 1) cycle
+          ! Where bands are narrow a state is taken along twice: its twin becomes the point.
+          if (point%mesh == mesh - 1 .and. allocated(point%twin)) then
+            if (abs(log(point%twin%scale) - before(k)) <= 0) call replace_by_twin(point, mesh)
+          end if
+          if (point%mesh == mesh .and. abs(point%coordinate - before(k)) <= 0) exit
+        end associate
       end do
       if (i == 0) cycle
       path%point(i)%twin = walker%state(k)
       path%point(i)%twin_tangent = walker%tangent(k)
     end do
   end subroutine change_mesh
+
+  !> Lets a point be what it is on the mesh of its twin.
+  pure subroutine replace_by_twin(point, mesh)
+    type(path_point_t), intent(inout) :: point
+    integer, intent(in) :: mesh
+
+    point%state = point%twin
+    point%tangent = point%twin_tangent
+    point%coordinate = log(point%state%scale)
+    point%mesh = mesh
+    deallocate (point%twin, point%twin_tangent)
+  end subroutine replace_by_twin
 
   !> Puts an extremum among the last points, by its coordinate on the walker's mesh.
   subroutine put(path, walker, quantity, found)
