@@ -22,6 +22,9 @@ module refinement
   !> 7 % of a tail (Dugdale's with a hard repulsion), and the states between may have tails three
   !> times as large. Never below what the iteration leaves of a stiff pressure.
   integer, parameter :: most_rounds = 6, most_halvings = 3
+  !> With so many times the nodes no panel is halved any more, until the path says again which are
+  !> too long: what a path that is lost leaves may ask for any number.
+  real(wp), parameter :: most_growth = 1.5_wp
   real(wp), parameter :: times = 30, least = 1.0e-8_wp
 
 contains
@@ -130,7 +133,7 @@ contains
     grid = steps%meshes%grid(mesh)
     do halving = 1, most_halvings
       associate (long => tails_on(steps, mesh, grid) > most)
-        if (.not. any(long)) exit
+        if (.not. any(long) .or. grid%nodes > most_growth*size(steps%meshes%grid(mesh)%x)) exit
         shape = shape%halved(long)
       end associate
       grid = new_mapped_mesh(shape, elastic=.false.)
