@@ -70,8 +70,8 @@ contains
   !> shape_only leaves the kernels out: to learn how large they would be, or until they are needed
   !> (`complete`). store: meshes made before,
   !> to which these are added. coarser: meshes of fewer digits for the same problem and range.
-  !> Where these have halved or short panels the same panels get more nodes: laid out anew
-  !> for more digits they may be fewer, and then no better.
+  !> Where these have halved or short panels, or as many nodes as those of more digits, the same
+  !> panels get more nodes: laid out anew they may be fewer, and then no better.
   function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store, coarser) &
     result(meshes)
     type(problem_t), intent(in) :: problem
@@ -115,7 +115,7 @@ contains
       if (k >= contact) meshes%reach(:, k) = [low(k - 1), high(k - 1)]
       meshes%shape(k) = meshes%shape_for(problem, k)
     end do
-    if (present(coarser)) call follow(meshes, coarser)
+    if (present(coarser)) call follow(meshes, coarser, problem%law%of_paper)
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
       call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
     end do
@@ -197,17 +197,21 @@ contains
     self%waits(mesh) = .false.
   end subroutine renew
 
-  !> Lets meshes, not made yet, be what coarser ones are with more nodes, where these have short
-  !> panels or halves.
-  pure subroutine follow(self, coarser)
+  !> Lets meshes, not made yet, be what coarser ones are with more nodes: where these have short
+  !> panels or halves and, under laws that nodes were tried for, where laid out anew they have fewer
+  !> than that and so would be off by the same.
+  pure subroutine follow(self, coarser, of_paper)
     type(mesh_family_t), intent(inout) :: self
     type(mesh_family_t), intent(in) :: coarser
+    logical, intent(in) :: of_paper
+    type(mapped_shape_t) :: richer
     integer :: k
 
     do k = 1, size(coarser%grid)
       if (.not. allocated(coarser%grid(k)%kernel)) cycle
-      if (coarser%has_short_panels(k)) self%shape(k) = &
-        coarser%shape(k)%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
+      richer = coarser%shape(k)%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
+      if (coarser%has_short_panels(k) .or. .not. of_paper .and. &
+        sum(self%shape(k)%order) < sum(richer%order)) self%shape(k) = richer
     end do
   end subroutine follow
 
