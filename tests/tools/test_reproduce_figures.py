@@ -22,7 +22,8 @@ CYCLES = ("fig10a_converged", "fig10b_converged", "fig10c_converged")
 def tools():
     """Makes the modules of tools/reproduce importable, as `./reproduce` does."""
     before = list(sys.path)
-    sys.path.insert(0, str(TOOLS))
+    # A module that other claims have imported already does not add its folders once more.
+    sys.path[:0] = [str(TOOLS), str(ROOT / "pywrap" / "plots"), str(ROOT / "tools")]
     yield
     sys.path[:] = before
 
