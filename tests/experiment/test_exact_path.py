@@ -1,0 +1,63 @@
+"""Claims about a path whose folds and extrema are not as exact as asked for: it is traced again
+with more digits where these help, and the better one is shown."""
+
+import pytest
+from support.scenes import deck, lennard_jones, runner, several
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("exact_path"))
+
+
+@pytest.mark.parametrize("sigma,accuracy", [(1.6607746, 1e-8), (1.6607746, 1e-7), (5.475, 1e-6)])
+def test_extrema_that_have_just_come_to_be_are_as_exact_as_asked_for(run, sigma, accuracy):
+    """Small errors move two extrema near each other far: such a path is traced with more digits."""
+    deck = {"equilibrium_path": {"h0_end": -20.0}}
+    found = run(lennard_jones(sigma, numerics={"accuracy": accuracy}, **deck)).summary
+    truth = run(lennard_jones(sigma, numerics={"accuracy": 1e-10}, **deck)).summary
+    assert not several(found.get("warnings", []))
+    assert found["error_estimate"] < accuracy
+    for key in ("load_folds_h0", "load_folds_load", "folds_h0", "folds_load"):
+        assert several(found[key]) == pytest.approx(several(truth[key]), rel=accuracy)
+
+
+def other_force(stiffness, accuracy, h0_end, **force):
+    """The path under a Lennard-Jones law and another force [SI]."""
+    return deck(
+        bodies={"radius": 1.5e-2, "stiffness": stiffness},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
+        equilibrium_path={"h0_end": h0_end},
+        numerics={"accuracy": accuracy},
+        **force,
+    )
+
+
+def test_a_path_is_traced_again_as_if_a_higher_accuracy_were_asked_for(run):
+    """More nodes on panels that are too long do not help: their halving has to go with them."""
+    depletion = {"osmotic_pressure": 1e5, "diameter": 1.16407163e-9}
+    found, truth = (
+        run(other_force(6.18145667e11, accuracy, 2.28571824e-10, depletion=depletion)).summary
+        for accuracy in (1e-4, 1e-8)
+    )
+    assert not several(found.get("warnings", []))
+    assert found["error_estimate"] < 1e-4
+    assert found["load_folds_load"] == pytest.approx(truth["load_folds_load"], rel=1e-6)
+
+
+def test_where_more_digits_do_not_help_the_better_path_stays(run):
+    """About a kink errors go up and down with the nodes: one that is worse must not be shown."""
+    steric = {"brush_thickness": 1.7417738643505404e-9, "grafting_density": 1e16}
+    found = run(other_force(3.959643598120061e11, 1e-6, 2.105954964614361e-10, steric=steric))
+    assert not found.warnings
+    assert found.summary["error_estimate"] < 3e-6
+
+
+def test_the_error_of_what_is_not_shown_is_no_part_of_the_estimate(run):
+    """Two extrema that hardly exist have the largest errors; the path begins behind them."""
+    numerics = {"accuracy": 1e-5}
+    whole, part = (
+        run(lennard_jones(1.6607746, equilibrium_path=shown, numerics=numerics)).summary
+        for shown in ({"h0_end": -20.0}, {"h0_start": -5.0, "h0_end": -20.0})
+    )
+    assert part["error_estimate"] < 0.1 * whole["error_estimate"]
