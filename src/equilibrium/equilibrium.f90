@@ -1,9 +1,9 @@
 !> The equations of equilibrium on a discretisation, in the units of `dimensionless_problem`:
 !>
-!>     G_i = H_i - H0 - f(c x_i) - 2 coupling c (W P(H))_i = 0
+!>     G_i = H_i - H0 - f(c x_i) - (A(c) P(H))_i = 0
 !>
-!> for the gaps H at the nodes rho = c x of bodies of the shape f. The kernel is homogeneous, so one
-!> matrix W serves every scale c. A control says what is prescribed; where that is not H0 at a fixed
+!> for the gaps H at the nodes rho = c x of bodies of the shape f, which yield as their
+!> `elastic_operator` A says. A control says what is prescribed; where that is not H0 at a fixed
 !> scale, one more unknown (H0 or c) and one more equation (the gap on the axis or at the contact
 !> edge) join.
 module equilibrium
@@ -14,7 +14,7 @@ module equilibrium
   use contact_scales, only: largest_floor
   use contact_state, only: state_t, state_from, load_reach, gap_at_end, far_gap
   use edge_locked, only: mesh_family_t
-  use linear_algebra, only: multiply
+  use elastic_operator, only: elastic_operator_t
   implicit none
   private
   public :: control_t, cost_t, equations_t, residual, largest_step, unknowns_of, holds, &
@@ -60,12 +60,23 @@ module equilibrium
     type(problem_t) :: problem
     type(mesh_family_t) :: meshes
     type(cost_t) :: cost
-    !> Scratch of `residual`, which is called too often to allocate any: the kernel times the
-    !> pressure.
-    real(wp), allocatable, private :: raised(:)
+    type(elastic_operator_t) :: operator
+    !> Scratch of `residual`, which is called too often to allocate any: the rise of the gap.
+    real(wp), allocatable, private :: rise(:)
+  contains
+    procedure :: become_those_of
   end type equations_t
 
 contains
+
+  !> Turns them into those of another problem on the same meshes.
+  subroutine become_those_of(self, problem)
+    class(equations_t), intent(inout) :: self
+    type(problem_t), intent(in) :: problem
+
+    self%problem = problem
+    call self%operator%forget()
+  end subroutine become_those_of
 
   !> g(:nodes) = G and, where the control has one, g(nodes + 1) = its own equation, for the unknowns
   !> z = (gaps [, H0 or c]). On return `state` is what z stands for, with its load and residual.
@@ -77,18 +88,18 @@ contains
     real(wp), intent(in) :: z(:)
     real(wp), intent(out) :: g(:)
     type(state_t), intent(inout) :: state
-    real(wp) :: edge_gap, yielding
+    real(wp) :: edge_gap
     integer :: i, n, rows, columns
 
     n = node_count(control, size(z))
     rows = first_node - 1 + n
-    if (.not. allocated(equations%raised)) allocate (equations%raised(rows))
-    if (size(equations%raised) < rows) then
-      deallocate (equations%raised)
-      allocate (equations%raised(rows))
+    if (.not. allocated(equations%rise)) allocate (equations%rise(rows))
+    if (size(equations%rise) < rows) then
+      deallocate (equations%rise)
+      allocate (equations%rise(rows))
     end if
     associate (problem => equations%problem, cost => equations%cost, &
-      grid => equations%meshes%grid(control%mesh), raised => equations%raised(:rows))
+      grid => equations%meshes%grid(control%mesh), rise => equations%rise(:rows))
       call unpack(control, z, state%h0, state%scale)
       state%gap = z(:n)
       if (.not. defined(problem, state)) then
@@ -103,26 +114,25 @@ contains
       cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
       if (problem%coupling > 0) then
         columns = acting_columns(state%pressure)
-        call multiply(grid%kernel, columns, state%pressure, raised)
+        call equations%operator%deform(problem, grid, state%scale, columns, state%pressure, rise)
         cost%operator_products = cost%operator_products + 1
         cost%operator_columns = cost%operator_columns + columns
       else
-        raised = 0
+        rise = 0
       end if
-      yielding = 2*problem%coupling*state%scale
       do i = 1, n
         g(i) = state%gap(i) - state%h0 - problem%shape%height(state%scale*grid%x(i)) - &
-          yielding*raised(first_node - 1 + i)
+          rise(first_node - 1 + i)
       end do
       ! In a stiff contact the equation for the axis, which is no node, is off by many times what
       ! the polynomials lack of the pressure between the nodes; their gaps tell it better.
-      state%axis_gap = state%h0 + yielding*raised(axis_row)
+      state%axis_gap = state%h0 + rise(axis_row)
       if (grid%centre > 0) state%axis_gap = dot_product(grid%at_axis, state%gap)
       select case (control%kind)
       case (at_axis_gap)
         g(n + 1) = state%axis_gap - control%value
       case (at_edge_radius, at_h0_with_edge)
-        edge_gap = state%h0 + problem%shape%height(state%scale) + yielding*raised(centre_row)
+        edge_gap = state%h0 + problem%shape%height(state%scale) + rise(centre_row)
         g(n + 1) = edge_gap - equations%meshes%locked_gap(problem%law, control%mesh)
       end select
       state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)

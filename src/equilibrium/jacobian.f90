@@ -4,7 +4,8 @@ module jacobian
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
-  use linear_algebra, only: factorisation_t, factorise, multiply
+  use linear_algebra, only: factorisation_t, factorise
+  use elastic_operator, only: elastic_operator_t
   use contact_state, only: state_t
   use equilibrium, only: control_t, cost_t, equations_t, at_h0, at_axis_gap, at_edge_radius, &
     at_h0_with_edge
@@ -15,7 +16,7 @@ module jacobian
 contains
 
   !> Factors of the Jacobian of `residual` at a state, bordered where the control has an unknown of
-  !> its own: I - 2 coupling c W diag(P'), and the derivatives by H0 or c. `shift` is added to the
+  !> its own: I - A(c) diag(P'), and the derivatives by H0 or c. `shift` is added to the
   !> diagonal of the nodes' block.
   subroutine factorise_jacobian(equations, control, state, factors, shift)
     type(equations_t), intent(inout) :: equations
@@ -25,15 +26,17 @@ contains
     real(wp), intent(in), optional :: shift
 
     associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem)
-      call factorise_on(problem, grid, equations%meshes%locked_gap(problem%law, control%mesh), &
-        control, state, factors, equations%cost, shift)
+      call factorise_on(problem, grid, equations%operator, equations%meshes%locked_gap( &
+        problem%law, control%mesh), control, state, factors, equations%cost, shift)
     end associate
   end subroutine factorise_jacobian
 
   !> The same for a state on a mesh that is given, locked to a given gap.
-  subroutine factorise_on(problem, grid, locked_gap, control, state, factors, cost, shift)
+  subroutine factorise_on(problem, grid, operator, locked_gap, control, state, factors, cost, &
+    shift)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
+    type(elastic_operator_t), intent(inout) :: operator
     real(wp), intent(in) :: locked_gap
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
@@ -41,7 +44,7 @@ contains
     type(cost_t), intent(inout) :: cost
     real(wp), intent(in), optional :: shift
     real(wp) :: factor(size(state%gap)), diagonal
-    integer :: n, m, j, row
+    integer :: n, m, j
 
     n = size(state%gap)
     m = n
@@ -50,21 +53,23 @@ contains
       if (size(factors%lu, 1) /= m) deallocate (factors%lu)
     end if
     if (.not. allocated(factors%lu)) allocate (factors%lu(m, m))
-    factor = -2*problem%coupling*state%scale*problem%law%slope(state%gap)
+    factor = -problem%law%slope(state%gap)
     cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
     diagonal = 1
     if (present(shift)) diagonal = 1 + shift
-    row = bordered_row(control)
-    do j = 1, n
+    associate (lu => factors%lu)
       if (problem%coupling > 0) then
-        factors%lu(:n, j) = factor(j)*grid%kernel(first_node:first_node - 1 + n, j)
-        if (m > n) factors%lu(m, j) = -factor(j)*grid%kernel(row, j)
+        call operator%matrix(problem, grid, state%scale, factor, first_node, lu(:n, :n))
+        if (m > n) call operator%matrix(problem, grid, state%scale, -factor, &
+          bordered_row(control), lu(m:, :n))
       else
-        factors%lu(:, j) = 0
+        lu = 0
       end if
-      factors%lu(j, j) = factors%lu(j, j) + diagonal
-    end do
-    if (m > n) call border(problem, grid, locked_gap, control, state, factors%lu(:, m))
+      do j = 1, n
+        lu(j, j) = lu(j, j) + diagonal
+      end do
+      if (m > n) call border(problem, grid, operator, locked_gap, control, state, lu(:, m))
+    end associate
     call factorise(factors)
     cost%factorisations = cost%factorisations + 1
   end subroutine factorise_on
@@ -76,24 +81,24 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: change(:)
     real(wp) :: product(size(change))
-    real(wp) :: raised(first_node - 1 + size(state%gap)), column(size(change))
+    real(wp) :: rise(first_node - 1 + size(state%gap)), column(size(change))
 
     associate (problem => equations%problem, grid => equations%meshes%grid(control%mesh), &
       n => size(state%gap), m => size(change), cost => equations%cost)
-      raised = 0
+      rise = 0
       if (problem%coupling > 0) then
-        call multiply(grid%kernel, n, problem%law%slope(state%gap)*change(:n), raised)
-        raised = 2*problem%coupling*state%scale*raised
+        call equations%operator%deform(problem, grid, state%scale, n, &
+          problem%law%slope(state%gap)*change(:n), rise)
         cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
         cost%operator_products = cost%operator_products + 1
         cost%operator_columns = cost%operator_columns + n
       end if
-      product(:n) = change(:n) - raised(first_node:)
+      product(:n) = change(:n) - rise(first_node:)
       if (m == n) return
-      call border(problem, grid, equations%meshes%locked_gap(problem%law, control%mesh), control, &
-        state, column)
+      call border(problem, grid, equations%operator, equations%meshes%locked_gap(problem%law, &
+        control%mesh), control, state, column)
       product(:n) = product(:n) + column(:n)*change(m)
-      product(m) = raised(bordered_row(control)) + column(m)*change(m)
+      product(m) = rise(bordered_row(control)) + column(m)*change(m)
     end associate
   end function jacobian_times
 
@@ -105,43 +110,49 @@ contains
   end function bordered_row
 
   !> The column of derivatives of `residual` by the control's unknown.
-  pure subroutine border(problem, grid, locked_gap, control, state, column)
+  subroutine border(problem, grid, operator, locked_gap, control, state, column)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
+    type(elastic_operator_t), intent(inout) :: operator
     real(wp), intent(in) :: locked_gap
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: column(:)
 
     if (control%kind == at_h0_with_edge) then
-      column = scale_derivative(problem, grid, locked_gap, state)
+      call scale_derivative(problem, grid, operator, locked_gap, state, column)
     else
       column = -1
       column(size(column)) = 1
     end if
   end subroutine border
 
-  !> Derivative of `residual` by the scale c: -x f'(c x) - 2 coupling W P at the nodes, the opposite
-  !> sign, with x = 1, in the equation for the edge. The deformation is read off the gaps, which is
-  !> exact where the residual vanishes and costs no operator product.
-  pure function scale_derivative(problem, grid, locked_gap, state) result(column)
+  !> Derivative of `residual` by the scale c: -x f'(c x) - dA/dc P at the nodes, the opposite sign,
+  !> with x = 1, in the equation for the edge. A P/c, all that homogeneous bodies have of dA/dc P,
+  !> is read off the gaps: that is exact where the residual vanishes, and costs no operator product.
+  subroutine scale_derivative(problem, grid, operator, locked_gap, state, column)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
+    type(elastic_operator_t), intent(inout) :: operator
     real(wp), intent(in) :: locked_gap
     type(state_t), intent(in) :: state
-    real(wp) :: column(size(state%gap) + 1)
+    real(wp), intent(out) :: column(:)
+    real(wp) :: more(centre_row - 1 + size(column))
 
     associate (c => state%scale, n => size(state%gap))
-      column(:n) = -problem%shape%unlike_scaling(c, grid%x(:n)) - (state%gap - state%h0)/c
-      column(n + 1) = problem%shape%unlike_scaling(c, 1.0_wp) + &
-        (locked_gap - state%h0)/c
+      call operator%unlike_scaling(problem, grid, c, state%pressure, centre_row, &
+        more(centre_row:))
+      column(:n) = -problem%shape%unlike_scaling(c, grid%x(:n)) - (state%gap - state%h0)/c - &
+        more(first_node:)
+      column(n + 1) = problem%shape%unlike_scaling(c, 1.0_wp) + (locked_gap - state%h0)/c + &
+        more(centre_row)
     end associate
-  end function scale_derivative
+  end subroutine scale_derivative
 
   !> Derivative of `residual` by the control's value, at a state: with the factors of the same
   !> control the tangent of the path is minus their solution for it.
-  pure function control_derivative(equations, control, state) result(derivative)
-    type(equations_t), intent(in) :: equations
+  function control_derivative(equations, control, state) result(derivative)
+    type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     real(wp), allocatable :: derivative(:)
@@ -158,9 +169,10 @@ contains
       allocate (derivative(n + 1), source=0.0_wp)
       derivative(n + 1) = -1
     case (at_edge_radius)
+      allocate (derivative(n + 1))
       associate (problem => equations%problem, meshes => equations%meshes)
-        derivative = scale_derivative(problem, meshes%grid(control%mesh), &
-          meshes%locked_gap(problem%law, control%mesh), state)
+        call scale_derivative(problem, meshes%grid(control%mesh), equations%operator, &
+          meshes%locked_gap(problem%law, control%mesh), state, derivative)
       end associate
     end select
   end function control_derivative

@@ -8,7 +8,8 @@ module stability
   use contact_state, only: state_t
   use equilibrium, only: control_t, cost_t
   use jacobian, only: factorise_on
-  use linear_algebra, only: factorisation_t, solve, determinant_sign, multiply, eigenvalues
+  use elastic_operator, only: elastic_operator_t
+  use linear_algebra, only: factorisation_t, solve, determinant_sign, eigenvalues
   implicit none
   private
   public :: smallest_eigenvalue, local_criterion, axis_criterion, unknown
@@ -33,8 +34,8 @@ module stability
 
 contains
 
-  !> The smallest eigenvalue of I - 2 coupling c W diag(P'), above 0 where the state is stable at
-  !> fixed h0; the spectrum is real because W is symmetric under the weights, but for what
+  !> The smallest eigenvalue of I - A(c) diag(P'), above 0 where the state is stable at fixed h0;
+  !> the spectrum is real because A is symmetric under the weights, but for what
   !> discretisation leaves. LAPACK finds all eigenvalues. The smallest is then made as exact as the
   !> factors of the operator allow, and three conditions have to hold, each on its own: the pair
   !> found is one of the operator; the determinant has the sign of an even number of eigenvalues
@@ -49,26 +50,28 @@ contains
     type(cost_t), intent(inout) :: cost
     real(wp), dimension(size(state%gap)) :: factor, root, part
     real(wp), allocatable :: matrix(:, :)
+    type(elastic_operator_t) :: operator
     real(wp) :: error, widest
     integer :: n, j
 
     eigenvalue = 1
     certain = .true.
     n = size(state%gap)
-    factor = 2*problem%coupling*state%scale*problem%law%slope(state%gap)
+    factor = problem%law%slope(state%gap)
     ! Rigid bodies, or none that attract: repulsion raises eigenvalues, which accumulate at 1.
-    if (.not. maxval(factor) > 0) return
+    if (.not. (problem%coupling > 0 .and. maxval(factor) > 0)) return
     ! With the slope shared by rows and columns the eigenvectors are far from parallel.
     root = sqrt(abs(factor))
     allocate (matrix(n, n))
+    call operator%matrix(problem, grid, state%scale, sign(root, factor), first_node, matrix)
     do j = 1, n
-      matrix(:, j) = root*grid%kernel(first_node:first_node - 1 + n, j)*sign(root(j), factor(j))
+      matrix(:, j) = root*matrix(:, j)
     end do
     call eigenvalues(matrix, part, error, certain)
     if (certain) then
       eigenvalue = 1 - maxval(part)
       widest = maxval(abs(part))
-      call refine(problem, grid, state, factor, widest, eigenvalue, certain, cost)
+      call refine(problem, grid, operator, state, factor, widest, eigenvalue, certain, cost)
     end if
     if (certain) certain = error <= room(lower, eigenvalue, widest)
     if (.not. certain) eigenvalue = unknown()
@@ -77,9 +80,10 @@ contains
   !> Inverse iteration from a shift just below the eigenvalue, on the operator itself. certain:
   !> it ended where it began, with a pair of the operator, and the determinant says that an even
   !> number of eigenvalues is below the shift.
-  subroutine refine(problem, grid, state, factor, widest, eigenvalue, certain, cost)
+  subroutine refine(problem, grid, operator, state, factor, widest, eigenvalue, certain, cost)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
+    type(elastic_operator_t), intent(inout) :: operator
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: factor(:), widest
     real(wp), intent(inout) :: eigenvalue
@@ -88,14 +92,15 @@ contains
     type(control_t) :: control
     type(factorisation_t) :: factors
     real(wp), dimension(size(factor)) :: vector, image
-    real(wp) :: raised(first_node - 1 + size(factor)), first, before, growth, shift
+    real(wp) :: rise(first_node - 1 + size(factor)), first, before, growth, shift
     integer :: step
 
     certain = .false.
     first = eigenvalue
     shift = first - room(close, first, widest)
     control%scale = state%scale
-    call factorise_on(problem, grid, problem%law%edge_gap, control, state, factors, cost, -shift)
+    call factorise_on(problem, grid, operator, problem%law%edge_gap, control, state, factors, &
+      cost, -shift)
     if (.not. factors%valid) return
     if (determinant_sign(factors) < 0) return
     associate (weight => grid%weight(:size(factor)))
@@ -112,8 +117,8 @@ contains
         if (abs(eigenvalue - before) <= room(settled, first, widest)) exit
       end do
       vector = vector/sqrt(sum(weight*vector**2))
-      call multiply(grid%kernel, size(factor), factor*vector, raised)
-      image = (1 - eigenvalue)*vector - raised(first_node:)
+      call operator%deform(problem, grid, state%scale, size(factor), factor*vector, rise)
+      image = (1 - eigenvalue)*vector - rise(first_node:)
       certain = abs(eigenvalue - first) <= room(close, first, widest) .and. &
         sqrt(sum(weight*image**2)) <= room(exact, first, widest)
     end associate

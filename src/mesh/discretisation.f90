@@ -3,7 +3,7 @@
 !> `mapped_mesh`).
 !>
 !> All lengths are lateral and relative to a scale that the user of the object chooses; because the
-!> kernel is homogeneous, the same matrix serves every scale c (see `equilibrium`).
+!> kernel is homogeneous, the same matrix serves every scale c (see `elastic_operator`).
 module discretisation
   use kinds, only: wp, long
   use panel_map, only: panel_map_t, algebraic_map

@@ -10,6 +10,7 @@ module dimensionless_problem
   use kinds, only: wp
   use force_law, only: force_law_t
   use shape, only: shape_t
+  use elastic_body, only: elastic_body_t, half_space_t
   implicit none
   private
   public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
@@ -18,6 +19,8 @@ module dimensionless_problem
   type :: problem_t
     class(force_law_t), allocatable :: law
     class(shape_t), allocatable :: shape
+    !> What the bodies yield beside a half-space; homogeneous ones nothing.
+    class(elastic_body_t), allocatable :: body
     real(wp) :: coupling = 0
     !> Units: gap [m], lateral position [m], pressure [Pa], load [N].
     real(wp) :: length = 1, lateral = 1, pressure = 1, load = 1
@@ -45,6 +48,7 @@ contains
 
     allocate (problem%law, source=law)
     allocate (problem%shape, source=shape)
+    allocate (half_space_t :: problem%body)
     problem%length = law%length
     problem%lateral = sqrt(shape%radius*law%length)
     problem%pressure = law%pressure_unit

@@ -123,7 +123,7 @@ contains
       end associate
       rate = rate + varied%weight(k)*value
     end do
-    equations%problem = own
+    call equations%become_those_of(own)
     rate(of_h0) = line%separation(size(left))
     if (.not. radius > 0) return
     rate(of_radius) = -rate(of_radius)/steepness(equations, place, x)

@@ -132,7 +132,7 @@ contains
       end associate
     end do
     line%uncertainty = abs(line%load - coarser)
-    equations%problem = own
+    call equations%become_those_of(own)
   end subroutine follow_line
 
   !> The state on a line that belongs to the k-th varied problem, which becomes that of the
@@ -150,7 +150,7 @@ contains
     integer :: n
 
     n = size(place%state%gap)
-    equations%problem = varied%problem(k)
+    call equations%become_those_of(varied%problem(k))
     associate (problem => varied%problem(k), law => varied%problem(k)%law)
       control = control_of(own, problem, place%mesh, place%s + varied%shift(k))
       call residual(equations, control, law%gap_of(own%law%separation_of([place%state%gap, &

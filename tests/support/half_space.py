@@ -46,10 +46,19 @@ def lagrange(nodes, at):
     return values
 
 
-class HalfSpace:
-    """Panels and the matrix of the kernel on them; row 0 is the axis."""
+def ring_image(r, t, depth):
+    """2 Int exp(-depth k) J0(k r) J0(k t) dk: the kernel of an image at a depth."""
+    far, near = np.hypot(r + t, depth), np.hypot(r - t, depth)
+    return 4 / (np.pi * far) * agm_k(near / far)
 
-    def __init__(self, ends, order=12):
+
+class HalfSpace:
+    """Panels and the matrix of the kernel on them; row 0 is the axis.
+
+    image: strength and depth of a ring image that is added to the kernel.
+    """
+
+    def __init__(self, ends, order=12, image=None):
         x, w = np.polynomial.legendre.leggauss(order)
         local, weight = (x + 1) / 2, w / 2
         ends = np.asarray(ends, float)
@@ -79,6 +88,9 @@ class HalfSpace:
                     k = kernel(targets[i], at, abs((near - targets[i]) + offset))
                     row += (k * 6 * s**5 * v * reach * at) @ lagrange(local, (at - a) / (b - a))
                 self.matrix[i, columns] = row
+        if image:
+            strength, depth = image
+            self.matrix += strength * ring_image(targets[:, None], self.r, depth) * self.weight
 
     def solve(self, law, s, h0, largest=0.8):
         """The gaps (axis first) at each of several H0; none falls by more than `largest` a step."""
@@ -132,10 +144,13 @@ class HalfSpace:
             found.append((gap, h0))
         return found
 
-    def folds(self, law, s, axis):
-        """H0 and load where H0 turns, from states at the given gaps on the axis."""
-        h0 = np.array([state[1] for state in self.with_axis(law, s, axis)])
-        turns = np.flatnonzero(np.diff(h0)[1:] * np.diff(h0)[:-1] < 0) + 1
+    def folds(self, law, s, axis, softness=0.0):
+        """H0 and load where H0 - softness*load turns, from states at the given gaps on the axis."""
+        def driven(states):
+            return np.array([h0 - softness * self.load(law, s, gap) for gap, h0 in states])
+
+        drive = driven(self.with_axis(law, s, axis))
+        turns = np.flatnonzero(np.diff(drive)[1:] * np.diff(drive)[:-1] < 0) + 1
         found = []
         for i in turns:
             low, high = axis[i + 1], axis[i - 1]
@@ -144,7 +159,8 @@ class HalfSpace:
             u = chebyshev.chebpts1(12)[::-1]
             h0_of = chebyshev.chebfit(u, [state[1] for state in states], 11)
             load_of = chebyshev.chebfit(u, [self.load(law, s, state[0]) for state in states], 11)
-            roots = chebyshev.chebroots(chebyshev.chebder(h0_of))
+            roots = chebyshev.chebroots(
+                chebyshev.chebder(chebyshev.chebfit(u, driven(states), 11)))
             root = roots[(abs(roots.imag) < 1e-9) & (abs(roots.real) <= 1)].real[0]
             found.append([chebyshev.chebval(root, h0_of), chebyshev.chebval(root, load_of)])
         return found
@@ -194,11 +210,20 @@ def independent_states(law, s, h0, ends, largest=0.8):
     return carried_out({"law": law, "s": s, "h0": list(h0), "ends": list(ends), "largest": largest})
 
 
-def independent_folds(law, s, axis, ends, **keys):
-    """H0 and load, (two, folds), where H0 turns as the gap on the axis closes through `axis`."""
-    return carried_out(
-        {"law": law, "s": s, "folds": list(axis), "ends": list(ends), "keys": keys}
-    )
+def states_by_axis(law, s, axis, ends, image=None):
+    """H0 and loads, (two, states), at each gap on the axis."""
+    return carried_out({"law": law, "s": s, "axis": list(axis), "ends": list(ends),
+                        "image": image})
+
+
+def independent_folds(law, s, axis, ends, image=None, softness=0.0, **keys):
+    """H0 and load, (two, folds), where H0 turns as the gap on the axis closes through `axis`.
+
+    softness, in lengths over loads of the result: where H0 - softness*load turns, the position of a
+    drive behind a spring.
+    """
+    return carried_out({"law": law, "s": s, "folds": list(axis), "ends": list(ends), "keys": keys,
+                        "image": image, "softness": softness})
 
 
 def carried_out(task):
@@ -226,9 +251,13 @@ def main():
     law = {
         "exponential": exponential, "lennard_jones": lennard_jones, "barrier": behind_a_barrier,
     }.get(task["law"]) or dlvo(**task["keys"])
-    half_space = HalfSpace(task["ends"])
+    half_space = HalfSpace(task["ends"], image=task.get("image"))
+    if "axis" in task:
+        states = half_space.with_axis(law, task["s"], task["axis"])
+        print(json.dumps([[h0, half_space.load(law, task["s"], gap)] for gap, h0 in states]))
+        return
     if "folds" in task:
-        print(json.dumps(half_space.folds(law, task["s"], task["folds"])))
+        print(json.dumps(half_space.folds(law, task["s"], task["folds"], task["softness"])))
         return
     gaps = half_space.solve(law, task["s"], task["h0"], task["largest"])
     print(json.dumps([[gap[0], half_space.load(law, task["s"], gap)] for gap in gaps]))

@@ -1,0 +1,119 @@
+"""Claims about bodies that are not homogeneous: path, cycle, spring, stability and derivatives of a
+half-space with a ring image, against dense states that share nothing with the program."""
+
+import csv
+import math
+import subprocess
+
+import f90nml
+import numpy as np
+import pytest
+from conftest import ROOT
+from support.half_space import independent_folds, states_by_axis
+from support.processes import HANG
+from support.scenes import lennard_jones, loading
+
+# Softer than a half-space, as on a soft base, and stiffer, as on a hard one.
+SOFT, STIFF = (0.5, 1.8), (-0.35, 1.2)
+# Gaps on the axis from far away into contact, and panels, narrow where the contact has its edge.
+CLOSE = [*np.linspace(2.8, 1.1, 18), *np.linspace(1.09, 0.98, 16)]
+FAR = np.linspace(12, 3, 12)
+ENDS = [*np.arange(0, 3.6, 0.15), 3.8, 4.4, *np.geomspace(6, 300, 8)]
+SIGMA = 1.0
+
+
+class Outcome:
+    """The summary, the rows of the curve and the derivatives that the test's program prints."""
+
+    def __init__(self, text):
+        lines = [line for line in text.splitlines() if line.strip()]
+        rows = [row[1:] for row in csv.reader(lines) if row[0] == "row"]
+        self.branch = np.array([row[0] for row in rows])
+        self.h0, self.centre, self.load, self.stable, self.eigenvalue = (
+            np.array([float(row[k]) for row in rows]) for k in (1, 2, 4, 6, 10))
+        self.rate = {row[1]: np.array(row[2:], float)
+                     for row in csv.reader(lines) if row[0] == "rate"}
+        others = [line for line in lines if not line.startswith(("row,", "rate,"))]
+        self.summary = f90nml.reads("\n".join(others) + "\n")["summary"]
+
+
+@pytest.fixture(scope="module")
+def run(snapin_path, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("body")
+
+    def outcome(image, sigma=SIGMA, **groups):
+        path = folder / f"{len(list(folder.iterdir()))}.nml"
+        path.write_text(lennard_jones(sigma, **groups))
+        done = subprocess.run([snapin_path.parent / "ring_image", path, *map(repr, image)],
+                              capture_output=True, text=True, check=True, timeout=HANG)
+        return Outcome(done.stdout)
+
+    return outcome
+
+
+PATH = {"h0_end": -1.0}
+
+
+def test_no_image_is_the_half_space(run):
+    """So that what follows is about the image."""
+    found = run((0.0, 1.0), equilibrium_path=PATH).summary
+    h0, _ = independent_folds("lennard_jones", SIGMA, [*FAR, *CLOSE], ENDS)
+    assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-7)
+
+
+@pytest.mark.parametrize("image", [SOFT, STIFF])
+def test_folds_of_the_path_are_those_of_independent_states(run, image):
+    found = run(image, equilibrium_path=PATH, numerics={"accuracy": 1e-8}).summary
+    h0, load = independent_folds("lennard_jones", SIGMA, [*FAR, *CLOSE], ENDS, image=image)
+    assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-8)
+    # Beside a fold the load goes with the root of an error in H0.
+    assert [found["jump_in_load"], found["jump_out_load"]] == pytest.approx(load, rel=1e-6)
+    # The image matters: a half-space jumps elsewhere.
+    plain, _ = independent_folds("lennard_jones", SIGMA, [*FAR, *CLOSE], ENDS)
+    assert abs(h0 - plain).min() > 0.02
+
+
+@pytest.mark.parametrize("image", [SOFT, STIFF])
+def test_a_cycle_goes_through_independent_states(run, image):
+    axis = [*FAR, *CLOSE]
+    h0, load = states_by_axis("lennard_jones", SIGMA, axis, ENDS, image=image)
+    for k in (len(FAR) - 1, -1):  # Before the jump, and in contact.
+        found = run(image, loading=loading(6, h0[k], 0.5))
+        assert found.h0[-1] == h0[k]
+        assert found.centre[-1] == pytest.approx(axis[k], rel=1e-7)
+        assert found.load[-1] == pytest.approx(load[k], rel=1e-6)
+
+
+@pytest.mark.parametrize("image", [SOFT, STIFF])
+def test_a_spring_jumps_where_independent_states_turn(run, image):
+    softness = 0.4
+    found = run(image, equilibrium_path=PATH, device={"stiffness": 1 / softness},
+                numerics={"accuracy": 1e-8}).summary
+    h0, load = independent_folds("lennard_jones", SIGMA, [*FAR, *CLOSE], ENDS, image=image,
+                                 softness=softness)
+    z = [found["device_jump_in_z"], found["device_jump_out_z"]]
+    assert z == pytest.approx(h0 - softness * load, rel=1e-7)
+
+
+@pytest.mark.parametrize("image", [SOFT, STIFF])
+def test_the_smallest_eigenvalue_passes_zero_at_the_folds(run, image):
+    found = run(image, equilibrium_path=PATH, stability={})
+    folds = np.flatnonzero(abs(found.eigenvalue) < 1e-6)
+    assert found.h0[folds] == pytest.approx(
+        [found.summary["jump_in_h0"], found.summary["jump_out_h0"]], rel=1e-9)
+    inside = slice(folds[0] + 1, folds[1])
+    assert (found.eigenvalue[inside] < 0).all()
+    assert (np.delete(found.eigenvalue, np.r_[folds[0]:folds[1] + 1]) > 0).all()
+    assert (found.stable[inside] == 0).all()
+
+
+def test_derivatives_are_differences_of_runs(run):
+    """By sigma, through the Hamaker constant, at an image that stays."""
+    step = 1e-3
+    low, here, high = (
+        run(SOFT, sigma=SIGMA * (1 + k * step), equilibrium_path=PATH, numerics={"accuracy": 1e-9},
+            sensitivity={"parameters": ["force.hamaker"]}) for k in (-1, 0, 1))
+    for key, rate in here.rate.items():
+        difference = (high.summary[key] - low.summary[key]) / (2 * step)
+        assert 16 * math.pi * rate[0] == pytest.approx(difference, rel=1e-5)
+    assert {"max_tension", "jump_in_h0", "jump_out_h0"} <= set(here.rate)

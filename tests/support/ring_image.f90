@@ -1,0 +1,180 @@
+!> ring_image DECK STRENGTH DEPTH: a deck's experiments with bodies that are not homogeneous, for
+!> tests of what only knows a body by its `elastic_body`. Beside the half-space's kernel they have
+!> that of its pressures' image at a depth [m], STRENGTH times
+!>
+!>     2 Int exp(-depth k) J0(k r) J0(k t) dk = 4 K(m)/(pi s),  s^2 = (r + t)^2 + depth^2 ,
+!>
+!> with m = 4 r t/s^2. Prints the rows of the curve, with eigenvalues for &stability, and the
+!> summary; derivatives as comments.
+module ring_image_body
+  use kinds, only: wp, pi
+  use elastic_kernel, only: image_kernel => kernel
+  use elastic_body, only: elastic_body_t
+  implicit none
+  private
+  public :: ring_image_t
+
+  !> Strength; depth in lateral units.
+  type, extends(elastic_body_t) :: ring_image_t
+    real(wp) :: strength = 0, depth = 1
+  contains
+    procedure :: is_homogeneous
+    procedure :: remainder
+  end type ring_image_t
+
+contains
+
+  pure logical function is_homogeneous(self)
+    class(ring_image_t), intent(in) :: self
+
+    is_homogeneous = .false.
+  end function is_homogeneous
+
+  !> Of degree -1 in r, t and the depth b, so that growth = -kernel - b d/db kernel, and the last
+  !> is -4 b^2 E(m)/(pi s d^2), d^2 = (r - t)^2 + b^2.
+  pure subroutine remainder(self, r, t, kernel, growth)
+    class(ring_image_t), intent(in) :: self
+    real(wp), intent(in) :: r(:), t(:)
+    real(wp), intent(out) :: kernel(:, :), growth(:, :)
+    integer :: j
+
+    do j = 1, size(t)
+      associate (far => sqrt((r + t(j))**2 + self%depth**2), &
+        near => sqrt((r - t(j))**2 + self%depth**2))
+        kernel(:, j) = self%strength*image_kernel(far, near)
+        growth(:, j) = -kernel(:, j) + self%strength*4/pi*self%depth**2*second_integral( &
+          near/far)/(far*near**2)
+      end associate
+    end do
+  end subroutine remainder
+
+  !> E(m) from sqrt(1 - m), by the arithmetic-geometric mean.
+  elemental real(wp) function second_integral(complement) result(e)
+    real(wp), intent(in) :: complement
+    real(wp) :: a, b, c, total, power
+    integer :: step
+
+    a = 1
+    b = complement
+    c = sqrt((1 - b)*(1 + b))
+    power = 0.5_wp
+    total = power*c**2
+    do step = 1, 8
+      c = 0.5_wp*(a - b)
+      a = a - c
+      b = sqrt(b*(a + c))
+      power = 2*power
+      total = total + power*c**2
+    end do
+    e = (1 - total)*pi/(2*a)
+  end function second_integral
+
+end module ring_image_body
+
+!> Prints each state.
+module printing_observer
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t
+  use contact_state, only: state_t
+  use equilibrium, only: cost_t
+  use stability, only: smallest_eigenvalue
+  use records, only: observer_t, record_t
+  use curve_rows, only: curve_row
+  implicit none
+  private
+  public :: printing_observer_t
+
+  type, extends(observer_t) :: printing_observer_t
+    logical :: eigenvalues = .false.
+  contains
+    procedure :: take
+  end type printing_observer_t
+
+contains
+
+  subroutine take(self, record, problem, grid, state, profile)
+    class(printing_observer_t), intent(inout) :: self
+    type(record_t), intent(in) :: record
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    logical, intent(in) :: profile
+    type(cost_t) :: cost
+    real(wp) :: eigenvalue
+    logical :: certain
+
+    eigenvalue = 0
+    if (self%eigenvalues) &
+      call smallest_eigenvalue(problem, grid, state, eigenvalue, certain, cost)
+    print '(a, es25.16)', 'row,' // curve_row(record) // ',', eigenvalue
+  end subroutine take
+
+end module printing_observer
+
+program ring_image
+  use kinds, only: wp
+  use failure, only: failure_t
+  use dimensionless_problem, only: problem_t
+  use scene_groups, only: scene_t
+  use scene, only: read_scene
+  use scene_problem, only: problem_of
+  use experiment, only: run_experiment
+  use experiment_result, only: experiment_result_t
+  use summarise, only: summary_of
+  use summary, only: summary_t, summary_text
+  use ring_image_body, only: ring_image_t
+  use printing_observer, only: printing_observer_t
+  implicit none
+
+  type(scene_t) :: scene
+  type(problem_t) :: problem
+  type(experiment_result_t) :: outcome
+  type(summary_t) :: summary
+  type(printing_observer_t) :: observer
+  type(failure_t), allocatable :: error
+  character(len=1000) :: file, number(2)
+  character(len=*), parameter :: told(*) = [character(len=16) :: 'max_tension', 'jump_in_h0', &
+    'jump_out_h0', 'jump_in_load', 'end_load']
+  real(wp), allocatable :: rate(:, :)
+  real(wp) :: strength, depth
+  integer :: j, k
+
+  call get_command_argument(1, file)
+  call get_command_argument(2, number(1))
+  call get_command_argument(3, number(2))
+  read (number(1), *) strength
+  read (number(2), *) depth
+  call read_scene(trim(file), scene, error)
+  if (allocated(error)) error stop 'the deck is wrong'
+  problem = problem_of(scene)
+  call give_body(problem)
+  if (allocated(scene%sensitivity)) then
+    do j = 1, size(scene%sensitivity%varied)
+      do k = 1, size(scene%sensitivity%varied(j)%problem)
+        call give_body(scene%sensitivity%varied(j)%problem(k))
+      end do
+    end do
+  end if
+  observer%eigenvalues = allocated(scene%stability)
+  call run_experiment(scene, problem, observer, outcome)
+  summary = summary_of(scene, problem, outcome)
+  print '(a)', summary_text(summary)
+  do k = 1, size(told)
+    if (.not. summary%has(trim(told(k)))) cycle
+    rate = summary%rate(trim(told(k)))
+    if (size(rate) > 0) print '(3a, *(es25.16))', 'rate,', trim(told(k)), ',', rate(:, 1)
+  end do
+
+contains
+
+  subroutine give_body(to)
+    type(problem_t), intent(inout) :: to
+
+    if (strength > 0 .or. strength < 0) then
+      deallocate (to%body)
+      allocate (to%body, source=ring_image_t(strength, depth/to%lateral))
+    end if
+  end subroutine give_body
+
+end program ring_image
