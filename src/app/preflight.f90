@@ -1,50 +1,146 @@
-!> What the user should know of a run before it begins: that it will be long, or that it does not
-!> fit into the memory.
+!> What is known of a run before it begins: the memory that its matrices take and the room that its
+!> files take on the disk. Where there is less, it is not begun. Time is told while it runs.
 module preflight
   use kinds, only: wp
-  use scene_groups, only: scene_t
+  use failure, only: failure_t, fail, no_room
   use text, only: brief
-  use forecast, only: forecast_t, forecast_of
+  use scene_groups, only: scene_t
+  use dimensionless_problem, only: problem_t
+  use numerics_choice, only: choice_t, choose, companion
+  use edge_locked, only: mesh_family_t, new_mesh_family
+  use h0_range, only: range_of
+  use scene_problem, only: problem_of
+  use scene, only: swept_scene
+  use h0_schedule, only: states_planned
+  use decimal, only: longest_real
   use memory, only: available_memory
+  use files, only: free_disk
   use blas_threads, only: thread_count, blas_buffers
-  use progress, only: duration
   implicit none
   private
-  public :: preflight_t, preflight_of
+  public :: check_room, large_results
 
-  !> Texts of one line, empty where there is nothing to say.
-  type :: preflight_t
-    !> Why a run cannot be begun, with the memory that it needs.
-    character(len=:), allocatable :: too_large
-    !> How long it may take.
-    character(len=:), allocatable :: long
-  end type preflight_t
-
-  !> Seconds beyond which a run is announced as long.
-  real(wp), parameter :: long_run = 30
+  !> What a run with matrices needs beside them [bytes].
+  real(wp), parameter :: other_bytes = 1.0e7_wp
+  !> Matrices of a verified eigenvalue.
+  real(wp), parameter :: eigenvalue_matrices = 5
+  !> Cells of a row of the curve, of a profile, of a table of theories and of a sweep; bytes of a
+  !> step that is kept so that an interrupted run can go on.
+  integer, parameter :: of_curve = 10, of_profile = 7, of_theory = 5, of_case = 60, kept = 900
+  !> Results that are announced [bytes].
+  real(wp), parameter :: large = 1.0e9_wp
 
 contains
 
-  function preflight_of(scene) result(outlook)
+  !> Fails where a run, whose results go into a folder, has not the room that it needs.
+  subroutine check_room(scene, folder, error)
     type(scene_t), intent(in) :: scene
-    type(preflight_t) :: outlook
-    type(forecast_t) :: expected
-    real(wp) :: available
+    character(len=*), intent(in) :: folder
+    type(failure_t), allocatable, intent(out) :: error
+    type(scene_t) :: last
+    real(wp) :: bytes, available, more
+    integer :: nodes, copies, most
 
-    expected = forecast_of(scene, thread_count())
-    available = available_memory(blas_buffers(expected%nodes, expected%copies))
-    outlook%too_large = ''
-    outlook%long = ''
-    if (expected%bytes > available) then
-      outlook%too_large = 'not computed: matrices for '//brief(real(expected%nodes, wp))// &
-        ' nodes need '//gigabytes(expected%bytes)//' of memory, and '//gigabytes(available)// &
-        ' are available'
-    else if (expected%seconds > long_run) then
-      outlook%long = brief(real(expected%nodes, wp))//' nodes: may take '// &
-        duration(expected%seconds)//' or so'
-      if (expected%states > 0) outlook%long = brief(expected%states)//' states on '//outlook%long
+    copies = 1
+    call count_matrices(scene, bytes, nodes)
+    if (allocated(scene%sweep)) then
+      ! A sweep may be over what the mesh depends on: its last case stands for that.
+      call swept_scene(scene, scene%sweep%values(size(scene%sweep%values)), last, error)
+      if (.not. allocated(error)) then
+        call count_matrices(last, more, most)
+        bytes = max(bytes, more)
+        nodes = max(nodes, most)
+      else
+        deallocate (error)
+      end if
+      copies = min(thread_count(), size(scene%sweep%values))
+      bytes = copies*bytes
     end if
-  end function preflight_of
+    available = available_memory(blas_buffers(nodes, copies))
+    if (bytes > available) then
+      call fail(error, no_room, 'not computed: matrices for '//brief(real(nodes, wp))// &
+        ' nodes need '//gigabytes(bytes)//' of memory, and '//gigabytes(available)// &
+        ' are available')
+    else if (disk_bytes(scene) > free_disk(folder)) then
+      call fail(error, no_room, 'not computed: its results need '// &
+        gigabytes(disk_bytes(scene))//' on the disk, and '//gigabytes(free_disk(folder))// &
+        ' are free')
+    end if
+  end subroutine check_room
+
+  !> What to say of results that take much of a disk; empty of others.
+  function large_results(scene) result(text)
+    type(scene_t), intent(in) :: scene
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (disk_bytes(scene) > large) text = 'its results take about '// &
+      gigabytes(disk_bytes(scene))//' on the disk while it runs'
+  end function large_results
+
+  !> Bytes of the matrices that are held at once, and nodes of the largest mesh.
+  subroutine count_matrices(scene, bytes, nodes)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(out) :: bytes
+    integer, intent(out) :: nodes
+    type(problem_t) :: problem
+    type(choice_t) :: chosen, other
+    type(mesh_family_t) :: meshes
+    real(wp) :: low, high, entries, matrices
+
+    bytes = 0
+    nodes = 0
+    if (.not. scene%finds_states()) return
+    problem = problem_of(scene)
+    if (problem%rigid) return
+    call range_of(scene, problem, low, high)
+    chosen = choose(scene%numerics, problem, low, allocated(scene%profiles))
+    entries = 0
+    if (allocated(scene%path) .or. chosen%grid == 'edge_locked') then
+      meshes = new_mesh_family(problem, high, low, chosen%digits, shape_only=.true.)
+      nodes = maxval(meshes%grid%nodes)
+      ! Kernels, one factorisation and another for a fold, and about half as much again on the finer
+      ! meshes of the error estimate, which are held beside them.
+      entries = 2.6_wp*sum(real(meshes%grid%nodes, wp)**2) + 3.6_wp*real(nodes, wp)**2
+      if (scene%has_eigenvalues()) entries = entries + eigenvalue_matrices*real(nodes, wp)**2
+    end if
+    if (chosen%grid /= 'edge_locked') then
+      nodes = max(nodes, chosen%nodes)
+      other = companion(chosen)
+      ! The kernel, the factors in use, and those with which a jump is followed.
+      matrices = merge(1, 3, chosen%options%method == 'mixing')
+      if (scene%has_eigenvalues()) matrices = matrices + eigenvalue_matrices
+      entries = max(entries, matrices*real(chosen%nodes, wp)**2 + 2*real(other%nodes, wp)**2)
+    end if
+    bytes = other_bytes + 8*entries
+  end subroutine count_matrices
+
+  !> Bytes that the files of a run have at most, but for rows of a path, which nobody knows before.
+  pure real(wp) function disk_bytes(scene) result(bytes)
+    type(scene_t), intent(in) :: scene
+
+    if (allocated(scene%sweep)) then
+      bytes = 2*size(scene%sweep%values)*row(of_case)
+      return
+    end if
+    bytes = states_planned(scene)*(row(of_curve) + kept)
+    if (allocated(scene%profiles)) then
+      ! Nodes of a mesh that resolves what is asked for, roughly.
+      bytes = bytes + size(scene%profiles%h0)*1.0e3_wp*row(of_profile)
+    end if
+    if (allocated(scene%classical)) bytes = bytes + 4.0_wp*scene%classical%count*row(of_theory)
+    if (allocated(scene%approximations)) &
+      bytes = bytes + 4.0_wp*scene%approximations%count*row(of_theory)
+
+  contains
+
+    pure real(wp) function row(cells)
+      integer, intent(in) :: cells
+
+      row = real(cells, wp)*(longest_real + 1)
+    end function row
+
+  end function disk_bytes
 
   !> Bytes for a message.
   function gigabytes(bytes) result(text)

@@ -12,7 +12,7 @@ module simulation
   use scene_problem, only: problem_of
   use h0_schedule, only: states_planned
   use sweeps, only: run_sweep
-  use preflight, only: preflight_t, preflight_of
+  use preflight, only: check_room, large_results
   use blas_threads, only: thread_count
   use linear_algebra, only: claim_buffers
   use equilibrium, only: cost_t
@@ -33,7 +33,7 @@ module simulation
   use fit_group, only: family_of_fit
   use fit_run, only: run_fit, fit_outcome_t
   use fit_doubts, only: doubts_of
-  use fit_rows, only: fit_columns, fit_lines, fit_text, fit_words
+  use fit_rows, only: fit_columns, write_fit_rows, fit_text, fit_words
   implicit none
   private
   public :: run_scene
@@ -48,7 +48,8 @@ module simulation
 
 contains
 
-  !> Computes a scene and writes its results into the folder `out_dir`. converged: false where a
+  !> Computes a scene and writes its results into the folder `out_dir`, where nothing changes if there
+  !> is not the room that it needs. converged: false where a
   !> calculation failed; what was computed is kept and the summary says what failed. error: there
   !> are no results, or they could not be written. resume: what an interrupted run has left in the
   !> folder is continued, and finished results are left as they are.
@@ -71,6 +72,8 @@ contains
     destination = destination_t(out_dir, quiet)
     call take_up_earlier(scene, destination, resume, finished, converged, error)
     if (finished .or. allocated(error)) return
+    call check_room(scene, out_dir, error)
+    if (allocated(error)) return
     problem = problem_of(scene)
     call open_folder(scene, problem, destination, resume, results, error)
     if (allocated(error)) return
@@ -141,8 +144,7 @@ contains
     end if
   end subroutine open_folder
 
-  !> Runs the experiments or the sweep, whose records go into the results; a run that does not fit
-  !> into the memory is not begun.
+  !> Runs the experiments or the sweep, whose records go into the results.
   subroutine compute(scene, problem, destination, results, summary, cost)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -151,19 +153,12 @@ contains
     type(summary_t), intent(out) :: summary
     type(cost_t), intent(out) :: cost
     type(experiment_result_t) :: outcome
-    type(preflight_t) :: expected
     character(len=:), allocatable :: name
     integer :: failed
 
     name = destination%folder(index(destination%folder, '/', .true.) + 1:)
-    expected = preflight_of(scene)
-    if (expected%too_large /= '') then
-      summary = summary_of(scene, problem, outcome)
-      call summary%fail_with(expected%too_large)
-      return
-    end if
     if (.not. problem%rigid) call claim_buffers()
-    if (expected%long /= '') call destination%say(expected%long)
+    if (large_results(scene) /= '') call destination%say(large_results(scene))
     if (allocated(scene%sweep)) then
       call results%progress%start(size(scene%sweep%values), name, destination%quiet)
       call run_sweep(scene, results, failed, cost)
@@ -175,7 +170,6 @@ contains
       call results%progress%start(states_planned(scene), name, destination%quiet)
       call run_observed(scene, problem, results, summary, cost)
     end if
-    call results%progress%finish()
   end subroutine compute
 
   !> Runs the experiments; each state goes into the results, with its eigenvalue where the scene
@@ -223,11 +217,14 @@ contains
 
     call family_of_fit(scene%deck, family, error)
     call run_fit(scene%measurement, scene%fit, scene%numerics, family, problem, results, outcome)
+    call results%progress%finish()
     if (allocated(outcome%trouble)) then
       call summary%fail_with('no fit: ' // outcome%trouble)
       return
     end if
-    call results%write_table('fit.csv', fit_columns, fit_lines(outcome))
+    call results%begin_table('fit.csv', fit_columns)
+    call write_fit_rows(outcome, results)
+    call results%end_table()
     call results%write_text('fit.nml', fit_text(outcome, scene%title))
     lines = doubts_of(outcome)
     if (.not. outcome%fitted%found) call summary%set('converged', .false.)
@@ -263,6 +260,11 @@ contains
     if (allocated(summary%warnings)) then
       do i = 1, size(summary%warnings)
         call destination%say('warning: '//summary%warnings(i)%text)
+      end do
+    end if
+    if (allocated(summary%notes)) then
+      do i = 1, size(summary%notes)
+        call destination%say('note: '//summary%notes(i)%text)
       end do
     end if
     if (summary%has('grid')) call destination%say('grid '//summary%text('grid')//', method '// &

@@ -12,7 +12,7 @@ program snapin
   use result_listing, only: write_result_listing
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
   use simulation, only: run_scene
-  use preflight, only: preflight_t, preflight_of
+  use preflight, only: check_room, large_results
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
 
@@ -60,7 +60,6 @@ contains
   function run_decks() result(status)
     integer :: status
     type(scene_t), allocatable :: scenes(:)
-    type(preflight_t) :: expected
     type(failure_t), allocatable :: trouble
     character(len=:), allocatable :: folder
     logical :: converged
@@ -75,9 +74,12 @@ contains
         status = 2
       else if (options%check) then
         call print_line(output_unit, options%decks(i)%name // ': ok')
-        expected = preflight_of(scenes(i))
-        if (expected%too_large // expected%long /= '') call print_line(error_unit, 'snapin: ' // &
-          options%decks(i)%name // ': ' // expected%too_large // expected%long)
+        folder = options%out // '/' // stem_of(options%decks(i)%name)
+        call check_room(scenes(i), folder, trouble)
+        if (allocated(trouble)) call print_line(error_unit, 'snapin: ' // options%decks(i)%name // &
+          ': ' // trouble%message)
+        if (large_results(scenes(i)) /= '') call print_line(error_unit, 'snapin: ' // &
+          options%decks(i)%name // ': ' // large_results(scenes(i)))
       end if
     end do
     if (options%check .or. status /= 0) return

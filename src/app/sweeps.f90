@@ -10,6 +10,7 @@ module sweeps
   use scene_problem, only: problem_of
   use equilibrium, only: cost_t
   use records, only: silent_observer_t
+  use progress, only: progress_t
   use summarise, only: summary_of
   use summary, only: summary_t
   use case_columns, only: columns_of, numbers_of, column_width
@@ -30,6 +31,14 @@ module sweeps
     type(cost_t) :: cost
   end type case_t
 
+  !> Says what a case is at, beside the others; takes no records.
+  type, extends(silent_observer_t) :: case_observer_t
+    integer :: case = 0
+    type(progress_t), pointer :: progress => null()
+  contains
+    procedure :: hear
+  end type case_observer_t
+
 contains
 
   !> Computes every case of scene%sweep and hands its row to `results`, in the order of the values.
@@ -38,7 +47,7 @@ contains
   !> failed: how many; cost: of all together.
   subroutine run_sweep(scene, results, failed, cost)
     type(scene_t), intent(in) :: scene
-    type(results_t), intent(inout) :: results
+    type(results_t), intent(inout), target :: results
     integer, intent(out) :: failed
     type(cost_t), intent(out) :: cost
     type(case_t), allocatable :: cases(:)
@@ -69,16 +78,19 @@ contains
     integer, intent(in) :: i
     type(case_t), intent(inout) :: cases(:)
     integer, intent(inout) :: written
-    type(results_t), intent(inout) :: results
+    type(results_t), intent(inout), target :: results
     type(mesh_store_t), intent(inout) :: store
     type(case_t) :: fresh
+    type(case_observer_t) :: observer
     logical :: stopped
 
     !$omp critical (one_at_a_time)
     stopped = allocated(results%trouble) .or. allocated(results%journal%trouble)
     !$omp end critical (one_at_a_time)
     if (stopped) return
-    call run_case(scene, scene%sweep%values(i), store, fresh)
+    observer%case = i
+    observer%progress => results%progress
+    call run_case(scene, scene%sweep%values(i), observer, store, fresh)
     !$omp critical (one_at_a_time)
     call keep_case(results%journal, i, fresh)
     cases(i) = fresh
@@ -142,16 +154,16 @@ contains
   end subroutine write_rows
 
   !> The case of the scene with the swept key at a value, on meshes that the cases share.
-  subroutine run_case(scene, value, store, case)
+  subroutine run_case(scene, value, observer, store, case)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: value
+    type(case_observer_t), intent(inout) :: observer
     type(mesh_store_t), intent(inout) :: store
     type(case_t), intent(out) :: case
     type(scene_t) :: variant
     type(problem_t) :: problem
     type(experiment_result_t) :: outcome
     type(summary_t) :: summary
-    type(silent_observer_t) :: observer
     type(failure_t), allocatable :: error
 
     ! What makes strings is done by one thread at a time: compiler note 5.
@@ -171,6 +183,16 @@ contains
     case%converged = summary%is_true('converged')
     case%cost = outcome%cost
   end subroutine run_case
+
+  !> Into a variable, since threads share strings that are put together: compiler note 5.
+  subroutine hear(self, what)
+    class(case_observer_t), intent(inout) :: self
+    character(len=*), intent(in) :: what
+    character(len=80) :: label
+
+    write (label, '(a, i0, 2a)') 'case ', self%case, ': ', what
+    call self%progress%detail(label)
+  end subroutine hear
 
   !> What two cases took together.
   pure function sum_of(a, b) result(total)

@@ -4,7 +4,7 @@
 module failure
   implicit none
   private
-  public :: failure_t, fail, bad_input, no_convergence, file_trouble
+  public :: failure_t, fail, bad_input, no_convergence, file_trouble, no_room
 
   !> What is wrong is the deck, the command line or an argument.
   integer, parameter :: bad_input = 1
@@ -12,6 +12,8 @@ module failure
   integer, parameter :: no_convergence = 2
   !> A file or folder could not be read or written.
   integer, parameter :: file_trouble = 3
+  !> There is not the memory, or the room on a disk, that the calculation needs.
+  integer, parameter :: no_room = 4
 
   type :: failure_t
     integer :: kind = bad_input

@@ -11,7 +11,7 @@ module h0_schedule
 contains
 
   !> Number of equilibria that the cycle asked for will take.
-  integer function states_planned(request)
+  pure integer function states_planned(request)
     class(request_t), intent(in) :: request
     integer :: k
 

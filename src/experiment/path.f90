@@ -12,7 +12,7 @@ module path
   use path_stepper, only: path_stepper_t
   use path_rows, only: row_t, row_of_point, row_at_h0, rows_between
   use reported, only: reported_t, reported_state, error_probe_t, add_reported
-  use records, only: observer_t, record_of, stable_yes, stable_no
+  use records, only: observer_t, record_t, extent_t, record_of, stable_yes, stable_no
   implicit none
   private
   public :: path_t, follow_path
@@ -29,6 +29,7 @@ module path
     !> The stable pieces on which it begins and ends; 0 where that is unstable.
     integer :: first_piece = 0, last_piece = 0
     real(wp) :: worst_residual = 0, worst_spacing = 0
+    type(extent_t) :: extent
     !> Whether it ends in the fall of bodies that nothing keeps apart.
     logical :: fallen = .false.
     type(ending_t) :: ending
@@ -148,11 +149,13 @@ contains
     class(observer_t), intent(inout) :: observer
     type(path_t), intent(inout) :: path
     type(reported_t) :: reported
+    type(record_t) :: record
 
     associate (grid => steps%meshes%grid(row%mesh), state => row%state)
-      call observer%take(record_of('path', steps%problem, grid, state, &
-        merge(stable_yes, stable_no, row%modes == 0), row%converged), steps%problem, grid, state, &
-        row%profile)
+      record = record_of('path', steps%problem, grid, state, &
+        merge(stable_yes, stable_no, row%modes == 0), row%converged)
+      call path%extent%cover(record, state)
+      call observer%take(record, steps%problem, grid, state, row%profile)
       path%states = path%states + 1
       path%worst_residual = max(path%worst_residual, state%residual)
       if (steps%meshes%in_contact(row%mesh)) path%worst_spacing = max(path%worst_spacing, &

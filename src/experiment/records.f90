@@ -7,7 +7,7 @@ module records
   use contact_state, only: state_t, radius_of_gap
   implicit none
   private
-  public :: record_t, observer_t, silent_observer_t, theory_row_t, record_of
+  public :: record_t, observer_t, silent_observer_t, record_of, extent_t
   public :: stable_yes, stable_no, stable_unasked
 
   !> The column `stable`.
@@ -26,11 +26,12 @@ module records
     real(wp), allocatable :: eigenvalue, local_criterion, axis_criterion
   end type record_t
 
-  !> One row of a table of theories, SI units; NaN for what a theory does not say.
-  type :: theory_row_t
-    character(len=:), allocatable :: theory
-    real(wp) :: h0 = 0, displacement = 0, load = 0, contact_radius = 0
-  end type theory_row_t
+  !> The widest contact of some rows [m], and their largest pressure, either way, in the law's unit.
+  type :: extent_t
+    real(wp) :: contact_radius = 0, pressure = 0
+  contains
+    procedure :: cover
+  end type extent_t
 
   !> Takes records as they are computed.
   type, abstract, extends(listener_t) :: observer_t
@@ -59,6 +60,16 @@ module records
   end interface
 
 contains
+
+  !> Widens the extent to that of one more row.
+  pure subroutine cover(self, record, state)
+    class(extent_t), intent(inout) :: self
+    type(record_t), intent(in) :: record
+    type(state_t), intent(in) :: state
+
+    self%contact_radius = max(self%contact_radius, record%contact_radius)
+    self%pressure = max(self%pressure, maxval(abs(state%pressure)))
+  end subroutine cover
 
   subroutine take_nothing(self, record, problem, grid, state, profile)
     class(silent_observer_t), intent(inout) :: self

@@ -7,7 +7,7 @@ module stepped_branch
   use ending, only: ending_t
   use tension_search, only: tension_search_t
   use reported, only: reported_t, reported_state, add_reported
-  use records, only: observer_t, record_of, stable_yes, stable_unasked
+  use records, only: observer_t, record_t, extent_t, record_of, stable_yes, stable_unasked
   implicit none
   private
   public :: h0_schedule_t, branch_t, run_branch
@@ -37,6 +37,7 @@ module stepped_branch
     !> The stable pieces of the path on which it begins and ends; 0 where that is not known.
     integer :: first_piece = 0, last_piece = 0
     real(wp) :: worst_residual = 0, worst_spacing = 0
+    type(extent_t) :: extent
     integer :: states = 0, unconverged = 0
     !> First h0 that did not converge.
     real(wp) :: first_unconverged = 0
@@ -61,6 +62,7 @@ contains
     type(tension_search_t) :: search
     type(branch_point_t) :: previous, last
     type(step_result_t) :: event
+    type(record_t) :: record
     real(wp) :: last_h0
     integer :: i, k, place(size(keep))
 
@@ -86,10 +88,11 @@ contains
       call search%note_jump(steps, event)
       if (event%ending%early()) exit
       associate (state => position%state)
-        call observer%take(record_of(plan%name, steps%problem, steps%grid(position), state, &
+        record = record_of(plan%name, steps%problem, steps%grid(position), state, &
           merge(stable_yes, stable_unasked, plan%unique), &
-          holds(steps%problem, steps%options%tolerance, state)), &
-          steps%problem, steps%grid(position), state, plan%profile(i))
+          holds(steps%problem, steps%options%tolerance, state))
+        call branch%extent%cover(record, state)
+        call observer%take(record, steps%problem, steps%grid(position), state, plan%profile(i))
       end associate
       if (event%converged) then
         call last%state%become(position%state)

@@ -51,6 +51,8 @@ module force_law
     !> The group of the deck that the law is read from, and the keys in it that set the sizes of
     !> pressure and gap, for messages.
     character(len=24) :: group = '', strength_key = '', length_key = ''
+    !> Where its own assumptions do not hold for the numbers of the deck, what to tell the user.
+    character(len=200) :: caveat = ''
 
     !> The scan of the law sets these (`law_scan`), or the law where it knows closed forms.
     !> Tension integrated from the gap at rest to the next zero of the pressure, in units of

@@ -153,6 +153,7 @@ contains
         law%repulsion_length = min(law%repulsion_length, part%repulsion_length/term%stretch)
         law%tail_power = min(law%tail_power, part%tail_power)
         law%has_kink = law%has_kink .or. part%has_kink
+        if (law%caveat == '') law%caveat = part%caveat
         if (part%period > 0) law%period = part%period/term%stretch
         if (.not. part%step_width > 0) cycle
         law%step_at = (part%step_at - term%shift)/term%stretch

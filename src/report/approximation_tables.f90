@@ -8,11 +8,11 @@ module approximation_tables
     slow_displacement, slow_load
   use slow_jumps, only: gap_of_h0, criterion_gap, equation_37_gap, fold_gap
   use scene_groups, only: range_t
-  use records, only: theory_row_t
+  use results, only: results_t
   use summary, only: summary_t
   implicit none
   private
-  public :: approximation_rows, summarise_approximations, jump_t
+  public :: write_approximations, summarise_approximations, jump_t
 
   !> A state at which approaching bodies jump, by some criterion [m], [m], [m], [N]; `theory` is the
   !> name of its row in the table.
@@ -38,24 +38,23 @@ module approximation_tables
 
 contains
 
-  !> The curve of each form that the law has, in range%count rows from the start of the range
+  !> Writes the curve of each form that the law has, in range%count rows from the start of the range
   !> inwards, and one row for each jump, whether or not it is within the range. The parameter of a
   !> curve is the gap on the axis, whose steps have equal |change of gap| + |change of
   !> displacement|. Curves of a law that attracts end where the bodies jump, by (29) or (37), if
   !> that is before the end of the range; there is none if it is before the start. `from` [m] stands
   !> in for a range without a start. For rigid bodies the displacement is zero and the load exact.
-  pure function approximation_rows(problem, range, from) result(rows)
+  subroutine write_approximations(problem, range, from, results)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
     real(wp), intent(in) :: from
-    type(theory_row_t), allocatable :: rows(:)
+    type(results_t), intent(inout) :: results
     type(jumps_t) :: jumps
     real(wp) :: start, nearest
 
     start = from
     if (allocated(range%h0_start)) start = range%h0_start
     jumps = jumps_of(problem)
-    allocate (rows(0))
     nearest = -huge(1.0_wp)
     if (allocated(jumps%criterion)) nearest = problem%law%gap_of(jumps%criterion%gap)
     call add_curve(by_quadrature)
@@ -70,33 +69,26 @@ contains
   contains
 
     !> The rows of a form, for gaps not below `nearest`.
-    pure subroutine add_curve(form)
+    subroutine add_curve(form)
       integer, intent(in) :: form
       real(wp), allocatable :: gap(:)
-      type(theory_row_t), allocatable :: more(:)
       integer :: i
 
       if (.not. has_form(problem, form)) return
       gap = gaps_between(problem, form, problem%law%gap_of(start), &
         problem%law%gap_of(range%h0_end), nearest, range%count)
-      allocate (more(size(gap)))
       do i = 1, size(gap)
-        more(i) = row_of(state_at(problem, form, gap(i), trim(names(form))))
+        call write_row(results, state_at(problem, form, gap(i), trim(names(form))))
       end do
-      rows = [rows, more]
     end subroutine add_curve
 
-    pure subroutine add_jump(jump)
+    subroutine add_jump(jump)
       type(jump_t), allocatable, intent(in) :: jump
-      type(theory_row_t) :: row
 
-      if (.not. allocated(jump)) return
-      ! Not the function's result inside the array constructor: compiler note 1.
-      row = row_of(jump)
-      rows = [rows, row]
+      if (allocated(jump)) call write_row(results, jump)
     end subroutine add_jump
 
-  end function approximation_rows
+  end subroutine write_approximations
 
   !> The jumps of approaching bodies; none for rigid ones or without attraction.
   pure function jumps_of(problem) result(jumps)
@@ -173,17 +165,14 @@ contains
     jump%load = slow_load(problem, form, gap)*problem%load
   end function state_at
 
-  !> The row of a state; component by component, see compiler note 3.
-  pure function row_of(jump) result(row)
-    type(jump_t), intent(in) :: jump
-    type(theory_row_t) :: row
+  !> Writes the row of a state; these theories give no contact radius.
+  subroutine write_row(results, state)
+    type(results_t), intent(inout) :: results
+    type(jump_t), intent(in) :: state
 
-    row%theory = jump%theory
-    row%h0 = jump%h0
-    row%displacement = jump%displacement
-    row%load = jump%load
-    row%contact_radius = ieee_value(0.0_wp, ieee_quiet_nan)
-  end function row_of
+    call results%row(state%theory, [state%h0, state%displacement, state%load, &
+      ieee_value(1.0_wp, ieee_quiet_nan)])
+  end subroutine write_row
 
   !> Gaps on the axis, descending, from the one at h0 = start to the one at h0 = finish or to
   !> `nearest`, whichever is larger (law's lengths). None if h0 = start is not reached beyond it.

@@ -8,29 +8,28 @@ module classical_rows
   use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius
   use maugis, only: maugis_load, maugis_radius_at_displacement, maugis_lambda, maugis_pull_off
   use scene_groups, only: range_t
-  use records, only: theory_row_t
+  use results, only: results_t
   use summary, only: summary_t
   implicit none
   private
-  public :: rows_of_classical, summarise_classical
+  public :: write_classical, summarise_classical
 
 contains
 
-  !> Hertz and, for a law that attracts, JKR and DMT, at range%count values of h0 [m]; for one whose
+  !> Writes Hertz and, for a law that attracts, JKR and DMT, at range%count values of h0 [m]; for one whose
   !> tension has a largest value, Maugis-Dugdale with that value as its strength and with the law's
   !> surface energy. The theories put touching bodies at no separation, so the displacement is -h0;
   !> the state is the one that is stable there, and where a theory has none there is no row. `from`
   !> [m] stands in for a range without a start. None for rigid bodies, which have no displacement.
   !> Of other shapes than the parabola Hertz and JKR in the form for any convex body.
-  function rows_of_classical(problem, range, from) result(rows)
+  subroutine write_classical(problem, range, from, results)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
     real(wp), intent(in) :: from
-    type(theory_row_t), allocatable :: rows(:)
+    type(results_t), intent(inout) :: results
     real(wp) :: start, h0, delta, gamma, strength, a
     integer :: i
 
-    allocate (rows(0))
     if (problem%rigid) return
     start = from
     if (allocated(range%h0_start)) start = range%h0_start
@@ -78,16 +77,13 @@ contains
     subroutine add(theory, load, contact_radius)
       character(len=*), intent(in) :: theory
       real(wp), intent(in) :: load, contact_radius
-      type(theory_row_t) :: row
 
       ! A theory without a state here says NaN.
       if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
-      ! Not a structure constructor inside the array's: compiler note 1.
-      row = theory_row_t(theory, h0, delta, load, contact_radius)
-      rows = [rows, row]
+      call results%row(theory, [h0, delta, load, contact_radius])
     end subroutine add
 
-  end function rows_of_classical
+  end subroutine write_classical
 
   !> Maugis-Dugdale theory with the law's surface energy and largest tension, where both exist.
   subroutine summarise_classical(problem, summary)

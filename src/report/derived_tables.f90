@@ -5,18 +5,15 @@ module derived_tables
   use h0_range, only: path_start
   use scene_groups, only: scene_t
   use experiment_result, only: experiment_result_t
-  use records, only: theory_row_t
-  use namelist_writer, only: line_t
-  use tables, only: cells
   use summary, only: summary_t
   use results, only: results_t
-  use classical_rows, only: rows_of_classical
-  use approximation_tables, only: approximation_rows
-  use device_rows, only: device_columns, jump_columns, device_lines, jump_lines
-  use fixed_load_rows, only: fixed_load_columns, fixed_load_lines
-  use table_rows, only: table_columns, table_lines
-  use sensitivity_rows, only: sensitivity_columns, curve_sensitivity_columns, sensitivity_lines, &
-    curve_sensitivity_lines
+  use classical_rows, only: write_classical
+  use approximation_tables, only: write_approximations
+  use device_rows, only: device_columns, jump_columns, write_device, write_jumps
+  use fixed_load_rows, only: fixed_load_columns, write_fixed_loads
+  use table_rows, only: table_columns, write_contact_table
+  use sensitivity_rows, only: sensitivity_columns, curve_sensitivity_columns, write_sensitivity, &
+    write_curve_sensitivity
   implicit none
   private
   public :: write_derived_tables, write_path_tables, write_sensitivities, theory_columns
@@ -37,11 +34,15 @@ contains
     type(problem_t), intent(in) :: problem
     type(results_t), intent(inout) :: results
 
-    if (allocated(scene%classical)) call results%write_table('classical.csv', theory_columns, &
-      theory_lines(rows_of_classical(problem, scene%classical, path_start(scene, problem))))
-    if (allocated(scene%approximations)) call results%write_table('approximations.csv', &
-      theory_columns, &
-      theory_lines(approximation_rows(problem, scene%approximations, path_start(scene, problem))))
+    if (allocated(scene%classical)) then
+      call results%begin_table('classical.csv', theory_columns)
+      call write_classical(problem, scene%classical, path_start(scene, problem), results)
+      call results%end_table()
+    end if
+    if (.not. allocated(scene%approximations)) return
+    call results%begin_table('approximations.csv', theory_columns)
+    call write_approximations(problem, scene%approximations, path_start(scene, problem), results)
+    call results%end_table()
   end subroutine write_derived_tables
 
   !> Writes those that are read from the path.
@@ -53,13 +54,22 @@ contains
     if (.not. allocated(outcome%readings)) return
     associate (readings => outcome%readings)
       if (allocated(readings%device)) then
-        call results%write_table('device.csv', device_columns, device_lines(problem, readings))
-        call results%write_table('device_jumps.csv', jump_columns, jump_lines(problem, readings))
+        call results%begin_table('device.csv', device_columns)
+        call write_device(problem, readings, results)
+        call results%end_table()
+        call results%begin_table('device_jumps.csv', jump_columns)
+        call write_jumps(problem, readings, results)
+        call results%end_table()
       end if
-      if (allocated(readings%loaded)) call results%write_table('fixed_load.csv', &
-        fixed_load_columns, fixed_load_lines(problem, readings%loaded))
-      if (allocated(readings%prescribed)) call results%write_table('table.csv', table_columns, &
-        table_lines(problem, readings))
+      if (allocated(readings%loaded)) then
+        call results%begin_table('fixed_load.csv', fixed_load_columns)
+        call write_fixed_loads(problem, readings%loaded, results)
+        call results%end_table()
+      end if
+      if (.not. allocated(readings%prescribed)) return
+      call results%begin_table('table.csv', table_columns)
+      call write_contact_table(problem, readings, results)
+      call results%end_table()
     end associate
   end subroutine write_path_tables
 
@@ -73,24 +83,14 @@ contains
 
     if (.not. allocated(outcome%readings)) return
     associate (readings => outcome%readings)
-      call results%write_table('sensitivity.csv', sensitivity_columns, &
-        sensitivity_lines(problem, sensitivity%varied, summary, readings))
-      if (allocated(readings%rate)) call results%write_table('curve_sensitivity.csv', &
-        curve_sensitivity_columns, curve_sensitivity_lines(problem, sensitivity%varied, readings))
+      call results%begin_table('sensitivity.csv', sensitivity_columns)
+      call write_sensitivity(problem, sensitivity%varied, summary, readings, results)
+      call results%end_table()
+      if (.not. allocated(readings%rate)) return
+      call results%begin_table('curve_sensitivity.csv', curve_sensitivity_columns)
+      call write_curve_sensitivity(problem, sensitivity%varied, readings, results)
+      call results%end_table()
     end associate
   end subroutine write_sensitivities
-
-  !> Rows of a theory as lines of its table.
-  pure function theory_lines(rows) result(lines)
-    type(theory_row_t), intent(in) :: rows(:)
-    type(line_t), allocatable :: lines(:)
-    integer :: i
-
-    allocate (lines(size(rows)))
-    do i = 1, size(rows)
-      lines(i)%text = rows(i)%theory // ',' // cells([rows(i)%h0, rows(i)%displacement, &
-        rows(i)%load, rows(i)%contact_radius])
-    end do
-  end function theory_lines
 
 end module derived_tables

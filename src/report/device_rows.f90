@@ -11,12 +11,12 @@ module device_rows
   use place_sensitivity, only: of_load
   use reading_sensitivities, only: weights_of
   use path_readings, only: path_readings_t
-  use namelist_writer, only: line_t
+  use results, only: results_t
   use tables, only: cells
   use summary, only: summary_t
   implicit none
   private
-  public :: device_columns, jump_columns, device_lines, jump_lines, summarise_device, nodes_between
+  public :: device_columns, jump_columns, write_device, write_jumps, summarise_device, nodes_between
 
   !> Columns of device.csv and of device_jumps.csv.
   character(len=*), parameter :: device_columns(*) = [character(len=96) :: &
@@ -43,14 +43,13 @@ module device_rows
 
 contains
 
-  !> Rows of device.csv.
-  function device_lines(problem, readings) result(lines)
+  !> Writes the rows of device.csv.
+  subroutine write_device(problem, readings, results)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
-    type(line_t), allocatable :: lines(:)
+    type(results_t), intent(inout) :: results
     integer :: i, k
 
-    allocate (lines(0))
     do i = 1, size(readings%device)
       associate (driven => readings%device(i), curve => readings%curve)
         call add_path(driven)
@@ -101,55 +100,47 @@ contains
       character(len=*), intent(in) :: direction
       real(wp), intent(in) :: h0, load, radius
       logical, intent(in) :: stable
-      type(line_t) :: line
 
-      line%text = cells([driven%stiffness]) // ',' // direction // ',' // &
-        cells([z_of(problem, driven%drive, h0, load), problem%law%separation_of(h0), &
-        load*problem%load, radius*problem%lateral]) // merge(',1', ',0', stable)
-      lines = [lines, line]
+      call results%row(cells([driven%stiffness]) // ',' // direction, &
+        [z_of(problem, driven%drive, h0, load), problem%law%separation_of(h0), &
+        load*problem%load, radius*problem%lateral], stable)
     end subroutine add
 
-  end function device_lines
+  end subroutine write_device
 
-  !> Rows of device_jumps.csv.
-  function jump_lines(problem, readings) result(lines)
+  !> Writes the rows of device_jumps.csv.
+  subroutine write_jumps(problem, readings, results)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
-    type(line_t), allocatable :: lines(:)
-    type(line_t) :: line
+    type(results_t), intent(inout) :: results
     real(wp) :: after(3)
     integer :: i, k
 
-    allocate (lines(0))
     do i = 1, size(readings%device)
       do k = 1, size(readings%device(i)%jump)
         associate (driven => readings%device(i), jump => readings%device(i)%jump(k))
           after = ieee_value(1.0_wp, ieee_quiet_nan)
           if (jump%landed) after = si_of(problem, jump%after)
-          line%text = cells([driven%stiffness]) // ',' // &
-            direction_of(jump%inward) // ',' // &
-            cells([z_of(problem, driven%drive, jump%before%h0, jump%before%load), &
+          call results%row(cells([driven%stiffness]) // ',' // direction_of(jump%inward), &
+            [z_of(problem, driven%drive, jump%before%h0, jump%before%load), &
             si_of(problem, jump%before), after, jump%energy*problem%load*problem%length])
         end associate
-        lines = [lines, line]
       end do
     end do
-  end function jump_lines
+  end subroutine write_jumps
 
   !> The nodes of the curve that a leg passes, in the order of the leg.
   pure function nodes_between(curve, leg) result(nodes)
     type(curve_t), intent(in) :: curve
     type(leg_t), intent(in) :: leg
     type(curve_node_t), allocatable :: nodes(:)
-    type(curve_node_t) :: node
     integer :: i, first, last
 
     first = min(leg%from%interval, leg%to%interval)
     last = max(leg%from%interval, leg%to%interval)
-    allocate (nodes(0))
+    allocate (nodes(last - first))
     do i = first + 1, last
-      node = curve%begin_of(i)
-      nodes = [nodes, node]
+      nodes(i - first) = curve%begin_of(i)
     end do
     if (.not. leg%inward) nodes = nodes(size(nodes):1:-1)
   end function nodes_between

@@ -3,7 +3,7 @@ module fit_rows
   use kinds, only: wp
   use text, only: rounded, brief
   use namelist_writer, only: line_t, assignment_of
-  use tables, only: cells
+  use results, only: results_t
   use fit_request, only: unknown_t
   use measured_jumps, only: measured_jump_t
   use curve_fit, only: fitted_t
@@ -11,7 +11,7 @@ module fit_rows
   use fit_doubts, only: doubts_of
   implicit none
   private
-  public :: fit_columns, fit_lines, fit_text, fit_words
+  public :: fit_columns, write_fit_rows, fit_text, fit_words
 
   !> Columns of fit.csv.
   character(len=*), parameter :: fit_columns(*) = [character(len=96) :: &
@@ -27,21 +27,22 @@ module fit_rows
 
 contains
 
-  !> Rows of fit.csv.
-  function fit_lines(outcome) result(lines)
+  !> Writes the rows of fit.csv.
+  subroutine write_fit_rows(outcome, results)
     type(fit_outcome_t), intent(in) :: outcome
-    type(line_t), allocatable :: lines(:)
+    type(results_t), intent(inout) :: results
+    logical :: used(size(outcome%curve%data%measured%z))
     integer :: i
 
     associate (data => outcome%curve%data%measured, fitted => outcome%fitted)
-      allocate (lines(size(data%z)))
-      do i = 1, size(lines)
-        lines(i)%text = trim(merge('approach', 'retreat ', data%inward(i))) // ',' // &
-          cells([data%z(i), data%signal(i), fitted%model(i), fitted%baseline(i), &
-          fitted%residual(i)]) // merge(',1', ',0', any(outcome%curve%data%sample == i))
+      used = .false.
+      used(outcome%curve%data%sample) = .true.
+      do i = 1, size(used)
+        call results%row(trim(merge('approach', 'retreat ', data%inward(i))), [data%z(i), &
+          data%signal(i), fitted%model(i), fitted%baseline(i), fitted%residual(i)], used(i))
       end do
     end associate
-  end function fit_lines
+  end subroutine write_fit_rows
 
   !> fit.nml: a group for the fit of the path, and one for that of each theory.
   function fit_text(outcome, title) result(text)

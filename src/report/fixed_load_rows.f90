@@ -3,12 +3,11 @@ module fixed_load_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use fixed_loads, only: loaded_state_t
-  use namelist_writer, only: line_t
-  use tables, only: cells
+  use results, only: results_t
   use summary, only: summary_t
   implicit none
   private
-  public :: fixed_load_columns, fixed_load_lines, summarise_fixed_loads
+  public :: fixed_load_columns, write_fixed_loads, summarise_fixed_loads
 
   !> Columns of fixed_load.csv.
   character(len=*), parameter :: fixed_load_columns(*) = [character(len=96) :: &
@@ -20,22 +19,21 @@ module fixed_load_rows
 
 contains
 
-  !> Rows of fixed_load.csv: load by load, each from afar inward.
-  function fixed_load_lines(problem, loaded) result(lines)
+  !> Writes the rows of fixed_load.csv: load by load, each from afar inward.
+  subroutine write_fixed_loads(problem, loaded, results)
     type(problem_t), intent(in) :: problem
     type(loaded_state_t), intent(in) :: loaded(:)
-    type(line_t), allocatable :: lines(:)
+    type(results_t), intent(inout) :: results
     integer :: i
 
-    allocate (lines(size(loaded)))
     do i = 1, size(loaded)
       associate (state => loaded(i)%state)
-        lines(i)%text = cells([loaded(i)%wanted*problem%load, &
+        call results%row(numbers=[loaded(i)%wanted*problem%load, &
           problem%law%separation_of(state%h0), (state%axis_gap - state%h0)*problem%length, &
-          state%radius*problem%lateral]) // merge(',1', ',0', loaded(i)%stable)
+          state%radius*problem%lateral], truth=loaded(i)%stable)
       end associate
     end do
-  end function fixed_load_lines
+  end subroutine write_fixed_loads
 
   !> How many equilibria each load has, and how many of them are stable.
   subroutine summarise_fixed_loads(problem, loads, loaded, summary)

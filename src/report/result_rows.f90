@@ -145,6 +145,12 @@ module result_rows
     row_t('fold_closed_form_load', 'N', 'load there', approximations), &
     row_t('fold_attractive_only_h0', 'm', 'h0 at which (35b) turns round', approximations), &
     row_t('fold_attractive_only_load', 'N', 'load there', approximations), &
+    row_t('range_over_radius', '', &
+      'range of the force over the radius of the bodies, which the model takes for small', always), &
+    row_t('contact_over_radius', '', &
+      'largest contact radius over the radius; of other shapes the slope there', always), &
+    row_t('pressure_over_stiffness', '', 'largest pressure over the stiffness, about the strain', &
+      always), &
     row_t('worst_residual', '', &
       'largest residual of all equilibria, over the law''s length', always), &
     row_t('spacing_over_neck', '', &
@@ -159,6 +165,7 @@ module result_rows
     row_t('blas', '', 'library of linear algebra'), &
     row_t('build_options', '', 'options of the compiler'), &
     row_t('warnings', '', 'every warning of the run', list=.true.), &
+    row_t('notes', '', 'what else is worth knowing, with nothing wrong', list=.true.), &
     row_t('wall_seconds', 's', 'from beginning to end, interrupted runs included', group=in_cost), &
     row_t('kernel_seconds', 's', 'spent on matrices of the elastic kernel', group=in_cost), &
     row_t('solve_seconds', 's', 'spent on equilibria', group=in_cost), &

@@ -21,7 +21,6 @@ module results
   use journal, only: journal_t
   use run_identity, only: difference_between
   use text_file, only: output_t, partial
-  use namelist_writer, only: line_t
   use tables, only: table_t, cells
   use curve_rows, only: columns_of_curve, curve_row
   use profiles, only: columns_of_profiles, write_profile
@@ -44,7 +43,7 @@ module results
     !> Keeps other runs out of the folder.
     type(folder_lock_t) :: lock
     character(len=:), allocatable, private :: folder, title, version
-    type(table_t), private :: curve, shapes, cases
+    type(table_t), private :: curve, shapes, cases, beside
     !> Which of `result_files` this run has made.
     logical, private :: made(size(result_files)) = .false.
   contains
@@ -52,7 +51,9 @@ module results
     procedure :: take
     procedure :: hear
     procedure :: take_case
-    procedure :: write_table
+    procedure :: begin_table
+    procedure :: row
+    procedure :: end_table
     procedure :: write_text
     procedure :: write_summary
     procedure :: finish
@@ -185,23 +186,39 @@ contains
     if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
   end subroutine take_case
 
-  !> Writes the table `name`, one of `result_files`, whole: its columns, each described as
-  !> 'name [unit] what it is', and its rows.
-  subroutine write_table(self, name, columns, rows)
+  !> Begins the table `name`, one of `result_files`, of which there is one at a time: its columns,
+  !> each described as 'name [unit] what it is'. Rows follow, then its end.
+  subroutine begin_table(self, name, columns)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: name, columns(:)
-    type(line_t), intent(in) :: rows(:)
-    type(table_t) :: table
-    integer :: i
 
     if (allocated(self%trouble)) return
-    call self%begin(table, name, columns, self%trouble)
-    do i = 1, size(rows)
-      if (allocated(self%trouble)) return
-      call table%line(rows(i)%text, self%trouble)
-    end do
-    if (.not. allocated(self%trouble)) call table%close(self%trouble)
-  end subroutine write_table
+    call self%progress%note('writing ' // name)
+    call self%begin(self%beside, name, columns, self%trouble)
+  end subroutine begin_table
+
+  !> Adds a row: text first, then numbers, then 1 or 0 for `truth`, of which each may be absent.
+  subroutine row(self, text, numbers, truth)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in), optional :: text
+    real(wp), intent(in), optional :: numbers(:)
+    logical, intent(in), optional :: truth
+    character(len=:), allocatable :: line
+
+    if (allocated(self%trouble)) return
+    line = ''
+    if (present(text)) line = text
+    if (present(numbers)) line = line // ',' // cells(numbers)
+    if (present(truth)) line = line // merge(',1', ',0', truth)
+    if (.not. present(text)) line = line(2:)
+    call self%beside%line(line, self%trouble)
+  end subroutine row
+
+  subroutine end_table(self)
+    class(results_t), intent(inout) :: self
+
+    if (.not. allocated(self%trouble)) call self%beside%close(self%trouble)
+  end subroutine end_table
 
   !> Writes the file `name`, one of `result_files`, whole.
   subroutine write_text(self, name, text)
@@ -249,9 +266,10 @@ contains
     call self%progress%finish()
     if (.not. allocated(self%trouble) .and. allocated(self%journal%trouble)) &
       self%trouble = self%journal%trouble
-    call end_table(self%curve, self%trouble)
-    call end_table(self%shapes, self%trouble)
-    call end_table(self%cases, self%trouble)
+    call finish_table(self%curve, self%trouble)
+    call finish_table(self%shapes, self%trouble)
+    call finish_table(self%cases, self%trouble)
+    call finish_table(self%beside, self%trouble)
     if (allocated(self%trouble)) then
       error = self%trouble
     else if (any(self%made)) then
@@ -292,14 +310,14 @@ contains
   end subroutine check_presence
 
   !> Closes a table; the first error stays.
-  subroutine end_table(table, error)
+  subroutine finish_table(table, error)
     type(table_t), intent(inout) :: table
     type(failure_t), allocatable, intent(inout) :: error
     type(failure_t), allocatable :: another
 
     call table%close(another)
     if (allocated(another) .and. .not. allocated(error)) call move_alloc(another, error)
-  end subroutine end_table
+  end subroutine finish_table
 
   !> Path of a file of the folder.
   pure function path_of(self, name) result(path)

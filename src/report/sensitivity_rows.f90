@@ -10,14 +10,13 @@ module sensitivity_rows
   use path_sensitivity, only: rate_t, held
   use driven_pieces, only: through_spring
   use path_readings, only: path_readings_t
-  use namelist_writer, only: line_t
+  use results, only: results_t
   use result_rows, only: rows
   use summary, only: summary_t
-  use tables, only: cells
   implicit none
   private
-  public :: sensitivity_columns, curve_sensitivity_columns, sensitivity_lines, &
-    curve_sensitivity_lines
+  public :: sensitivity_columns, curve_sensitivity_columns, write_sensitivity, &
+    write_curve_sensitivity
 
   !> Columns of sensitivity.csv and of curve_sensitivity.csv.
   character(len=*), parameter :: sensitivity_columns(*) = [character(len=96) :: &
@@ -41,25 +40,23 @@ module sensitivity_rows
 
 contains
 
-  !> Rows of sensitivity.csv.
-  function sensitivity_lines(problem, varied, summary, readings) result(lines)
+  !> Writes the rows of sensitivity.csv.
+  subroutine write_sensitivity(problem, varied, summary, readings, results)
     type(problem_t), intent(in) :: problem
     type(variation_t), intent(in) :: varied(:)
     type(summary_t), intent(in) :: summary
     type(path_readings_t), intent(in) :: readings
-    type(line_t), allocatable :: lines(:)
+    type(results_t), intent(inout) :: results
 
-    allocate (lines(0))
-    call add_of_summary(varied, summary, lines)
-    if (allocated(readings%loaded)) call add_of_loaded(problem, varied, readings%loaded, lines)
-  end function sensitivity_lines
+    call write_of_summary(varied, summary, results)
+    if (allocated(readings%loaded)) call write_of_loaded(problem, varied, readings%loaded, results)
+  end subroutine write_sensitivity
 
-  !> Adds rows of sensitivity.csv, quantity by quantity in the order of the summary.
-  subroutine add_of_summary(varied, summary, lines)
+  !> Writes rows of sensitivity.csv, quantity by quantity in the order of the summary.
+  subroutine write_of_summary(varied, summary, results)
     type(variation_t), intent(in) :: varied(:)
     type(summary_t), intent(in) :: summary
-    type(line_t), allocatable, intent(inout) :: lines(:)
-    type(line_t) :: line
+    type(results_t), intent(inout) :: results
     real(wp), allocatable :: values(:), rate(:, :)
     character(len=40) :: name
     integer :: i, j, k
@@ -71,30 +68,29 @@ contains
         name = rows(i)%key
         if (rows(i)%list) write (name, '(2a, i0, a)') trim(rows(i)%key), '(', k, ')'
         do j = 1, size(rate, 1)
-          line%text = sensitivity_line(trim(name), varied(j), values(k), rate(j, k))
-          lines = [lines, line]
+          call write_line(results, trim(name), varied(j), values(k), rate(j, k))
         end do
       end do
     end do
-  end subroutine add_of_summary
+  end subroutine write_of_summary
 
-  !> One row.
-  pure function sensitivity_line(quantity, varied, value, rate) result(text)
+  !> Writes one row.
+  subroutine write_line(results, quantity, varied, value, rate)
+    type(results_t), intent(inout) :: results
     character(len=*), intent(in) :: quantity
     type(variation_t), intent(in) :: varied
     real(wp), intent(in) :: value, rate
-    character(len=:), allocatable :: text
 
-    text = quantity // ',' // varied%parameter%name // ',' // &
-      cells([value, rate, rate*varied%parameter%value/value])
-  end function sensitivity_line
+    call results%row(quantity // ',' // varied%parameter%name, &
+      [value, rate, rate*varied%parameter%value/value])
+  end subroutine write_line
 
-  !> Adds rows of sensitivity.csv for the rows of fixed_load.csv.
-  subroutine add_of_loaded(problem, varied, loaded, lines)
+  !> Writes rows of sensitivity.csv for the rows of fixed_load.csv.
+  subroutine write_of_loaded(problem, varied, loaded, results)
     type(problem_t), intent(in) :: problem
     type(variation_t), intent(in) :: varied(:)
     type(loaded_state_t), intent(in) :: loaded(:)
-    type(line_t), allocatable, intent(inout) :: lines(:)
+    type(results_t), intent(inout) :: results
     character(len=12) :: row
     integer :: i
 
@@ -115,29 +111,25 @@ contains
     subroutine add(column, value, rate)
       character(len=*), intent(in) :: column
       real(wp), intent(in) :: value, rate(:)
-      type(line_t) :: line
       integer :: j
 
       do j = 1, size(rate)
-        line%text = sensitivity_line('fixed_load.' // column // trim(row), varied(j), value, &
-          rate(j))
-        lines = [lines, line]
+        call write_line(results, 'fixed_load.' // column // trim(row), varied(j), value, rate(j))
       end do
     end subroutine add
 
-  end subroutine add_of_loaded
+  end subroutine write_of_loaded
 
-  !> Rows of curve_sensitivity.csv: the curve at prescribed h0 and then behind each spring, for each
-  !> parameter.
-  function curve_sensitivity_lines(problem, varied, readings) result(lines)
+  !> Writes the rows of curve_sensitivity.csv: the curve at prescribed h0 and then behind each
+  !> spring, for each parameter.
+  subroutine write_curve_sensitivity(problem, varied, readings, results)
     type(problem_t), intent(in) :: problem
     type(variation_t), intent(in) :: varied(:)
     type(path_readings_t), intent(in) :: readings
-    type(line_t), allocatable :: lines(:)
+    type(results_t), intent(inout) :: results
     real(wp), allocatable :: stiffness(:)
     integer :: i, j, k
 
-    allocate (lines(0))
     stiffness = [ieee_value(1.0_wp, ieee_positive_inf)]
     if (allocated(readings%device)) stiffness = [stiffness, &
       pack(readings%device%stiffness, readings%device%stiffness <= huge(1.0_wp))]
@@ -154,7 +146,6 @@ contains
     subroutine add(i, j, stiffness)
       integer, intent(in) :: i, j
       real(wp), intent(in) :: stiffness
-      type(line_t) :: line
       type(rate_t) :: rate
       real(wp) :: weights(2), terms(2), z
 
@@ -170,12 +161,11 @@ contains
         z = ieee_value(1.0_wp, ieee_quiet_nan)
         if (weights(1) > 0) z = problem%law%separation_of(node%h0) + weights(2)*node%load* &
           problem%load
-        line%text = varied(j)%parameter%name // ',' // cells([stiffness, z, &
+        call results%row(varied(j)%parameter%name, [stiffness, z, &
           problem%law%separation_of(node%h0), node%load*problem%load, rate%h0, rate%load])
       end associate
-      lines = [lines, line]
     end subroutine add
 
-  end function curve_sensitivity_lines
+  end subroutine write_curve_sensitivity
 
 end module sensitivity_rows

@@ -20,6 +20,7 @@ module summarise
   use device_rows, only: summarise_device
   use fixed_load_rows, only: summarise_fixed_loads
   use regime_rows, only: summarise_regime
+  use validity, only: judge_law, judge_extent
   use quality_warnings, only: judge_resolution, judge_accuracy, judge_stopping
   implicit none
   private
@@ -38,6 +39,7 @@ contains
     call summary%set('converged', .true.)
     call describe_problem(scene, problem, summary)
     if (allocated(scene%sensitivity)) call rate_description(scene, summary)
+    call judge_law(problem, summary)
     if (allocated(scene%classical)) call summarise_classical(problem, summary)
     if (allocated(scene%approximations)) call summarise_approximations(problem, summary)
     if (.not. allocated(outcome%chosen%grid)) return
@@ -48,6 +50,7 @@ contains
     if (allocated(scene%regime)) call summarise_regime(problem, outcome, summary)
     call take_energy(problem, outcome, summary)
     call take_end(problem, outcome, summary)
+    call judge_extent(problem, outcome, summary)
     if (.not. outcome%differentiated) &
       call summary%fail_with('sensitivity: not all derivatives were found')
     if (.not. problem%rigid) &

@@ -28,9 +28,10 @@ module summary
     !> One a row, once a value has been set. On the heap: several summaries at once would make the
     !> stack grow, which a limit of memory can forbid.
     type(value_t), allocatable, private :: value(:)
-    type(line_t), allocatable :: warnings(:)
+    type(line_t), allocatable :: warnings(:), notes(:)
   contains
     procedure :: warn
+    procedure :: note
     procedure :: fail_with
     generic :: set => set_number, set_numbers, set_count, set_counts, set_truth, set_text
     procedure :: set_rate
@@ -238,6 +239,17 @@ contains
       self%warnings(most_warnings)%text = 'further warnings are not shown'
   end subroutine warn
 
+  !> Adds a note, one line: what the user may want to know, with nothing wrong.
+  pure subroutine note(self, text)
+    class(summary_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+    type(line_t) :: line
+
+    if (.not. allocated(self%notes)) allocate (self%notes(0))
+    line%text = text
+    self%notes = [self%notes, line]
+  end subroutine note
+
   !> Not everything was found: adds the reason as a warning.
   subroutine fail_with(self, text)
     class(summary_t), intent(inout) :: self
@@ -295,6 +307,7 @@ contains
         text = text // assignment_of(key, value%number) // assignment_of(key, value%count) // &
           assignment_of(key, value%truth) // assignment_of(key, value%text)
         if (key == 'warnings') text = text // assignment_of(key, self%warnings)
+        if (key == 'notes') text = text // assignment_of(key, self%notes)
       end associate
     end do
   end function group_text

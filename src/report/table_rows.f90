@@ -8,11 +8,10 @@ module table_rows
   use path_curve, only: curve_node_t
   use path_readings, only: path_readings_t
   use device_rows, only: nodes_between
-  use namelist_writer, only: line_t
-  use tables, only: cells
+  use results, only: results_t
   implicit none
   private
-  public :: table_columns, table_lines
+  public :: table_columns, write_contact_table
 
   !> Columns of table.csv.
   character(len=*), parameter :: table_columns(*) = [character(len=96) :: &
@@ -28,15 +27,14 @@ module table_rows
 
 contains
 
-  !> Rows of table.csv.
-  function table_lines(problem, readings) result(lines)
+  !> Writes the rows of table.csv.
+  subroutine write_contact_table(problem, readings, results)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
-    type(line_t), allocatable :: lines(:)
+    type(results_t), intent(inout) :: results
     type(curve_node_t), allocatable :: nodes(:)
     integer :: i, j
 
-    allocate (lines(0))
     associate (driven => readings%prescribed)
       do i = 1, size(driven%leg)
         associate (leg => driven%leg(i))
@@ -60,7 +58,6 @@ contains
       logical, intent(in) :: inward, at_jump
       real(wp), intent(in) :: h0, load, radius, slopes(2)
       type(maugis_units_t) :: unit
-      type(line_t) :: line
       real(wp) :: si(4)
 
       si = [-h0*problem%length, load*problem%load, radius*problem%lateral, &
@@ -73,12 +70,11 @@ contains
         unit%load = unit%displacement
         unit%radius = unit%displacement
       end if
-      line%text = merge('approach', 'retreat ', inward)
-      line%text = trim(line%text) // ',' // cells([si, si(1)/unit%displacement, &
-        si(2)/unit%load, si(3)/unit%radius, si(4)*unit%displacement/unit%load])
-      lines = [lines, line]
+      call results%row(trim(merge('approach', 'retreat ', inward)), [si, &
+        si(1)/unit%displacement, si(2)/unit%load, si(3)/unit%radius, &
+        si(4)*unit%displacement/unit%load])
     end subroutine add
 
-  end function table_lines
+  end subroutine write_contact_table
 
 end module table_rows

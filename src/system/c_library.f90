@@ -2,12 +2,13 @@
 !> and its error messages. A status below zero is a failure, for `system_failure`. Paths and names
 !> end with `nul`.
 module c_library
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, nul => c_null_char
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_long, nul => c_null_char
   use failure, only: failure_t, fail, file_trouble
   implicit none
   private
   public :: c_open, c_read, c_write, c_sync, c_sync_above, c_close, c_size, c_cut, &
-    c_make_folder, c_current_folder, c_lock, c_kind, c_rename, c_remove, c_is_terminal, c_prepare, &
+    c_make_folder, c_current_folder, c_lock, c_kind, c_rename, c_remove, c_free_disk, &
+    c_is_terminal, c_prepare, &
     c_openblas_threads, c_openblas_end_threads, c_openblas_config, c_build_id
   public :: explain, system_failure, nul
   public :: as_input, as_output, as_kept_output, as_folder
@@ -112,6 +113,12 @@ module c_library
       integer(c_int), value :: folder
       character(kind=c_char), intent(in) :: name(*)
     end function c_remove
+
+    !> Bytes that may still be written below a path; huge where nobody says.
+    real(c_double) function c_free_disk(path) bind(c, name='snapin_free_disk')
+      import :: c_char, c_double
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_free_disk
 
     !> 1 for a terminal.
     integer(c_int) function c_is_terminal(descriptor) bind(c, name='snapin_is_terminal')

@@ -2,13 +2,14 @@
 module files
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use kinds, only: long
+  use kinds, only: wp, long
   use failure, only: failure_t
-  use c_library, only: c_make_folder, c_current_folder, c_is_terminal, c_write, &
+  use c_library, only: c_make_folder, c_current_folder, c_free_disk, c_is_terminal, c_write, &
     c_open, c_sync, c_sync_above, c_close, as_folder, system_failure, nul
   implicit none
   private
-  public :: make_folder, sync_names, file_exists, whole_path, read_file, is_terminal, write_stderr
+  public :: make_folder, sync_names, file_exists, free_disk, whole_path, read_file, is_terminal, &
+    write_stderr
 
   !> Number of standard error.
   integer(c_int), parameter :: standard_error = 2
@@ -89,6 +90,14 @@ contains
 
     inquire (file=path, exist=file_exists)
   end function file_exists
+
+  !> Bytes that may still be written below a path, of which the end may not be there yet; huge
+  !> where nobody says.
+  real(wp) function free_disk(path)
+    character(len=*), intent(in) :: path
+
+    free_disk = c_free_disk(path // nul)
+  end function free_disk
 
   !> Whether standard error is a terminal.
   logical function is_terminal()

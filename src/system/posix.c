@@ -12,6 +12,7 @@
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 /* Beyond every errno. */
@@ -146,6 +147,23 @@ int snapin_rename(int folder, const char *from, const char *to) {
 
 int snapin_remove(int folder, const char *name) {
   return unlinkat(folder, name, 0) == 0 || errno == ENOENT ? 0 : -errno;
+}
+
+/* Bytes that the user may still write below a path, of which the end may not be there yet; huge
+   where nobody says. */
+double snapin_free_disk(const char *path) {
+  char above[PATH_MAX];
+  struct statvfs disk;
+  if (strlen(path) >= sizeof above)
+    return 1e300;
+  strcpy(above, path);
+  while (statvfs(above[0] ? above : ".", &disk) != 0) {
+    char *slash = strrchr(above, '/');
+    if (errno != ENOENT || (!slash && !above[0]) || slash == above)
+      return 1e300;
+    *(slash ? slash : above) = 0;
+  }
+  return (double)disk.f_bavail * disk.f_frsize;
 }
 
 int snapin_is_terminal(int fd) { return isatty(fd) == 1; }

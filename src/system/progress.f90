@@ -1,44 +1,59 @@
-!> How far a run is, on standard error: a live line on a terminal, a line now and then elsewhere.
+!> How far a run is, on standard error: a live line on a terminal, a line now and then elsewhere,
+!> with the time that it has taken so far and, where steps are counted, what they leave to expect.
+!> A thread shows it (`heartbeat.c`), so that the line moves however long a step takes.
 module progress
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_long, c_ptr, c_null_ptr, &
+    c_associated, nul => c_null_char
   use kinds, only: wp
-  use clock, only: seconds
-  use files, only: is_terminal, write_stderr
+  use files, only: is_terminal
   implicit none
   private
   public :: progress_t, duration
 
-  !> Seconds between two updates of the live line, and before the first: nobody needs one that is
-  !> gone at once.
-  real(wp), parameter :: live_interval = 0.2_wp
-  !> Elsewhere: seconds before the first line, the factor by which intervals grow, the longest one.
-  real(wp), parameter :: first_line = 5, growth = 2, longest_interval = 600
-  !> Seconds of counted steps before which no time left is estimated.
-  real(wp), parameter :: too_early = 1
-  !> A line that wraps cannot be erased; terminals narrower than this are rare.
-  integer, parameter :: widest = 79
-
-  !> Does nothing until started. All text is plain ASCII.
+  !> Does nothing until started. All text is plain ASCII. Not to be copied once it is.
   type :: progress_t
     private
-    logical :: active = .false., live = .false.
-    !> What every line begins with, and what the last note said.
-    character(len=:), allocatable :: name, noted
-    !> Steps done, and in all; 0 where that is not known.
-    integer :: done = 0, total = 0
-    !> Steps among those done that took no time.
-    integer :: given = 0
-    !> Times [s]: of the start, of the first counted step's start, of the next line, between lines.
-    real(wp) :: began = 0, origin = 0, next = 0, interval = 0
-    !> Characters of the live line, lines written elsewhere.
-    integer :: shown = 0, lines = 0
+    type(c_ptr) :: heartbeat = c_null_ptr
   contains
     procedure :: start
     procedure :: step
     procedure :: skip
     procedure :: note
+    procedure :: detail
     procedure :: finish
-    procedure, private :: show
   end type progress_t
+
+  interface
+    !> Begins to show lines that begin with a name; null where there can be no thread.
+    type(c_ptr) function begin_progress(name, total, live) bind(c, name='snapin_begin_progress')
+      import :: c_char, c_int, c_long, c_ptr
+      character(kind=c_char), intent(in) :: name(*)
+      integer(c_long), value :: total
+      integer(c_int), value :: live
+    end function begin_progress
+
+    !> What is being done; counted: as how many steps; given: 1 where they took no time, -1 where
+    !> this is part of a step.
+    subroutine show_progress(heartbeat, label, counted, given) bind(c, name='snapin_progress')
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: heartbeat
+      character(kind=c_char), intent(in) :: label(*)
+      integer(c_int), value :: counted, given
+    end subroutine show_progress
+
+    !> Ends: the live line disappears; elsewhere a last line follows if there was one before.
+    subroutine end_progress(heartbeat) bind(c, name='snapin_end_progress')
+      import :: c_ptr
+      type(c_ptr), value :: heartbeat
+    end subroutine end_progress
+
+    subroutine tell_duration(seconds, text, size) bind(c, name='snapin_duration')
+      import :: c_char, c_double, c_int
+      real(c_double), value :: seconds
+      character(kind=c_char), intent(out) :: text(*)
+      integer(c_int), value :: size
+    end subroutine tell_duration
+  end interface
 
 contains
 
@@ -51,19 +66,8 @@ contains
     logical, intent(in) :: quiet
 
     call self%finish()
-    self%active = .not. quiet
-    self%live = is_terminal()
-    self%name = name
-    self%noted = ''
-    self%done = 0
-    self%given = 0
-    self%total = max(total, 0)
-    self%shown = 0
-    self%lines = 0
-    self%began = seconds()
-    self%origin = self%began
-    self%interval = merge(live_interval, first_line, self%live)
-    self%next = self%began + self%interval
+    if (.not. quiet) self%heartbeat = begin_progress(name // nul, int(max(total, 0), c_long), &
+      merge(1_c_int, 0_c_int, is_terminal()))
   end subroutine start
 
   !> Counts one step, of what `label` names (a branch).
@@ -71,9 +75,7 @@ contains
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
 
-    if (.not. self%active) return
-    self%done = self%done + 1
-    call self%show(label)
+    if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, label // nul, 1, 0)
   end subroutine step
 
   !> Counts one step that an earlier run has done; the estimate of the time begins after it.
@@ -81,91 +83,43 @@ contains
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
 
-    if (.not. self%active) return
-    self%done = self%done + 1
-    self%given = self%done
-    self%origin = seconds()
-    call self%show(label)
+    if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, label // nul, 1, 1)
   end subroutine skip
 
-  !> Says what is being done without counting it. What comes before the first step is left out of
-  !> the estimate of the time.
+  !> Says what is being done without counting it.
   subroutine note(self, label)
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
 
-    if (.not. self%active) return
-    if (self%done == 0) self%origin = seconds()
-    ! What takes long may not come back here for a while.
-    if (self%live .and. self%noted /= label) self%next = self%began
-    self%noted = label
-    call self%show(label)
+    if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, label // nul, 0, 0)
   end subroutine note
 
-  !> Ends: the live line disappears; elsewhere a last line follows if there was one before.
+  !> The same of a part of a step, whose time belongs to the step. Threads may call it at once.
+  subroutine detail(self, label)
+    class(progress_t), intent(inout) :: self
+    character(len=*), intent(in) :: label
+    character(len=len(label) + 1) :: ended
+
+    if (.not. c_associated(self%heartbeat)) return
+    ended = trim(label) // nul
+    call show_progress(self%heartbeat, ended, 0, -1)
+  end subroutine detail
+
   subroutine finish(self)
     class(progress_t), intent(inout) :: self
 
-    if (self%active .and. self%shown > 0) &
-      call write_stderr(achar(13) // repeat(' ', self%shown) // achar(13))
-    if (self%active .and. self%lines > 0) call write_stderr(self%name // ': ended after ' // &
-      duration(seconds() - self%began) // new_line('a'))
-    self%active = .false.
+    if (c_associated(self%heartbeat)) call end_progress(self%heartbeat)
+    self%heartbeat = c_null_ptr
   end subroutine finish
 
-  !> Prints the line if it is time for one.
-  subroutine show(self, label)
-    class(progress_t), intent(inout) :: self
-    character(len=*), intent(in) :: label
-    character(len=:), allocatable :: text
-    character(len=12) :: number
-    real(wp) :: now
-    integer :: length
-
-    now = seconds()
-    if (now < self%next) return
-    text = self%name // ': ' // label
-    if (self%total > 0) then
-      ! All done is for `finish` to say.
-      write (number, '(i0)') min(99, int(100*real(self%done, wp)/self%total))
-      text = text // ', ' // trim(number) // ' %'
-      if (self%done > self%given .and. self%done <= self%total .and. &
-        now - self%origin >= too_early) text = text // ', ' // duration((now - self%origin)* &
-        (self%total - self%done)/(self%done - self%given)) // ' left'
-    else if (self%done > 0) then
-      write (number, '(i0)') self%done
-      text = text // ', ' // trim(number) // ' states'
-    end if
-    if (self%live) then
-      text = text(:min(len(text), widest))
-      length = len(text)
-      call write_stderr(achar(13) // text // repeat(' ', max(0, self%shown - length)))
-      self%shown = length
-    else
-      call write_stderr(text // ', ' // duration(now - self%began) // ' so far' // new_line('a'))
-      self%lines = self%lines + 1
-      self%interval = min(growth*self%interval, longest_interval)
-    end if
-    self%next = now + self%interval
-  end subroutine show
-
   !> A time [s] as people say it, to about two digits.
-  pure function duration(time) result(text)
+  function duration(time) result(text)
     real(wp), intent(in) :: time
     character(len=:), allocatable :: text
-    character(len=24) :: buffer
+    character(kind=c_char, len=32) :: buffer
 
-    ! A hundred days is as good as never, and fits an integer.
-    associate (whole => nint(min(max(time, 0.0_wp), 8.64e6_wp)))
-      if (whole < 100) then
-        write (buffer, '(i0, a)') whole, ' s'
-      else if (whole < 100*60) then
-        write (buffer, '(i0, a)') nint(whole/60.0_wp), ' min'
-      else
-        write (buffer, '(i0, a, i2.2, a)') whole/3600, ' h ', mod(whole, 3600)/60, ' min'
-      end if
-    end associate
-    text = trim(buffer)
+    call tell_duration(real(time, c_double), buffer, len(buffer))
+    text = buffer(:index(buffer, nul) - 1)
   end function duration
 
 end module progress

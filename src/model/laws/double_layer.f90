@@ -42,6 +42,8 @@ module double_layer
   !> Avogadro's constant [1/mol].
   real(wp), parameter :: elementary_charge = 1.602176634e-19_wp, boltzmann = 1.380649e-23_wp, &
     vacuum_permittivity = 8.8541878128e-12_wp, avogadro = 6.02214076e23_wp
+  !> Reduced potential beyond which the linear equation is not for it: 25.7 mV for single charges.
+  real(wp), parameter :: small_potential = 1
   !> Gap in Debye lengths beyond which exponentials would underflow.
   real(wp), parameter :: largest_gap = 300
   !> Largest reduced potential: 0.5 V for single charges. Beyond, ions would not be points.
@@ -72,7 +74,7 @@ contains
       real_key('double_layer', 'temperature', 'K', 'Temperature.', above=zero, &
                default='298.15'), &
       word_key('double_layer', 'model', models, 'Small potentials; large gaps; or the whole ' // &
-               'Poisson-Boltzmann equation.', default='linear')]
+               'Poisson-Boltzmann equation.', default='nonlinear')]
   end function keys
 
   !> The law, if the deck asks for it.
@@ -92,6 +94,9 @@ contains
     if (model == 'nonlinear') this%model = nonlinear
     call take_electrolyte(deck, this, osmotic, error)
     if (allocated(error)) return
+    if (this%model == linear .and. this%surface(1)%potential > small_potential) this%caveat = &
+      'double_layer: model = ''linear'' is for potentials below kT/(z e), 25.7 mV for single ' // &
+      'charges at room temperature; pressures may be wrong by orders of magnitude: leave model out'
     this%scale = 1/(32*tanh(this%surface(1)%potential/4)**2)
     this%pressure_unit = osmotic/this%scale
     this%group = 'double_layer'

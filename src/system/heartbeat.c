@@ -1,0 +1,160 @@
+/* How far a run is, on standard error, shown by a thread of its own: however long a step takes,
+   the line moves. `progress` says what each function is for. */
+#define _GNU_SOURCE
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { widest = 79, longest_label = 96 };
+
+/* Seconds between two updates of the live line; elsewhere: before the first line, the factor by
+   which intervals grow, the longest one; of steps before which no time left is estimated. */
+static const double live_interval = 0.2, first_line = 5, growth = 2, longest_interval = 600,
+                    too_early = 1;
+
+struct heartbeat {
+  pthread_mutex_t lock;
+  pthread_cond_t ended;
+  pthread_t thread;
+  int stop, live, shown, lines;
+  char name[longest_label], label[longest_label];
+  /* Steps done, those of them that an earlier run did, and all that there are (0: unknown). */
+  long done, given, total;
+  double began, origin, next, interval;
+};
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return t.tv_sec + 1e-9 * t.tv_nsec;
+}
+
+/* A line that nobody can read is no reason to end. */
+static void put(const char *text, int length) {
+  while (length > 0) {
+    ssize_t written = write(STDERR_FILENO, text, length);
+    if (written <= 0)
+      return;
+    text += written;
+    length -= written;
+  }
+}
+
+/* A time as people say it, to about two digits. A hundred days is as good as never. */
+void snapin_duration(double seconds, char *text, int size) {
+  long whole = seconds > 0 ? (seconds < 8.64e6 ? (long)(seconds + 0.5) : 8640000) : 0;
+  if (whole < 100)
+    snprintf(text, size, "%ld s", whole);
+  else if (whole < 100 * 60)
+    snprintf(text, size, "%ld min", (whole + 30) / 60);
+  else
+    snprintf(text, size, "%ld h %02ld min", whole / 3600, whole % 3600 / 60);
+}
+
+static void show(struct heartbeat *self, double time) {
+  char text[4 * longest_label], duration[32];
+  int size = sizeof text, n = snprintf(text, size, "%s: %s", self->name, self->label);
+  if (self->total > 0) {
+    /* All done is for the end to say. */
+    int percent = (int)(100.0 * self->done / self->total);
+    n += snprintf(text + n, size - n, ", %d %%", percent < 99 ? percent : 99);
+    if (self->done > self->given && self->done <= self->total && time - self->origin >= too_early) {
+      snapin_duration((time - self->origin) * (self->total - self->done) /
+                          (self->done - self->given), duration, sizeof duration);
+      n += snprintf(text + n, size - n, ", %s left", duration);
+    }
+  } else if (self->done > 0)
+    n += snprintf(text + n, size - n, ", %ld states", self->done);
+  snapin_duration(time - self->began, duration, sizeof duration);
+  n += snprintf(text + n, size - n, ", %s so far", duration);
+  if (self->live) {
+    /* A line that wraps cannot be erased; terminals narrower than this are rare. */
+    char line[2 * widest + 2];
+    if (n > widest)
+      text[n = widest] = 0;
+    put(line, snprintf(line, sizeof line, "\r%-*s", self->shown > n ? self->shown : n, text));
+    self->shown = n;
+  } else {
+    text[n] = '\n';
+    put(text, n + 1);
+    self->lines += 1;
+    self->interval *= growth;
+    if (self->interval > longest_interval)
+      self->interval = longest_interval;
+  }
+  self->next = time + self->interval;
+}
+
+static void *beat(void *of) {
+  struct heartbeat *self = of;
+  pthread_mutex_lock(&self->lock);
+  while (!self->stop) {
+    double time = now();
+    if (time >= self->next)
+      show(self, time);
+    struct timespec until = {.tv_sec = (time_t)self->next};
+    until.tv_nsec = (long)(1e9 * (self->next - until.tv_sec));
+    pthread_cond_timedwait(&self->ended, &self->lock, &until);
+  }
+  pthread_mutex_unlock(&self->lock);
+  return NULL;
+}
+
+void *snapin_begin_progress(const char *name, long total, int live) {
+  struct heartbeat *self = calloc(1, sizeof *self);
+  pthread_condattr_t clock;
+  pthread_attr_t small;
+  if (!self)
+    return NULL;
+  snprintf(self->name, sizeof self->name, "%s", name);
+  snprintf(self->label, sizeof self->label, "starting");
+  self->total = total;
+  self->live = live;
+  self->interval = live ? live_interval : first_line;
+  self->began = self->origin = now();
+  self->next = self->began + self->interval;
+  pthread_mutex_init(&self->lock, NULL);
+  pthread_condattr_init(&clock);
+  pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
+  pthread_cond_init(&self->ended, &clock);
+  /* A limit of addresses should go to the calculation. */
+  pthread_attr_init(&small);
+  pthread_attr_setstacksize(&small, 1 << 16);
+  if (pthread_create(&self->thread, &small, beat, self) == 0)
+    return self;
+  free(self);
+  return NULL;
+}
+
+void snapin_progress(void *of, const char *label, int counted, int given) {
+  struct heartbeat *self = of;
+  pthread_mutex_lock(&self->lock);
+  self->done += counted;
+  if (given > 0)
+    self->given = self->done;
+  /* What comes before the first step that is counted is left out of the time of the others. */
+  if (given > 0 || (self->done == 0 && given == 0))
+    self->origin = now();
+  snprintf(self->label, sizeof self->label, "%s", label);
+  pthread_mutex_unlock(&self->lock);
+}
+
+void snapin_end_progress(void *of) {
+  struct heartbeat *self = of;
+  char line[2 * longest_label], duration[32];
+  pthread_mutex_lock(&self->lock);
+  self->stop = 1;
+  pthread_cond_signal(&self->ended);
+  pthread_mutex_unlock(&self->lock);
+  pthread_join(self->thread, NULL);
+  if (self->shown > 0)
+    put(line, snprintf(line, sizeof line, "\r%*s\r", self->shown, ""));
+  if (self->lines > 0) {
+    snapin_duration(now() - self->began, duration, sizeof duration);
+    put(line, snprintf(line, sizeof line, "%s: ended after %s\n", self->name, duration));
+  }
+  free(self);
+}
