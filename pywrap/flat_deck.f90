@@ -1,4 +1,4 @@
-!> Decks as f2py can see them: one is run, one is asked for its force law.
+!> Decks as f2py can see them: what a key of results is, and the force law of a deck.
 !>
 !> For all flat modules: scalars, arrays of explicit shape with their sizes last, and for every
 !> procedure that may refuse its arguments `stat` (0, or the kind of `failure`) and `message`. No
@@ -13,35 +13,9 @@ module flat_deck
   use iso_c_binding, only: c_double, c_int
   implicit none
   private
-  public :: run_deck, is_list, law_values, use_one_thread
+  public :: is_list, law_values, use_one_thread
 
 contains
-
-  !> Runs a deck, called `name` in messages, as the program does, into a folder. quiet, resume: 0 or
-  !> 1. A calculation that failed is stat 2 without a message: the summary in the folder says why.
-  subroutine run_deck(deck, name, folder, quiet, resume, stat, message)
-    use failure, only: failure_t, no_convergence
-    use scene, only: read_scene, scene_t
-    use simulation, only: run_scene
-    character(len=*), intent(in) :: deck, name, folder
-    integer(c_int), intent(in) :: quiet, resume
-    integer(c_int), intent(out) :: stat
-    character(len=16000), intent(out) :: message
-    type(scene_t) :: scene
-    type(failure_t), allocatable :: error
-    logical :: converged
-
-    stat = 0
-    message = ''
-    call read_scene(name, scene, error, deck)
-    if (.not. allocated(error)) then
-      call run_scene(scene, folder, quiet /= 0, resume /= 0, converged, error)
-      if (.not. converged) stat = no_convergence
-    end if
-    if (.not. allocated(error)) return
-    stat = error%kind
-    message = error%message
-  end subroutine run_deck
 
   !> Whether a key of &summary or &cost is a list, though it may hold one value: 0 or 1.
   subroutine is_list(key, list)

@@ -36,7 +36,7 @@ _NO_NUMBERS = (
     "namelist_writer", "clock", "command_line", "c_library", "decimal", "deck", "deck_keys",
     "deck_number", "deck_numbers", "deck_scan", "deck_source", "deck_store", "text", "deck_token",
     "deck_values",
-    "failure", "checksums", "files", "finished_run", "folder_lock", "forecast", "journal", "memory",
+    "failure", "checksums", "files", "finished_run", "folder_lock", "journal", "memory",
     "preflight", "result_listing", "result_rows", "state_records", "byte_record", "progress",
     "publication", "replacement", "result_names", "run_identity", "snapin", "text_file",
 )

@@ -12,7 +12,7 @@ import numpy as np
 
 from .arguments import DeckError, SnapinError, reals, shown
 
-_BAD_INPUT = 1
+_BAD_INPUT, _NO_ROOM = 1, 4
 # f2py counts bytes in C ints; a deck may have far fewer, which the program says.
 _MOST_BYTES = 2**30
 
@@ -88,7 +88,8 @@ def accept_deck(stat, message):
     """Raise what the library reported of a deck; `stat` is 0 or a kind of src/base/failure.f90."""
     if stat:
         text = message.decode(errors="replace").rstrip()
-        raise DeckError(text) if stat == _BAD_INPUT else SnapinError(text)
+        kinds = {_BAD_INPUT: DeckError, _NO_ROOM: MemoryError}
+        raise kinds.get(stat, SnapinError)(text)
 
 
 # --- The groups that a few arguments stand for

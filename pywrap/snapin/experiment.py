@@ -1,22 +1,31 @@
 """Runs of whole decks, as the program does them, and the two that need no more than arguments.
 
-A run holds Python's global lock until it is done: threads wait, and so does Ctrl-C.
+A run is a run of the program: its results come through a pipe, so that nothing is on the disk that is
+not asked for, other threads go on meanwhile, and an interrupt ends it.
 """
 
 import os
 import pathlib
-import tempfile
+import shutil
+import signal
+import subprocess
+import sys
+import threading
 import warnings
 from typing import NamedTuple
 
 import _snapin
 import numpy as np
 
-from .arguments import DeckError, SnapinWarning, vector
-from .deck import accept_deck, deck_of, scene
-from .results import Result, read_results
+from .arguments import DeckError, SnapinError, SnapinWarning, vector
+from .deck import deck_of, scene
+from .results import Result, read_results, result_of
 
-_NO_CONVERGENCE = 2
+# The exit status of a wrong deck, what begins the message of a run that lacks room, and what says
+# that there is nothing to do.
+_WRONG_DECK = 2
+_NO_ROOM = "not computed: "
+_FINISHED = "complete since an earlier run"
 # By how much of a step the steps of h0 may differ: what the program takes for a whole step.
 _EQUAL = 1e-6
 
@@ -29,9 +38,10 @@ def run(deck, out=None, *, resume=False, quiet=True):
     for the results; there `resume` goes on with what an interrupted run has left. Without `quiet`
     progress and messages go to standard error.
 
-    A wrong deck is a `DeckError`, results that could not be written a `SnapinError`. What the
-    program warns of, states that did not converge among it, is a `SnapinWarning`; what was computed
-    is in the result.
+    A wrong deck is a `DeckError`, results that could not be written a `SnapinError`, and so is a
+    calculation that found nothing; one that lacks the memory is a `MemoryError`. What the program
+    warns of, states that did not converge among it, is a `SnapinWarning`; what was computed is in
+    the result.
     """
     return _run(deck, out, resume, quiet)
 
@@ -39,31 +49,115 @@ def run(deck, out=None, *, resume=False, quiet=True):
 def _run(deck, out=None, resume=False, quiet=True):
     """Run a deck for a function that users call."""
     name, text = deck_of(deck)
-    # f2py ends a text there.
     if b"\0" in text:
         raise DeckError(f"{name}: a NUL byte: a deck is plain text")
-    if out is not None:
-        return _run_into(pathlib.Path(out), name, text, resume, quiet)
-    if resume:
+    if out is None and resume:
         raise ValueError("resume: there is nothing to go on with unless out names its folder")
-    with tempfile.TemporaryDirectory(prefix="snapin-") as folder:
-        return _run_into(pathlib.Path(folder), name, text, resume, quiet)
-
-
-def _run_into(folder, name, text, resume, quiet):
-    place = os.fsencode(folder)
-    if b"\0" in place:
+    place = ("--out", "-") if out is None else ("--into", os.fspath(pathlib.Path(out)))
+    if b"\0" in os.fsencode(place[1]):
         raise ValueError("out: the name of a folder has no NUL")
-    stat, message = _snapin.flat_deck.run_deck(
-        text, os.fsencode(name), place, bool(quiet), bool(resume)
-    )
-    if stat != _NO_CONVERGENCE or message.strip():
-        accept_deck(stat, message)
-    result = read_results(folder)
-    for warning in result.summary.get("warnings", []):
+    options = (["--quiet"] if quiet else []) + (["--resume"] if resume else [])
+    before = _stamp(out)
+    status, streamed, said = _carry_out([*options, *place, "--name", name, "-"], text, quiet)
+    if out is None:
+        files = _files_in(streamed)
+        if "summary.nml" not in files:
+            _complain(status, said)
+        result = result_of(files, "the program's results")
+    else:
+        # Results of an earlier run are this one's where it had nothing to do.
+        if status and not (resume and _FINISHED in said) and _stamp(out) == before:
+            _complain(status, said)
+        result = read_results(out)
+    _tell(result)
+    return result
+
+
+def _stamp(folder):
+    """Return what differs once the summary in a folder is another one; None without any."""
+    try:
+        found = os.stat(os.path.join(folder or "", "summary.nml"))
+    except OSError:
+        return None
+    return found.st_ino, found.st_mtime_ns
+
+
+def _carry_out(arguments, text, quiet):
+    """Return the program's exit status, its standard output and what it said, shown if not quiet."""
+    with subprocess.Popen(
+        [_program(), *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    ) as program:
+        try:
+            if not quiet:
+                return _shown(program, text)
+            streamed, said = program.communicate(text)
+        except BaseException:
+            program.kill()
+            raise
+    return program.returncode, streamed, said.decode(errors="replace").strip()
+
+
+def _shown(program, text):
+    """Return the same of a program whose standard error is shown as it comes."""
+    said = []
+
+    def show():
+        while piece := program.stderr.read1(4096):
+            said.append(piece.decode(errors="replace"))
+            sys.stderr.write(said[-1])
+            sys.stderr.flush()
+
+    reader = threading.Thread(target=show)
+    reader.start()
+    program.stdin.write(text)
+    program.stdin.close()
+    streamed = program.stdout.read()
+    reader.join()
+    return program.wait(), streamed, "".join(said).strip()
+
+
+def _program():
+    """Return the path of the program that this package was built with, or else of any."""
+    beside = pathlib.Path(_snapin.__file__).parent.parent / "snapin"
+    found = str(beside) if beside.is_file() else shutil.which("snapin")
+    if not found:
+        raise SnapinError("the program snapin is not installed: it is neither beside the package "
+                          "nor on PATH")
+    return found
+
+
+def _files_in(streamed):
+    """Return the texts of the files in a stream: pieces, each after a line with name and bytes."""
+    pieces, start = {}, 0
+    while start < len(streamed):
+        end = streamed.index(b"\n", start)
+        name, _, size = streamed[start:end].decode().rpartition(" ")
+        start = end + 1 + int(size)
+        pieces.setdefault(name, []).append(streamed[end + 1:start])
+    return {name: b"".join(parts).decode() for name, parts in pieces.items()}
+
+
+def _complain(status, said):
+    """Raise what the program said of a run without results."""
+    if status == _WRONG_DECK:
+        raise DeckError(said)
+    if status < 0:
+        raise SnapinError(f"the program was ended by {signal.Signals(-status).name}")
+    _, found, reason = said.rpartition(_NO_ROOM)
+    if found:
+        raise MemoryError(_NO_ROOM + reason)
+    raise SnapinError(said)
+
+
+def _tell(result):
+    """Warn of what the program warns of; raise it where nothing was computed."""
+    said = result.summary.get("warnings", [])
+    if not result.converged and said and not any(table.size for table in result.tables.values()):
+        raise SnapinError("; ".join(said))
+    for warning in said:
         # Of who called the function that calls this through `_run`.
         warnings.warn(warning, SnapinWarning, stacklevel=4)
-    return result
 
 
 # --- Two experiments by arguments

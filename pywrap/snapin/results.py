@@ -1,15 +1,17 @@
 """Results of a run, read from its folder: the one reader of what the program writes."""
 
-import csv
 import pathlib
+import re
 
 import _snapin
-import f90nml
 import numpy as np
 
 from .arguments import SnapinError
 
 _TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter")
+# A text in quotes, doubled within, or another value.
+_WORD = re.compile(r"'((?:[^']|'')*)'|([^,\s]+)")
+_TRUTHS = {".true.": True, ".false.": False}
 
 
 class ResultsError(SnapinError):
@@ -51,25 +53,31 @@ class Result:
 
 def read_results(folder):
     """Return the `Result` in a folder that the program has written."""
-    groups = _read_groups(folder)
-    tables = {
-        path.stem: _structured(read_table(folder, path.name))
-        for path in sorted(pathlib.Path(folder).glob("*.csv"))
-        if path.read_bytes()[:1] == b"#"
+    _path_of(folder, "summary.nml")
+    files = {
+        path.name: path.read_text(encoding="utf-8")
+        for path in sorted(pathlib.Path(folder).glob("*"))
+        if path.suffix in (".csv", ".nml")
     }
-    return Result(
-        tables, _with_lists(groups["summary"]), _with_lists(groups["cost"]), _read_fitted(folder)
-    )
+    return result_of(files, folder)
 
 
-def _read_fitted(folder):
+def result_of(files, place):
+    """Return the `Result` in texts of files by name; `place` is theirs in messages."""
+    groups = _summary_groups(files["summary.nml"], f"{place}/summary.nml")
+    tables = {
+        name.removesuffix(".csv"): _structured(_columns(text, f"{place}/{name}"))
+        for name, text in sorted(files.items())
+        if name.endswith(".csv") and text.startswith("#")
+    }
+    return Result(tables, groups["summary"], groups["cost"], _fitted(files.get("fit.nml", "")))
+
+
+def _fitted(text):
     """Return the groups of fit.nml, the correlations as matrices; none where there is no fit."""
-    path = pathlib.Path(folder) / "fit.nml"
-    if not path.is_file():
-        return {}
     groups = {
-        name: {key: _as_list(value) for key, value in group.items() if key != "title"}
-        for name, group in f90nml.read(path).items()
+        name: {key: _as_list(values) for key, values in group.items() if key != "title"}
+        for name, group in _namelist(text).items()
     }
     for group in groups.values():
         group["correlation"] = group["correlation"].reshape(2 * (len(group["parameters"]),))
@@ -85,52 +93,85 @@ def _structured(columns):
     return table
 
 
-def _with_lists(group):
-    """Return a group as a dict; f90nml has a list of one value bare."""
-    return {
-        key: _as_list(value) if _snapin.flat_deck.is_list(key) else value
-        for key, value in group.items()
-    }
-
-
-def _as_list(value):
-    """Return one value or several as an array of numbers, or as a list of texts."""
-    values = value if isinstance(value, list) else [value]
+def _as_list(values):
+    """Return values as an array of numbers, or as a list of texts."""
     return values if isinstance(values[0], str) else np.array(values)
+
+
+def _namelist(text):
+    """Return the groups of a namelist that the program has written: lists of values by key.
+
+    Each key begins a line, and what does not fit on it goes on in deeper ones.
+    """
+    groups, group, values = {}, {}, []
+    for line in text.splitlines():
+        if line.startswith("&"):
+            group = groups[line[1:]] = {}
+        elif line.startswith("    "):
+            values += _values(line)
+        elif line.startswith("  "):
+            key, _, rest = line.partition("=")
+            values = group[key.strip()] = _values(rest)
+    return groups
+
+
+def _values(text):
+    """Return the values in a part of a line."""
+    return [
+        _value(bare) if quoted is None else quoted.replace("''", "'")
+        for quoted, bare in (match.groups() for match in _WORD.finditer(text))
+    ]
+
+
+def _value(word):
+    if word in _TRUTHS:
+        return _TRUTHS[word]
+    return int(word) if word.lstrip("+-").isdigit() else float(word)
 
 
 def read_table(folder, name):
     """Return the columns of a table as a dict of arrays, text for `_TEXT_COLUMNS`."""
     path = _path_of(folder, name)
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.reader(line for line in file if not line.startswith("#")))
+    return _columns(path.read_text(encoding="utf-8"), path)
+
+
+def _columns(text, place):
+    """Return the columns of a table's text."""
+    rows = [line.split(",") for line in text.splitlines() if not line.startswith("#")]
     if not rows:
-        raise ResultsError(f"{path}: no header line")
+        raise ResultsError(f"{place}: no header line")
     header, rows = rows[0], rows[1:]
     for row in rows:
         if len(row) != len(header):
-            raise ResultsError(f"{path}: {len(row)} cells in a row, {len(header)} in the header")
+            raise ResultsError(f"{place}: {len(row)} cells in a row, {len(header)} in the header")
+    cells = list(zip(*rows)) or [()] * len(header)
     try:
         return {
-            column: np.array([row[i] for row in rows], str if column in _TEXT_COLUMNS else float)
+            column: np.array(cells[i], str if column in _TEXT_COLUMNS else float)
             for i, column in enumerate(header)
         }
     except ValueError as problem:
-        raise ResultsError(f"{path}: {problem}") from problem
+        raise ResultsError(f"{place}: {problem}") from problem
 
 
 def read_summary(folder):
-    """Return the group &summary of summary.nml as a dict, as f90nml reads it."""
-    return _read_groups(folder)["summary"]
-
-
-def _read_groups(folder):
-    """Return the groups of summary.nml."""
+    """Return the group &summary of summary.nml as a dict."""
     path = _path_of(folder, "summary.nml")
-    groups = f90nml.read(path)
-    if "summary" not in groups:
-        raise ResultsError(f"{path}: no group &summary")
-    return groups
+    return _summary_groups(path.read_text(encoding="utf-8"), path)["summary"]
+
+
+def _summary_groups(text, place):
+    """Return &summary and &cost: lists as such, also of one value, and the others' values."""
+    groups = _namelist(text)
+    if not {"summary", "cost"} <= set(groups):
+        raise ResultsError(f"{place}: no group &summary and &cost")
+    return {
+        name: {
+            key: _as_list(values) if _snapin.flat_deck.is_list(key) else values[0]
+            for key, values in groups[name].items()
+        }
+        for name in ("summary", "cost")
+    }
 
 
 def _path_of(folder, name):

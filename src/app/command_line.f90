@@ -13,18 +13,21 @@ module command_line
 
   !> What the command line asks for.
   type :: options_t
-    !> Folder in which each deck gets a folder of its own.
-    character(len=:), allocatable :: out
+    !> Folder in which each deck gets a folder of its own, or '-' for standard output; folder that
+    !> the results of the only deck go into themselves.
+    character(len=:), allocatable :: out, into
+    !> What the deck on standard input is called in messages.
+    character(len=:), allocatable :: name
     logical :: check = .false., resume = .false., quiet = .false.
     logical :: keys = .false., results = .false., version = .false., help = .false.
     type(file_t), allocatable :: decks(:)
   end type options_t
 
   character(len=*), parameter :: usage = &
-    'snapin [--out DIR] [--check] [--resume] [--quiet] [--keys] [--results] ' // &
-    '[--version] [--help] DECK [DECK ...]'
+    'snapin [--out DIR | --into DIR] [--name NAME] [--check] [--resume] [--quiet] [--keys] ' // &
+    '[--results] [--version] [--help] DECK [DECK ...]'
   character(len=*), parameter :: known = &
-    '--out --check --resume --quiet --keys --results --version --help'
+    '--out --into --name --check --resume --quiet --keys --results --version --help'
 
 contains
 
@@ -39,6 +42,7 @@ contains
     integer :: i
 
     options%out = 'results'
+    options%name = 'deck'
     allocate (options%decks(0))
     only_decks = .false.
     i = 0
@@ -52,6 +56,10 @@ contains
         cycle
       end if
       select case (argument)
+      case ('-q')
+        options%quiet = .true.
+      case ('-h')
+        options%help = .true.
       case ('--')
         only_decks = .true.
       case ('--check')
@@ -68,11 +76,12 @@ contains
         options%version = .true.
       case ('--help')
         options%help = .true.
-      case ('--out')
-        i = i + 1
-        options%out = ''
-        if (i <= command_argument_count()) options%out = argument_at(i)
-        if (len_trim(options%out) == 0) call fail(error, bad_input, '--out needs a folder')
+      case ('--out', '-o')
+        call take_folder(argument, options%out)
+      case ('--into')
+        call take_folder(argument, options%into)
+      case ('--name')
+        call take_folder(argument, options%name)
       case default
         if (index(argument, '--out=') == 1) then
           options%out = argument(7:)
@@ -87,9 +96,27 @@ contains
     if (options%keys .or. options%results .or. options%version .or. options%help) return
     if (size(options%decks) == 0) then
       call fail(error, bad_input, 'no deck; name at least one file')
+    else if (size(options%decks) > 1 .and. (allocated(options%into) .or. options%out == '-')) then
+      call fail(error, bad_input, 'the results of several decks cannot go to one place; give ' // &
+        'one deck, or --out DIR')
     else if (.not. options%check) then
       call check_stems(options%decks, error)
     end if
+
+  contains
+
+    !> The argument after the present one.
+    subroutine take_folder(option, folder)
+      character(len=*), intent(in) :: option
+      character(len=:), allocatable, intent(inout) :: folder
+
+      i = i + 1
+      folder = ''
+      if (i <= command_argument_count()) folder = argument_at(i)
+      if (len_trim(folder) == 0) call fail(error, bad_input, option // ' needs a ' // &
+        trim(merge('name  ', 'folder', option == '--name')))
+    end subroutine take_folder
+
   end subroutine read_command_line
 
   !> Refuses two decks with the same stem.
@@ -148,16 +175,19 @@ contains
     character(len=*), parameter :: lines(*) = [character(len=88) :: &
       '', &
       'Elastic deformation and adhesion of two bodies near and in contact. Each DECK, a', &
-      'namelist file, is computed into results/<name of the deck>/.', &
+      'namelist file or - for standard input, is computed into results/<name of the deck>/.', &
       '', &
-      '  --out DIR   write to DIR/<name of the deck>/ instead', &
+      '  --out DIR   write to DIR/<name of the deck>/ instead (-o); to standard output if DIR', &
+      '              is -: each piece of a file after a line with its name and its bytes', &
+      '  --into DIR  write the results of one deck into DIR itself', &
+      '  --name NAME what the deck on standard input is called', &
       '  --check     validate the decks, compute nothing', &
       '  --resume    go on where an interrupted run stopped; leave finished results as they are', &
-      '  --quiet     no progress on the terminal', &
+      '  --quiet     no progress on the terminal (-q)', &
       '  --keys      print every group and key a deck may hold: unit, default, meaning', &
       '  --results   print every file, column and entry of results: unit, meaning', &
       '  --version   print version, compiler and libraries', &
-      '  --help      print this', &
+      '  --help      print this (-h)', &
       '', &
       'Exit status: 0 done; 1 a calculation failed; 2 deck or command line wrong, and nothing', &
       'written.', &

@@ -15,6 +15,7 @@ module preflight
   use decimal, only: longest_real
   use memory, only: available_memory
   use files, only: free_disk
+  use results, only: to_stream
   use blas_threads, only: thread_count, blas_buffers
   implicit none
   private
@@ -27,8 +28,8 @@ module preflight
   !> Cells of a row of the curve, of a profile, of a table of theories and of a sweep; bytes of a
   !> step that is kept so that an interrupted run can go on.
   integer, parameter :: of_curve = 10, of_profile = 7, of_theory = 5, of_case = 60, kept = 900
-  !> Results that are announced [bytes].
-  real(wp), parameter :: large = 1.0e9_wp
+  !> Results that are announced, and for which there has to be room before they are begun [bytes].
+  real(wp), parameter :: large = 1.0e8_wp
 
 contains
 
@@ -61,7 +62,7 @@ contains
       call fail(error, no_room, 'not computed: matrices for '//brief(real(nodes, wp))// &
         ' nodes need '//gigabytes(bytes)//' of memory, and '//gigabytes(available)// &
         ' are available')
-    else if (disk_bytes(scene) > free_disk(folder)) then
+    else if (folder /= to_stream .and. disk_bytes(scene) > max(large, free_disk(folder))) then
       call fail(error, no_room, 'not computed: its results need '// &
         gigabytes(disk_bytes(scene))//' on the disk, and '//gigabytes(free_disk(folder))// &
         ' are free')

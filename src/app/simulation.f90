@@ -21,7 +21,7 @@ module simulation
   use stability_records, only: stability_recorder_t
   use summarise, only: summary_of
   use summary, only: summary_t
-  use results, only: results_t, journal_of
+  use results, only: results_t, journal_of, to_stream
   use publication, only: mend
   use run_identity, only: identity_of
   use finished_run, only: find_finished
@@ -48,8 +48,8 @@ module simulation
 
 contains
 
-  !> Computes a scene and writes its results into the folder `out_dir`, where nothing changes if there
-  !> is not the room that it needs. converged: false where a
+  !> Computes a scene and writes its results into the folder `out_dir`, where nothing changes if
+  !> there is not the room that it needs. converged: false where a
   !> calculation failed; what was computed is kept and the summary says what failed. error: there
   !> are no results, or they could not be written. resume: what an interrupted run has left in the
   !> folder is continued, and finished results are left as they are.
@@ -70,12 +70,16 @@ contains
     began = seconds()
     converged = .false.
     destination = destination_t(out_dir, quiet)
-    call take_up_earlier(scene, destination, resume, finished, converged, error)
-    if (finished .or. allocated(error)) return
+    if (out_dir == to_stream) then
+      destination%folder = 'snapin'
+    else
+      call take_up_earlier(scene, destination, resume, finished, converged, error)
+      if (finished .or. allocated(error)) return
+    end if
     call check_room(scene, out_dir, error)
     if (allocated(error)) return
     problem = problem_of(scene)
-    call open_folder(scene, problem, destination, resume, results, error)
+    call open_folder(scene, problem, out_dir, destination, resume, results, error)
     if (allocated(error)) return
     call compute(scene, problem, destination, results, summary, cost)
     call write_derived_tables(scene, problem, results)
@@ -119,21 +123,23 @@ contains
   end subroutine take_up_earlier
 
   !> Takes the folder for this run and begins its tables.
-  subroutine open_folder(scene, problem, destination, resume, results, error)
+  subroutine open_folder(scene, problem, folder, destination, resume, results, error)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
+    character(len=*), intent(in) :: folder
     type(destination_t), intent(in) :: destination
     logical, intent(in) :: resume
     type(results_t), intent(inout) :: results
     type(failure_t), allocatable, intent(out) :: error
     logical :: left_over
 
-    left_over = file_exists(journal_of(destination%folder))
-    call results%open(destination%folder, scene, version, problem, &
+    left_over = file_exists(journal_of(folder))
+    call results%open(folder, scene, version, problem, &
       ! Each case of a sweep has one thread, however many there are.
       identity_of(scene%deck%resolved(), merge(0, thread_count(), allocated(scene%sweep))), &
       resume, error)
     if (allocated(error)) return
+    if (folder == to_stream) return
     if (.not. results%lock%is_held()) call destination%say('warning: folders cannot be locked '// &
       'here; let no other run write into this one')
     if (left_over .and. resume) then

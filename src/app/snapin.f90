@@ -7,7 +7,9 @@ program snapin
   use deck_keys, only: write_keys
   use scene, only: scene_t, read_scene
   use scene_keys, only: keys_of_scene
-  use c_library, only: c_prepare
+  use c_library, only: c_prepare, c_end_with_parent
+  use files, only: read_standard_input
+  use results, only: to_stream
   use blas_threads, only: begin_with_one_thread
   use result_listing, only: write_result_listing
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
@@ -66,9 +68,15 @@ contains
     integer :: i
 
     status = 0
+    if (options%out == to_stream) call c_end_with_parent()
     allocate (scenes(size(options%decks)))
     do i = 1, size(scenes)
-      call read_scene(options%decks(i)%name, scenes(i), trouble)
+      if (options%decks(i)%name == '-') then
+        options%decks(i)%name = options%name
+        call read_scene(options%name, scenes(i), trouble, read_standard_input())
+      else
+        call read_scene(options%decks(i)%name, scenes(i), trouble)
+      end if
       if (allocated(trouble)) then
         call print_line(error_unit, trouble%message)
         status = 2
@@ -85,6 +93,8 @@ contains
     if (options%check .or. status /= 0) return
     do i = 1, size(scenes)
       folder = options%out // '/' // stem_of(options%decks(i)%name)
+      if (allocated(options%into)) folder = options%into
+      if (options%out == to_stream) folder = to_stream
       call run_scene(scenes(i), folder, options%quiet, options%resume, converged, trouble)
       if (allocated(trouble)) call print_line(error_unit, folder // ': ' // trouble%message)
       if (allocated(trouble) .or. .not. converged) status = 1

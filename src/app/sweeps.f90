@@ -166,7 +166,7 @@ contains
     type(summary_t) :: summary
     type(failure_t), allocatable :: error
 
-    ! What makes strings is done by one thread at a time: compiler note 5.
+    ! What makes strings is done by one thread at a time: compiler note 4.
     !$omp critical (one_at_a_time)
     call swept_scene(scene, value, variant, error)
     !$omp end critical (one_at_a_time)
@@ -184,7 +184,7 @@ contains
     case%cost = outcome%cost
   end subroutine run_case
 
-  !> Into a variable, since threads share strings that are put together: compiler note 5.
+  !> Into a variable, since threads share strings that are put together: compiler note 4.
   subroutine hear(self, what)
     class(case_observer_t), intent(inout) :: self
     character(len=*), intent(in) :: what

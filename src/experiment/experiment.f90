@@ -75,7 +75,7 @@ contains
     type(judge_t) :: judge
     real(wp) :: began
 
-    ! Not allocatable: compiler note 4.
+    ! Not allocatable: compiler note 3.
     if (has_path(problem)) then
       steps => along_path
     else
@@ -262,7 +262,7 @@ contains
           cycle
         end if
         position = turning(k)
-        ! Not by a function of deferred length, which cases of a sweep would share: compiler note 5.
+        ! Not by a function of deferred length, which cases of a sweep would share: compiler note 4.
         write (name, '(a, i0)') 'unloading_', k
         plan = schedule_of(trim(name), request%unloading%from(k), request%unloading%h0_end, &
           request%unloading%h0_step, request, steps%problem%law, nowhere)

@@ -87,7 +87,7 @@ contains
     else
       chosen%grid = 'edge_locked'
       chosen%because = 'panels locked to the contact edge converge at any adhesion strength'
-      if (problem%rigid) chosen%because = 'the bodies are rigid: the mesh only integrates the load'
+      if (problem%rigid) chosen%because = 'the bodies are rigid: the mesh only shows their gap'
       if (.not. problem%law%adhesion > 0) &
         chosen%because = 'panels scaled with the contact converge spectrally'
     end if

@@ -114,7 +114,7 @@ contains
     call search%finish(steps, last_h0)
     if (allocated(branch%lowest) .or. .not. allocated(search%lowest)) return
     branch%lowest = search%lowest
-    branch%lowest%searched = .true.
+    branch%lowest%searched = .not. steps%problem%rigid
   end subroutine run_branch
 
   !> Keeps the first, the worst and the lowest of what happened.

@@ -1,6 +1,6 @@
 !> Namelist grammar: finds the groups and assignments of a deck and where each of them stands.
 !>
-!> The compiler's own namelist reader is not used: compiler note 10.
+!> The compiler's own namelist reader is not used: compiler note 9.
 module deck_scan
   use failure, only: failure_t
   use text, only: lower

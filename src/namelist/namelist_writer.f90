@@ -89,7 +89,7 @@ contains
   end function of_lines
 
   !> `text` as a string that all readers take: nothing in it looks like the beginning of a group
-  !> (compiler note 9).
+  !> (compiler note 8).
   pure function literal(text)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: literal

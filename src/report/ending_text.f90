@@ -8,7 +8,7 @@ module ending_text
 
 contains
 
-  !> The reason in words, blank if it ended as planned; not of deferred length: compiler note 5.
+  !> The reason in words, blank if it ended as planned; not of deferred length: compiler note 4.
   pure function text_of(ending) result(text)
     type(ending_t), intent(in) :: ending
     character(len=160) :: text

@@ -146,7 +146,7 @@ module result_rows
     row_t('fold_attractive_only_h0', 'm', 'h0 at which (35b) turns round', approximations), &
     row_t('fold_attractive_only_load', 'N', 'load there', approximations), &
     row_t('range_over_radius', '', &
-      'range of the force over the radius of the bodies, which the model takes for small', always), &
+      'range of the force over the radius of the bodies, small in the model', always), &
     row_t('contact_over_radius', '', &
       'largest contact radius over the radius; of other shapes the slope there', always), &
     row_t('pressure_over_stiffness', '', 'largest pressure over the stiffness, about the strain', &

@@ -5,6 +5,7 @@
 !> they are, and what an interrupted run leaves is partial by name. One run at a time has the
 !> folder; what it finds goes into a journal, so that another can go on from there.
 module results
+  use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
   use failure, only: failure_t, fail, file_trouble
   use dimensionless_problem, only: problem_t
@@ -28,7 +29,11 @@ module results
   use progress, only: progress_t
   implicit none
   private
-  public :: results_t, journal_of
+  public :: results_t, journal_of, to_stream
+
+  !> Stands for a folder where results go to standard output, file by file in pieces (`text_file`).
+  character(len=*), parameter :: to_stream = '-'
+  integer(c_int), parameter :: standard_output = 1
 
   !> Takes what a run has to show, between `open` and `finish`. The first thing that goes wrong is
   !> kept in `trouble`; after it nothing more is written. Not to be copied while files are open.
@@ -40,6 +45,8 @@ module results
     type(progress_t) :: progress
     !> What the run has found so far, and what an interrupted one had.
     type(journal_t) :: journal
+    !> Where results go to a stream, its descriptor. There is no folder then, and no journal.
+    integer(c_int), allocatable, private :: stream
     !> Keeps other runs out of the folder.
     type(folder_lock_t) :: lock
     character(len=:), allocatable, private :: folder, title, version
@@ -83,7 +90,12 @@ contains
     self%title = scene%title
     self%version = version
     self%made = .false.
-    call self%claim(owner, resume, error)
+    if (allocated(self%stream)) deallocate (self%stream)
+    if (folder == to_stream) then
+      self%stream = standard_output
+    else
+      call self%claim(owner, resume, error)
+    end if
     if (scene%has_curve() .and. .not. allocated(error)) then
       call self%begin(self%curve, 'curve.csv', columns_of_curve(scene%has_eigenvalues()), error)
       if (allocated(scene%profiles) .and. .not. allocated(error)) &
@@ -102,7 +114,7 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
 
     where (result_files == name) self%made = .true.
-    call table%begin(self%path_of(name), self%title, self%version, columns, error)
+    call table%begin(self%path_of(name), self%title, self%version, columns, error, self%stream)
   end subroutine begin
 
   !> Makes the folder, keeps others out of it and opens the journal.
@@ -228,7 +240,11 @@ contains
 
     if (allocated(self%trouble)) return
     where (result_files == name) self%made = .true.
-    call file%open(self%path_of(name) // partial, self%trouble)
+    if (allocated(self%stream)) then
+      call file%open(name, self%trouble, self%stream)
+    else
+      call file%open(self%path_of(name) // partial, self%trouble)
+    end if
     if (.not. allocated(self%trouble)) call file%put(text, self%trouble)
     if (.not. allocated(self%trouble)) call file%close(self%trouble)
   end subroutine write_text
@@ -248,7 +264,7 @@ contains
     call complete%set('version', self%version)
     call complete%take_cost(cost)
     ! A folder that has taken the name of this run's may hold another's summary.
-    call self%check_presence(missing)
+    if (.not. allocated(self%stream)) call self%check_presence(missing)
     if (allocated(missing)) then
       call move_alloc(missing, self%trouble)
       return
@@ -272,7 +288,7 @@ contains
     call finish_table(self%beside, self%trouble)
     if (allocated(self%trouble)) then
       error = self%trouble
-    else if (any(self%made)) then
+    else if (any(self%made) .and. .not. allocated(self%stream)) then
       call self%check_presence(error)
       if (.not. allocated(error)) call publish(self%lock, self%made, error)
     end if
@@ -326,6 +342,7 @@ contains
     character(len=:), allocatable :: path
 
     path = self%folder // '/' // name
+    if (allocated(self%stream)) path = name
   end function path_of
 
 end module results

@@ -301,7 +301,7 @@ contains
     text = ''
     do i = 1, size(rows)
       if (rows(i)%group /= group) cycle
-      ! A variable, not a name of the associate construct: compiler note 6.
+      ! A variable, not a name of the associate construct: compiler note 5.
       key = trim(rows(i)%key)
       associate (value => self%value(i))
         text = text // assignment_of(key, value%number) // assignment_of(key, value%count) // &

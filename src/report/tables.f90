@@ -1,6 +1,7 @@
 !> Tables as comma-separated values, written row by row to a `.partial` file; whoever has it made
 !> gives it its name when it is whole.
 module tables
+  use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
   use failure, only: failure_t
   use decimal, only: put_real, longest_real
@@ -19,11 +20,12 @@ contains
 
   !> Begins the table `path`, for now `path`.partial: lines that start with '#' (title, version,
   !> what each column is), then the names of the columns. A column is described as 'name [unit] what
-  !> it is'.
-  subroutine begin(self, path, title, version, columns, error)
+  !> it is'. stream: the table `path` is part of that (`text_file`).
+  subroutine begin(self, path, title, version, columns, error, stream)
     class(table_t), intent(inout) :: self
     character(len=*), intent(in) :: path, title, version, columns(:)
     type(failure_t), allocatable, intent(out) :: error
+    integer(c_int), intent(in), optional :: stream
     character(len=:), allocatable :: text, names
     integer :: i
 
@@ -35,7 +37,11 @@ contains
       if (i > 1) names = names // ','
       names = names // columns(i)(:scan(columns(i) // ' ', ' ') - 1)
     end do
-    call self%open(path // partial, error)
+    if (present(stream)) then
+      call self%open(path, error, stream)
+    else
+      call self%open(path // partial, error)
+    end if
     if (.not. allocated(error)) call self%line(text // names, error)
     if (.not. allocated(error)) call self%flush(error)
   end subroutine begin

@@ -1,5 +1,5 @@
 /* No memory is an end with status 1 and a reason. Compiled Fortran would go on to a segmentation
-   fault (compiler note 8); the linker leads its calls here (--wrap, see meson.build). States that
+   fault (compiler note 7); the linker leads its calls here (--wrap, see meson.build). States that
    were complete are in the journal by then. */
 #include <stdio.h>
 #include <stdlib.h>

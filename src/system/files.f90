@@ -5,14 +5,15 @@ module files
   use kinds, only: wp, long
   use failure, only: failure_t
   use c_library, only: c_make_folder, c_current_folder, c_free_disk, c_is_terminal, c_write, &
-    c_open, c_sync, c_sync_above, c_close, as_folder, system_failure, nul
+    c_open, c_read, c_sync, c_sync_above, c_close, as_folder, system_failure, nul
   implicit none
   private
-  public :: make_folder, sync_names, file_exists, free_disk, whole_path, read_file, is_terminal, &
+  public :: make_folder, sync_names, file_exists, free_disk, whole_path, read_file, &
+    read_standard_input, is_terminal, &
     write_stderr
 
-  !> Number of standard error.
-  integer(c_int), parameter :: standard_error = 2
+  !> Numbers of the standard streams.
+  integer(c_int), parameter :: standard_input = 0, standard_error = 2
 
 contains
 
@@ -83,6 +84,20 @@ contains
     close (unit)
     if (status /= 0) deallocate (text)
   end subroutine read_file
+
+  !> All of standard input.
+  function read_standard_input() result(text)
+    character(len=:), allocatable :: text
+    character(len=65536) :: piece
+    integer :: length
+
+    text = ''
+    do
+      length = int(max(c_read(standard_input, piece, len(piece, kind=c_long)), 0_c_long))
+      text = text // piece(:length)
+      if (length < len(piece)) return
+    end do
+  end function read_standard_input
 
   !> Whether there is a file or folder `path`.
   logical function file_exists(path)

@@ -10,6 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
@@ -205,6 +208,14 @@ void snapin_prepare(void) {
   while (fd >= 0 && fd <= STDERR_FILENO);
   if (fd > STDERR_FILENO)
     close(fd);
+}
+
+/* Nobody is left to read what goes to standard output once the process that began this one has
+   ended. */
+void snapin_end_with_parent(void) {
+#ifdef PR_SET_PDEATHSIG
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+#endif
 }
 
 /* The library that does the linear algebra may or may not be OpenBLAS: it is asked at run time, so

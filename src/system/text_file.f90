@@ -1,7 +1,7 @@
 !> Text files that lose nothing in silence.
 !>
 !> They are written by system calls because Fortran's units do not tell of a full disk:
-!> compiler note 7.
+!> compiler note 6.
 module text_file
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp
@@ -24,6 +24,9 @@ module text_file
   type :: output_t
     private
     integer(c_int) :: descriptor = -1
+    !> Whether it is part of a stream of files, each piece after a line with the file's name and the
+    !> number of bytes.
+    logical :: streamed = .false.
     character(len=:), allocatable :: path
     !> What is still to be handed to the system is buffer(:held).
     character(len=8192) :: buffer
@@ -44,16 +47,22 @@ module text_file
 contains
 
   !> Creates the file `path`, or empties it, and opens it. Fails where that is anything but a file:
-  !> a link, a pipe.
-  subroutine open_output(self, path, error)
+  !> a link, a pipe. stream: the descriptor of a stream that it becomes part of.
+  subroutine open_output(self, path, error, stream)
     class(output_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     type(failure_t), allocatable, intent(out) :: error
+    integer(c_int), intent(in), optional :: stream
 
     call self%close(error)
     if (allocated(error)) return
     self%path = path
     self%held = 0
+    self%streamed = present(stream)
+    if (present(stream)) then
+      self%descriptor = stream
+      return
+    end if
     self%descriptor = c_open(path // nul, as_output)
     if (.not. self%is_open()) call system_failure('cannot write ' // path, self%descriptor, error)
   end subroutine open_output
@@ -109,7 +118,7 @@ contains
     class(output_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
 
-    if (seconds() - self%handed > show_interval) call self%flush(error)
+    if (.not. self%streamed .and. seconds() - self%handed > show_interval) call self%flush(error)
   end subroutine show
 
   !> Waits until the file is on the disk and closes it; nothing is done where none is open.
@@ -120,6 +129,10 @@ contains
 
     call self%flush(error)
     if (.not. self%is_open()) return
+    if (self%streamed) then
+      self%descriptor = -1
+      return
+    end if
     synced = c_sync(self%descriptor)
     closed = c_close(self%descriptor)
     self%descriptor = -1
@@ -132,12 +145,20 @@ contains
     class(output_t), intent(inout) :: self
     character(len=*), intent(in) :: text
     type(failure_t), allocatable, intent(inout) :: error
+    character(len=24) :: length
     integer(c_int) :: status
 
-    status = c_write(self%descriptor, text, int(len(text), c_long))
+    status = 0
+    if (self%streamed .and. len(text) > 0) then
+      write (length, '(i0)') len(text)
+      associate (line => self%path // ' ' // trim(length) // new_line('a'))
+        status = c_write(self%descriptor, line, int(len(line), c_long))
+      end associate
+    end if
+    if (status == 0) status = c_write(self%descriptor, text, int(len(text), c_long))
     if (status == 0) return
     call system_failure('cannot write ' // self%path, status, error)
-    status = c_close(self%descriptor)
+    if (.not. self%streamed) status = c_close(self%descriptor)
     self%descriptor = -1
   end subroutine hand_over
 

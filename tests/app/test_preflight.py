@@ -1,47 +1,78 @@
-"""Claims about what is said of a run before it begins. Times are those measured for such decks."""
+"""Claims about what is said of a run before it begins, and about runs that do not fit."""
 
 import re
+import resource
 
 import pytest
 from support.scenes import lennard_jones, loading
 
-CYCLE = {"loading": loading(8, -4, 0.2)}
-PATH = {"equilibrium_path": {"h0_end": -4.0}}
-UNIT = {"s": 1, "min": 60, "h": 3600}
+SMALL = lennard_jones(1.0, loading=loading(6, 4, 1), numerics={"grid": "uniform", "nodes": 100})
+LARGE = SMALL.replace("nodes = 100", "nodes = 20000")
 
 
-def uniform(nodes, **keys):
-    return {"numerics": {"grid": "uniform", "nodes": nodes, **keys}}
+def limited():
+    """Two gigabytes of addresses."""
+    limit = 2 * 1024**3
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
 
-def announced(snapin, folder, text, *options):
-    """Seconds that a run is said to take; 0 where it is not announced."""
-    (folder / "d.nml").write_text(text)
-    done = snapin(*options, "d.nml", cwd=folder, timeout=60)
-    assert done.returncode == 0, done.stderr
-    said = re.search(r"may take ([\w ]+) or so", done.stderr)
-    if not said:
-        return 0
-    return sum(int(n) * UNIT[unit] for n, unit in re.findall(r"(\d+) (s|min|h)\b", said[1]))
+def test_what_does_not_fit_leaves_older_results_and_can_be_resumed(snapin, tmp_path):
+    deck = tmp_path / "d.nml"
+    deck.write_text(SMALL)
+    assert snapin("d.nml", cwd=tmp_path).returncode == 0
+    before = {path: path.read_bytes() for path in (tmp_path / "results").rglob("*")
+              if path.is_file()}
+    deck.write_text(LARGE)
+    for options in ((), ("--resume",)):
+        refused = snapin(*options, "d.nml", cwd=tmp_path, preexec_fn=limited)
+        assert refused.returncode == 1
+        assert "not computed: matrices for 20000 nodes need" in refused.stderr
+        after = {path: path.read_bytes() for path in (tmp_path / "results").rglob("*")
+                 if path.is_file()}
+        assert after == before
+    # With the room, which a smaller deck stands for, the run is made, not "complete".
+    deck.write_text(SMALL.replace("nodes = 100", "nodes = 110"))
+    done = snapin("--resume", "d.nml", cwd=tmp_path)
+    assert done.returncode == 0 and "nothing to do" not in done.stderr
 
 
-@pytest.mark.parametrize("sigma, groups, low, high", [
-    # On grids far coarser than the neck nobody has seen the end: 100 s and more.
-    pytest.param(9e5, {**CYCLE, **uniform(1000)}, 220, 1e9, id="uniform 1000 nodes, strong"),
-    pytest.param(1e4, {**CYCLE, **uniform(300)}, 100, 1e9, id="uniform 300 nodes, strong"),
-    # Measured at 36 and 155 s, on an idle and on a busy machine.
-    pytest.param(1.0, {**CYCLE, **uniform(1500, method="newton")}, 35, 160, id="Newton"),
-])
-def test_a_run_of_more_than_half_a_minute_is_announced(snapin, tmp_path, sigma, groups, low, high):
-    assert low <= announced(snapin, tmp_path, lennard_jones(sigma, **groups), "--check") <= high
+def test_what_does_not_fit_makes_no_folder(snapin, tmp_path):
+    (tmp_path / "d.nml").write_text(LARGE)
+    assert snapin("d.nml", cwd=tmp_path, preexec_fn=limited).returncode == 1
+    assert not (tmp_path / "results").exists()
 
 
-@pytest.mark.parametrize("sigma, groups", [
-    pytest.param(9e5, PATH, id="path, 7 s"),
-    pytest.param(1e4, CYCLE, id="cycle, 1.5 s"),
-    pytest.param(1.0, {**CYCLE, **uniform(500, method="newton")}, id="Newton, 6 s"),
-    pytest.param(10.0, {**CYCLE, **uniform(300)}, id="uniform, 13 s"),
-    pytest.param(1.0, {**CYCLE, **uniform(1000)}, id="uniform, 9 s"),
-])
-def test_a_run_of_some_seconds_is_not_announced(snapin, tmp_path, sigma, groups):
-    assert announced(snapin, tmp_path, lennard_jones(sigma, **groups), "--check") == 0
+def test_a_sweep_whose_last_case_does_not_fit_is_not_begun(snapin, tmp_path):
+    (tmp_path / "d.nml").write_text(
+        SMALL + "&sweep key = 'numerics.nodes', values = 100, 20000 /\n")
+    refused = snapin("d.nml", cwd=tmp_path, preexec_fn=limited)
+    assert refused.returncode == 1 and "20000 nodes need" in refused.stderr
+    assert not (tmp_path / "results").exists()
+
+
+def test_check_says_what_does_not_fit_and_what_fills_the_disk(snapin, tmp_path):
+    (tmp_path / "large.nml").write_text(LARGE)
+    (tmp_path / "long.nml").write_text(
+        lennard_jones(0.87, loading=loading(4, -2, 1e-6), unloading={}))
+    (tmp_path / "short.nml").write_text(SMALL)
+    done = snapin("--check", "large.nml", "long.nml", "short.nml", cwd=tmp_path,
+                  preexec_fn=limited)
+    assert done.returncode == 0
+    assert "large.nml: not computed: matrices for 20000 nodes" in done.stderr
+    size = re.search(r"long\.nml: its results take about ([\d.]+) GB on the disk", done.stderr)
+    # 12 million rows of some 230 bytes, and what is kept of each step.
+    assert 5 < float(size[1]) < 20
+    assert "short.nml" not in done.stderr
+
+
+@pytest.mark.slow
+def test_whatever_takes_long_says_so_and_goes_on_saying_so(snapin, tmp_path):
+    """Meshes for a hopeless strength of adhesion take minutes before the first state."""
+    (tmp_path / "d.nml").write_text(
+        "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
+        "&force law = 'lennard_jones', hamaker = 2e49, z0 = 0.5e-9 /\n"
+        "&equilibrium_path h0_end = -2e-9 /\n")
+    with pytest.raises(Exception) as ended:
+        snapin("d.nml", cwd=tmp_path, timeout=7)
+    said = (ended.value.stderr or b"").decode()
+    assert re.search(r"^d: .*, [5-7] s so far$", said, re.M)

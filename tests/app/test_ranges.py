@@ -102,30 +102,3 @@ def big(nodes, step):
     return lennard_jones(
         0.87, loading=loading(4, 2, step), numerics={"grid": "uniform", "nodes": nodes}
     )
-
-
-def test_matrices_larger_than_the_memory_are_refused_with_the_size_needed(snapin, tmp_path):
-    (tmp_path / "d.nml").write_text(big(20000, 1.0))
-    limit = 2 * 1024**3
-
-    def lower():
-        resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
-
-    done = snapin("d.nml", cwd=tmp_path, preexec_fn=lower)
-    assert done.returncode == 1
-    assert "20000 nodes need" in done.stderr and "GB of memory" in done.stderr
-    summary = (tmp_path / "results" / "d" / "summary.nml").read_text()
-    assert "20000 nodes need" in summary
-    check = snapin("--check", "d.nml", cwd=tmp_path, preexec_fn=lower)
-    assert check.returncode == 0 and "20000 nodes need" in check.stderr
-
-
-def test_a_long_run_is_announced_and_a_short_one_is_not(snapin, tmp_path):
-    (tmp_path / "long.nml").write_text(
-        lennard_jones(0.87, loading=loading(4, -2, 1e-6), unloading={})
-    )
-    (tmp_path / "short.nml").write_text(big(100, 1.0))
-    done = snapin("--check", "long.nml", "short.nml", cwd=tmp_path)
-    assert done.returncode == 0
-    assert "long.nml: 12000002 states" in done.stderr and "may take" in done.stderr
-    assert "short" not in done.stderr

@@ -154,7 +154,7 @@ def test_a_resolved_grid_does_not_warn(run):
     assert result.summary["resolved"]
     assert result.summary["spacing_over_neck"] < 0.2
     assert result.warnings == []
-    assert "warning" not in result.stderr
+    assert "under-resolved" not in result.stderr
 
 
 def test_stopping_on_a_small_change_leaves_a_large_residual_and_says_so(run):

@@ -47,29 +47,73 @@ def test_the_largest_tension_of_rigid_bodies_is_known(run, shape, h0, load):
     assert summary["end_load"] == pytest.approx(load, rel=3e-6)
 
 
-def rigid_load(height, h0, scale=4):
-    """Load of rigid bodies by quadrature over r = scale x/(1 - x)."""
-    x, w = np.polynomial.legendre.leggauss(400)
-    x, w = (x + 1) / 2, w / 2
-    r = scale * x / (1 - x)
-    h = h0 + height(r)
-    return 2 * math.pi * np.sum(w * 8 / 3 * (h**-9.0 - h**-3.0) * r * scale / (1 - x) ** 2)
+def rigid_load(height, h0, scale=4, breaks=()):
+    """Load of rigid bodies by quadrature over r = scale x/(1 - x), in pieces between breaks."""
+    ends = [0.0, *(r / (r + scale) for r in breaks), 1.0]
+    nodes, weights = np.polynomial.legendre.leggauss(400)
+    total = 0.0
+    for left, right in zip(ends[:-1], ends[1:]):
+        x, w = left + (right - left) * (nodes + 1) / 2, (right - left) * weights / 2
+        r = scale * x / (1 - x)
+        h = h0 + height(r)
+        total += np.sum(w * 8 / 3 * (h**-9.0 - h**-3.0) * r * scale / (1 - x) ** 2)
+    return 2 * math.pi * total
 
 
 @pytest.mark.parametrize(
-    "shape, height",
+    "shape, height, breaks",
     [
+        ({"kind": "cone", "half_angle": 1.2}, lambda r: r / math.tan(1.2), ()),
+        ({"kind": "power", "exponent": 3.0, "radius": 3.0}, lambda r: r**3 / 18, ()),
+        # The integrals of the check end at r^1.7 and at the circle's end; its nodes see that less
+        # well.
         ({"kind": "power", "exponent": 1.7, "radius": 3.0},
-         lambda r: r**1.7 / (2 * 3.0**0.7)),
+         lambda r: r**1.7 / (2 * 3.0**0.7), (1e-3, 1e-1)),
         ({"kind": "rounded_punch", "radius": 3.0, "flat_radius": 2.0},
-         lambda r: np.maximum(r - 2.0, 0) ** 2 / 6),
+         lambda r: np.maximum(r - 2.0, 0) ** 2 / 6, (2.0,)),
         ({"kind": "spheroid", "radius": 50.0, "semi_axis": 2e4},
-         lambda r: np.where(r < 1e3, 2e4 * (1 - np.sqrt(np.maximum(1 - r**2 / 1e6, 0))), 1e20)),
+         lambda r: np.where(r < 1e3, 2e4 * (1 - np.sqrt(np.maximum(1 - r**2 / 1e6, 0))), 1e20),
+         (30.0, 300.0, 900.0, 990.0, 999.0, 1e3)),
     ],
 )
-def test_the_load_of_rigid_bodies_is_the_integral_over_their_gap(run, shape, height):
-    text = scene(shape, 0.0, equilibrium_path={"h0_end": 1.1}, numerics={"accuracy": 1e-5})
-    assert run(text).summary["end_load"] == pytest.approx(rigid_load(height, 1.1), rel=2e-4)
+def test_the_load_of_rigid_bodies_is_the_integral_over_their_gap(run, shape, height, breaks):
+    text = scene(shape, 0.0, equilibrium_path={"h0_end": 1.1}, numerics={"accuracy": 1e-3})
+    summary = run(text).summary
+    # Whatever the accuracy: the load is one quadrature.
+    assert summary["end_load"] == pytest.approx(rigid_load(height, 1.1, breaks=breaks), rel=1e-10)
+    assert summary["error_estimate"] < 1e-9
+
+
+# Every law that attracts, with a step where it has one.
+ATTRACTING = {
+    "lennard_jones": {"force": {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9}},
+    "exponents": {"force": {"law": "lennard_jones", "exponents": [10, 4], "z0": 0.3e-9,
+                            "surface_energy": 0.02}},
+    "morse": {"morse": {"surface_energy": 0.02, "z0": 0.4e-9, "decay_length": 0.2e-9}},
+    "capillary": {"capillary": {"surface_tension": 0.072, "contact_angle": 0.3,
+                                "kelvin_radius": 2e-9}},
+    "dugdale": {"dugdale": {"stress": 3e7, "range": 0.8e-9}},
+    "dugdale, sharp": {"dugdale": {"stress": 3e7, "range": 0.8e-9, "smoothing": 1e-12}},
+    "depletion": {"depletion": {"osmotic_pressure": 1e5, "diameter": 5e-9}},
+}
+WALL = {"van_der_waals": {"hamaker": 1e-20}, "born": {"z0": 0.3e-9}}
+
+
+@pytest.mark.parametrize("name", ATTRACTING)
+def test_pull_off_of_rigid_parabolas_is_derjaguins_whatever_the_law(run, name):
+    law = ATTRACTING[name]
+    groups = law if "force" in law or "morse" in law else {**law, **WALL}
+    found = run(deck(bodies={"radius": 1e-6, "rigid": True}, **groups,
+                     loading={"h0_start": 8e-9, "h0_end": 0.24e-9, "h0_step": 0.123e-9})).summary
+    # By default steps, at a coarse accuracy too; with errors that say so, and no warning.
+    pull_off = 2 * math.pi * 1e-6 * found["surface_energy"]
+    assert found["max_tension"] == pytest.approx(pull_off, rel=1e-12)
+    assert found["max_tension_h0"] == pytest.approx(
+        found.get("rest_gap", 0.5e-9), rel=1e-9)
+    assert 0 < found["max_tension_error"] < 1e-9 * pull_off
+    assert 0 < found["max_tension_h0_error"] < 1e-15
+    assert found["error_estimate"] < 1e-9
+    assert "warnings" not in found
 
 
 # --- Derivatives

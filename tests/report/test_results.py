@@ -201,7 +201,8 @@ def test_f90nml_reads_the_summary_and_writes_it_back(full, tmp_path):
 
 
 def test_what_does_not_exist_is_absent(run):
-    repulsion = run(exponential(1, loading=loading(6, 4, 1))).summary
+    repulsion = run(exponential(1, loading=loading(6, 4, 1)).replace(
+        "radius = 1.0", "radius = 100.0").replace("p0 = 1.0", "p0 = 0.1")).summary
     for key in ("sigma", "tabor", "surface_energy", "jkr_pull_off", "dmt_pull_off", "max_tension",
                 "max_tension_h0", "jump_in_h0", "jump_out_h0", "unload_from", "folds_h0",
                 "spacing_over_neck", "resolved", "warnings"):

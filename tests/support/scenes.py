@@ -54,6 +54,11 @@ def loading(start, end, step):
 # --- Results
 
 
+def of_numbers(warnings):
+    """The warnings that are about numbers, not about the ground of the model."""
+    return [text for text in warnings if not text.startswith("beyond the model:")]
+
+
 class Table(NamedTuple):
     """A CSV file of results: its '#' lines, and its columns by name."""
 
@@ -113,8 +118,9 @@ class Run(NamedTuple):
 
     @property
     def warnings(self):
+        """All but those of scales: scenes in the law's own lengths have R = z0 = E/(1-nu^2)."""
         found = self.summary.get("warnings", [])
-        return [found] if isinstance(found, str) else found
+        return of_numbers([found] if isinstance(found, str) else found)
 
     @property
     def curve(self):

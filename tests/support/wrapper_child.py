@@ -95,6 +95,9 @@ def fault(entry, name, value, clean):
     if isinstance(result, Exception):
         if not isinstance(result, (ValueError, TypeError, MemoryError, snapin.SnapinError)):
             return f"raised {type(result).__name__}: {str(result)[:200]}"
+        # What has no state at all is an error of the calculation, not of an argument.
+        if isinstance(result, snapin.SnapinError) and not isinstance(result, snapin.DeckError):
+            return None
         # Where a value is right by itself another may be the one that does not fit.
         alone = clean is REFUSED and entry.kinds[name] != "paired"
         if not names_one(result, [name] if alone else entry.good, entry.kinds):

@@ -201,13 +201,52 @@ def test_a_finished_run_is_left_as_it_is_with_resume(tmp_path):
     assert second.cost == first.cost
 
 
-def test_what_was_interrupted_belongs_to_the_module_and_not_to_the_interpreter(tmp_path):
+def test_what_was_interrupted_belongs_to_the_program(tmp_path, snapin_path):
     """Built of other sources, it would be refused."""
     (tmp_path / "summary.nml").mkdir()
     with pytest.raises(snapin.SnapinError, match="is a folder"):
         snapin.run(CURVE, out=tmp_path)
     heading, *_ = frames((tmp_path / "journal.partial").read_bytes())
-    assert f"(build {linked_id(pathlib.Path(_snapin.__file__))})\n" in owner(heading)
+    assert f"(build {linked_id(snapin_path)})\n" in owner(heading)
+
+
+GROUPS = {
+    "curve": {"loading": {"h0_start": 4e-9, "h0_end": 0.0, "h0_step": 1e-9}, "stability": {},
+              "unloading": {"from": [0.0, 1e-9]}, "profiles": {"h0": [1e-9]}, "classical": {},
+              "approximations": {"count": 5}},
+    "path": {"equilibrium_path": {"h0_end": -1e-9}, "device": {"stiffness": [1e4, 1e5]},
+             "fixed_load": {"load": [1e-5, -1e-5]}, "table": {}, "regime": {},
+             "sensitivity": {"parameters": ["force.hamaker"]}},
+    "sweep": {"equilibrium_path": {"h0_end": 0.0}, "sweep": {"key": "force.z0", "values": [4e-10, 5e-10]}},
+}
+
+
+@pytest.mark.parametrize("name", GROUPS)
+def test_what_is_handed_over_is_what_a_folder_would_hold(name, tmp_path, monkeypatch):
+    deck = {"bodies": {"radius": 1.5e-2, "stiffness": 1e10},
+            "force": {"law": "lennard_jones", "hamaker": 1e-20, "z0": 5e-10}, **GROUPS[name]}
+    monkeypatch.chdir(tmp_path)
+    handed = snapin.run(deck)
+    assert list(tmp_path.iterdir()) == []
+    kept = snapin.run(deck, out="kept")
+    assert handed.tables.keys() == kept.tables.keys()
+    for key, table in handed.tables.items():
+        assert table.dtype == kept.tables[key].dtype
+        assert table.tobytes() == kept.tables[key].tobytes()
+    for key, value in handed.summary.items():
+        np.testing.assert_equal(value, kept.summary[key])
+    assert handed.summary.keys() == kept.summary.keys()
+    assert handed.cost["states"] == kept.cost["states"]
+
+
+def test_summaries_are_read_as_a_reader_of_namelists_does(tmp_path):
+    """The package has a reader of its own for what the program writes: f90nml takes long."""
+    result = snapin.run(CYCLE, out=tmp_path)
+    expected = f90nml.read(tmp_path / "summary.nml")
+    for group, found in (("summary", result.summary), ("cost", result.cost)):
+        assert list(found) == list(expected[group])
+        for key, value in found.items():
+            np.testing.assert_array_equal(np.squeeze(value), np.squeeze(expected[group][key]))
 
 
 def test_resume_needs_a_folder():

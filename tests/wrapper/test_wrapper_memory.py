@@ -118,9 +118,11 @@ for call in mesh.matrix, lambda: snapin.equilibrium(law, mesh, 3.0, 0.1):
         call()
     except MemoryError as problem:
         print(problem)
-with warnings.catch_warnings(record=True) as caught:
-    curve = snapin.force_curve([4.0, 3.0], law=law, **bodies, grid="uniform", nodes=20000)
-print(*(warning.message for warning in caught), curve.converged, curve.load.size)
+try:
+    snapin.force_curve([4.0, 3.0], law=law, **bodies, grid="uniform", nodes=20000)
+except MemoryError as problem:
+    print(problem)
+warnings.simplefilter("ignore")  # A law in its own lengths leaves the model's ground.
 print(snapin.force_curve([4.0, 3.0], law=law, **bodies).converged)
 """
 
@@ -130,8 +132,8 @@ def test_what_does_not_fit_is_refused_with_the_memory_that_it_needs():
     lines = answer(LIMITED, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1").splitlines()
     assert [line.split(": ")[0] for line in lines[:2]] == ["mesh", "mesh"]
     assert all("9.62 GB of memory are needed" in line for line in lines[:2])
-    # The program's own forecast, and nothing computed.
-    assert re.fullmatch("not computed: .*20000 nodes need .* GB of memory.* False 0", lines[2])
+    # The program's own count, before anything is computed.
+    assert re.fullmatch("not computed: .*20000 nodes need .* GB of memory.*", lines[2])
     assert lines[3] == "True"
 
 
@@ -141,30 +143,6 @@ def test_what_is_beyond_the_memory_that_is_free_is_refused(monkeypatch):
     mesh = snapin.uniform_mesh(1000, 10.0)
     with pytest.raises(MemoryError, match="^mesh: 0.0248 GB of memory .* 0.001 GB are free$"):
         mesh.matrix()
-
-
-@pytest.mark.parametrize("method", ["mixing", "anderson", "newton"])
-def test_calculations_take_no_more_memory_than_is_asked_for(method):
-    script = f"""
-import math, warnings, snapin
-warnings.simplefilter("ignore")
-from snapin.numerics import bytes_for
-law = snapin.lennard_jones(hamaker=16 * math.pi * 0.1, z0=1.0)
-bodies = dict(radius=1.0, stiffness=1.0)
-def peak():
-    # Not ru_maxrss, which begins with that of the process that started this one.
-    with open("/proc/self/status") as table:
-        return next(1024 * int(line.split()[1]) for line in table if line.startswith("VmHWM"))
-# The program's own pages are not the calculation's.
-snapin.force_curve([4.0, 3.0], law=law, **bodies, grid="uniform", nodes=80, r_max=12.0,
-                   method={method!r})
-before = peak()
-snapin.force_curve([4.0, 2.0], law=law, **bodies, grid="uniform", nodes=800, r_max=12.0,
-                   method={method!r})
-print((peak() - before) / bytes_for(800))
-"""
-    share = float(answer(script, OMP_NUM_THREADS="1"))
-    assert 0.2 < share < 1
 
 
 @pytest.mark.parametrize("method", ["mixing", "anderson", "newton"])

@@ -1,6 +1,7 @@
 """Claims about calls at once, forks and interruptions: results are those of one call after another,
 to the bit."""
 
+import os
 import pathlib
 import re
 import shutil
@@ -12,7 +13,7 @@ import time
 import numpy as np
 import pytest
 import snapin
-from support.processes import answer
+from support.processes import HANG, answer
 from support.wrapper_child import same
 from support.wrapper_registry import REGISTRY, UNIT, law_of
 
@@ -167,30 +168,74 @@ def test_the_numerics_keep_nothing_between_calls(snapin_path):
     assert {name for name in kept if not name.startswith("slen.")} == set()
 
 
-@pytest.mark.alone
-def test_the_wrapper_keeps_python_s_lock():
-    """Another thread stands still for the whole of a call: calls cannot overlap, see above."""
-    pauses = [0.0]
+LONG = """
+import os, signal, snapin, sys, threading, time
+# Fifteen hundred nodes by Newton's method: minutes.
+deck = snapin.deck_text({
+    "bodies": {"radius": 1.0, "stiffness": 1.0},
+    "force": {"law": "lennard_jones", "hamaker": 50.0, "z0": 1.0},
+    "loading": {"h0_start": 8.0, "h0_end": -4.0, "h0_step": 0.01},
+    "numerics": {"grid": "uniform", "nodes": 1500, "method": "newton"},
+})
+"""
+
+
+def test_an_interrupt_ends_a_run_within_a_second_and_python_goes_on():
+    script = LONG + """
+threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    snapin.run(deck)
+except KeyboardInterrupt:
+    began = time.monotonic()
+    print("interrupted", snapin.run("&bodies radius = 1, rigid = T / &force law = 'lennard_jones', "
+          "hamaker = 1e-20, z0 = 1e-9 / &classical h0_start = 1e-9, h0_end = 0 /").converged)
+"""
+    began = time.monotonic()
+    assert answer(script).split() == ["interrupted", "True"]
+    # A second until the interrupt, one for it, and the rest is Python's start.
+    assert time.monotonic() - began < HANG / 4
+
+
+def test_a_run_ends_with_the_interpreter_that_began_it(tmp_path):
+    script = LONG + "print('ready', flush=True)\nsnapin.run(deck)\n"
+    environment = dict(os.environ, TMPDIR=str(tmp_path))
+    python = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True,
+                              env={**environment, "PYTHONPATH": os.pathsep.join(sys.path)})
+    assert python.stdout.readline() == "ready\n"
+    children = pathlib.Path(f"/proc/{python.pid}/task/{python.pid}/children")
+    for _ in range(200):
+        if children.read_text().split():
+            break
+        time.sleep(0.02)
+    (child,) = children.read_text().split()
+    python.kill()
+    python.wait()
+    for _ in range(200):
+        if not pathlib.Path(f"/proc/{child}").exists():
+            break
+        time.sleep(0.02)
+    state = pathlib.Path(f"/proc/{child}/stat")
+    assert not state.exists() or state.read_text().split()[2] == "Z"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_other_threads_go_on_while_a_deck_runs():
+    counted = 0
     stop = threading.Event()
 
-    def watch():
-        last = time.monotonic()
+    def count():
+        nonlocal counted
         while not stop.is_set():
-            now = time.monotonic()
-            pauses[0] = max(pauses[0], now - last)
-            last = now
+            counted += 1
+            time.sleep(1e-3)
 
-    # Much to compute and few rows to read: Python works for its part of the call.
-    h0 = np.linspace(6.0, -2.0, 101)
-    watcher = threading.Thread(target=watch)
-    watcher.start()
+    other = threading.Thread(target=count)
+    other.start()
     try:
-        began = time.monotonic()
-        snapin.force_curve(h0, **UNIT, law=law_of(0.3), grid="uniform", nodes=700)
-        taken = time.monotonic() - began
-        # Lets the watcher see the end of its pause.
-        time.sleep(0.05)
+        before = counted
+        snapin.force_curve(np.linspace(6.0, -2.0, 101), **UNIT, law=law_of(0.3), grid="uniform",
+                           nodes=300)
+        assert counted > before + 5
     finally:
         stop.set()
-        watcher.join()
-    assert pauses[0] > 0.5 * taken
+        other.join()
