@@ -162,8 +162,12 @@ def read_summary(folder):
 
 def _summary_groups(text, place):
     """Return &summary and &cost: lists as such, also of one value, and the others' values."""
-    groups = _namelist(text)
-    if not {"summary", "cost"} <= set(groups):
+    # The deck follows.
+    results, found, _ = text.partition("\n&cost\n")
+    if not found:
+        raise ResultsError(f"{place}: no group &summary and &cost")
+    groups = _namelist(results + found + text[len(results + found):].partition("\n/\n")[0])
+    if "summary" not in groups:
         raise ResultsError(f"{place}: no group &summary and &cost")
     return {
         name: {

@@ -62,11 +62,13 @@ contains
       call fail(error, no_room, 'not computed: matrices for '//brief(real(nodes, wp))// &
         ' nodes need '//gigabytes(bytes)//' of memory, and '//gigabytes(available)// &
         ' are available')
-    else if (folder /= to_stream .and. disk_bytes(scene) > max(large, free_disk(folder))) then
-      call fail(error, no_room, 'not computed: its results need '// &
-        gigabytes(disk_bytes(scene))//' on the disk, and '//gigabytes(free_disk(folder))// &
-        ' are free')
+      return
     end if
+    bytes = disk_bytes(scene)
+    if (folder == to_stream .or. bytes <= large) return
+    available = free_disk(folder)
+    if (bytes > available) call fail(error, no_room, 'not computed: its results need '// &
+      gigabytes(bytes)//' on the disk, and '//gigabytes(available)//' are free')
   end subroutine check_room
 
   !> What to say of results that take much of a disk; empty of others.

@@ -2,12 +2,12 @@
 !> between these, and the energy that is lost (`device`).
 module driven_cycle
   use kinds, only: wp
-  use path_curve, only: curve_t
+  use path_curve, only: curve_t, curve_node_t
   use curve_states, only: curve_state_t
   use driven_pieces, only: drive_t, driven_piece_t
   implicit none
   private
-  public :: driven_t, leg_t, jump_t
+  public :: driven_t, leg_t, jump_t, nodes_on
 
   !> A way along one stable piece, of this number in `driven_t`.
   type :: leg_t
@@ -37,6 +37,8 @@ module driven_cycle
     type(leg_t), allocatable :: leg(:)
     type(jump_t), allocatable :: jump(:)
     real(wp) :: energy_lost = 0, cycle_energy = 0, uncertainty = 0
+    !> The same energies on finer meshes; unallocated where they are not known.
+    real(wp), allocatable :: fine_energy_lost, fine_cycle_energy
     !> Whether every state was solved, and every jump had an end.
     logical :: solved = .true., caught = .true.
   contains
@@ -45,6 +47,22 @@ module driven_cycle
   end type driven_t
 
 contains
+
+  !> The nodes of the curve that a leg passes, in the order of the leg.
+  pure function nodes_on(curve, leg) result(nodes)
+    type(curve_t), intent(in) :: curve
+    type(leg_t), intent(in) :: leg
+    type(curve_node_t), allocatable :: nodes(:)
+    integer :: i, first, last
+
+    first = min(leg%from%interval, leg%to%interval)
+    last = max(leg%from%interval, leg%to%interval)
+    allocate (nodes(last - first))
+    do i = first + 1, last
+      nodes(i - first) = curve%begin_of(i)
+    end do
+    if (.not. leg%inward) nodes = nodes(size(nodes):1:-1)
+  end function nodes_on
 
   !> Whether a leg ends where a jump starts.
   pure logical function jumps_after(self, leg)

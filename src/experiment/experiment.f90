@@ -19,6 +19,7 @@ module experiment
   use experiment_result, only: experiment_result_t
   use exact_path, only: trace_exactly
   use result_errors, only: judge_t, begin_judging, judge_locked, judge_fixed
+  use reading_errors, only: judge_readings
   use result_sensitivities, only: find_sensitivities
   use path, only: follow_path
   use path_readings, only: read_path
@@ -111,6 +112,11 @@ contains
     call observer%hear('estimating errors')
     call judge_locked(judge, outcome)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
+    select type (steps)
+    class is (path_stepper_t)
+      if (allocated(outcome%readings)) &
+        call judge_readings(request, steps, judge, high, low, observer, outcome, store)
+    end select
     if (allocated(request%sensitivity)) then
       select type (steps)
       class is (path_stepper_t)

@@ -6,6 +6,7 @@ module path_errors
   use contact_state, only: state_t
   use equilibrium, only: equations_t, residual_floor
   use path_coordinate, only: coordinate_of
+  use edge_locked, only: approach
   use potential_energy, only: energy_of
   use traced_path, only: path_point_t, traced_path_t
   use known_path, only: known_path_t, landing_t, landing_over
@@ -146,6 +147,8 @@ contains
     if (.not. found) return
     on_fine = measure_at(near, distance)
     error = error_between(measure, near, on_fine, sought, fine%margin)
+    if (sought%mesh > approach) &
+      error%radius = fine%margin*abs(exp(near%s + distance) - state%scale)
     if (.not. sought%with_profile) return
     right = near%state
     call solve_fine(fine, sought%mesh, near%s + distance, right, found)

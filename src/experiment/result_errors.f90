@@ -18,7 +18,7 @@ module result_errors
   use experiment_result, only: experiment_result_t
   implicit none
   private
-  public :: judge_t, begin_judging, judge_path_points, judge_locked, judge_fixed
+  public :: judge_t, more_digits, begin_judging, judge_path_points, judge_locked, judge_fixed
 
   !> Digits that edge-locked finer meshes have more.
   real(wp), parameter :: more_digits = 1.5_wp

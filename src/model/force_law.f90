@@ -97,11 +97,12 @@ contains
     most = self%closure_fraction*gap + self%closure_length
   end function closure
 
-  !> Estimated error of the energy where the law is interpolated; 0 for a formula.
+  !> Estimated errors of pressure and energy, by rows, where the law is interpolated; 0 for a
+  !> formula.
   pure function table_error(self, gap) result(value)
     class(force_law_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp) :: value(2, size(gap))
 
     value = 0
   end function table_error

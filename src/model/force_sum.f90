@@ -246,13 +246,15 @@ contains
   pure function table_error(self, gap) result(value)
     class(force_sum_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp) :: value(2, size(gap)), own(2, size(gap))
     integer :: i
 
     value = 0
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        value = value + term%weight/term%stretch*term%law%table_error(term%own(gap))
+        own = term%law%table_error(term%own(gap))
+        value(1, :) = value(1, :) + term%weight*own(1, :)
+        value(2, :) = value(2, :) + term%weight/term%stretch*own(2, :)
       end associate
     end do
   end function table_error

@@ -17,13 +17,18 @@ module curve_states
   use path_curve, only: curve_t, no_mesh
   implicit none
   private
-  public :: curve_state_t, curve_solver_t, place_t, coordinate_at
+  public :: curve_state_t, curve_solver_t, place_t, coordinate_at, reading_t, reading_of
 
   !> A place on a curve.
   type :: place_t
     integer :: interval = 0
     real(wp) :: x = 0
   end type place_t
+
+  !> What is reported of an equilibrium, in the units of `dimensionless_problem`.
+  type :: reading_t
+    real(wp) :: h0 = 0, load = 0, displacement = 0, radius = 0
+  end type reading_t
 
   !> A solved equilibrium at a place: h0, load, gap on the axis, energy in the units of
   !> `dimensionless_problem`, derivatives of h0 and load by x, modes unstable at fixed h0.
@@ -38,6 +43,8 @@ module curve_states
     !> Derivatives of what is reported of it by each parameter of &sensitivity
     !> (`place_sensitivity`).
     real(wp), allocatable :: rate(:, :)
+    !> What is reported at the same place of a path on finer meshes (`reading_errors`).
+    type(reading_t), allocatable :: fine
   end type curve_state_t
 
   !> A curve, and what solves states on it.
@@ -62,6 +69,13 @@ module curve_states
   real(wp), parameter :: apart = 1.0e-4_wp
 
 contains
+
+  !> What is reported of a state.
+  pure type(reading_t) function reading_of(state) result(reading)
+    type(curve_state_t), intent(in) :: state
+
+    reading = reading_t(state%h0, state%load, state%axis_gap - state%h0, state%radius)
+  end function reading_of
 
   !> The path's coordinate (`continuation`) at a place that is on a mesh.
   pure real(wp) function coordinate_at(curve, place) result(s)

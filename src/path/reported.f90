@@ -26,6 +26,8 @@ module reported
   type :: error_t
     real(wp) :: h0 = 0, displacement = 0, load = 0, profile = 0
     logical :: known = .true.
+    !> Of the radius of what a mesh in contact is locked to, lateral units.
+    real(wp) :: radius = 0
   end type error_t
 
   !> A state that numbers are reported of, in the units of `dimensionless_problem`, and where it
@@ -84,6 +86,8 @@ contains
       ! top it is found does not move the curve, and no displacement is reported of it.
       if (reported%point == 0) largest = max(largest, &
         error%displacement/max(abs(reported%displacement), 1.0_wp))
+      if (allocated(reported%witness)) &
+        largest = max(largest, error%radius/reported%witness%state%scale)
     end associate
   end function relative_error
 

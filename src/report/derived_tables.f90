@@ -63,7 +63,7 @@ contains
       end if
       if (allocated(readings%loaded)) then
         call results%begin_table('fixed_load.csv', fixed_load_columns)
-        call write_fixed_loads(problem, readings%loaded, results)
+        call write_fixed_loads(problem, readings, results)
         call results%end_table()
       end if
       if (.not. allocated(readings%prescribed)) return

@@ -7,7 +7,8 @@ module device_rows
   use path_curve, only: curve_t, curve_node_t
   use curve_states, only: curve_state_t
   use driven_pieces, only: drive_t
-  use driven_cycle, only: driven_t, leg_t
+  use driven_cycle, only: driven_t, leg_t, jump_t, nodes_on
+  use reading_numbers, only: error_of, state_errors
   use place_sensitivity, only: of_load
   use reading_sensitivities, only: weights_of
   use path_readings, only: path_readings_t
@@ -16,7 +17,7 @@ module device_rows
   use summary, only: summary_t
   implicit none
   private
-  public :: device_columns, jump_columns, write_device, write_jumps, summarise_device, nodes_between
+  public :: device_columns, jump_columns, write_device, write_jumps, summarise_device
 
   !> Columns of device.csv and of device_jumps.csv.
   character(len=*), parameter :: device_columns(*) = [character(len=96) :: &
@@ -37,7 +38,10 @@ module device_rows
     'h0_after [m] NaN where no stable state is known, here and below', &
     'load_after [N] after the jump', &
     'contact_radius_after [m] after the jump', &
-    'energy [J] lost in the jump']
+    'energy [J] lost in the jump', &
+    'z_error [m] estimated error of z', &
+    'load_error [N] estimated error of load', &
+    'load_after_error [N] estimated error of load_after']
   !> An energy is worth having where the two routes to it differ by less than this part.
   real(wp), parameter :: known_energy = 1.0e-4_wp
 
@@ -87,7 +91,7 @@ contains
 
       direction = direction_of(leg%inward)
       call add(driven, direction, leg%from%h0, leg%from%load, leg%from%radius, .true.)
-      nodes = nodes_between(readings%curve, leg)
+      nodes = nodes_on(readings%curve, leg)
       do j = 1, size(nodes)
         call add(driven, direction, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, .true.)
       end do
@@ -123,27 +127,12 @@ contains
           if (jump%landed) after = si_of(problem, jump%after)
           call results%row(cells([driven%stiffness]) // ',' // direction_of(jump%inward), &
             [z_of(problem, driven%drive, jump%before%h0, jump%before%load), &
-            si_of(problem, jump%before), after, jump%energy*problem%load*problem%length])
+            si_of(problem, jump%before), after, jump%energy*problem%load*problem%length, &
+            jump_errors(problem, readings, driven, jump)])
         end associate
       end do
     end do
   end subroutine write_jumps
-
-  !> The nodes of the curve that a leg passes, in the order of the leg.
-  pure function nodes_between(curve, leg) result(nodes)
-    type(curve_t), intent(in) :: curve
-    type(leg_t), intent(in) :: leg
-    type(curve_node_t), allocatable :: nodes(:)
-    integer :: i, first, last
-
-    first = min(leg%from%interval, leg%to%interval)
-    last = max(leg%from%interval, leg%to%interval)
-    allocate (nodes(last - first))
-    do i = first + 1, last
-      nodes(i - first) = curve%begin_of(i)
-    end do
-    if (.not. leg%inward) nodes = nodes(size(nodes):1:-1)
-  end function nodes_between
 
   pure function direction_of(inward) result(direction)
     logical, intent(in) :: inward
@@ -189,10 +178,18 @@ contains
       call take_jumps('device_jump_in', .true.)
       call take_jumps('device_jump_out', .false.)
       call summary%set('device_energy_lost', device%energy_lost*unit)
+      call summary%set('device_energy_lost_error', [(unit*error_of(readings%margin, &
+        device(i)%energy_lost, device(i)%fine_energy_lost) + unit*device(i)%uncertainty, &
+        i=1, size(device))])
       call summary%set_rate('device_energy_lost', reshape([(energy_rates(device(i), parameters), &
         i=1, size(device))], [parameters, size(device)]))
       call summary%set('device_cycle_energy', device%cycle_energy*unit)
-      call summary%set('device_energy_uncertainty', uncertainty(device)*unit)
+      call summary%set('device_cycle_energy_error', [(unit*error_of(readings%margin, &
+        device(i)%cycle_energy, device(i)%fine_cycle_energy) + unit*uncertainty(device(i)), &
+        i=1, size(device))])
+      call summary%set('device_energy_uncertainty', [(unit*max(uncertainty(device(i)), &
+        error_of(readings%margin, device(i)%energy_lost, device(i)%fine_energy_lost)), &
+        i=1, size(device))])
       if (.not. all(device%caught)) call summary%warn('device: no stable state is known ' // &
         'that catches the bodies after a jump; see device_jumps.csv')
       if (any(uncertainty(device) > known_energy*abs(device%energy_lost))) &
@@ -205,13 +202,17 @@ contains
     subroutine take_jumps(name, inward)
       character(len=*), intent(in) :: name
       logical, intent(in) :: inward
-      real(wp), dimension(size(readings%device)) :: z, before, after
+      real(wp), dimension(size(readings%device)) :: z, before, after, z_error, before_error, &
+        after_error
       real(wp), dimension(parameters, size(readings%device)) :: z_rate, before_rate, after_rate
       integer :: k, first
 
       z = ieee_value(1.0_wp, ieee_quiet_nan)
       before = z
       after = z
+      z_error = z
+      before_error = z
+      after_error = z
       z_rate = z(1)
       before_rate = z_rate
       after_rate = z_rate
@@ -223,6 +224,11 @@ contains
             z(k) = z_of(problem, driven%drive, jump%before%h0, jump%before%load)
             before(k) = jump%before%load*problem%load
             if (jump%landed) after(k) = jump%after%load*problem%load
+            associate (errors => jump_errors(problem, readings, driven, jump))
+              z_error(k) = errors(1)
+              before_error(k) = errors(2)
+              if (jump%landed) after_error(k) = errors(3)
+            end associate
             if (allocated(jump%before%rate)) then
               before_rate(:, k) = jump%before%rate(of_load, :)
               if (driven%drive%weights(1) > 0) z_rate(:, k) = &
@@ -235,12 +241,37 @@ contains
       call summary%set(name // '_z', z)
       call summary%set(name // '_load', before)
       call summary%set(name // '_load_after', after)
+      call summary%set(name // '_z_error', z_error)
+      call summary%set(name // '_load_error', before_error)
+      call summary%set(name // '_load_after_error', after_error)
       call summary%set_rate(name // '_z', z_rate)
       call summary%set_rate(name // '_load', before_rate)
       call summary%set_rate(name // '_load_after', after_rate)
     end subroutine take_jumps
 
   end subroutine summarise_device
+
+  !> Errors of the position [m] and of the loads [N] before and after a jump.
+  pure function jump_errors(problem, readings, driven, jump) result(errors)
+    type(problem_t), intent(in) :: problem
+    type(path_readings_t), intent(in) :: readings
+    type(driven_t), intent(in) :: driven
+    type(jump_t), intent(in) :: jump
+    real(wp) :: errors(3)
+
+    associate (before => state_errors(readings%margin, jump%before), &
+      after => state_errors(readings%margin, jump%after), drive => driven%drive)
+      errors = [before%h0, before%load, after%load]
+      if (allocated(jump%before%fine)) then
+        errors(1) = error_of(readings%margin, drive%position(jump%before), &
+          dot_product(drive%weights, [jump%before%fine%h0, jump%before%fine%load]))
+      else
+        errors(1) = max(abs(drive%position(jump%before)), 1.0_wp)
+      end if
+    end associate
+    errors = errors*[problem%length, problem%load, problem%load]
+    if (.not. driven%drive%weights(1) > 0) errors(1) = ieee_value(1.0_wp, ieee_quiet_nan)
+  end function jump_errors
 
   !> Derivatives of the energy lost by each parameter; NaN where a jump has none.
   pure function energy_rates(driven, parameters) result(rate)

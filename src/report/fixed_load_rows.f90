@@ -3,6 +3,9 @@ module fixed_load_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use fixed_loads, only: loaded_state_t
+  use path_readings, only: path_readings_t
+  use reading_numbers, only: state_errors
+  use tables, only: cells
   use results, only: results_t
   use summary, only: summary_t
   implicit none
@@ -15,22 +18,28 @@ module fixed_load_rows
     'h0 [m] separation that undeformed bodies would have on the axis', &
     'displacement [m] separation on the axis less h0', &
     'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
-    'stable [] 1: stable under this load; 0: unstable']
+    'stable [] 1: stable under this load; 0: unstable', &
+    'h0_error [m] estimated error of h0', &
+    'displacement_error [m] estimated error of displacement', &
+    'contact_radius_error [m] estimated error of contact_radius']
 
 contains
 
   !> Writes the rows of fixed_load.csv: load by load, each from afar inward.
-  subroutine write_fixed_loads(problem, loaded, results)
+  subroutine write_fixed_loads(problem, readings, results)
     type(problem_t), intent(in) :: problem
-    type(loaded_state_t), intent(in) :: loaded(:)
+    type(path_readings_t), intent(in) :: readings
     type(results_t), intent(inout) :: results
     integer :: i
 
-    do i = 1, size(loaded)
-      associate (state => loaded(i)%state)
-        call results%row(numbers=[loaded(i)%wanted*problem%load, &
+    do i = 1, size(readings%loaded)
+      associate (loaded => readings%loaded(i), state => readings%loaded(i)%state, &
+        errors => state_errors(readings%margin, readings%loaded(i)%state))
+        call results%row(cells([loaded%wanted*problem%load, &
           problem%law%separation_of(state%h0), (state%axis_gap - state%h0)*problem%length, &
-          state%radius*problem%lateral], truth=loaded(i)%stable)
+          state%radius*problem%lateral]) // merge(',1', ',0', loaded%stable), &
+          [errors%h0*problem%length, errors%displacement*problem%length, &
+          errors%radius*problem%lateral])
       end associate
     end do
   end subroutine write_fixed_loads

@@ -44,22 +44,29 @@ contains
     end associate
   end subroutine take_forces
 
-  !> How well the points of a table tell the depth of the well, on which the pull-off depends: it is
-  !> in proportion to that for hard bodies and for soft ones.
+  !> How well the points of a table tell the depth of the well and the largest tension: the pull-off
+  !> is in proportion to the first for hard bodies and for soft ones, and depends on both between.
   subroutine take_table_error(problem, summary)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
-    real(wp) :: error(1), depth(1)
+    real(wp) :: of_well(2, 1), of_edge(2, 1), depth(1), tension(1), error
     !> Beyond this the table and not the mesh decides what is found.
     real(wp), parameter :: coarse = 1.0e-3_wp
 
-    error = problem%law%table_error([problem%law%rest_gap])
-    if (.not. error(1) > 0) return
-    depth = abs(problem%law%energy([problem%law%rest_gap]))
-    error = error/max(depth, tiny(1.0_wp))
-    call summary%set('table_error', error(1))
-    if (error(1) > coarse) call summary%warn('the points of the table are far apart: work of ' // &
-      'adhesion and pull-off are uncertain by about ' // brief(error(1)) // ' of themselves')
+    associate (law => problem%law)
+      of_well = law%table_error([law%rest_gap])
+      if (.not. of_well(2, 1) > 0) return
+      depth = abs(law%energy([law%rest_gap]))
+      error = of_well(2, 1)/max(depth(1), tiny(1.0_wp))
+      if (law%edge_gap > 0) then
+        of_edge = law%table_error([law%edge_gap])
+        tension = abs(law%pressure([law%edge_gap]))
+        error = max(error, of_edge(1, 1)/max(tension(1), tiny(1.0_wp)))
+      end if
+    end associate
+    call summary%set('table_error', error)
+    if (error > coarse) call summary%warn('the points of the table are far apart: work of ' // &
+      'adhesion and pull-off are uncertain by about ' // brief(error) // ' of themselves')
   end subroutine take_table_error
 
 end module force_entries

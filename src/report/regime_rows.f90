@@ -35,14 +35,16 @@ contains
     type(experiment_result_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
     type(measured_t) :: solved
-    real(wp) :: load, errors(3, size(theories)), gamma, strength
+    type(measured_t) :: uncertain
+    real(wp), dimension(3, size(theories)) :: errors, spread
+    real(wp) :: load, load_error, gamma, strength
     integer :: i
     logical :: there
 
     gamma = surface_energy(problem)
     strength = largest_tension(problem)
     call summary%set('regime_tabor', tabor_parameter(problem))
-    call measure(problem, outcome, load, solved, there)
+    call measure(problem, outcome, load, solved, load_error, uncertain, there)
     if (.not. (there .and. gamma > 0 .and. strength > 0)) then
       call summary%warn('regime: the path does not end in a contact that theories can be ' // &
         'compared with')
@@ -53,24 +55,44 @@ contains
       call summary%set('regime_tabor_range', (4*r*strength**3/(y**2*gamma))**(1.0_wp/3))
       call summary%set('regime_maugis_lambda', maugis_lambda(r, y, gamma, strength))
       call summary%set('regime_load_number', load/(pi*gamma*r))
+      call summary%set('regime_load_number_error', load_error/(pi*gamma*r))
+      errors = all_errors(load, solved)
+      ! What each number may be off by changes the errors of the theories by so much.
+      spread = abs(all_errors(load + load_error, solved) - errors) + &
+        abs(all_errors(load, sum_of(solved, measured_t(pull_off=uncertain%pull_off))) - errors) + &
+        abs(all_errors(load, sum_of(solved, measured_t(radius=uncertain%radius))) - errors)
       do i = 1, size(theories)
-        errors(:, i) = errors_of(of_theory(trim(theories(i)), load, r, y, gamma, strength), &
-          solved, r)
         call summary%set('regime_error_' // trim(theories(i)), errors(:, i))
+        call summary%set('regime_error_' // trim(theories(i)) // '_error', spread(:, i))
       end do
     end associate
     call recommend(errors, summary)
+
+  contains
+
+    function all_errors(at_load, numbers) result(errors)
+      real(wp), intent(in) :: at_load
+      type(measured_t), intent(in) :: numbers
+      real(wp) :: errors(3, size(theories))
+      integer :: k
+
+      do k = 1, size(theories)
+        errors(:, k) = errors_of(of_theory(trim(theories(k)), at_load, problem%radius, &
+          problem%stiffness, gamma, strength), numbers, problem%radius)
+      end do
+    end function all_errors
   end subroutine summarise_regime
 
-  !> What the path says; there = .false.: it has no pull-off, or no contact at its end.
-  subroutine measure(problem, outcome, load, solved, there)
+  !> What the path says, with errors; there = .false.: it has no pull-off, or no contact at its end.
+  subroutine measure(problem, outcome, load, solved, load_error, uncertain, there)
     type(problem_t), intent(in) :: problem
     type(experiment_result_t), intent(in) :: outcome
-    real(wp), intent(out) :: load
-    type(measured_t), intent(out) :: solved
+    real(wp), intent(out) :: load, load_error
+    type(measured_t), intent(out) :: solved, uncertain
     logical, intent(out) :: there
 
     load = 0
+    load_error = 0
     there = .false.
     if (.not. allocated(outcome%path)) return
     associate (path => outcome%path)
@@ -81,6 +103,10 @@ contains
       solved = measured_t(path%lowest%load*problem%load, &
         path%finish%witness%state%scale*problem%lateral, &
         (problem%law%rest_gap - path%finish%h0)*problem%length)
+      if (.not. (allocated(path%lowest%error) .and. allocated(path%finish%error))) return
+      load_error = path%finish%error%load*problem%load
+      uncertain = measured_t(path%lowest%error%load*problem%load, &
+        path%finish%error%radius*problem%lateral, path%finish%error%h0*problem%length)
     end associate
   end subroutine measure
 
@@ -109,6 +135,13 @@ contains
         says%indentation = maugis_displacement(says%radius, r, y, gamma, strength)
     end select
   end function of_theory
+
+  pure type(measured_t) function sum_of(one, other) result(total)
+    type(measured_t), intent(in) :: one, other
+
+    total = measured_t(one%pull_off + other%pull_off, one%radius + other%radius, &
+      one%indentation + other%indentation)
+  end function sum_of
 
   pure function errors_of(theory, solved, radius) result(errors)
     type(measured_t), intent(in) :: theory, solved

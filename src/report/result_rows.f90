@@ -14,7 +14,7 @@ module result_rows
 
   !> Key, unit and meaning; a list has one value a turning point, fold, profile or the like.
   type :: row_t
-    character(len=28) :: key = ''
+    character(len=32) :: key = ''
     character(len=5) :: unit = ''
     character(len=104) :: meaning = ''
     character(len=14) :: sweep = never
@@ -99,30 +99,51 @@ module result_rows
       list=.true.), &
     row_t('device_jump_in_load', 'N', 'load just before it', list=.true.), &
     row_t('device_jump_in_load_after', 'N', 'load just after it', list=.true.), &
+    row_t('device_jump_in_z_error', 'm', 'estimated error of device_jump_in_z', list=.true.), &
+    row_t('device_jump_in_load_error', 'N', &
+      'estimated error of device_jump_in_load', list=.true.), &
+    row_t('device_jump_in_load_after_error', 'N', &
+      'estimated error of device_jump_in_load_after', list=.true.), &
     row_t('device_jump_out_z', 'm', 'position of the drive at the first jump of each retreat', &
       list=.true.), &
     row_t('device_jump_out_load', 'N', 'load just before it', list=.true.), &
     row_t('device_jump_out_load_after', 'N', 'load just after it', list=.true.), &
+    row_t('device_jump_out_z_error', 'm', 'estimated error of device_jump_out_z', list=.true.), &
+    row_t('device_jump_out_load_error', 'N', &
+      'estimated error of device_jump_out_load', list=.true.), &
+    row_t('device_jump_out_load_after_error', 'N', &
+      'estimated error of device_jump_out_load_after', list=.true.), &
     row_t('device_energy_lost', 'J', &
       'energy lost in all jumps of each cycle, bodies and spring', list=.true.), &
+    row_t('device_energy_lost_error', 'J', 'estimated error of device_energy_lost', list=.true.), &
     row_t('device_cycle_energy', 'J', &
       'the same as the area between approach and retreat', list=.true.), &
-    row_t('device_energy_uncertainty', 'J', 'difference of the two, and rounding', &
+    row_t('device_cycle_energy_error', 'J', &
+      'estimated error of device_cycle_energy', list=.true.), &
+    row_t('device_energy_uncertainty', 'J', 'difference of the two, or the error of either', &
       list=.true.), &
     row_t('fixed_load', 'N', 'loads whose equilibria were looked for', list=.true.), &
     row_t('fixed_load_equilibria', '', 'number of equilibria under each', list=.true.), &
     row_t('fixed_load_stable', '', 'number of them that are stable', list=.true.), &
+    row_t('table_load_error', 'N', 'largest estimated error of a load in table.csv'), &
+    row_t('table_interpolation_error', 'N', &
+      'largest error of a load between its rows, by cubic polynomials with their slopes'), &
     row_t('regime_tabor', '', 'Tabor''s parameter with the length of the law', regime), &
     row_t('regime_tabor_range', '', &
       'Tabor''s parameter with the range, surface energy over largest tension', regime), &
     row_t('regime_maugis_lambda', '', 'Maugis'' parameter', regime), &
     row_t('regime_load_number', '', &
       'load of the last state over pi times surface energy times radius', regime), &
+    row_t('regime_load_number_error', '', 'estimated error of regime_load_number'), &
     row_t('regime_error_hertz', '', &
       'errors of Hertz theory: pull-off, contact radius, indentation over a^2/R', list=.true.), &
+    row_t('regime_error_hertz_error', '', 'by how much these are uncertain', list=.true.), &
     row_t('regime_error_jkr', '', 'the same of JKR theory', list=.true.), &
+    row_t('regime_error_jkr_error', '', 'by how much these are uncertain', list=.true.), &
     row_t('regime_error_dmt', '', 'the same of DMT theory', list=.true.), &
+    row_t('regime_error_dmt_error', '', 'by how much these are uncertain', list=.true.), &
     row_t('regime_error_maugis', '', 'the same of Maugis-Dugdale theory', list=.true.), &
+    row_t('regime_error_maugis_error', '', 'by how much these are uncertain', list=.true.), &
     row_t('regime_recommended', '', 'theory with the smallest largest error, or none'), &
     row_t('regime_reason', '', 'why, in words'), &
     row_t('end_h0', 'm', &

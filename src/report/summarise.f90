@@ -154,6 +154,11 @@ contains
       if (allocated(scene%sensitivity)) parameters = size(scene%sensitivity%varied)
       if (allocated(readings%device)) &
         call summarise_device(problem, readings, parameters, summary)
+      if (allocated(readings%table_error)) then
+        call summary%set('table_load_error', readings%table_error*problem%load)
+        call summary%set('table_interpolation_error', &
+          readings%table_interpolation_error*problem%load)
+      end if
       if (allocated(readings%loaded)) call summarise_fixed_loads(problem, scene%fixed_load%load, &
         readings%loaded, summary)
     end associate

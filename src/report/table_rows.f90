@@ -7,7 +7,7 @@ module table_rows
   use maugis, only: maugis_units_t, maugis_units
   use path_curve, only: curve_node_t
   use path_readings, only: path_readings_t
-  use device_rows, only: nodes_between
+  use driven_cycle, only: nodes_on
   use results, only: results_t
   implicit none
   private
@@ -40,7 +40,7 @@ contains
         associate (leg => driven%leg(i))
           call add(leg%inward, leg%from%h0, leg%from%load, leg%from%radius, leg%from%slopes, &
             .false.)
-          nodes = nodes_between(readings%curve, leg)
+          nodes = nodes_on(readings%curve, leg)
           do j = 1, size(nodes)
             call add(leg%inward, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, &
               [nodes(j)%h0_slope, nodes(j)%load_slope], .false.)

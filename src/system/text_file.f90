@@ -118,7 +118,8 @@ contains
     class(output_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
 
-    if (.not. self%streamed .and. seconds() - self%handed > show_interval) call self%flush(error)
+    if (self%streamed) return
+    if (seconds() - self%handed > show_interval) call self%flush(error)
   end subroutine show
 
   !> Waits until the file is on the disk and closes it; nothing is done where none is open.

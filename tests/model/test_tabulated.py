@@ -145,11 +145,13 @@ def test_summary_tells_what_the_points_leave_open(tmp_path):
     bodies = {"radius": 1e-2, "stiffness": 1e10}
     path = {"bodies": bodies, "equilibrium_path": {"h0_end": 0.0}}
     exact = snapin.run({**path, **LAW}).summary
-    # Of too few points the estimate is that of the worse table.
-    for a_decade, most in ((10, 10), (40, 2)):
+    # Of too few points the estimate is that of the worse table. It covers what depends on the depth
+    # of the well and what depends on the largest tension, of which the points tell less.
+    for a_decade, most in ((10, 40), (40, 5)):
         found = snapin.run({**path, **lennard_jones(tmp_path, a_decade)}).summary
-        error = abs(found["max_tension"] / exact["max_tension"] - 1)
-        assert error / 2 <= found["table_error"] <= most * error
+        error = max(abs(found[key] / exact[key] - 1)
+                    for key in ("max_tension", "jump_in_load", "jump_out_load"))
+        assert error <= found["table_error"] <= most * error
         warned = any("points of the table" in line for line in found.get("warnings", []))
         assert warned == (found["table_error"] > 1e-3) == (a_decade == 10)
     assert "table_error" not in exact
@@ -160,7 +162,7 @@ def test_example_is_the_first_scene():
     first, found = (snapin.run(ROOT / "inputs" / name).summary for name in names)
     for key in ("max_tension", "jump_in_h0", "jump_out_h0"):
         assert found[key] == pytest.approx(first[key], rel=3e-5)
-    assert 1e-6 < found["table_error"] < 1e-5
+    assert 1e-6 < found["table_error"] < 3e-5
 
 
 # --- Mistakes

@@ -216,9 +216,11 @@ contains
   pure function table_error(self, gap) result(value)
     class(tabulated_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp) :: value(2, size(gap))
 
-    value = self%share*abs(column_of(self%coarse, gap, self%smallest_gap, 3) - self%energy(gap))
+    value(1, :) = column_of(self%coarse, gap, self%smallest_gap, 1) - self%pressure(gap)
+    value(2, :) = column_of(self%coarse, gap, self%smallest_gap, 3) - self%energy(gap)
+    value = self%share*abs(value)
   end function table_error
 
   !> Pressure (1), slope (2) or energy (3) of a table at gaps.

@@ -1,0 +1,89 @@
+"""Claims about errors of what is read from the path: springs, fixed loads, tables, regimes."""
+
+import numpy as np
+import pytest
+from support.scenes import lennard_jones, runner, several
+
+# Strength of adhesion, accuracy, stiffness over sigma, load over sigma.
+SCENES = [(0.02, 1e-4, 0.3, -1.0), (0.87, 1e-5, 3.0, 2.0), (8.7, 1e-6, 0.05, -3.0),
+          (300.0, 1e-4, 0.5, 4.0)]
+KEYS = [*(f"device_jump_{way}_{what}" for way in ("in", "out")
+          for what in ("z", "load", "load_after")), "device_energy_lost", "device_cycle_energy",
+        "regime_load_number", "regime_error_jkr", "regime_error_hertz"]
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("reading_errors"))
+
+
+def scene(sigma, stiffness, load, accuracy):
+    return lennard_jones(sigma, equilibrium_path={"h0_end": -1.0},
+                         device={"stiffness": sigma * stiffness},
+                         fixed_load={"load": [0.5 * sigma, load * sigma]}, table={}, regime={},
+                         numerics={"accuracy": accuracy})
+
+
+@pytest.fixture(scope="module", params=SCENES, ids=lambda scene: f"sigma {scene[0]}")
+def pair(request, run):
+    """The same scene at an accuracy, and far more accurate."""
+    sigma, accuracy, stiffness, load = request.param
+    return tuple(run(scene(sigma, stiffness, load, each)) for each in (accuracy, 1e-10))
+
+
+def test_what_is_read_is_off_by_no_more_than_estimated(pair):
+    found, truth = pair
+    for key in KEYS:
+        values, errors, exact = (np.array(several(result.summary[name]), float) for result, name in (
+            (found, key), (found, f"{key}_error"), (truth, key)))
+        there = np.isfinite(exact)
+        assert (np.isfinite(values) == there).all() and (np.isfinite(errors) == there).all()
+        off = abs(values - exact)[there]
+        # Below a digit of the truth's own error nothing is told.
+        own = np.array(several(truth.summary[f"{key}_error"]), float)[there]
+        assert (off <= errors[there] + 3 * own).all(), key
+        assert (errors[there] <= 100 * found.summary["error_estimate"] * abs(exact[there])
+                + 1e-6 * abs(exact[there]).max()).all() or "energy" in key or "regime" in key
+
+
+def test_rows_under_fixed_loads_have_errors_that_hold(pair):
+    found, truth = (result.table("fixed_load.csv") for result in pair)
+    assert len(found["h0"]) == len(truth["h0"]) > 0
+    for key in "h0", "displacement", "contact_radius":
+        off = abs(found[key] - truth[key])
+        assert (off <= found[f"{key}_error"] + 3 * truth[f"{key}_error"]).all(), key
+
+
+def test_the_estimate_of_the_run_covers_what_is_read(pair):
+    found, truth = pair
+    estimate = found.summary["error_estimate"]
+    for key in KEYS[:6]:
+        exact = np.array(several(truth.summary[key]), float)
+        off = abs(np.array(several(found.summary[key]), float) - exact)
+        scale = np.maximum(abs(exact), 1.0) if key.endswith("_z") else abs(exact)
+        assert (off <= estimate * scale)[np.isfinite(exact)].all(), key
+    radius = [result.table("fixed_load.csv")["contact_radius"] for result in pair]
+    assert (abs(radius[0] - radius[1]) <= estimate * radius[1]).all()
+
+
+def test_a_table_says_what_lies_between_its_rows(pair):
+    """Rows of the finer table by cubic polynomials through the coarser one's, with their slopes."""
+    found, truth = pair
+    rows, exact = found.table("table.csv"), truth.table("table.csv")
+    bound = found.summary["table_load_error"] + found.summary["table_interpolation_error"]
+    for branch in "approach", "retreat":
+        x, f, slope = (rows[key][rows["branch"] == branch]
+                       for key in ("indentation", "load", "stiffness"))
+        at, load = (exact[key][exact["branch"] == branch] for key in ("indentation", "load"))
+        # From row to row between jumps, where the slope is known.
+        for i in range(len(x) - 1):
+            width = x[i + 1] - x[i]
+            inside = (at - x[i]) * (at - x[i + 1]) < 0
+            if not np.isfinite(slope[i:i + 2]).all() or width == 0:
+                continue
+            t = (at[inside] - x[i]) / width
+            cubic = (f[i] * (1 + 2 * t) * (1 - t) ** 2 + f[i + 1] * t**2 * (3 - 2 * t)
+                     + width * t * (1 - t) * (slope[i] * (1 - t) - slope[i + 1] * t))
+            # Other rows of the branch at this indentation belong to other states.
+            near = np.isclose(cubic, load[inside], rtol=0.3)
+            assert (abs(cubic - load[inside])[near] <= 2 * bound).all()
