@@ -40,6 +40,8 @@ _THEORIES = {
 }
 # What a curve may be drawn against.
 NAMES = {"displacement": "displacement $h(0) - h_0$", "h0": "$h_0$"}
+# In the theories bodies touch at no separation, here at the gap at rest, from which theirs count.
+_OF_THEORIES = "$h_0$; of theories $h_0$ + gap at rest"
 # In points: a piece of curve shorter than this gets no arrow for its direction.
 _LONG_ENOUGH = 45
 _MOST_COLUMNS = 6
@@ -75,6 +77,9 @@ class Curve:
             self.theories = read_table(folder, "classical.csv")
         except ResultsError:
             self.theories = None
+        if self.theories:
+            rest = self.summary.get("rest_gap", 0.0)
+            self.theories = dict(self.theories, h0=self.theories["h0"] + rest)
         self.lengths = scale(np.concatenate([self.table["h0"], self.table["displacement"]]), "m")
         self.loads = scale(self.table["load"], "N")
         self.branches = [_Branch(name, self.table, self.summary)
@@ -83,7 +88,8 @@ class Curve:
     def draw(self, panel, x):
         """Draw everything but the arrows."""
         length, load = self.lengths[0], self.loads[0]
-        dress(panel, f"{NAMES[x]} [{self.lengths[1]}]", f"load [{self.loads[1]}]")
+        name = _OF_THEORIES if x == "h0" and self.theories else NAMES[x]
+        dress(panel, f"{name} [{self.lengths[1]}]", f"load [{self.loads[1]}]")
         for branch in self.branches:
             branch.draw(panel, x, length, load)
         if self.theories:

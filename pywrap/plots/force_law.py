@@ -2,6 +2,8 @@
 """The forces of a deck: pressure and energy against separation, and what the program found there.
 
     .venv/bin/python pywrap/plots/force_law.py inputs/examples/hydration.nml
+
+The picture goes into results/<name of the deck>, as the results of the deck do.
 """
 
 import argparse
@@ -12,12 +14,19 @@ import sys
 import f90nml
 import numpy as np
 import snapin
-from drawing import BLACK, BLUE, GREEN, ORANGE, PURPLE, dress, scale
+from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, dress, scale
 from matplotlib.figure import Figure
 
 SAMPLES = 1500
 # Times what is shown: nothing is drawn beyond; part of the largest tension: no barrier below.
 _BEYOND, _SEEN = 5, 1e-4
+# Part of the largest energy that an outer well has at least; ratio of separations from which their
+# axis is logarithmic.
+_DEEP, _WIDE = 1e-6, 30
+_NAMES = {"van_der_waals": "van der Waals", "born": "Born", "force": "Lennard-Jones",
+          "dugdale": "Dugdale"}
+_COLOURS = (VERMILION, SKY, GREY, BLACK)
+_DASHES = ((5, 2), (2, 1.5), (5, 1.5, 1, 1.5), (1, 1.5))
 UNITS = {"pressure": "Pa", "energy": "J/m²"}
 # Groups of a deck that are no forces.
 OTHERS = {
@@ -37,12 +46,36 @@ def forces_of(file):
     return forces
 
 
+def title_of(file):
+    """Return the title that a deck's file has, or the file's name."""
+    return f90nml.read(file).get("scene", {}).get("title") or pathlib.Path(file).stem
+
+
+def parts_of(groups):
+    """Return the forces of a deck one by one, by names for a legend, if there are several."""
+    if len(groups) == 1:
+        return {}
+    if "born" in groups:
+        # Without its own constant that of the attraction holds.
+        attraction = groups.get("van_der_waals", {})
+        groups = {**groups, "born": {"hamaker": attraction.get("hamaker"), **groups["born"]}}
+    return {_NAMES.get(name, name.replace("_", " ")): {name: keys}
+            for name, keys in groups.items()}
+
+
+def styled(parts):
+    """Return label, line style and groups of each part of a law."""
+    styles = ({"color": colour, "linestyle": (0, dashes), "linewidth": 1.2}
+              for colour, dashes in zip(_COLOURS, _DASHES))
+    return [(label, style, keys) for style, (label, keys) in zip(styles, parts.items())]
+
+
 def draw_force_law(deck, title=""):
-    """Return a figure of the law that the groups `deck` make."""
+    """Return a figure of the law that the groups `deck` make, and of its parts."""
     law = Law(deck)
     figure = Figure(figsize=(9, 4.2), layout="constrained")
     for panel, quantity in zip(figure.subplots(1, 2), UNITS, strict=True):
-        law.draw(panel, quantity)
+        law.draw(panel, quantity, styled(parts_of(deck)))
     handles, labels = figure.axes[0].get_legend_handles_labels()
     if handles:
         figure.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False)
@@ -73,7 +106,10 @@ class Law:
             alone = getattr(snapin.force_law(deck, self.gap), quantity)
             alone = np.where(abs(alone) < _BEYOND * highest, alone, np.nan)
             panel.plot(self.gap / self.lengths[0], alone / factor, label=label, **style)
-        panel.plot(self.gap / self.lengths[0], values / factor, color=BLUE, linewidth=1.6)
+        panel.plot(self.gap / self.lengths[0], values / factor, color=BLUE, linewidth=1.6,
+                   label="sum" if others else None)
+        if self.gap[0] > 0 and self.gap[-1] > _WIDE * self.gap[0]:
+            panel.set_xscale("log")
         lowest = -1.15 * deepest / factor if values.min() < 0 else None
         panel.set_ylim(lowest, 1.3 * highest / factor)
         for mark in self.marks:
@@ -91,7 +127,16 @@ def _separations(deck, numbers):
     far = numbers.origin + numbers.length * np.geomspace(1, 1e4, 400)
     left = np.flatnonzero(abs(snapin.force_law(deck, far).pressure) > 3e-3 * unit)
     end = far[left[-1]] if left.size else far[0]
-    return np.linspace(near, max(end, near + 2 * numbers.length), SAMPLES)
+    # A well far out is shown, with as much again outside it.
+    energy = snapin.force_law(deck, far).energy
+    wells = np.flatnonzero((energy[1:-1] < energy[:-2]) & (energy[1:-1] <= energy[2:])
+                           & (far[1:-1] > end))
+    if wells.size and energy[wells + 1].min() < -_DEEP * abs(energy).max():
+        end = 2 * far[wells[np.argmin(energy[wells + 1])] + 1]
+    end = max(end, near + 2 * numbers.length)
+    if near > 0 and end > _WIDE * near:
+        return np.geomspace(near, end, SAMPLES)
+    return np.linspace(near, end, SAMPLES)
 
 
 class _Mark:
@@ -127,19 +172,25 @@ def _marks(deck, numbers, gap, values):
     return marks
 
 
+def results_of(deck):
+    """Return the folder that ./run writes the results of a deck's file into."""
+    return pathlib.Path("results") / deck.stem
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("deck", nargs="+", type=pathlib.Path)
     parser.add_argument(
-        "--out", type=pathlib.Path, help="folder for the pictures; the deck's if left out"
+        "--out", type=pathlib.Path, help="folder for the pictures; default: results/DECK"
     )
     options = parser.parse_args()
     for deck in options.deck:
         try:
-            figure = draw_force_law(forces_of(deck), deck.stem)
+            figure = draw_force_law(forces_of(deck), title_of(deck))
         except (snapin.SnapinError, OSError) as trouble:
             sys.exit(str(trouble))
-        file = (options.out or deck.parent) / f"{deck.stem}_law.png"
+        file = (options.out or results_of(deck)) / "force_law.png"
+        file.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(file, dpi=150)
         print(file)
 

@@ -11,17 +11,13 @@ import tempfile
 
 import numpy as np
 import snapin
-from drawing import BLACK, GREY, SKY, VERMILION, scale
+from drawing import scale
 from force_curve import Curve
-from force_law import Law, forces_of
+from force_law import Law, forces_of, parts_of, results_of, styled
 from matplotlib.figure import Figure
 
-_NAMES = {"van_der_waals": "van der Waals", "born": "Born", "force": "Lennard-Jones",
-          "dugdale": "Dugdale"}
 # Loads that are shown, as parts of the largest tension.
 _HIGHEST, _FAINT = 2.0, 0.02
-_COLOURS = (VERMILION, SKY, GREY, BLACK)
-_DASHES = ((5, 2), (2, 1.5), (5, 1.5, 1, 1.5), (1, 1.5))
 
 
 def draw_law_and_curve(deck, results, terms=None, quantity="pressure"):
@@ -32,14 +28,11 @@ def draw_law_and_curve(deck, results, terms=None, quantity="pressure"):
     """
     groups = forces_of(deck)
     if terms is None:
-        terms = _terms_of(groups)
+        terms = parts_of(groups)
     figure = Figure(figsize=(9, 3.9), layout="constrained")
     left, right = figure.subplots(1, 2)
-    styles = ({"color": colour, "linestyle": (0, dashes), "linewidth": 1.2}
-              for colour, dashes in zip(_COLOURS, _DASHES))
     law = Law(groups)
-    law.draw(left, quantity,
-             [(label, style, keys) for style, (label, keys) in zip(styles, terms.items())])
+    law.draw(left, quantity, styled(terms))
     curve = Curve(results)
     curve.theories = None
     load, stable = curve.table["load"], curve.table["stable"] != 0
@@ -68,26 +61,15 @@ def _look_at_contact(panel, curve):
         panel.set_ylim(-1.2 * deepest, min(1.05 * load.max(), _HIGHEST * deepest))
 
 
-def _terms_of(groups):
-    """Return the forces of a deck one by one, by the names of their groups."""
-    if len(groups) == 1:
-        return {}
-    if "born" in groups:
-        # Without its own constant that of the attraction holds.
-        attraction = groups.get("van_der_waals", {})
-        groups = {**groups, "born": {"hamaker": attraction.get("hamaker"), **groups["born"]}}
-    return {_NAMES.get(name, name.replace("_", " ")): {name: keys}
-            for name, keys in groups.items()}
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("deck", type=pathlib.Path)
     parser.add_argument("-o", "--output", type=pathlib.Path,
-                        help="picture to write; default: that of the deck's name")
+                        help="picture to write; default: results/DECK/law_and_curve.png")
     parser.add_argument("--dpi", type=float, default=150, help="dots per inch; default: 150")
     options = parser.parse_args()
-    picture = options.output or options.deck.with_suffix(".png")
+    picture = options.output or results_of(options.deck) / "law_and_curve.png"
+    picture.parent.mkdir(parents=True, exist_ok=True)
     try:
         with tempfile.TemporaryDirectory() as folder:
             snapin.run(options.deck, out=folder)

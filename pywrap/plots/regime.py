@@ -4,6 +4,8 @@
     .venv/bin/python pywrap/plots/regime.py results/regime
 """
 
+import pathlib
+
 import numpy as np
 from drawing import GREY, VERMILION, run, title_of
 from matplotlib.figure import Figure
@@ -24,6 +26,8 @@ def draw_regime(folder):
     """Return a figure of the map with the scene in `folder` on it."""
     summary = read_summary(folder)
     if "regime_recommended" not in summary:
+        if (pathlib.Path(folder) / "sweep.csv").is_file():
+            raise ResultsError(f"{folder} is of a &sweep: sweep.csv has the columns regime_...")
         raise ResultsError(f"{folder}/summary.nml has no regime; the deck needs &regime")
     x, load = summary["regime_maugis_lambda"], summary["regime_load_number"]
     wide = np.array([min(_LAMBDA[0], x / 3), max(_LAMBDA[1], 3 * x)])

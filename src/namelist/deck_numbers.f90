@@ -3,13 +3,13 @@
 module deck_numbers
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
-  use text, only: lower, quoted, brief, guess, listing, clip
+  use text, only: lower, quoted, brief, guess, listing, clip, word_count, word_of
   use deck_keys, only: real_value, real_list, integer_value, allowed
   use deck_values, only: value_t, given, outside
   use deck_store, only: deck_t
   implicit none
   private
-  public :: find_number, set_number
+  public :: find_number, set_number, guess_number
 
   !> Kinds of keys that hold numbers.
   integer, parameter :: numeric(3) = [real_value, real_list, integer_value]
@@ -39,7 +39,7 @@ contains
     end if
     if (row == 0) then
       call fail(error, bad_input, quoted(clip(path)) // ' is not a key that holds a number' // &
-                guess(name, numbers_of(deck), '') // '; allowed: ' // &
+                guess_number(name, numbers_of(deck)) // '; allowed: ' // &
                 listing(numbers_of(deck), '', ''))
     else if (.not. deck%in_use(group)) then
       call fail(error, bad_input, 'the deck has no &' // group // ' for ' // quoted(name))
@@ -47,6 +47,22 @@ contains
       call fail(error, bad_input, quoted(name) // ' has no such term as ' // quoted(clip(path)))
     end if
   end subroutine find_number
+
+  !> ' (did you mean "x"?)' where one of the blank-separated `names` is near `name`, or is that with
+  !> a group before it; else ''.
+  pure function guess_number(name, names) result(text)
+    character(len=*), intent(in) :: name, names
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = guess(name, names, '')
+    if (index(name, '.') > 0) return
+    do i = 1, word_count(names)
+      if (index(word_of(names, i) // ' ', '.' // name // ' ') == 0) cycle
+      text = ' (did you mean "' // word_of(names, i) // '"?)'
+      return
+    end do
+  end function guess_number
 
   !> Takes "(2)" off the end of a name; 0 where there is none.
   subroutine take_off_term(name, term)

@@ -174,9 +174,13 @@ contains
     shown = text(first:last)
     do i = 1, len(shown)
       if (iachar(shown(i:i)) == 9) shown(i:i) = ' '
-      if (iachar(shown(i:i)) < 32 .or. iachar(shown(i:i)) > 126) shown(i:i) = '?'
+      if (iachar(shown(i:i)) < 32 .or. iachar(shown(i:i)) == 127) shown(i:i) = '?'
     end do
-    caret = at - first
+    ! A character of several bytes takes one place.
+    caret = 0
+    do i = first, at - 1
+      if (iand(iachar(text(i:i)), 192) /= 128) caret = caret + 1
+    end do
     lines = newline // '    ' // number // ' | ' // trim(shown) // &
             newline // '    ' // repeat(' ', len(number)) // ' | ' // repeat(' ', caret) // '^'
   end function excerpt

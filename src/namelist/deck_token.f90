@@ -65,7 +65,7 @@ contains
         return
       end if
       if (.not. plain(c)) then
-        call source%complain(at, group, '', unprintable(c), error)
+        call source%complain(at, group, '', unprintable(source%text(at:)), error)
         return
       end if
       if (c == '(') inside = .true.
@@ -98,7 +98,7 @@ contains
         if (at > len(source%text)) return
         if (source%text(at:at) /= quote) exit
       else if (.not. plain(c)) then
-        call source%complain(at, group, key, unprintable(c), error)
+        call source%complain(at, group, key, unprintable(source%text(at:)), error)
         return
       end if
     end do
@@ -114,16 +114,56 @@ contains
     plain = (iachar(c) >= 32 .and. iachar(c) <= 126) .or. iachar(c) == 9
   end function plain
 
-  !> Names a character that may not stand in a group.
-  pure function unprintable(c) result(what)
-    character(len=1), intent(in) :: c
+  !> Names the character at the beginning of a text, which may not stand in a group, and the one
+  !> that is meant where word processors put it: quotes, a minus, a blank.
+  pure function unprintable(text) result(what)
+    character(len=*), intent(in) :: text
     character(len=:), allocatable :: what
+    character(len=*), parameter :: e2 = char(226)//char(128), single(2) = [e2//char(152), &
+      e2//char(153)], double(2) = [e2//char(156), e2//char(157)], minus(3) = &
+      [char(226)//char(136)//char(146), e2//char(147), e2//char(148)]
     character(len=4) :: code
+    integer :: length
 
-    write (code, '(i0)') iachar(c)
-    what = 'a byte that is not plain ASCII (code ' // trim(code) // '); ' // &
-           'only comments may hold such characters'
+    length = max(1, bytes_of(text))
+    if (length == 1) then
+      write (code, '(i0)') iachar(text(1:1))
+      what = 'a byte that is not plain ASCII (code ' // trim(code) // ')'
+    else
+      what = 'the character ' // text(:length) // ', which is not plain ASCII'
+    end if
+    if (length == 3) then
+      if (any(text(:3) == single)) what = what // "; write a straight quote: '"
+      if (any(text(:3) == double)) what = what // '; write a straight quote: "'
+      if (any(text(:3) == minus)) what = what // '; write a minus: -'
+    else if (text(:length) == char(194) // char(160)) then
+      what = 'a blank that does not break lines, which is not plain ASCII; write a blank'
+    end if
+    what = what // '; only comments may hold such characters'
   end function unprintable
+
+  !> Bytes of the UTF-8 character at the beginning of a text; 0 where there is none.
+  pure integer function bytes_of(text)
+    character(len=*), intent(in) :: text
+    integer :: i
+
+    bytes_of = 0
+    select case (iachar(text(1:1)))
+    case (194:223)
+      bytes_of = 2
+    case (224:239)
+      bytes_of = 3
+    case (240:244)
+      bytes_of = 4
+    end select
+    if (len(text) < bytes_of) bytes_of = 0
+    do i = 2, bytes_of
+      if (iand(iachar(text(i:i)), 192) /= 128) then
+        bytes_of = 0
+        return
+      end if
+    end do
+  end function bytes_of
 
   !> Whether `text` can name a group or a key.
   pure logical function is_name(text)

@@ -23,7 +23,6 @@ contains
       energy = problem%pressure*problem%length
       call summary%set('work_of_adhesion', surface_energy(problem))
       call take_table_error(problem, summary)
-      call summary%set('rest_gap', law%separation_of(law%rest_gap))
       if (.not. surface_energy(problem) > 0) &
         call summary%warn('contact is only metastable: the bodies have less energy apart, '// &
         'and no classical theory applies')

@@ -5,6 +5,7 @@ module path_summary
   use reported, only: reported_t
   use path, only: path_t
   use ending_text, only: text_of
+  use quality_warnings, only: short_number
   use summary, only: summary_t
   use summary_entries, only: take_jump, take_profiles, raise_tension, widen_spacing, h0_of, &
     load_of, h0_error_of, load_error_of, rates_of
@@ -29,6 +30,9 @@ contains
     if (allocated(path%lowest)) then
       if (path%lowest%load < 0) call raise_tension(problem, path%lowest, summary)
     end if
+    if (ends_before_contact(problem, path)) call summary%note('path: it ends at h0 = ' // &
+      short_number(h0_of(problem, path%finish)) // ' m, before contact, with the largest tension ' &
+      // 'in its last row; lower h0_end')
     call take_profiles(path%profile, summary)
     call summary%set('folds_stable', merge(1, 0, path%unstable_after == 0))
     call take_list(problem, 'folds', path%fold, summary)
@@ -40,6 +44,18 @@ contains
     if (path%unstable_after(n) == 0) &
       call take_jump(problem, 'jump_out', path%fold(n), 0.0_wp, summary)
   end subroutine summarise_path
+
+  !> Whether bodies that would touch farther in have not come to that, and the tension still grows.
+  pure logical function ends_before_contact(problem, path)
+    type(problem_t), intent(in) :: problem
+    type(path_t), intent(in) :: path
+
+    ends_before_contact = problem%law%rest_gap > 0 .and. .not. path%fallen .and. &
+      .not. path%extent%contact_radius > 0 .and. allocated(path%lowest) .and. &
+      allocated(path%finish)
+    if (ends_before_contact) &
+      ends_before_contact = abs(path%lowest%h0 - path%finish%h0) <= 0 .and. path%lowest%load < 0
+  end function ends_before_contact
 
   !> States in the order of the path, under the keys that begin with `name`.
   subroutine take_list(problem, name, list, summary)

@@ -165,9 +165,14 @@ contains
     do i = 1, size(theories)
       worst(i) = maxval(abs(errors(:, i)))
       ! maxval passes over NaN.
-      if (.not. all(abs(errors(:, i)) < huge(1.0_wp))) worst(i) = huge(1.0_wp)
+      if (all(abs(errors(:, i)) < huge(1.0_wp))) then
+        call summary%set('regime_worst_' // trim(theories(i)), worst(i))
+      else
+        worst(i) = huge(1.0_wp)
+      end if
     end do
     best = minloc(worst, 1)
+    call summary%set('regime_theory', merge(real(best, wp), 0.0_wp, worst(best) <= acceptable))
     where_worst = maxloc(abs(errors(:, best)), 1)
     write (percent, '(f16.1)') 100*min(worst(best), 1.0e6_wp)
     nearest = 'nearest is '//trim(theories(best))//', off by at most '//trim(adjustl(percent))// &

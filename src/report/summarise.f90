@@ -104,6 +104,8 @@ contains
     else if (problem%law%coupling_name /= '' .and. .not. problem%rigid) then
       call summary%set(trim(problem%law%coupling_name), problem%coupling)
     end if
+    if (problem%law%rest_gap > 0) &
+      call summary%set('rest_gap', problem%law%separation_of(problem%law%rest_gap))
     if (.not. problem%law%of_paper) call take_forces(problem, summary)
   end subroutine describe_problem
 

@@ -5,7 +5,7 @@ module deck_family
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, clip, listing, word_count, word_of
   use deck, only: deck_t
-  use deck_numbers, only: find_number, set_number
+  use deck_numbers, only: find_number, set_number, guess_number
   use deck_keys, only: key_spec, real_value, real_list
   use dimensionless_problem, only: problem_t
   use problem_family, only: problem_family_t, parameter_t
@@ -71,7 +71,8 @@ contains
     names = parameters_of(deck)
     if (index(names // ' ', ' ' // parameter%name // ' ') == 0) then
       call fail(error, bad_input, quoted(clip(parameter%name)) // ' is not a number of ' // &
-        'bodies, shape or forces that this deck has; allowed: ' // listing(names, '', ''))
+        'bodies, shape or forces that this deck has' // guess_number(parameter%name, names) // &
+        '; allowed: ' // listing(names, '', ''))
       return
     end if
     call find_number(deck, parameter%name, row, term, error)
