@@ -81,7 +81,6 @@ contains
     logical :: slipped
 
     do
-      event = step_result_t()
       call self%step_until_slip(h0, position, event, slipped)
       if (.not. slipped) exit
       if (.not. slip%jumped .or. event%jump_load < slip%jump_load) slip = event
@@ -99,7 +98,7 @@ contains
     class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(inout) :: position
-    type(step_result_t), intent(inout) :: event
+    type(step_result_t), intent(out) :: event
     logical, intent(out) :: slipped
     type(state_t) :: state, landed
     real(wp) :: beyond

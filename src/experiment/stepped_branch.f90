@@ -51,7 +51,7 @@ contains
   !> `keep` are handed back in `kept`: a plan takes values that differ by a rounded step for the
   !> same.
   subroutine run_branch(steps, plan, fresh, position, observer, keep, kept, branch)
-    class(stepper_t), intent(inout) :: steps
+    class(stepper_t), intent(inout), target :: steps
     type(h0_schedule_t), intent(in) :: plan
     logical, intent(in) :: fresh
     type(branch_point_t), intent(inout) :: position

@@ -26,7 +26,8 @@ module stepper
     integer :: mesh = 1, piece = 0
     integer :: held = 0
     real(wp) :: h0(memory) = 0
-    type(state_t) :: past(memory)
+    !> Room for as many states, once there is one: compiler note 11.
+    type(state_t), allocatable :: past(:)
     !> The states that an experiment comes to have numbers, in order: those of `state` and `past`.
     integer :: number = 0, past_number(memory) = 0
   end type branch_point_t
@@ -160,6 +161,7 @@ contains
         exit
       end if
     end do
+    if (.not. allocated(position%past)) allocate (position%past(memory))
     if (position%held == memory) call forget(position, 1)
     position%held = position%held + 1
     position%h0(position%held) = state%h0

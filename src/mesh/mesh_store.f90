@@ -38,16 +38,16 @@ contains
     type(discretisation_t), intent(out) :: grid
     integer :: place
 
-    !$omp critical (mesh_store)
+    !$omp critical (kept_meshes)
     place = self%find(shape)
     if (place > 0) grid = self%kept(place)%grid
-    !$omp end critical (mesh_store)
+    !$omp end critical (kept_meshes)
     if (place > 0) return
     grid = new_mapped_mesh(shape, .true.)
-    !$omp critical (mesh_store)
+    !$omp critical (kept_meshes)
     ! Another thread may have been at the same.
     if (self%find(shape) == 0) call self%keep(shape, grid)
-    !$omp end critical (mesh_store)
+    !$omp end critical (kept_meshes)
   end subroutine obtain
 
   !> Where the mesh of a shape is kept; 0: nowhere. The newest are the likeliest.
@@ -71,6 +71,7 @@ contains
     class(mesh_store_t), intent(inout) :: self
     type(mapped_shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
+    type(kept_t) :: nothing
     integer :: i, oldest
 
     if (grid%kernel_entries() > most_entries) return
@@ -81,7 +82,7 @@ contains
       oldest = mod(self%newest - 1 + i, most_meshes) + 1
       if (i > 0 .and. self%entries <= most_entries) exit
       self%entries = self%entries - self%kept(oldest)%grid%kernel_entries()
-      self%kept(oldest) = kept_t()
+      self%kept(oldest) = nothing
     end do
     self%kept(self%newest)%shape = shape
     self%kept(self%newest)%grid = grid

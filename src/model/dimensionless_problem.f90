@@ -39,7 +39,7 @@ module dimensionless_problem
 contains
 
   !> stiffness [Pa] as in `bodies`; it is not used for rigid bodies.
-  pure function new_problem(law, shape, stiffness, rigid) result(problem)
+  function new_problem(law, shape, stiffness, rigid) result(problem)
     class(force_law_t), intent(in) :: law
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: stiffness

@@ -24,7 +24,8 @@ module variation
     !> dQ/dp = sum(weight*Q); and by the five points in the middle, whose difference from it says
     !> how good it is.
     real(wp), dimension(2*aside + 1) :: weight = 0, coarser = 0
-    type(problem_t) :: problem(2*aside + 1)
+    !> Allocatable: compiler note 11.
+    type(problem_t), allocatable :: problem(:)
     !> By how much the place on the path differs (`continuation`); it is what is varied then.
     real(wp) :: shift(2*aside + 1) = 0
   end type variation_t
@@ -42,6 +43,7 @@ contains
     integer :: shift, k
 
     varied%parameter = family%parameter(i)
+    allocate (varied%problem(size(varied%offset)))
     do shift = 0, 2
       varied%offset = step*varied%parameter%scale*[(k + aside*merge(-1, shift, shift == 2), &
         k=-aside, aside)]
@@ -65,9 +67,7 @@ contains
     varied%parameter%name = 'coordinate'
     varied%offset = step*[(k, k=-aside, aside)]
     varied%shift = varied%offset
-    do k = 1, size(varied%problem)
-      varied%problem(k) = problem
-    end do
+    varied%problem = [(problem, k=1, size(varied%offset))]
     call find_rule(varied)
   end function along_path
 

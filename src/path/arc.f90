@@ -29,8 +29,9 @@ module arc
   type :: arc_t
     integer :: mesh = approach, held = 0
     real(wp) :: coordinate(most_states) = 0
-    type(state_t) :: state(most_states)
-    type(tangent_t) :: tangent(most_states)
+    !> Room for most_states, once there is one: compiler note 11.
+    type(state_t), allocatable :: state(:)
+    type(tangent_t), allocatable :: tangent(:)
   contains
     procedure :: add
     procedure :: drop_first
@@ -118,6 +119,8 @@ contains
     integer :: j, place
 
     if (self%held == most_states .or. any(abs(self%coordinate(:self%held) - s) <= 0)) return
+    if (.not. allocated(self%state)) &
+      allocate (self%state(most_states), self%tangent(most_states))
     place = count((self%coordinate(:self%held) - s)*inward(self%mesh) < 0) + 1
     do j = self%held, place, -1
       self%coordinate(j + 1) = self%coordinate(j)
@@ -133,13 +136,14 @@ contains
   !> Makes room by dropping the first state.
   pure subroutine drop_first(self)
     class(arc_t), intent(inout) :: self
+    integer :: j
 
-    associate (n => self%held)
-      self%coordinate(:n - 1) = self%coordinate(2:n)
-      self%state(:n - 1) = self%state(2:n)
-      self%tangent(:n - 1) = self%tangent(2:n)
-    end associate
     self%held = self%held - 1
+    do j = 1, self%held
+      self%coordinate(j) = self%coordinate(j + 1)
+      self%state(j) = self%state(j + 1)
+      self%tangent(j) = self%tangent(j + 1)
+    end do
   end subroutine drop_first
 
   !> The states whose polynomial tells about s: the ends of the interval that it is in, with the

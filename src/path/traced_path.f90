@@ -122,7 +122,7 @@ contains
     alone%mesh = mesh
     call self%add_to(i, alone)
     there = alone%held > 0
-    state = alone%state(1)
+    if (there) state = alone%state(1)
     coordinate = alone%coordinate(1)
   end subroutine seen_on
 

@@ -50,6 +50,7 @@ contains
     character(len=*), intent(in) :: title
     character(len=:), allocatable :: text
     character(len=:), allocatable :: name
+    type(line_t), allocatable :: doubts(:)
     real(wp), allocatable :: numbers(:)
     integer :: i
 
@@ -65,7 +66,8 @@ contains
       text = text // of_jump('jump_in', curve%data%jump(1), outcome%fitted%jump_z(1)) // &
         of_jump('jump_out', curve%data%jump(2), outcome%fitted%jump_z(2))
     end associate
-    text = text // assignment_of('warnings', doubts_of(outcome)) // '/' // nl
+    doubts = doubts_of(outcome)
+    text = text // assignment_of('warnings', doubts) // '/' // nl
     do i = 1, size(outcome%theory)
       associate (theory => outcome%theory(i))
         if (.not. allocated(theory%fitted%effect)) cycle

@@ -6,7 +6,7 @@ module state_records
   use kinds, only: wp, long
   use contact_state, only: state_t
   use equilibrium, only: cost_t
-  use stepper, only: branch_point_t, step_result_t
+  use stepper, only: branch_point_t, step_result_t, memory
   use frozen_jacobian, only: frozen_jacobian_t
   use byte_record, only: byte_record_t
   implicit none
@@ -46,7 +46,8 @@ contains
     call record%take(position%mesh)
     call record%take(position%piece)
     call record%take(position%held)
-    position%held = min(max(position%held, 0), size(position%past))
+    position%held = min(max(position%held, 0), memory)
+    allocate (position%past(memory))
     do k = 1, position%held
       call record%take(position%h0(k))
       call record%take(position%past_number(k))
