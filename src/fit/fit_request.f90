@@ -12,6 +12,8 @@ module fit_request
     character(len=48), allocatable :: columns(:)
     real(wp) :: spring_constant = 0
     real(wp), allocatable :: sensitivity, contact_point
+    !> Pairs of positions between which samples do not count.
+    real(wp), allocatable :: skip(:)
   end type measurement_t
 
   !> What an unknown belongs to: a number of the problem, where the bodies touch, the detector, the

@@ -28,7 +28,7 @@ contains
     real(wp) :: near, before, travel
 
     left = off_baseline(measured)
-    if (.not. maxval(abs(left)) > stands_out*noise%deviation) then
+    if (.not. maxval(abs(left), measured%usable) > stands_out*noise%deviation) then
       trouble = 'no contact in the data: nothing stands out of the noise of ' // &
         rounded(noise%deviation) // '; measure nearer, or see that columns names the signal'
       return
@@ -37,8 +37,8 @@ contains
     if (near >= 0 .or. near >= before) return
     turned = measured
     turned%signal = -measured%signal
-    jump(1) = find_jump(turned, noise, stiffness, .true.)
-    jump(2) = find_jump(turned, noise, stiffness, .false.)
+    jump(1) = find_jump(turned, noise%deviation, stiffness, .true.)
+    jump(2) = find_jump(turned, noise%deviation, stiffness, .false.)
     if (before - near > steep*stiffness*travel .or. any(jump%before > 0)) trouble = &
       'the force falls where the bodies are pressed together: repulsion is positive here; a ' // &
       'minus before the name of a column turns its sign'
@@ -54,7 +54,7 @@ contains
 
     left = 0
     do way = 1, 2
-      far = measured%far .and. (measured%inward .eqv. way == 1)
+      far = measured%far .and. measured%usable .and. (measured%inward .eqv. way == 1)
       if (.not. any(far)) cycle
       associate (z => measured%z, s => measured%signal)
         middle = [sum(z, far), sum(s, far)]/count(far)
@@ -77,9 +77,9 @@ contains
     position = measured%facing*measured%z
     low = minval(position)
     width = nearest_part*(maxval(position) - low)
-    mask = position <= low + width
+    mask = measured%usable .and. position <= low + width
     near = sum(left, mask)/max(1, count(mask))
-    mask = position > low + width .and. position <= low + 2*width
+    mask = measured%usable .and. position > low + width .and. position <= low + 2*width
     before = sum(left, mask)/max(1, count(mask))
     travel = width
   end subroutine nearest

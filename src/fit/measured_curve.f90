@@ -18,6 +18,8 @@ module measured_curve
     real(wp) :: facing = 1
     !> Samples so far from contact that they are the baseline, once that is known.
     logical, allocatable :: far(:)
+    !> Samples that are neither outliers nor left out by the deck.
+    logical, allocatable :: usable(:), skipped(:)
   end type measured_t
 
   !> Samples of a way, fewer of which are no curve.
@@ -66,6 +68,9 @@ contains
       measured%inward = [pack(measured%inward, measured%inward .and. wanted), &
         pack(measured%inward, wanted .and. .not. measured%inward)]
     end associate
+    measured%skipped = [(any(measured%z(i) >= request%skip(1::2) .and. &
+      measured%z(i) <= request%skip(2::2)), i=1, size(measured%z))]
+    measured%usable = .not. measured%skipped
     call find_facing(table%source%file, measured, error)
   end subroutine read_measured
 

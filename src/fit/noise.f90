@@ -5,7 +5,7 @@ module noise
   use kinds, only: wp
   implicit none
   private
-  public :: noise_t, white_noise, noise_of, whiten
+  public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, whiten
 
   !> Most samples from which another is foretold.
   integer, parameter :: longest = 8
@@ -17,9 +17,19 @@ module noise
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
+  contains
+    procedure :: long_deviation
   end type noise_t
 
 contains
+
+  !> The deviation of white noise whose means over many samples scatter as much.
+  pure real(wp) function long_deviation(self) result(deviation)
+    class(noise_t), intent(in) :: self
+
+    deviation = self%left(self%order)/ &
+      abs(1 - sum(self%weight(:self%order, max(1, self%order))))
+  end function long_deviation
 
   !> Noise without correlation.
   pure type(noise_t) function white_noise(deviation) result(noise)
@@ -53,6 +63,45 @@ contains
     call find_weights(noise, n)
   end function noise_of
 
+  !> White noise that makes the steps between neighbours of one run in something smooth; `steps`: how
+  !> many there are (von Neumann, 1941).
+  pure subroutine noise_of_steps(smooth, run, noise, steps)
+    real(wp), intent(in) :: smooth(:)
+    integer, intent(in) :: run(:)
+    type(noise_t), intent(out) :: noise
+    integer, intent(out) :: steps
+    logical :: mask(size(run) - 1)
+
+    mask = run(2:) == run(:size(run) - 1)
+    steps = count(mask)
+    noise = white_noise(sqrt(sum((smooth(2:) - smooth(:size(run) - 1))**2, mask)/ &
+      (2*max(1, steps))))
+  end subroutine noise_of_steps
+
+  !> The deviation of white noise in a signal that otherwise is smooth, but for outliers: from the
+  !> median of its second differences.
+  pure real(wp) function rough_deviation(signal) result(deviation)
+    real(wp), intent(in) :: signal(:)
+    !> The median of a normal distribution's magnitude; the sum of the squares of 1, -2, 1.
+    real(wp), parameter :: median = 0.6745_wp, squares = 6
+    real(wp) :: second(size(signal) - 2), low, high
+    integer :: n, step
+
+    n = size(signal)
+    second = abs(signal(3:) - 2*signal(2:n - 1) + signal(:n - 2))
+    low = 0
+    high = maxval(second)
+    do step = 1, 60
+      deviation = 0.5_wp*(low + high)
+      if (2*count(second > deviation) > size(second)) then
+        low = deviation
+      else
+        high = deviation
+      end if
+    end do
+    deviation = deviation/(median*sqrt(squares))
+  end function rough_deviation
+
   !> What is left of the samples in `mask` beside their straight line.
   pure function off_line(z, signal, mask) result(r)
     real(wp), intent(in) :: z(:), signal(:)
@@ -66,7 +115,7 @@ contains
   end function off_line
 
   !> The weights of all orders from the correlations, and the order that is worth its unknowns: the
-  !> one with the least n ln(left^2) + 2 order (Akaike, 1974).
+  !> one with the least n ln(left^2) + order ln(n) (Schwarz, 1978).
   pure subroutine find_weights(noise, n)
     type(noise_t), intent(inout) :: noise
     integer, intent(in) :: n
@@ -84,7 +133,7 @@ contains
       before = noise%weight(:, k)
       left = left*(1 - reflection**2)
       noise%left(k) = noise%deviation*sqrt(left)
-      gain = n*log(left) + 2*k
+      gain = n*log(left) + k*log(real(n, wp))
       if (gain >= best) cycle
       best = gain
       noise%order = k

@@ -14,7 +14,7 @@ module fit_group
   private
   public :: fit_keys, take_fit, family_of_fit
 
-  integer, parameter :: most_unknowns = 20
+  integer, parameter :: most_unknowns = 20, most_skipped = 40
 
 contains
 
@@ -38,6 +38,8 @@ contains
                // 'for a deflection in metres.', above=zero, otherwise='the signal is the force'), &
       real_key('measurement', 'contact_point', 'm', 'Position of the base at which undeformed ' // &
                'bodies would touch.', otherwise='found by the fit'), &
+      list_key('measurement', 'skip', 'm', 'Pairs of positions, as in the file; samples between ' // &
+               'the two of a pair do not count.', most=most_skipped, otherwise='none'), &
       word_key('measurement', 'segment', 'both approach retreat', 'Which way is fitted.', &
                default='both'), &
       group('fit', 'Keys of this deck found such that the path''s curve is that of ' // &
@@ -108,9 +110,24 @@ contains
       call deck%get_optional('measurement', 'sensitivity', measurement%sensitivity)
       call deck%get_optional('measurement', 'contact_point', measurement%contact_point)
       call deck%get('measurement', 'segment', measurement%segment)
+      call take_skipped(deck, measurement%skip, error)
       call deck%get_optional('fit', 'noise', scene%fit%noise)
     end associate
   end subroutine take_measurement
+
+  !> Ranges of position that do not count.
+  subroutine take_skipped(deck, skip, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), allocatable, intent(out) :: skip(:)
+    type(failure_t), allocatable, intent(inout) :: error
+
+    call deck%get('measurement', 'skip', skip)
+    if (mod(size(skip), 2) == 1) then
+      call deck%mistake('measurement', 'skip', 'positions come in pairs: from and to', error)
+    else if (any(skip(1::2) > skip(2::2))) then
+      call deck%mistake('measurement', 'skip', 'the first of each pair is the smaller', error)
+    end if
+  end subroutine take_skipped
 
   !> The problems whose parameters are the unknowns of bodies, shape and forces, in their order.
   subroutine family_of_fit(deck, family, error)
