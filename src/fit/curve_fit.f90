@@ -162,7 +162,8 @@ contains
     fitted%freedom = size(residual) - n - residuals%curve%data%baseline%unknowns()
     associate (data => residuals%curve%data)
       fitted%lack = lack_in(residual(:size(data%sample)), 3*data%way(data%sample) + &
-        data%side(data%sample), size(data%sample) - n - data%baseline%unknowns())
+        data%side(data%sample), size(data%sample) - n - data%baseline%unknowns(), &
+        data%noise%known_by)
     end associate
     do j = 1, n
       jacobian(:, j) = jacobian(:, j)*value_by_fitted(residuals%curve%unknown(j), fitted%value(j))

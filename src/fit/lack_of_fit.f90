@@ -19,9 +19,9 @@ module lack_of_fit
 contains
 
   !> white: what is left in standard deviations; run: samples of different runs are no neighbours;
-  !> freedom: how many of them are independent.
-  pure type(lack_t) function lack_in(white, run, freedom) result(worst)
-    real(wp), intent(in) :: white(:)
+  !> freedom: how many of them are independent; known_by: by how many the standard deviation is known.
+  pure type(lack_t) function lack_in(white, run, freedom, known_by) result(worst)
+    real(wp), intent(in) :: white(:), known_by
     integer, intent(in) :: run(:), freedom
     real(wp) :: total, part, excess
     integer :: width, i, k, blocks
@@ -45,22 +45,19 @@ contains
       end do
       if (width == 1) blocks = max(1, freedom)
       if (width > 1 .and. blocks < fewest_blocks) return
-      excess = normal_of(total, blocks)
-      ! The noise itself is known no better than by so many samples.
-      if (width == 1) excess = excess/sqrt(2.0_wp)
+      excess = normal_of(total, blocks, known_by)
       if (excess > worst%excess) worst = lack_t(width, excess, sqrt(total/blocks))
       width = 2*width
     end do
   end function lack_in
 
-  !> A sum of n squares of normal numbers as a normal number (Wilson and Hilferty, 1931).
-  pure real(wp) function normal_of(total, n)
-    real(wp), intent(in) :: total
+  !> A sum of n squares of normal numbers as a normal number (Wilson and Hilferty, 1931), where their
+  !> variance is known by `known_by` others.
+  pure real(wp) function normal_of(total, n, known_by)
+    real(wp), intent(in) :: total, known_by
     integer, intent(in) :: n
 
-    associate (variance => 2.0_wp/(9*n))
-      normal_of = ((total/n)**(1.0_wp/3) - 1 + variance)/sqrt(variance)
-    end associate
+    normal_of = ((total/n)**(1.0_wp/3) - 1 + 2.0_wp/(9*n))/sqrt(2.0_wp/(9*n) + 2/(9*known_by))
   end function normal_of
 
 end module lack_of_fit

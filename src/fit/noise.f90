@@ -5,10 +5,14 @@ module noise
   use kinds, only: wp
   implicit none
   private
-  public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, whiten
+  public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, &
+    median_of, normal_median, whiten
 
   !> Most samples from which another is foretold.
   integer, parameter :: longest = 8
+
+  !> The median of the magnitude of a normal number.
+  real(wp), parameter :: normal_median = 0.6745_wp
 
   !> Standard deviation; correlation of samples so many apart; how many of those before a sample
   !> tell something of it, by what weights (of the nearest first, column k where there are k), and
@@ -16,6 +20,8 @@ module noise
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
+    !> By as many independent samples it is known.
+    real(wp) :: known_by = huge(1.0_wp)
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
   contains
     procedure :: long_deviation
@@ -58,6 +64,7 @@ contains
     end do
     ! Each line took two unknowns.
     noise = white_noise(sqrt(covariance(0)*n/max(1, n - 2*(maxval(run) - minval(run) + 1))))
+    noise%known_by = n
     if (.not. covariance(0) > 0) return
     noise%correlation = covariance/covariance(0)
     call find_weights(noise, n)
@@ -76,31 +83,40 @@ contains
     steps = count(mask)
     noise = white_noise(sqrt(sum((smooth(2:) - smooth(:size(run) - 1))**2, mask)/ &
       (2*max(1, steps))))
+    ! Steps have a sample in common.
+    noise%known_by = max(1.0_wp, 2*steps/3.0_wp)
   end subroutine noise_of_steps
 
   !> The deviation of white noise in a signal that otherwise is smooth, but for outliers: from the
   !> median of its second differences.
   pure real(wp) function rough_deviation(signal) result(deviation)
     real(wp), intent(in) :: signal(:)
-    !> The median of a normal distribution's magnitude; the sum of the squares of 1, -2, 1.
-    real(wp), parameter :: median = 0.6745_wp, squares = 6
-    real(wp) :: second(size(signal) - 2), low, high
-    integer :: n, step
+    !> The sum of the squares of 1, -2, 1.
+    real(wp), parameter :: squares = 6
+    integer :: n
 
     n = size(signal)
-    second = abs(signal(3:) - 2*signal(2:n - 1) + signal(:n - 2))
+    deviation = median_of(abs(signal(3:) - 2*signal(2:n - 1) + signal(:n - 2)))/ &
+      (normal_median*sqrt(squares))
+  end function rough_deviation
+
+  !> The median of numbers that are not negative, by bisection.
+  pure real(wp) function median_of(numbers) result(middle)
+    real(wp), intent(in) :: numbers(:)
+    real(wp) :: low, high
+    integer :: step
+
     low = 0
-    high = maxval(second)
+    high = maxval(numbers)
     do step = 1, 60
-      deviation = 0.5_wp*(low + high)
-      if (2*count(second > deviation) > size(second)) then
-        low = deviation
+      middle = 0.5_wp*(low + high)
+      if (2*count(numbers > middle) > size(numbers)) then
+        low = middle
       else
-        high = deviation
+        high = middle
       end if
     end do
-    deviation = deviation/(median*sqrt(squares))
-  end function rough_deviation
+  end function median_of
 
   !> What is left of the samples in `mask` beside their straight line.
   pure function off_line(z, signal, mask) result(r)

@@ -2,7 +2,7 @@
 !> where the curve jumps better than the curve itself.
 module second_look
   use kinds, only: wp
-  use noise, only: noise_t, noise_of, noise_of_steps
+  use noise, only: noise_t, noise_of, noise_of_steps, median_of, normal_median
   use outliers, only: stand_apart
   use measured_jumps, only: measured_jump_t
   use jump_places, only: likely_jump
@@ -29,7 +29,7 @@ contains
     real(wp), allocatable :: model(:), baseline(:), left(:)
     logical, allocatable :: usable(:)
     type(measured_jump_t) :: jump
-    real(wp) :: deviation
+    real(wp) :: deviation, spread
     integer :: way
 
     call curve%split(value, model, baseline)
@@ -37,8 +37,10 @@ contains
     associate (data => curve%data)
       usable = data%measured%usable
       deviation = data%noise%deviation
+      ! A model that is off leaves more than noise nearly everywhere.
+      spread = max(deviation, median_of(abs(left(data%sample)))/normal_median)
       data%measured%usable = .not. data%measured%skipped .and. (data%side < 0 .or. .not. &
-        stand_apart(left, 3*data%way + data%side, .not. data%measured%skipped, [(apart*deviation, way=1, size(left))]))
+        stand_apart(left, 3*data%way + data%side, .not. data%measured%skipped, [(apart*spread, way=1, size(left))]))
       settled = all(usable .eqv. data%measured%usable)
       if (.not. keep_noise) call renew_noise(curve, left)
       settled = settled .and. abs(data%noise%deviation - deviation) < 0.01_wp*deviation
@@ -101,6 +103,8 @@ contains
         after = merge((bare - after)**2/unit, 0.0_wp, .not. data%measured%skipped(at))
         jump = likely_jump(data%measured%z(at), before, after, change, sqrt(unit), at(1))
       end associate
+      if (jump%before > 0) jump%change = data%measured%signal(jump%after) - &
+        data%measured%signal(jump%before)
     end associate
   end function jump_by_model
 
