@@ -14,6 +14,8 @@ module fit_request
     real(wp), allocatable :: sensitivity, contact_point
     !> Pairs of positions between which samples do not count.
     real(wp), allocatable :: skip(:)
+    !> Of position and signal in the file.
+    real(wp) :: unit(2) = 1
   end type measurement_t
 
   !> What an unknown belongs to: a number of the problem, where the bodies touch, the detector, the

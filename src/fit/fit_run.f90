@@ -38,7 +38,8 @@ module fit_run
     !> Whether the meshes of the model resolve the force law.
     logical :: resolved = .true.
     type(theory_fit_t), allocatable :: theory(:)
-    type(character_t) :: character
+    !> The problem with the values found, where there is one.
+    type(problem_t), allocatable :: problem
   end type fit_outcome_t
 
   !> A signal whose noise is smaller than this part of it is one that was computed.
@@ -234,16 +235,16 @@ contains
     allocate (outcome%theory(0))
     call family%pose(pack(outcome%fitted%value, outcome%curve%unknown%role == of_model), final, &
       error)
-    if (allocated(error) .or. .not. problem%shape%parabolic) return
-    if (.not. final%law%work > 0) return
-    outcome%character = character_of(final)
+    if (allocated(error)) return
+    outcome%problem = final
+    if (.not. problem%shape%parabolic .or. .not. final%law%work > 0) return
     elastic = [(index(family%parameter(i)%name, 'bodies.') == 1 .and. &
       family%parameter(i)%name /= 'bodies.radius', i=1, size(elastic))]
     model%radius = final%radius
     model%finds_stiffness = any(elastic)
     model%finds_work = .not. all(elastic)
     curve = outcome%curve
-    call take_unknowns(curve, outcome%curve, model, outcome%character)
+    call take_unknowns(curve, outcome%curve, model, character_of(final))
     deallocate (outcome%theory)
     allocate (outcome%theory(size(theories)))
     start = reshape([pack(curve%unknown%value, curve%unknown%role == of_model), &

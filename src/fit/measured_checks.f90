@@ -33,6 +33,8 @@ contains
         rounded(noise%deviation) // '; measure nearer, or see that columns names the signal'
       return
     end if
+    call check_ways(measured, noise, stiffness, trouble)
+    if (allocated(trouble)) return
     call nearest(measured, left, near, before, travel)
     if (near >= 0 .or. near >= before) return
     turned = measured
@@ -43,6 +45,48 @@ contains
       'the force falls where the bodies are pressed together: repulsion is positive here; a ' // &
       'minus before the name of a column turns its sign'
   end subroutine check_measured
+
+  !> trouble where approach and retreat are exchanged: contact then is at the end that should be far,
+  !> or the bodies hold together better on the way in than on the way out.
+  subroutine check_ways(measured, noise, stiffness, trouble)
+    type(measured_t), intent(in) :: measured
+    type(noise_t), intent(in) :: noise
+    real(wp), intent(in) :: stiffness
+    character(len=:), allocatable, intent(inout) :: trouble
+    real(wp) :: deepest(2), slope(2), position(size(measured%z))
+    integer :: way
+
+    if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
+    position = measured%facing*measured%z
+    slope = [slope_at(position), slope_at(-position)]/stiffness
+    if (slope(2) > steep .and. abs(slope(1)) < 0.25_wp*steep) then
+      trouble = 'the bodies press on each other where the base is farthest: approach and ' // &
+        'retreat are exchanged in the third column, or its rows are'
+      return
+    end if
+    do way = 1, 2
+      deepest(way) = minval(measured%signal, measured%usable .and. &
+        (measured%inward .eqv. way == 1))
+    end do
+    if (deepest(1) < deepest(2) - 2*stands_out*noise%deviation) trouble = 'the approach has ' // &
+      'the larger pull-off: the rows of the file go backwards, or approach and retreat are exchanged'
+
+  contains
+
+    !> Slope of the signal at the samples of smallest `place`, against it.
+    pure real(wp) function slope_at(place)
+      real(wp), intent(in) :: place(:)
+      logical :: mask(size(place))
+      real(wp) :: middle(2)
+
+      mask = measured%usable .and. place <= minval(place) + nearest_part*(maxval(place) - &
+        minval(place))
+      middle = [sum(place, mask), sum(measured%signal, mask)]/max(1, count(mask))
+      slope_at = -sum((place - middle(1))*(measured%signal - middle(2)), mask)/ &
+        max(sum((place - middle(1))**2, mask), tiny(1.0_wp))
+    end function slope_at
+
+  end subroutine check_ways
 
   !> The signal less the straight line through the baseline of its way.
   pure function off_baseline(measured) result(left)
