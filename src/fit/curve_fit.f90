@@ -60,7 +60,7 @@ contains
     logical :: settled
 
     residuals%curve = curve
-    residuals%curve%model => model
+    call residuals%curve%use_model(model)
     call find_candidates(residuals, start, value, cost)
     fitted%has_curve = size(cost) > 0
     if (.not. fitted%has_curve) return

@@ -30,6 +30,7 @@ module modelled_curve
     real(wp), private :: deepest = 0
     logical, private :: has_rates = .false.
   contains
+    procedure :: use_model
     procedure :: ask
     procedure :: signal_of
     procedure :: signal_rates
@@ -41,6 +42,15 @@ module modelled_curve
   end type modelled_curve_t
 
 contains
+
+  !> Takes another model, which has answered nothing yet.
+  subroutine use_model(self, model)
+    class(modelled_curve_t), intent(inout) :: self
+    class(force_model_t), intent(in), target :: model
+
+    self%model => model
+    if (allocated(self%asked)) deallocate (self%asked)
+  end subroutine use_model
 
   !> Has the model answer for these values, unless it has.
   subroutine ask(self, value, with_rates, found)

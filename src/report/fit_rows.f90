@@ -184,9 +184,11 @@ contains
       associate (theory => outcome%theory(i))
         if (.not. allocated(theory%fitted%effect)) cycle
         if (theory%fitted%chi_squared > outcome%fitted%chi_squared + as_well) cycle
-        line%text = trim(theory%theory) // ' describes these data as well, with chi squared ' // &
+        line%text = trim(theory%theory) // ', which has no force before contact, describes these ' // &
+          'data ' // trim(merge('better ', 'as well', theory%fitted%chi_squared < &
+          outcome%fitted%chi_squared - as_well)) // ': chi squared ' // &
           rounded_to(theory%fitted%chi_squared, 1.0_wp) // ' against ' // &
-          rounded_to(outcome%fitted%chi_squared, 1.0_wp) // ': they do not show the range of the force'
+          rounded_to(outcome%fitted%chi_squared, 1.0_wp)
         lines = [lines, line]
       end associate
     end do
