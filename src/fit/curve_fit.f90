@@ -163,7 +163,7 @@ contains
     associate (data => residuals%curve%data)
       fitted%lack = lack_in(residual(:size(data%sample)), 3*data%way(data%sample) + &
         data%side(data%sample), size(data%sample) - n - data%baseline%unknowns(), &
-        data%noise%known_by)
+        data%noise)
     end associate
     do j = 1, n
       jacobian(:, j) = jacobian(:, j)*value_by_fitted(residuals%curve%unknown(j), fitted%value(j))

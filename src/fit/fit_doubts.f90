@@ -15,7 +15,7 @@ module fit_doubts
   !> Correlation of unknowns that the data hardly tell apart; least singular value where some
   !> combination of several is not told; error of a logarithm that is no knowledge; standard
   !> deviations by which what is left, or jumps, may differ.
-  real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, unlikely = 4, &
+  real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, unlikely = 3.2_wp, &
     far = 4
 
 contains

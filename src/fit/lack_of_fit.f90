@@ -2,6 +2,7 @@
 !> wrong model leaves goes the same way over many of them.
 module lack_of_fit
   use kinds, only: wp
+  use noise, only: noise_t
   implicit none
   private
   public :: lack_t, lack_in
@@ -19,9 +20,10 @@ module lack_of_fit
 contains
 
   !> white: what is left in standard deviations; run: samples of different runs are no neighbours;
-  !> freedom: how many of them are independent; known_by: by how many the standard deviation is known.
-  pure type(lack_t) function lack_in(white, run, freedom, known_by) result(worst)
-    real(wp), intent(in) :: white(:), known_by
+  !> freedom: how many of them are independent; noise: by which they were made so.
+  pure type(lack_t) function lack_in(white, run, freedom, noise) result(worst)
+    real(wp), intent(in) :: white(:)
+    type(noise_t), intent(in) :: noise
     integer, intent(in) :: run(:), freedom
     real(wp) :: total, part, excess
     integer :: width, i, k, blocks
@@ -45,7 +47,10 @@ contains
       end do
       if (width == 1) blocks = max(1, freedom)
       if (width > 1 .and. blocks < fewest_blocks) return
-      excess = normal_of(total, blocks, known_by)
+      ! What all samples leave over what their steps do scatters by 1/n, half as much as the former
+      ! alone (von Neumann, 1941): as if n were twice as large.
+      excess = normal_of(total, blocks, noise%known_by)
+      if (width == 1 .and. noise%of_steps) excess = normal_of(2*total, 2*blocks, huge(1.0_wp))
       if (excess > worst%excess) worst = lack_t(width, excess, sqrt(total/blocks))
       width = 2*width
     end do

@@ -54,6 +54,7 @@ contains
     real(wp), intent(in) :: stiffness
     character(len=:), allocatable, intent(inout) :: trouble
     real(wp) :: deepest(2), slope(2), position(size(measured%z))
+    real(wp), allocatable :: mine(:)
     integer :: way
 
     if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
@@ -65,8 +66,9 @@ contains
       return
     end if
     do way = 1, 2
-      deepest(way) = minval(measured%signal, measured%usable .and. &
-        (measured%inward .eqv. way == 1))
+      mine = pack(measured%signal, measured%usable .and. (measured%inward .eqv. way == 1))
+      ! Three neighbours lie below it: outliers seldom do.
+      deepest(way) = minval(max(mine(3:), mine(2:size(mine) - 1), mine(:size(mine) - 2)))
     end do
     if (deepest(1) < deepest(2) - 2*stands_out*noise%deviation) trouble = 'the approach has ' // &
       'the larger pull-off: the rows of the file go backwards, or approach and retreat are exchanged'

@@ -20,8 +20,10 @@ module noise
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
-    !> By as many independent samples it is known.
+    !> By as many independent samples it is known; and whether these are the steps between the samples
+    !> that it is compared with.
     real(wp) :: known_by = huge(1.0_wp)
+    logical :: of_steps = .false.
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
   contains
     procedure :: long_deviation
@@ -85,6 +87,7 @@ contains
       (2*max(1, steps))))
     ! Steps have a sample in common.
     noise%known_by = max(1.0_wp, 2*steps/3.0_wp)
+    noise%of_steps = .true.
   end subroutine noise_of_steps
 
   !> The deviation of white noise in a signal that otherwise is smooth, but for outliers: from the
