@@ -19,6 +19,9 @@ module curve_fit
   !> Contact points that are kept of a candidate; searches from the best of all; how often the data
   !> are looked at again.
   integer, parameter :: most_points = 2, most_fits = 8, most_rounds = 8
+  !> What is found twice more is the best there is; sums of squares that differ by less are the same.
+  integer, parameter :: enough = 2
+  real(wp), parameter :: same = 1.0e-4_wp
 
   !> What a fit found. value and its standard deviation in the unit of each key; the same of the
   !> fitted number (`unknowns`), of which the errors are symmetric; correlation of these.
@@ -56,7 +59,7 @@ contains
     type(curve_residuals_t) :: residuals
     real(wp), allocatable :: value(:, :), cost(:)
     real(wp) :: least
-    integer :: i, k, round
+    integer :: i, k, round, again
     logical :: settled
 
     residuals%curve = curve
@@ -65,11 +68,12 @@ contains
     fitted%has_curve = size(cost) > 0
     if (.not. fitted%has_curve) return
     least = huge(least)
+    again = 0
     do i = 1, min(most_fits, size(cost))
       k = minloc(cost, 1)
       cost(k) = huge(cost)
-      call improve(residuals, value(:, k), least, fitted)
-      if (describes(residuals, fitted, least)) exit
+      call improve(residuals, value(:, k), least, fitted, again)
+      if (describes(residuals, fitted, least) .or. again == enough) exit
     end do
     do round = 1, merge(most_rounds, 0, renew .and. fitted%found)
       call residuals%curve%ask(fitted%value, .false., settled)
@@ -77,7 +81,7 @@ contains
       call look_again(residuals%curve, fitted%value, keep_noise, settled)
       if (settled) exit
       least = huge(least)
-      call improve(residuals, fitted%value, least, fitted)
+      call improve(residuals, fitted%value, least, fitted, again)
     end do
     if (allocated(fitted%value)) call judge(residuals, fitted)
     curve = residuals%curve
@@ -114,19 +118,23 @@ contains
     end do
   end subroutine find_candidates
 
-  !> Searches from a start, and keeps what it finds if that is better than what there was.
-  subroutine improve(residuals, start, least, fitted)
+  !> Searches from a start, and keeps what it finds if that is better than what there was; again: how
+  !> often it was found since.
+  subroutine improve(residuals, start, least, fitted, again)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: start(:)
     real(wp), intent(inout) :: least
     type(fitted_t), intent(inout) :: fitted
+    integer, intent(inout) :: again
     real(wp) :: x(size(start)), residual(residuals%rows())
     logical :: found
 
     where (residuals%curve%unknown%role == of_contact_point) residuals%curve%unknown%origin = start
     x = free_of(residuals%curve%unknown, start)
     call minimise(residuals, x, residual, found)
+    if (abs(sum(residual**2) - least) < same*least) again = again + 1
     if (.not. sum(residual**2) < least) return
+    if (sum(residual**2) < (1 - same)*least) again = 0
     least = sum(residual**2)
     fitted%value = residuals%values(x)
     fitted%found = found

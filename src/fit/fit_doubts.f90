@@ -14,9 +14,8 @@ module fit_doubts
 
   !> Correlation of unknowns that the data hardly tell apart; least singular value where some
   !> combination of several is not told; error of a logarithm that is no knowledge; standard
-  !> deviations by which what is left, or jumps, may differ.
-  real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, unlikely = 3.2_wp, &
-    far = 4
+  !> deviations by which jumps may differ.
+  real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, far = 4
 
 contains
 
@@ -32,7 +31,7 @@ contains
         'had them')
       if (.not. outcome%resolved) call add(lines, 'the meshes do not resolve the force law, ' // &
         'and the model is not exact; smoother forces are resolved')
-      if (fitted%lack%excess > unlikely) call add(lines, what_is_left(fitted%lack) // &
+      if (.not. fitted%lack%is_noise()) call add(lines, what_is_left(fitted%lack) // &
         ' times what noise leaves (' // rounded(fitted%lack%excess) // ' standard ' // &
         'deviations more): the model does not describe these data, and the true errors are ' // &
         'larger than the standard errors')

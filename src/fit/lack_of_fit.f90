@@ -12,12 +12,23 @@ module lack_of_fit
   type :: lack_t
     integer :: width = 1
     real(wp) :: excess = 0, times = 1
+  contains
+    procedure :: is_noise
   end type lack_t
 
-  !> Fewer blocks say nothing.
+  !> Fewer blocks say nothing. Standard deviations more than noise leaves that noise hardly ever does,
+  !> in one fit of two hundred by the seven or so widths.
   integer, parameter :: fewest_blocks = 8
+  real(wp), parameter :: hardly_ever = 3.2_wp
 
 contains
+
+  !> Whether noise may have left as much.
+  pure logical function is_noise(self)
+    class(lack_t), intent(in) :: self
+
+    is_noise = self%excess <= hardly_ever
+  end function is_noise
 
   !> white: what is left in standard deviations; run: samples of different runs are no neighbours;
   !> freedom: how many of them are independent; noise: by which they were made so.

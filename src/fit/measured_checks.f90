@@ -33,7 +33,7 @@ contains
         rounded(noise%deviation) // '; measure nearer, or see that columns names the signal'
       return
     end if
-    call check_ways(measured, noise, stiffness, trouble)
+    call check_ways(measured, left, noise, stiffness, trouble)
     if (allocated(trouble)) return
     call nearest(measured, left, near, before, travel)
     if (near >= 0 .or. near >= before) return
@@ -48,8 +48,9 @@ contains
 
   !> trouble where approach and retreat are exchanged: contact then is at the end that should be far,
   !> or the bodies hold together better on the way in than on the way out.
-  subroutine check_ways(measured, noise, stiffness, trouble)
+  subroutine check_ways(measured, left, noise, stiffness, trouble)
     type(measured_t), intent(in) :: measured
+    real(wp), intent(in) :: left(:)
     type(noise_t), intent(in) :: noise
     real(wp), intent(in) :: stiffness
     character(len=:), allocatable, intent(inout) :: trouble
@@ -66,7 +67,7 @@ contains
       return
     end if
     do way = 1, 2
-      mine = pack(measured%signal, measured%usable .and. (measured%inward .eqv. way == 1))
+      mine = pack(left, measured%usable .and. (measured%inward .eqv. way == 1))
       ! Three neighbours lie below it: outliers seldom do.
       deepest(way) = minval(max(mine(3:), mine(2:size(mine) - 1), mine(:size(mine) - 2)))
     end do

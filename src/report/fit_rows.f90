@@ -182,7 +182,7 @@ contains
     lines = [lines, line]
     do i = 1, size(outcome%theory)
       associate (theory => outcome%theory(i))
-        if (.not. allocated(theory%fitted%effect)) cycle
+        if (.not. allocated(theory%fitted%effect) .or. .not. theory%fitted%lack%is_noise()) cycle
         if (theory%fitted%chi_squared > outcome%fitted%chi_squared + as_well) cycle
         line%text = trim(theory%theory) // ', which has no force before contact, describes these ' // &
           'data ' // trim(merge('better ', 'as well', theory%fitted%chi_squared < &
