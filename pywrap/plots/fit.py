@@ -8,13 +8,15 @@ import pathlib
 
 import f90nml
 import numpy as np
-from drawing import BLUE, SKY, VERMILION, dress, run, scale, title_of
+from drawing import BLUE, GREY, SKY, VERMILION, dress, run, scale, title_of
 from matplotlib.figure import Figure
 from snapin.results import read_summary, read_table
 
 _WAYS = {"approach": SKY, "retreat": BLUE}
 # Of the travel, how much farther than the last sample with a force the picture goes.
 _BEYOND = 0.15
+# Of the largest residual that counts, where outliers that leave more are drawn.
+_EDGE = 1.1
 # What stands out of the residuals by this many times their median is force.
 _STANDS_OUT = 10
 
@@ -29,6 +31,8 @@ def draw_fit(folder, whole=False):
     lefts = scale(table["residual"][table["used"] == 1], unit)
     z = (table["z"] - table["z"].min()) / lengths[0]
 
+    outlier = table["outlier"] == 1
+    edge = _EDGE * np.abs(table["residual"][table["used"] == 1]).max()
     figure = Figure(figsize=(7.5, 5.6), layout="constrained")
     panel, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     for way, color in _WAYS.items():
@@ -36,11 +40,20 @@ def draw_fit(folder, whole=False):
         if not mine.any():
             continue
         used = mine & (table["used"] == 1)
+        mine &= ~outlier
         panel.plot(z[mine], force[mine] / signals[0], ".", markersize=2.5, color=color, label=way)
-        model = (table["model"] - table["baseline"])[mine] / signals[0]
-        panel.plot(z[mine], model, color=VERMILION, linewidth=1.0,
+        way_of = table["direction"] == way
+        model = (table["model"] - table["baseline"])[way_of] / signals[0]
+        panel.plot(z[way_of], model, color=VERMILION, linewidth=1.0,
                    label="model" if way == table["direction"][0] else None)
         below.plot(z[used], table["residual"][used] / lefts[0], ".", markersize=2.5, color=color)
+    if outlier.any():
+        panel.plot(z[outlier], force[outlier] / signals[0], "x", markersize=4, color=GREY,
+                   label="outlier, left out", zorder=1)
+        beyond = np.clip(table["residual"], -edge, edge)[outlier] / lefts[0]
+        for side, marker in ((beyond > 0, "^"), (beyond <= 0, "v")):
+            below.plot(z[outlier][side], beyond[side], marker, markersize=4, color=GREY)
+    below.set_ylim(-1.1 * edge / lefts[0], 1.1 * edge / lefts[0])
     dress(panel, "", f"signal less baseline [{signals[1]}]")
     dress(below, f"position of the base, from its least [{lengths[1]}]",
           f"residual [{lefts[1]}]")
@@ -53,8 +66,12 @@ def draw_fit(folder, whole=False):
 
 def _unit_of(folder):
     """Return the unit of the signal, by the deck that the summary repeats."""
-    deck = f90nml.read(pathlib.Path(folder) / "summary.nml")
-    return "V" if "sensitivity" in deck["measurement"] else "N"
+    measurement = f90nml.read(pathlib.Path(folder) / "summary.nml")["measurement"]
+    units, columns = (np.atleast_1d(measurement.get(key, [])) for key in ("units", "columns"))
+    if len(units) > 1:
+        return units[1][-1]
+    named_force = len(columns) > 1 and "force" in str(columns[1]).lower()
+    return "V" if "sensitivity" in measurement and not named_force else "N"
 
 
 def _show_contact(panel, z, table, force):

@@ -19,7 +19,7 @@ module simulation
   use derived_tables, only: write_derived_tables, write_path_tables, &
     write_sensitivities
   use stability_records, only: stability_recorder_t
-  use summarise, only: summary_of
+  use summarise, only: summary_of, describe_problem
   use summary, only: summary_t
   use results, only: results_t, journal_of, to_stream
   use publication, only: mend
@@ -232,6 +232,7 @@ contains
     call write_fit_rows(outcome, results)
     call results%end_table()
     call results%write_text('fit.nml', fit_text(outcome, scene%title))
+    if (allocated(outcome%problem)) call describe_problem(scene, outcome%problem, summary)
     lines = doubts_of(outcome)
     if (.not. outcome%fitted%found) call summary%set('converged', .false.)
     do i = 1, size(lines)

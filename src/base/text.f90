@@ -4,7 +4,7 @@ module text
   use decimal, only: put_real, longest_real
   implicit none
   private
-  public :: lower, quoted, unquoted, brief, rounded, full, guess, clip, listing, printable, &
+  public :: lower, quoted, unquoted, brief, rounded, rounded_to, full, guess, clip, listing, printable, &
     word_count, word_of
 
 contains
@@ -121,6 +121,24 @@ contains
     read (buffer, *) near
     text = brief(near)
   end function rounded
+
+  !> `x` for a message, down to the second digit of its `error`, but with three digits at least.
+  pure function rounded_to(x, error) result(text)
+    real(wp), intent(in) :: x, error
+    character(len=:), allocatable :: text
+    character(len=32) :: buffer, form
+    real(wp) :: near
+    integer :: digits
+
+    digits = 2
+    if (abs(x) > 0 .and. error > 0) digits = max(2, min(15, floor(log10(abs(x))) - &
+      floor(log10(error)) + 1))
+    if (abs(x) < error) digits = 1
+    write (form, '(a, i0, a)') '(es32.', digits, ')'
+    write (buffer, form) x
+    read (buffer, *) near
+    text = brief(near)
+  end function rounded_to
 
   !> Number of blank-separated words in `list`.
   pure integer function word_count(list) result(n)

@@ -16,19 +16,17 @@ module contact_starts
 
 contains
 
-  !> Contact points from which to start, best first: where the sum of squares has its lowest minima,
-  !> and no higher than `worse` times the lowest. value: the unknowns; found = .false.: the model
-  !> has no curve there.
-  subroutine find_starts(residuals, value, most, worse, starts, found)
+  !> Contact points from which to start, best first, and the sum of squares there, which has its
+  !> lowest minima at them. value: the unknowns; found = .false.: the model has no curve there.
+  subroutine find_starts(residuals, value, most, starts, costs, found)
     type(curve_residuals_t), intent(in) :: residuals
-    real(wp), intent(in) :: value(:), worse
+    real(wp), intent(in) :: value(:)
     integer, intent(in) :: most
-    real(wp), allocatable, intent(out) :: starts(:)
+    real(wp), allocatable, intent(out) :: starts(:), costs(:)
     logical, intent(out) :: found
     type(curve_residuals_t) :: few
     type(bracket_t) :: bracket
     real(wp) :: at(0:tried + 1), cost(0:tried + 1), ends(2), points(2)
-    real(wp), allocatable :: costs(:)
     integer :: i, k, role
 
     few = residuals
@@ -58,7 +56,8 @@ contains
       costs([i, k]) = costs([k, i])
     end do
     k = min(most, size(starts))
-    starts = pack(starts(:k), costs(:k) <= worse*costs(1))
+    starts = starts(:k)
+    costs = costs(:k)
 
   contains
 

@@ -10,13 +10,18 @@ module curve_fit
   use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t
   use contact_starts, only: find_starts
+  use second_look, only: look_again
+  use lack_of_fit, only: lack_t, lack_in
   implicit none
   private
   public :: fitted_t, fit_curve
 
-  !> Starts that are tried, and by how much the sum of squares there may exceed the least.
-  integer, parameter :: most_starts = 3
-  real(wp), parameter :: worse = 4
+  !> Contact points that are kept of a candidate; searches from the best of all; how often the data
+  !> are looked at again.
+  integer, parameter :: most_points = 2, most_fits = 8, most_rounds = 8
+  !> What is found twice more is the best there is; sums of squares that differ by less are the same.
+  integer, parameter :: enough = 2
+  real(wp), parameter :: same = 1.0e-4_wp
 
   !> What a fit found. value and its standard deviation in the unit of each key; the same of the
   !> fitted number (`unknowns`), of which the errors are symmetric; correlation of these.
@@ -31,6 +36,7 @@ module curve_fit
     !> Sum of the squares of the residuals in standard deviations, and what it is expected to be.
     real(wp) :: chi_squared = 0
     integer :: freedom = 0
+    type(lack_t) :: lack
     !> Of all samples: model with baseline, and what is left.
     real(wp), allocatable :: model(:), residual(:), baseline(:)
     !> Where the base is when the model jumps in and out; NaN where it does not.
@@ -41,46 +47,109 @@ module curve_fit
 
 contains
 
-  !> Fits the model from the deck's values, and from several contact points where that is unknown.
-  subroutine fit_curve(curve, model, start, fitted)
-    type(modelled_curve_t), intent(in) :: curve
+  !> Fits the model from several candidates, start(unknown, candidate), and from several contact
+  !> points where that is unknown, until one describes the data; the best is kept. renew: noise,
+  !> outliers and jumps of the data are found again by the model, the noise not if keep_noise.
+  subroutine fit_curve(curve, model, start, renew, keep_noise, fitted)
+    type(modelled_curve_t), intent(inout) :: curve
     class(force_model_t), intent(inout), target :: model
-    real(wp), intent(in) :: start(:)
+    real(wp), intent(in) :: start(:, :)
+    logical, intent(in) :: renew, keep_noise
     type(fitted_t), intent(out) :: fitted
     type(curve_residuals_t) :: residuals
-    real(wp), allocatable :: starts(:), x(:), residual(:)
-    real(wp) :: value(size(start)), least
-    logical :: found
-    integer :: i, role
+    real(wp), allocatable :: value(:, :), cost(:)
+    real(wp) :: least
+    integer :: i, k, round, again
+    logical :: settled
 
     residuals%curve = curve
-    residuals%curve%model => model
-    role = findloc(residuals%curve%unknown%role, of_contact_point, 1)
-    if (role > 0) then
-      call find_starts(residuals, start, most_starts, worse, starts, fitted%has_curve)
-    else
-      allocate (residual(residuals%rows()))
-      call residuals%residuals_of(start, residual, fitted%has_curve)
-      starts = [0.0_wp]
-    end if
+    call residuals%curve%use_model(model)
+    call find_candidates(residuals, start, value, cost)
+    fitted%has_curve = size(cost) > 0
     if (.not. fitted%has_curve) return
-    allocate (x(size(start)))
-    residual = [(0.0_wp, i=1, residuals%rows())]
     least = huge(least)
-    do i = 1, size(starts)
-      value = start
-      if (role > 0) value(role) = starts(i)
-      if (role > 0) residuals%curve%unknown(role)%origin = starts(i)
-      x = free_of(residuals%curve%unknown, value)
-      call minimise(residuals, x, residual, found)
-      if (.not. sum(residual**2) < least) cycle
-      least = sum(residual**2)
-      fitted%value = residuals%values(x)
-      fitted%found = found
+    again = 0
+    do i = 1, min(most_fits, size(cost))
+      k = minloc(cost, 1)
+      cost(k) = huge(cost)
+      call improve(residuals, value(:, k), least, fitted, again)
+      if (describes(residuals, fitted, least) .or. again == enough) exit
     end do
-    if (.not. allocated(fitted%value)) return
-    call judge(residuals, fitted)
+    do round = 1, merge(most_rounds, 0, renew .and. fitted%found)
+      call residuals%curve%ask(fitted%value, .false., settled)
+      if (.not. settled) exit
+      call look_again(residuals%curve, fitted%value, keep_noise, settled)
+      if (settled) exit
+      least = huge(least)
+      call improve(residuals, fitted%value, least, fitted, again)
+    end do
+    if (allocated(fitted%value)) call judge(residuals, fitted)
+    curve = residuals%curve
   end subroutine fit_curve
+
+  !> Values to start from, with the sums of squares there.
+  subroutine find_candidates(residuals, start, value, cost)
+    type(curve_residuals_t), intent(inout) :: residuals
+    real(wp), intent(in) :: start(:, :)
+    real(wp), allocatable, intent(out) :: value(:, :), cost(:)
+    real(wp), allocatable :: points(:), costs(:), residual(:)
+    real(wp) :: trial(size(start, 1))
+    logical :: found
+    integer :: i, k, role
+
+    allocate (value(size(start, 1), 0), cost(0))
+    role = findloc(residuals%curve%unknown%role, of_contact_point, 1)
+    do i = 1, size(start, 2)
+      trial = start(:, i)
+      if (role > 0) then
+        call find_starts(residuals, trial, most_points, points, costs, found)
+      else
+        residual = [(0.0_wp, k=1, residuals%rows())]
+        call residuals%residuals_of(trial, residual, found)
+        points = [0.0_wp]
+        costs = [sum(residual**2)]
+      end if
+      if (.not. found) cycle
+      do k = 1, size(points)
+        if (role > 0) trial(role) = points(k)
+        value = reshape([value, trial], [size(trial), size(value, 2) + 1])
+        cost = [cost, costs(k)]
+      end do
+    end do
+  end subroutine find_candidates
+
+  !> Searches from a start, and keeps what it finds if that is better than what there was; again: how
+  !> often it was found since.
+  subroutine improve(residuals, start, least, fitted, again)
+    type(curve_residuals_t), intent(inout) :: residuals
+    real(wp), intent(in) :: start(:)
+    real(wp), intent(inout) :: least
+    type(fitted_t), intent(inout) :: fitted
+    integer, intent(inout) :: again
+    real(wp) :: x(size(start)), residual(residuals%rows())
+    logical :: found
+
+    where (residuals%curve%unknown%role == of_contact_point) residuals%curve%unknown%origin = start
+    x = free_of(residuals%curve%unknown, start)
+    call minimise(residuals, x, residual, found)
+    if (abs(sum(residual**2) - least) < same*least) again = again + 1
+    if (.not. sum(residual**2) < least) return
+    if (sum(residual**2) < (1 - same)*least) again = 0
+    least = sum(residual**2)
+    fitted%value = residuals%values(x)
+    fitted%found = found
+  end subroutine improve
+
+  !> Whether a sum of squares is what noise leaves.
+  pure logical function describes(residuals, fitted, least)
+    type(curve_residuals_t), intent(in) :: residuals
+    type(fitted_t), intent(in) :: fitted
+    real(wp), intent(in) :: least
+    integer :: freedom
+
+    freedom = residuals%rows() - size(fitted%value) - residuals%curve%data%baseline%unknowns()
+    describes = fitted%found .and. least < freedom + 3*sqrt(2.0_wp*freedom)
+  end function describes
 
   !> Errors and correlations of the values, and what is left of the curve.
   subroutine judge(residuals, fitted)
@@ -99,6 +168,11 @@ contains
     if (.not. found) return
     fitted%chi_squared = sum(residual**2)
     fitted%freedom = size(residual) - n - residuals%curve%data%baseline%unknowns()
+    associate (data => residuals%curve%data)
+      fitted%lack = lack_in(residual(:size(data%sample)), 3*data%way(data%sample) + &
+        data%side(data%sample), size(data%sample) - n - data%baseline%unknowns(), &
+        data%noise)
+    end associate
     do j = 1, n
       jacobian(:, j) = jacobian(:, j)*value_by_fitted(residuals%curve%unknown(j), fitted%value(j))
     end do

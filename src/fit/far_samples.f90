@@ -3,15 +3,19 @@ module far_samples
   use kinds, only: wp
   use measured_curve, only: measured_t
   use measured_jumps, only: find_jump
-  use noise, only: noise_t, noise_of, white_noise
+  use noise, only: noise_t, noise_of, white_noise, rough_deviation
+  use outliers, only: stand_apart
   implicit none
   private
-  public :: find_far, fewest_far
+  public :: find_far
 
-  !> Fewer samples show no noise. The part of the travel that may be far from contact; it is halved
+  !> Fewer samples show no noise but by their differences. The part of the travel that may be far from contact; it is halved
   !> where the half that is farther varies by less than this part of the whole.
   integer, parameter :: fewest_far = 12
   real(wp), parameter :: far_part = 1.0_wp/3, less = 0.6_wp
+  !> What a spike is more than the noise, and than a curve makes of the distance of samples, in units
+  !> of the spring's own slope.
+  real(wp), parameter :: apart = 5, bent = 3
 
 contains
 
@@ -20,7 +24,8 @@ contains
     type(measured_t), intent(inout) :: measured
     real(wp), intent(in) :: stiffness
     type(noise_t), intent(out) :: noise
-    type(noise_t) :: outer_noise, rough
+    type(noise_t) :: outer_noise
+    real(wp) :: rough
     real(wp), allocatable :: position(:)
     logical, allocatable :: outer(:)
     real(wp) :: limit, farthest
@@ -29,18 +34,23 @@ contains
     position = measured%facing*measured%z
     farthest = maxval(position)
     limit = farthest - far_part*(farthest - minval(position))
-    rough = white_noise(rough_deviation(measured%signal))
+    rough = rough_deviation(pack(measured%signal, measured%usable))
+    measured%usable = measured%usable .and. .not. stand_apart(measured%signal, &
+      merge(1, 2, measured%inward), measured%usable, apart*rough + &
+      bent*stiffness*typical_steps(measured))
     do way = 1, 2
       associate (jump => find_jump(measured, rough, stiffness, way == 1))
         if (jump%before > 0) limit = max(limit, 0.5_wp*(measured%facing*jump%z + farthest))
       end associate
     end do
     measured%far = position > limit
+    noise = white_noise(rough)
+    if (count(measured%far .and. measured%usable) < fewest_far) return
     noise = noise_at(measured%far)
     do
       limit = 0.5_wp*(limit + farthest)
       outer = position > limit
-      if (count(outer) < 2*fewest_far) exit
+      if (count(outer .and. measured%usable) < 2*fewest_far) exit
       outer_noise = noise_at(outer)
       if (outer_noise%deviation > less*noise%deviation) exit
       measured%far = outer
@@ -52,34 +62,27 @@ contains
     type(noise_t) function noise_at(mask)
       logical, intent(in) :: mask(:)
 
-      noise_at = noise_of(pack(measured%z, mask), pack(measured%signal, mask), &
-        pack(merge(1, 2, measured%inward), mask))
+      associate (good => mask .and. measured%usable)
+        noise_at = noise_of(pack(measured%z, good), pack(measured%signal, good), &
+          pack(merge(1, 2, measured%inward), good))
+      end associate
     end function noise_at
 
   end subroutine find_far
 
-  !> The deviation of white noise in a signal that otherwise is smooth: from the median of its
-  !> second differences.
-  pure real(wp) function rough_deviation(signal) result(deviation)
-    real(wp), intent(in) :: signal(:)
-    !> The median of a normal distribution's magnitude; the sum of the squares of 1, -2, 1.
-    real(wp), parameter :: median = 0.6745_wp, squares = 6
-    real(wp) :: second(size(signal) - 2), low, high
-    integer :: n, step
+  !> The step of z on the way of each sample.
+  pure function typical_steps(measured) result(step)
+    type(measured_t), intent(in) :: measured
+    real(wp) :: step(size(measured%z)), on_way
+    integer :: way
 
-    n = size(signal)
-    second = abs(signal(3:) - 2*signal(2:n - 1) + signal(:n - 2))
-    low = 0
-    high = maxval(second)
-    do step = 1, 60
-      deviation = 0.5_wp*(low + high)
-      if (2*count(second > deviation) > size(second)) then
-        low = deviation
-      else
-        high = deviation
-      end if
+    do way = 1, 2
+      associate (mine => measured%inward .eqv. way == 1)
+        on_way = (maxval(measured%z) - minval(measured%z))/max(1, count(mine))
+        where (mine) step = on_way
+      end associate
     end do
-    deviation = deviation/(median*sqrt(squares))
-  end function rough_deviation
+  end function typical_steps
+
 
 end module far_samples

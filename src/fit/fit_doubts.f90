@@ -5,6 +5,7 @@ module fit_doubts
   use text, only: rounded
   use namelist_writer, only: line_t
   use fit_request, only: unknown_t
+  use lack_of_fit, only: lack_t
   use curve_fit, only: fitted_t
   use fit_run, only: fit_outcome_t
   implicit none
@@ -12,10 +13,9 @@ module fit_doubts
   public :: doubts_of
 
   !> Correlation of unknowns that the data hardly tell apart; least singular value where some
-  !> combination of several is not told; error of a logarithm that is no knowledge; residual over
-  !> noise that noise cannot make; standard deviations by which jumps may differ.
-  real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, poor = 1.5_wp, &
-    far = 4
+  !> combination of several is not told; error of a logarithm that is no knowledge; standard
+  !> deviations by which jumps may differ.
+  real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, far = 4
 
 contains
 
@@ -31,9 +31,10 @@ contains
         'had them')
       if (.not. outcome%resolved) call add(lines, 'the meshes do not resolve the force law, ' // &
         'and the model is not exact; smoother forces are resolved')
-      if (fitted%chi_squared > poor**2*fitted%freedom) call add(lines, 'what the model leaves ' // &
-        'is ' // rounded(sqrt(fitted%chi_squared/fitted%freedom)) // ' times the noise: it ' // &
-        'does not describe these data, and the true errors are larger than the standard errors')
+      if (.not. fitted%lack%is_noise()) call add(lines, what_is_left(fitted%lack) // &
+        ' times what noise leaves (' // rounded(fitted%lack%excess) // ' standard ' // &
+        'deviations more): the model does not describe these data, and the true errors are ' // &
+        'larger than the standard errors')
       do i = 1, size(fitted%value)
         call doubt_unknown(fitted, unknown(i), i, lines)
         call doubt_pairs(fitted, unknown, i, lines)
@@ -43,6 +44,17 @@ contains
     end associate
     call doubt_jumps(outcome, lines)
   end function doubts_of
+
+  !> What is compared with noise: samples or means over some.
+  function what_is_left(lack) result(words)
+    type(lack_t), intent(in) :: lack
+    character(len=:), allocatable :: words
+
+    words = 'what the model leaves is '
+    if (lack%width > 1) words = 'what the model leaves, on average over ' // &
+      rounded(real(lack%width, wp)) // ' neighbours, is '
+    words = words // rounded(lack%times)
+  end function what_is_left
 
   !> Of unknown i alone: what the data say of it, and bounds that decide.
   subroutine doubt_unknown(fitted, unknown, i, lines)

@@ -12,6 +12,10 @@ module fit_request
     character(len=48), allocatable :: columns(:)
     real(wp) :: spring_constant = 0
     real(wp), allocatable :: sensitivity, contact_point
+    !> Pairs of positions between which samples do not count.
+    real(wp), allocatable :: skip(:)
+    !> Of position and signal in the file.
+    real(wp) :: unit(2) = 1
   end type measurement_t
 
   !> What an unknown belongs to: a number of the problem, where the bodies touch, the detector, the

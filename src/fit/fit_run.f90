@@ -1,18 +1,19 @@
 !> A fit from beginning to end: the measured curve is read, its noise and jumps are found, the model
 !> of the path is fitted, and the classical theories are beside it.
 module fit_run
-  use kinds, only: wp
+  use kinds, only: wp, pi
   use failure, only: failure_t
   use listener, only: listener_t
-  use dimensionless_problem, only: problem_t, surface_energy, largest_tension
+  use dimensionless_problem, only: problem_t
   use problem_family, only: problem_family_t
   use experiment_request, only: numerics_t
   use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point
-  use measured_curve, only: read_measured
+  use measured_curve, only: measured_t, read_measured
   use measured_jumps, only: find_jump
   use measured_checks, only: check_measured
   use noise, only: white_noise
-  use far_samples, only: find_far, fewest_far
+  use far_samples, only: find_far
+  use fit_starts, only: character_t, character_of, starts_like
   use refinement, only: unresolved_from
   use path_model, only: path_model_t
   use classical_model, only: classical_model_t, theories
@@ -37,6 +38,8 @@ module fit_run
     !> Whether the meshes of the model resolve the force law.
     logical :: resolved = .true.
     type(theory_fit_t), allocatable :: theory(:)
+    !> The problem with the values found, where there is one.
+    type(problem_t), allocatable :: problem
   end type fit_outcome_t
 
   !> A signal whose noise is smaller than this part of it is one that was computed.
@@ -46,6 +49,11 @@ module fit_run
   !> An unknown whose fitted number (`unknowns`) changes by 1 is seen by this many standard
   !> deviations of all data, or it has no effect.
   real(wp), parameter :: least_effect = 0.1_wp
+  !> Stiffnesses over the deck's from which theories start, and ranges of the force from which the
+  !> model does; samples by which the theories are fitted then.
+  real(wp), parameter :: factors(*) = [1.0_wp, 0.1_wp, 10.0_wp, 0.01_wp, 100.0_wp], &
+    ranges(*) = [0.25_wp, 4.0_wp]
+  integer, parameter :: few_samples = 1000
 
 contains
 
@@ -61,6 +69,7 @@ contains
     type(fit_outcome_t), intent(out) :: outcome
     type(path_model_t), target :: model
     type(modelled_curve_t) :: curve
+    real(wp), allocatable :: start(:, :)
     integer :: i
 
     call take_curve(measurement, fit, problem, curve, outcome%trouble)
@@ -68,7 +77,8 @@ contains
     call listener%hear('fitting the path')
     allocate (model%family, source=family)
     model%numerics = numerics
-    call fit_curve(curve, model, curve%unknown%value, outcome%fitted)
+    call starts_like(likely_characters(curve, problem), family, curve%unknown, start)
+    call fit_curve(curve, model, start, .true., allocated(fit%noise), outcome%fitted)
     outcome%resolved = model%panel_tail <= unresolved_from(numerics%accuracy)
     outcome%curve = curve
     if (.not. outcome%fitted%has_curve) then
@@ -117,23 +127,95 @@ contains
       call find_far(data, slope, curve%data%noise)
       if (allocated(fit%noise)) then
         curve%data%noise = white_noise(fit%noise)
-      else if (count(data%far) < fewest_far) then
-        trouble = 'fewer than 12 samples far from contact, too few to see the noise; give noise'
-        return
       end if
       if (curve%data%noise%deviation < least_noise*maxval(abs(data%signal))) &
         curve%data%noise = white_noise(least_noise*maxval(abs(data%signal)))
       call check_measured(data, curve%data%noise, slope, trouble)
       if (allocated(trouble)) return
-      curve%data%jump = [find_jump(data, curve%data%noise, slope, .true.), &
-        find_jump(data, curve%data%noise, slope, .false.)]
-      curve%largest = beyond*(maxval(data%signal) - &
-        sum(data%signal, data%far)/max(1, count(data%far)))
+      curve%data%jump = [find_jump(data, curve%data%noise%deviation, slope, .true.), &
+        find_jump(data, curve%data%noise%deviation, slope, .false.)]
+      curve%largest = beyond*(maxval(data%signal, data%usable) - level_of(data))
     end associate
     call curve%data%take(1)
     if (size(curve%data%sample) < 2*size(curve%unknown) + 4) &
       trouble = 'too few samples for so many parameters'
   end subroutine take_curve
+
+  !> The mean of the far samples.
+  pure real(wp) function level_of(data) result(level)
+    type(measured_t), intent(in) :: data
+
+    associate (far => data%far .and. data%usable)
+      level = sum(data%signal, far)/max(1, count(far))
+    end associate
+  end function level_of
+
+  !> Work of adhesion, stiffness and range of force that the curve may have: by its pull-off, by JKR
+  !> and DMT, each with the range of the deck's force and with others.
+  function likely_characters(curve, problem) result(likely)
+    type(modelled_curve_t), intent(in) :: curve
+    type(problem_t), intent(in) :: problem
+    type(character_t), allocatable :: likely(:)
+    type(character_t) :: own, new
+    type(classical_model_t), target :: model
+    type(modelled_curve_t) :: few
+    type(fitted_t) :: fitted
+    real(wp) :: start(2 + size(curve%unknown), size(factors))
+    integer :: i, k
+
+    allocate (likely(0))
+    own = character_of(problem)
+    if (.not. own%work > 0) return
+    associate (data => curve%data%measured)
+      own%work = (level_of(data) - minval(data%signal, data%usable))*curve%spring* &
+        curve%sensitivity/(1.5_wp*pi*problem%radius)
+    end associate
+    if (.not. own%work > 0) return
+    likely = [own]
+    model%radius = problem%radius
+    few = curve
+    few%data%noise = white_noise(curve%data%noise%deviation)
+    call few%data%take(max(1, size(curve%data%sample)/few_samples))
+    do i = 1, 2
+      if (.not. problem%shape%parabolic) exit
+      model%theory = theories(i)
+      call take_unknowns(few, curve, model, own)
+      do k = 1, size(factors)
+        start(:size(few%unknown), k) = few%unknown%value
+        start(2, k) = own%stiffness*factors(k)
+      end do
+      call fit_curve(few, model, start(:size(few%unknown), :), .false., .true., fitted)
+      if (.not. allocated(fitted%effect)) cycle
+      new = character_t(fitted%value(1), fitted%value(2), own%range)
+      likely = [likely, new]
+      do k = 1, size(ranges)
+        new%range = own%range*ranges(k)
+        likely = [likely, new]
+      end do
+    end do
+    do k = 1, size(factors)
+      new = own
+      new%stiffness = own%stiffness*factors(k)
+      likely = [likely, new]
+    end do
+  end function likely_characters
+
+  !> What is unknown of a theory, and what of the measurement.
+  subroutine take_unknowns(curve, measured, model, start)
+    type(modelled_curve_t), intent(inout) :: curve
+    type(modelled_curve_t), intent(in) :: measured
+    type(classical_model_t), intent(inout) :: model
+    type(character_t), intent(in) :: start
+    type(unknown_t) :: unknown(2)
+
+    model%work = start%work
+    model%stiffness = start%stiffness
+    model%range = start%range
+    unknown(1) = unknown_of('work_of_adhesion', model%work)
+    unknown(2) = unknown_of('stiffness', model%stiffness)
+    curve%unknown = [pack(unknown, [model%finds_work, model%finds_stiffness]), &
+      pack(measured%unknown, measured%unknown%role /= of_model)]
+  end subroutine take_unknowns
 
   !> The same curve by JKR, DMT and Maugis-Dugdale, where the bodies are parabolas. Found is what
   !> the deck wants to find of it: adhesion where it asks for a force, stiffness where for that of
@@ -146,38 +228,33 @@ contains
     type(modelled_curve_t) :: curve
     type(problem_t) :: final
     type(failure_t), allocatable :: error
-    type(unknown_t) :: unknown(2)
-    real(wp), allocatable :: start(:)
+    real(wp), allocatable :: start(:, :)
     logical :: elastic(size(family%parameter))
     integer :: i
 
     allocate (outcome%theory(0))
     call family%pose(pack(outcome%fitted%value, outcome%curve%unknown%role == of_model), final, &
       error)
-    if (allocated(error) .or. .not. problem%shape%parabolic) return
-    if (.not. final%law%work > 0) return
+    if (allocated(error)) return
+    outcome%problem = final
+    if (.not. problem%shape%parabolic .or. .not. final%law%work > 0) return
     elastic = [(index(family%parameter(i)%name, 'bodies.') == 1 .and. &
       family%parameter(i)%name /= 'bodies.radius', i=1, size(elastic))]
     model%radius = final%radius
-    model%work = surface_energy(final)
-    model%stiffness = final%stiffness
-    model%range = model%work/largest_tension(final)
     model%finds_stiffness = any(elastic)
     model%finds_work = .not. all(elastic)
-    unknown(1) = unknown_of('work_of_adhesion', model%work)
-    unknown(2) = unknown_of('stiffness', model%stiffness)
     curve = outcome%curve
-    curve%unknown = [pack(unknown, [model%finds_work, model%finds_stiffness]), &
-      pack(outcome%curve%unknown, outcome%curve%unknown%role /= of_model)]
+    call take_unknowns(curve, outcome%curve, model, character_of(final))
     deallocate (outcome%theory)
     allocate (outcome%theory(size(theories)))
-    start = [pack(unknown%value, [model%finds_work, model%finds_stiffness]), &
-      pack(outcome%fitted%value, outcome%curve%unknown%role /= of_model)]
+    start = reshape([pack(curve%unknown%value, curve%unknown%role == of_model), &
+      pack(outcome%fitted%value, outcome%curve%unknown%role /= of_model)], &
+      [size(curve%unknown), 1])
     do i = 1, size(theories)
       model%theory = theories(i)
       outcome%theory(i)%theory = theories(i)
       outcome%theory(i)%unknown = curve%unknown
-      call fit_curve(curve, model, start, outcome%theory(i)%fitted)
+      call fit_curve(curve, model, start, .false., .true., outcome%theory(i)%fitted)
     end do
   end subroutine fit_theories
 

@@ -30,6 +30,7 @@ contains
   subroutine take(self, every)
     class(fit_samples_t), intent(inout) :: self
     integer, intent(in) :: every
+    logical :: counts(size(self%measured%z))
     integer :: i, n
 
     associate (data => self%measured)
@@ -40,15 +41,21 @@ contains
         associate (jump => self%jump(self%way(i)))
           if (jump%before == 0) cycle
           ! The last before it may be as near to it as one likes, where the slope grows beyond
-          ! bounds.
+          ! bounds: it is number `before`.
           if (i < jump%before) self%side(i) = 1
           if (i >= jump%before .and. i < jump%after) self%side(i) = -1
           if (i >= jump%after) self%side(i) = 2
         end associate
       end do
-      ! Of one way and one side of its jump.
-      self%run = 3*self%way + self%side
-      self%sample = pack([(i, i=1, n)], self%side >= 0 .and. [(mod(i, every) == 0, i=1, n)])
+      counts = self%side >= 0 .and. data%usable
+      ! Neighbours of one way and one side of its jump.
+      self%run = [(1, i=1, n)]
+      do i = 2, n
+        self%run(i) = self%run(i - 1)
+        if (self%way(i) /= self%way(i - 1) .or. self%side(i) /= self%side(i - 1) .or. &
+          (counts(i) .neqv. counts(i - 1))) self%run(i) = self%run(i - 1) + 1
+      end do
+      self%sample = pack([(i, i=1, n)], counts .and. [(mod(i, every) == 0, i=1, n)])
       self%baseline = new_baseline(data%z, data%inward, self%sample, self%run(self%sample), &
         self%noise)
     end associate

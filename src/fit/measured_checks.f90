@@ -28,21 +28,68 @@ contains
     real(wp) :: near, before, travel
 
     left = off_baseline(measured)
-    if (.not. maxval(abs(left)) > stands_out*noise%deviation) then
+    if (.not. maxval(abs(left), measured%usable) > stands_out*noise%deviation) then
       trouble = 'no contact in the data: nothing stands out of the noise of ' // &
         rounded(noise%deviation) // '; measure nearer, or see that columns names the signal'
       return
     end if
+    call check_ways(measured, left, noise, stiffness, trouble)
+    if (allocated(trouble)) return
     call nearest(measured, left, near, before, travel)
     if (near >= 0 .or. near >= before) return
     turned = measured
     turned%signal = -measured%signal
-    jump(1) = find_jump(turned, noise, stiffness, .true.)
-    jump(2) = find_jump(turned, noise, stiffness, .false.)
+    jump(1) = find_jump(turned, noise%deviation, stiffness, .true.)
+    jump(2) = find_jump(turned, noise%deviation, stiffness, .false.)
     if (before - near > steep*stiffness*travel .or. any(jump%before > 0)) trouble = &
       'the force falls where the bodies are pressed together: repulsion is positive here; a ' // &
       'minus before the name of a column turns its sign'
   end subroutine check_measured
+
+  !> trouble where approach and retreat are exchanged: contact then is at the end that should be far,
+  !> or the bodies hold together better on the way in than on the way out.
+  subroutine check_ways(measured, left, noise, stiffness, trouble)
+    type(measured_t), intent(in) :: measured
+    real(wp), intent(in) :: left(:)
+    type(noise_t), intent(in) :: noise
+    real(wp), intent(in) :: stiffness
+    character(len=:), allocatable, intent(inout) :: trouble
+    real(wp) :: deepest(2), slope(2), position(size(measured%z))
+    real(wp), allocatable :: mine(:)
+    integer :: way
+
+    if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
+    position = measured%facing*measured%z
+    slope = [slope_at(position), slope_at(-position)]/stiffness
+    if (slope(2) > steep .and. abs(slope(1)) < 0.25_wp*steep) then
+      trouble = 'the bodies press on each other where the base is farthest: approach and ' // &
+        'retreat are exchanged in the third column, or its rows are'
+      return
+    end if
+    do way = 1, 2
+      mine = pack(left, measured%usable .and. (measured%inward .eqv. way == 1))
+      ! Three neighbours lie below it: outliers seldom do.
+      deepest(way) = minval(max(mine(3:), mine(2:size(mine) - 1), mine(:size(mine) - 2)))
+    end do
+    if (deepest(1) < deepest(2) - 2*stands_out*noise%deviation) trouble = 'the approach has ' // &
+      'the larger pull-off: the rows of the file go backwards, or approach and retreat are exchanged'
+
+  contains
+
+    !> Slope of the signal at the samples of smallest `place`, against it.
+    pure real(wp) function slope_at(place)
+      real(wp), intent(in) :: place(:)
+      logical :: mask(size(place))
+      real(wp) :: middle(2)
+
+      mask = measured%usable .and. place <= minval(place) + nearest_part*(maxval(place) - &
+        minval(place))
+      middle = [sum(place, mask), sum(measured%signal, mask)]/max(1, count(mask))
+      slope_at = -sum((place - middle(1))*(measured%signal - middle(2)), mask)/ &
+        max(sum((place - middle(1))**2, mask), tiny(1.0_wp))
+    end function slope_at
+
+  end subroutine check_ways
 
   !> The signal less the straight line through the baseline of its way.
   pure function off_baseline(measured) result(left)
@@ -54,7 +101,7 @@ contains
 
     left = 0
     do way = 1, 2
-      far = measured%far .and. (measured%inward .eqv. way == 1)
+      far = measured%far .and. measured%usable .and. (measured%inward .eqv. way == 1)
       if (.not. any(far)) cycle
       associate (z => measured%z, s => measured%signal)
         middle = [sum(z, far), sum(s, far)]/count(far)
@@ -77,9 +124,9 @@ contains
     position = measured%facing*measured%z
     low = minval(position)
     width = nearest_part*(maxval(position) - low)
-    mask = position <= low + width
+    mask = measured%usable .and. position <= low + width
     near = sum(left, mask)/max(1, count(mask))
-    mask = position > low + width .and. position <= low + 2*width
+    mask = measured%usable .and. position > low + width .and. position <= low + 2*width
     before = sum(left, mask)/max(1, count(mask))
     travel = width
   end subroutine nearest

@@ -18,10 +18,15 @@ module measured_curve
     real(wp) :: facing = 1
     !> Samples so far from contact that they are the baseline, once that is known.
     logical, allocatable :: far(:)
+    !> Samples that are neither outliers nor left out by the deck.
+    logical, allocatable :: usable(:), skipped(:)
   end type measured_t
 
   !> Samples of a way, fewer of which are no curve.
   integer, parameter :: fewest = 20
+  !> How often what has noise turns round, and what goes there and back, over the number of samples;
+  !> the longest travel of a base [m].
+  real(wp), parameter :: rough = 0.2_wp, even = 0.02_wp, longest = 1.0e-3_wp
   !> A way begins and ends with this part of its samples; a turn that is nearer to the first or the
   !> last sample than that is none.
   real(wp), parameter :: end_part = 0.1_wp
@@ -40,7 +45,11 @@ contains
 
     call read_data_table(request%file, request%columns, table, error)
     if (allocated(error)) return
+    table%value(:, 1) = table%value(:, 1)*request%unit(1)
+    table%value(:, 2) = table%value(:, 2)*request%unit(2)
     associate (z => table%value(:, 1), signal => table%value(:, 2))
+      call check_columns(table%source%file, z, signal, error)
+      if (allocated(error)) return
       if (size(z) < fewest) then
         call fail(error, bad_input, table%source%file // ': fewer than 20 samples are no curve')
         return
@@ -66,8 +75,38 @@ contains
       measured%inward = [pack(measured%inward, measured%inward .and. wanted), &
         pack(measured%inward, wanted .and. .not. measured%inward)]
     end associate
+    measured%skipped = [(any(measured%z(i) >= request%skip(1::2) .and. &
+      measured%z(i) <= request%skip(2::2)), i=1, size(measured%z))]
+    measured%usable = .not. measured%skipped
     call find_facing(table%source%file, measured, error)
   end subroutine read_measured
+
+  !> Refuses columns that are exchanged, and positions that cannot be in metres.
+  subroutine check_columns(file, z, signal, error)
+    character(len=*), intent(in) :: file
+    real(wp), intent(in) :: z(:), signal(:)
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (turns_of(z) > rough*size(z) .and. turns_of(signal) < even*size(z)) then
+      call fail(error, bad_input, file // ': the position goes up and down, the signal evenly; ' // &
+        'are the two columns exchanged? columns says which is which')
+    else if (maxval(z) - minval(z) > longest) then
+      call fail(error, bad_input, file // ': positions span more than a millimetre; if they are ' // &
+        'not in metres, say units = ''nm'', ''nN'' or the like')
+    end if
+
+  contains
+
+    !> How often a number turns round.
+    pure integer function turns_of(number) result(turns)
+      real(wp), intent(in) :: number(:)
+      integer :: n
+
+      n = size(number)
+      turns = count((number(3:) - number(2:n - 1))*(number(2:n - 1) - number(:n - 2)) < 0)
+    end function turns_of
+
+  end subroutine check_columns
 
   !> Which samples come before z turns round; where it does not, `segment` decides.
   pure function before_turn(z, segment) result(inward)

@@ -1,82 +1,94 @@
-!> Jumps in a measured curve. In a jump inward the force falls, in one outward it rises, over less
-!> of the base's travel than the spring alone would take for it.
+!> Jumps in a measured curve, before any model is known. In a jump inward the force falls, in one
+!> outward it rises, over less of the base's travel than the spring alone would take for it. The
+!> means of some samples before and of as many after a place are compared: of few where that is
+!> enough to stand out of the noise, of more where it is not.
 module measured_jumps
   use kinds, only: wp
   use measured_curve, only: measured_t
-  use noise, only: noise_t
   implicit none
   private
   public :: measured_jump_t, find_jump
 
-  !> The last sample before and the first after it, 0 where none was seen; where the base was, with
-  !> the uncertainty of that; by how much the signal changes.
+  !> Samples up to `before` - 1 are before it, those from `after` on after it; 0 where none was
+  !> seen. Where the base was, with the uncertainty of that; by how much the signal changes.
   type :: measured_jump_t
     integer :: before = 0, after = 0
     real(wp) :: z = 0, uncertainty = 0, change = 0
   end type measured_jump_t
 
-  !> Change in the first step of a jump over what the spring makes of it; change over the noise;
-  !> most steps that a jump takes in a record that an amplifier has smoothed.
-  real(wp), parameter :: steep = 3, seen = 12
+  !> Change over what the spring makes of it; what is left of it over its noise; most steps that a
+  !> jump takes in a record that an amplifier has smoothed.
+  real(wp), parameter :: steep = 3, seen = 8
   integer, parameter :: most_steps = 6
 
 contains
 
-  !> The largest jump on the way in or out. stiffness: of the spring, units of signal over z.
-  pure type(measured_jump_t) function find_jump(measured, noise, stiffness, inward) result(jump)
+  !> The largest jump on the way in or out. deviation: of the noise; stiffness: of the spring, units
+  !> of signal over z.
+  pure type(measured_jump_t) function find_jump(measured, deviation, stiffness, inward) result(jump)
     type(measured_t), intent(in) :: measured
-    type(noise_t), intent(in) :: noise
-    real(wp), intent(in) :: stiffness
+    real(wp), intent(in) :: deviation, stiffness
     logical, intent(in) :: inward
-    real(wp) :: change
-    integer :: i, first, last
+    integer, allocatable :: at(:)
+    real(wp), allocatable :: total(:), place(:)
+    real(wp) :: change, most, spring
+    integer :: width, i, k, n, first, last
 
-    first = findloc(measured%inward, inward, 1)
-    if (first == 0) return
-    last = findloc(measured%inward, inward, 1, back=.true.)
-    i = first
-    do while (i < last)
-      first = i
-      i = i + 1
-      if (.not. exceeds(first, steep)) cycle
-      ! What goes on slower but the same way is still the flight, or the amplifier.
-      do while (i < last)
-        if (.not. exceeds(i, 1.0_wp)) exit
-        i = i + 1
-      end do
-      change = measured%signal(i) - measured%signal(first)
-      if (i - first <= most_steps .and. &
-        abs(change) > max(seen*noise%deviation, abs(jump%change))) then
-        jump%before = first
-        jump%after = i
-        jump%change = change
-      end if
+    at = pack([(i, i=1, size(measured%z))], (measured%inward .eqv. inward) .and. measured%usable)
+    n = size(at)
+    if (n < 4) return
+    allocate (total(0:n), place(0:n), source=0.0_wp)
+    do i = 1, n
+      total(i) = total(i - 1) + merge(-1, 1, inward)*measured%signal(at(i))
+      place(i) = place(i - 1) + measured%z(at(i))
     end do
-    if (jump%before == 0) return
-    associate (z => measured%z(jump%before:jump%before + 1))
-      jump%z = 0.5_wp*sum(z)
+    width = 1
+    do while (width <= n/4)
+      most = 0
+      k = 0
+      do i = width, n - width
+        change = (total(i + width) - 2*total(i) + total(i - width))/width
+        spring = steep*stiffness*abs(place(i + width) - 2*place(i) + place(i - width))/width
+        if (.not. change - spring > max(most, seen*deviation*sqrt(2.0_wp/width))) cycle
+        most = change - spring
+        k = i
+      end do
+      if (k > 0) exit
+      width = 2*width
+    end do
+    if (k == 0) return
+    ! Somewhere in the middle of as many samples as were needed to see it.
+    first = k - width/2
+    last = k + 1 + width/2
+    do while (width == 1 .and. first > 1 .and. last - first < most_steps)
+      if (.not. goes_on(first - 1)) exit
+      first = first - 1
+    end do
+    do while (width == 1 .and. last < n .and. last - first < most_steps)
+      if (.not. goes_on(last)) exit
+      last = last + 1
+    end do
+    jump%before = at(first)
+    jump%after = at(last)
+    jump%change = merge(-1, 1, inward)*(total(last) - total(last - 1) - total(first) + &
+      total(first - 1))
+    associate (z => measured%z)
+      k = merge(first + 1, last, width == 1)
+      jump%z = 0.5_wp*(z(at(first)) + z(at(k)))
       ! That of an even distribution between the two, and of steps that are not equal.
-      jump%uncertainty = sqrt((max(abs(z(2) - z(1)), typical_step())**2)/12)
+      jump%uncertainty = max(abs(z(at(k)) - z(at(first))), (maxval(z) - minval(z))/n)/sqrt(12.0_wp)
     end associate
 
   contains
 
-    !> Whether the signal goes the way of a jump by more than `times` what the spring makes of the
-    !> step to the next sample.
-    pure logical function exceeds(k, times)
-      integer, intent(in) :: k
-      real(wp), intent(in) :: times
-      real(wp) :: change
+    !> Whether the signal goes the way of a jump from sample i to the next by more than the spring
+    !> makes of it, and more than noise does.
+    pure logical function goes_on(i)
+      integer, intent(in) :: i
 
-      change = measured%signal(k + 1) - measured%signal(k)
-      exceeds = merge(-change, change, inward) > times*stiffness*abs(measured%z(k + 1) - &
-        measured%z(k))
-    end function exceeds
-
-    pure real(wp) function typical_step()
-      typical_step = (maxval(measured%z) - minval(measured%z))/ &
-        max(1, count(measured%inward .eqv. inward))
-    end function typical_step
+      goes_on = total(i + 1) - 2*total(i) + total(i - 1) > stiffness*abs(place(i + 1) - &
+        2*place(i) + place(i - 1)) + 4*deviation
+    end function goes_on
 
   end function find_jump
 

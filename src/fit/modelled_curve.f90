@@ -30,6 +30,7 @@ module modelled_curve
     real(wp), private :: deepest = 0
     logical, private :: has_rates = .false.
   contains
+    procedure :: use_model
     procedure :: ask
     procedure :: signal_of
     procedure :: signal_rates
@@ -41,6 +42,15 @@ module modelled_curve
   end type modelled_curve_t
 
 contains
+
+  !> Takes another model, which has answered nothing yet.
+  subroutine use_model(self, model)
+    class(modelled_curve_t), intent(inout) :: self
+    class(force_model_t), intent(in), target :: model
+
+    self%model => model
+    if (allocated(self%asked)) deallocate (self%asked)
+  end subroutine use_model
 
   !> Has the model answer for these values, unless it has.
   subroutine ask(self, value, with_rates, found)
@@ -69,19 +79,22 @@ contains
     self%has_rates = with_rates
   end subroutine ask
 
-  !> The model's part of the signal at samples, for the values asked for last.
-  function signal_of(self, value, sample) result(signal)
+  !> The model's part of the signal at samples, for the values asked for last; all on one `side` of
+  !> their jump, or each on the side on which it was measured.
+  function signal_of(self, value, sample, side) result(signal)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
     integer, intent(in) :: sample(:)
+    integer, intent(in), optional :: side
     real(wp) :: signal(size(sample))
     type(load_at_t) :: load
-    integer :: i, n
+    integer :: i, n, on_side
 
     do n = 1, size(sample)
       i = sample(n)
-      load = self%response%load_on(self%data%way(i), max(self%data%side(i), 0), &
-        self%position_of(value, i))
+      on_side = max(self%data%side(i), 0)
+      if (present(side)) on_side = side
+      load = self%response%load_on(self%data%way(i), on_side, self%position_of(value, i))
       signal(n) = load%load
     end do
     signal = signal/(self%number_of(value, of_spring, self%spring)* &

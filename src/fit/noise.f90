@@ -5,10 +5,14 @@ module noise
   use kinds, only: wp
   implicit none
   private
-  public :: noise_t, white_noise, noise_of, whiten
+  public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, &
+    median_of, normal_median, whiten
 
   !> Most samples from which another is foretold.
   integer, parameter :: longest = 8
+
+  !> The median of the magnitude of a normal number.
+  real(wp), parameter :: normal_median = 0.6745_wp
 
   !> Standard deviation; correlation of samples so many apart; how many of those before a sample
   !> tell something of it, by what weights (of the nearest first, column k where there are k), and
@@ -16,10 +20,24 @@ module noise
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
+    !> By as many independent samples it is known; and whether these are the steps between the samples
+    !> that it is compared with.
+    real(wp) :: known_by = huge(1.0_wp)
+    logical :: of_steps = .false.
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
+  contains
+    procedure :: long_deviation
   end type noise_t
 
 contains
+
+  !> The deviation of white noise whose means over many samples scatter as much.
+  pure real(wp) function long_deviation(self) result(deviation)
+    class(noise_t), intent(in) :: self
+
+    deviation = self%left(self%order)/ &
+      abs(1 - sum(self%weight(:self%order, max(1, self%order))))
+  end function long_deviation
 
   !> Noise without correlation.
   pure type(noise_t) function white_noise(deviation) result(noise)
@@ -48,10 +66,60 @@ contains
     end do
     ! Each line took two unknowns.
     noise = white_noise(sqrt(covariance(0)*n/max(1, n - 2*(maxval(run) - minval(run) + 1))))
+    noise%known_by = n
     if (.not. covariance(0) > 0) return
     noise%correlation = covariance/covariance(0)
     call find_weights(noise, n)
   end function noise_of
+
+  !> White noise that makes the steps between neighbours of one run in something smooth; `steps`: how
+  !> many there are (von Neumann, 1941).
+  pure subroutine noise_of_steps(smooth, run, noise, steps)
+    real(wp), intent(in) :: smooth(:)
+    integer, intent(in) :: run(:)
+    type(noise_t), intent(out) :: noise
+    integer, intent(out) :: steps
+    logical :: mask(size(run) - 1)
+
+    mask = run(2:) == run(:size(run) - 1)
+    steps = count(mask)
+    noise = white_noise(sqrt(sum((smooth(2:) - smooth(:size(run) - 1))**2, mask)/ &
+      (2*max(1, steps))))
+    ! Steps have a sample in common.
+    noise%known_by = max(1.0_wp, 2*steps/3.0_wp)
+    noise%of_steps = .true.
+  end subroutine noise_of_steps
+
+  !> The deviation of white noise in a signal that otherwise is smooth, but for outliers: from the
+  !> median of its second differences.
+  pure real(wp) function rough_deviation(signal) result(deviation)
+    real(wp), intent(in) :: signal(:)
+    !> The sum of the squares of 1, -2, 1.
+    real(wp), parameter :: squares = 6
+    integer :: n
+
+    n = size(signal)
+    deviation = median_of(abs(signal(3:) - 2*signal(2:n - 1) + signal(:n - 2)))/ &
+      (normal_median*sqrt(squares))
+  end function rough_deviation
+
+  !> The median of numbers that are not negative, by bisection.
+  pure real(wp) function median_of(numbers) result(middle)
+    real(wp), intent(in) :: numbers(:)
+    real(wp) :: low, high
+    integer :: step
+
+    low = 0
+    high = maxval(numbers)
+    do step = 1, 60
+      middle = 0.5_wp*(low + high)
+      if (2*count(numbers > middle) > size(numbers)) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
+  end function median_of
 
   !> What is left of the samples in `mask` beside their straight line.
   pure function off_line(z, signal, mask) result(r)
@@ -66,7 +134,7 @@ contains
   end function off_line
 
   !> The weights of all orders from the correlations, and the order that is worth its unknowns: the
-  !> one with the least n ln(left^2) + 2 order (Akaike, 1974).
+  !> one with the least n ln(left^2) + order ln(n) (Schwarz, 1978).
   pure subroutine find_weights(noise, n)
     type(noise_t), intent(inout) :: noise
     integer, intent(in) :: n
@@ -84,7 +152,7 @@ contains
       before = noise%weight(:, k)
       left = left*(1 - reflection**2)
       noise%left(k) = noise%deviation*sqrt(left)
-      gain = n*log(left) + 2*k
+      gain = n*log(left) + k*log(real(n, wp))
       if (gain >= best) cycle
       best = gain
       noise%order = k

@@ -1,6 +1,7 @@
 !> A text file with a table of numbers, as measuring programs write it: comments after #, perhaps a
-!> line with the names of the columns, then a row a line, cells apart by blanks, tabs, commas or
-!> semicolons.
+!> line with the names of the columns, itself perhaps a comment, then a row a line, cells apart by
+!> blanks, tabs, commas or semicolons. Where semicolons or tabs stand between cells, a comma within a
+!> number is a decimal one.
 module data_table
   use kinds, only: wp
   use failure, only: failure_t
@@ -10,7 +11,7 @@ module data_table
   use number_columns, only: uncommented, between
   implicit none
   private
-  public :: data_table_t, read_data_table
+  public :: data_table_t, read_data_table, largest_table
 
   !> The columns asked for, value(row, column), and where in the file's text each row stands.
   type :: data_table_t
@@ -24,6 +25,8 @@ module data_table
     integer :: first = 0, last = 0
   end type cell_t
 
+  !> Bytes of a table.
+  integer, parameter :: largest_table = 64*2**20
   character(len=*), parameter :: newline = new_line('a')
 
 contains
@@ -35,28 +38,41 @@ contains
     character(len=*), intent(in) :: file, wanted(:)
     type(data_table_t), intent(out) :: table
     type(failure_t), allocatable, intent(out) :: error
-    type(cell_t), allocatable :: cells(:)
-    integer :: first, next, n, columns, at(size(wanted))
+    type(cell_t), allocatable :: cells(:), names(:)
+    integer :: first, next, n, columns, at(size(wanted)), named
 
-    call load_source(file, table%source, error)
+    call load_source(file, table%source, error, largest_table)
     if (allocated(error)) return
+    call point_decimals(table%source%text)
     n = count([(table%source%text(first:first) == newline, first=1, &
       len(table%source%text))]) + 1
     allocate (table%value(n, size(wanted)), table%place(n))
     n = 0
     columns = 0
+    named = 0
     next = 1
     do while (next <= len(table%source%text))
       first = next
       next = first + scan(table%source%text(first:), newline)
       if (next == first) next = len(table%source%text) + 2
       call split(uncommented(table%source%part(first, next - 2)), cells)
-      if (size(cells) == 0) cycle
+      if (size(cells) == 0) then
+        ! The last comment before the rows may have the names.
+        if (columns == 0 .and. index(table%source%part(first, next - 2), '#') > 0) named = first
+        cycle
+      end if
       if (columns == 0) then
         columns = size(cells)
-        call find_columns(table%source, first, cells, wanted, at, error)
+        if (.not. is_header(table%source, first, cells) .and. named > 0) then
+          call split(after_mark(table%source%part(named, first - 2)), names)
+          if (size(names) /= columns) named = 0
+        else
+          named = 0
+        end if
+        if (named > 0) call find_columns(table%source, named, names, wanted, at, error)
+        if (named == 0) call find_columns(table%source, first, cells, wanted, at, error)
         if (allocated(error)) return
-        if (is_header(table%source, first, cells)) cycle
+        if (named == 0 .and. is_header(table%source, first, cells)) cycle
       end if
       if (size(cells) /= columns) then
         call table%source%complain(first, '', '', counted(size(cells)) // ' where ' // &
@@ -71,6 +87,41 @@ contains
     table%value = table%value(:n, :)
     table%place = table%place(:n)
   end subroutine read_data_table
+
+  !> The first line of some, with its comment mark a blank.
+  pure function after_mark(lines) result(line)
+    character(len=*), intent(in) :: lines
+    character(len=:), allocatable :: line
+    integer :: i
+
+    i = index(lines, newline) - 1
+    if (i < 0) i = len(lines)
+    line = lines(:i)
+    do i = 1, len(line)
+      if (line(i:i) == '#') line(i:i) = ' '
+    end do
+  end function after_mark
+
+  !> Writes decimal commas as points: commas between digits in lines that have semicolons or tabs
+  !> between cells.
+  pure subroutine point_decimals(text)
+    character(len=*), intent(inout) :: text
+    character(len=*), parameter :: digits = '0123456789'
+    integer :: first, next, i
+
+    next = 1
+    do while (next <= len(text))
+      first = next
+      next = first + scan(text(first:), newline)
+      if (next == first) next = len(text) + 2
+      if (scan(text(first:next - 2), ';' // achar(9)) == 0) cycle
+      do i = first + 1, next - 3
+        if (text(i:i) /= ',') cycle
+        if (scan(text(i - 1:i - 1), digits) > 0 .and. scan(text(i + 1:i + 1), digits) > 0) &
+          text(i:i) = '.'
+      end do
+    end do
+  end subroutine point_decimals
 
   !> The cells of a line.
   subroutine split(line, cells)

@@ -32,10 +32,11 @@ contains
 
   !> Reads `file` whole. Fails on files that are missing, unreadable, a folder, too large or not
   !> plain text.
-  subroutine load_source(file, source, error)
+  subroutine load_source(file, source, error, most)
     character(len=*), intent(in) :: file
     type(source_t), intent(out) :: source
     type(failure_t), allocatable, intent(out) :: error
+    integer, intent(in), optional :: most
     character(len=:), allocatable :: bytes, reason
     integer(c_int) :: descriptor, status, sort
     integer :: n
@@ -56,30 +57,38 @@ contains
       end if
       return
     end if
-    allocate (character(len=largest_deck + 1) :: bytes)
+    n = largest_deck
+    if (present(most)) n = most
+    allocate (character(len=n + 1) :: bytes)
     n = int(c_read(descriptor, bytes, int(len(bytes), c_long)))
     status = c_close(descriptor)
     if (n < 0) then
       call explain(int(n, c_int), sort, reason)
       call fail(error, file_trouble, source%file // ': cannot be read: ' // reason)
     else
-      call take_source(file, bytes(:n), source, error)
+      call take_source(file, bytes(:n), source, error, most)
     end if
   end subroutine load_source
 
   !> Takes the bytes of a deck; messages call it `name`. Fails where they are too many or not plain
   !> text.
-  subroutine take_source(name, bytes, source, error)
+  subroutine take_source(name, bytes, source, error, most)
     character(len=*), intent(in) :: name, bytes
     type(source_t), intent(out) :: source
     type(failure_t), allocatable, intent(out) :: error
+    integer, intent(in), optional :: most
+    character(len=12) :: limit
     integer :: n
 
     source%file = printable(name)
     source%text = ''
     source%folder = name(:index(name, '/', back=.true.))
-    if (len(bytes) > largest_deck) then
-      call fail(error, bad_input, source%file // ': larger than 1 MiB, so not a deck')
+    n = largest_deck
+    if (present(most)) n = most
+    if (len(bytes) > n) then
+      write (limit, '(i0)') n/2**20
+      call fail(error, bad_input, source%file // ': larger than ' // trim(limit) // ' MiB, so ' // &
+        merge('not a table', 'not a deck ', present(most)))
       return
     end if
     call straighten(bytes, source%text)

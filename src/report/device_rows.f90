@@ -107,7 +107,7 @@ contains
 
       call results%row(cells([driven%stiffness]) // ',' // direction, &
         [z_of(problem, driven%drive, h0, load), problem%law%separation_of(h0), &
-        load*problem%load, radius*problem%lateral], stable)
+        load*problem%load, radius*problem%lateral], [stable])
     end subroutine add
 
   end subroutine write_device

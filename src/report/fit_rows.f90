@@ -1,7 +1,8 @@
 !> What a fit found: fit.csv, sample by sample; fit.nml, the unknowns; and the same in words.
 module fit_rows
   use kinds, only: wp
-  use text, only: rounded, brief
+  use text, only: rounded, rounded_to, brief
+  use dimensionless_problem, only: adhesion_strength, tabor_parameter
   use namelist_writer, only: line_t, assignment_of
   use results, only: results_t
   use fit_request, only: unknown_t
@@ -21,8 +22,13 @@ module fit_rows
     'model [] the same by the model, with its baseline', &
     'baseline [] the signal without force', &
     'residual [] measured less model', &
-    'used [] 1: the sample counts; 0: it is the last before a jump, or within it']
+    'used [] 1: the sample counts; 0: it is an outlier, skipped, the last before a jump, or in it', &
+    'outlier [] 1: it stands apart from its neighbours by more than noise']
 
+  !> More that a theory may leave, in chi squared, and still do as well.
+  real(wp), parameter :: as_well = 4
+  !> Standard deviations of a 95 % interval.
+  real(wp), parameter :: most = 1.959964_wp
   character(len=1), parameter :: nl = new_line('a')
 
 contains
@@ -31,15 +37,16 @@ contains
   subroutine write_fit_rows(outcome, results)
     type(fit_outcome_t), intent(in) :: outcome
     type(results_t), intent(inout) :: results
-    logical :: used(size(outcome%curve%data%measured%z))
+    logical :: used(size(outcome%curve%data%way))
     integer :: i
 
+    used = .false.
+    used(outcome%curve%data%sample) = .true.
     associate (data => outcome%curve%data%measured, fitted => outcome%fitted)
-      used = .false.
-      used(outcome%curve%data%sample) = .true.
       do i = 1, size(used)
         call results%row(trim(merge('approach', 'retreat ', data%inward(i))), [data%z(i), &
-          data%signal(i), fitted%model(i), fitted%baseline(i), fitted%residual(i)], used(i))
+          data%signal(i), fitted%model(i), fitted%baseline(i), fitted%residual(i)], &
+          [used(i), .not. (data%usable(i) .or. data%skipped(i))])
       end do
     end associate
   end subroutine write_fit_rows
@@ -59,6 +66,14 @@ contains
       '&fit' // nl // assignment_of('title', name) // &
       of_fitted(outcome%curve%unknown, outcome%fitted)
     associate (curve => outcome%curve)
+      numbers = [real(count(.not. (curve%data%measured%usable .or. curve%data%measured%skipped)), wp)]
+      text = text // assignment_of('outliers', numbers)
+      if (allocated(outcome%problem)) then
+        numbers = [adhesion_strength(outcome%problem)]
+        text = text // assignment_of('sigma', numbers)
+        numbers = [tabor_parameter(outcome%problem)]
+        text = text // assignment_of('tabor', numbers)
+      end if
       numbers = [curve%data%noise%deviation]
       text = text // assignment_of('noise', numbers)
       numbers = curve%data%noise%correlation(1:)
@@ -99,6 +114,10 @@ contains
     text = text // assignment_of('lower_68', numbers)
     numbers = [(fitted%end_of(i, unknown(i), 1.0_wp), i=1, size(unknown))]
     text = text // assignment_of('upper_68', numbers)
+    numbers = [(fitted%end_of(i, unknown(i), -most), i=1, size(unknown))]
+    text = text // assignment_of('lower_95', numbers)
+    numbers = [(fitted%end_of(i, unknown(i), most), i=1, size(unknown))]
+    text = text // assignment_of('upper_95', numbers)
     numbers = reshape(fitted%correlation, [size(fitted%correlation)])
     text = text // assignment_of('correlation', numbers)
     numbers = [fitted%identifiable]
@@ -107,6 +126,10 @@ contains
     text = text // assignment_of('chi_squared', numbers)
     numbers = [real(fitted%freedom, wp)]
     text = text // assignment_of('degrees_of_freedom', numbers)
+    numbers = [fitted%lack%excess]
+    text = text // assignment_of('excess', numbers)
+    numbers = [real(fitted%lack%width, wp)]
+    text = text // assignment_of('excess_width', numbers)
   end function of_fitted
 
   !> Where the base was at a jump, as measured and by the model; nothing where none was seen.
@@ -139,11 +162,12 @@ contains
     associate (curve => outcome%curve)
       line%text = brief(real(size(curve%data%sample), wp)) // ' samples, noise ' // &
         rounded(curve%data%noise%deviation) // ', correlation of neighbours ' // &
-        rounded(curve%data%noise%correlation(1))
+        rounded(curve%data%noise%correlation(1)) // ', ' // brief(real(count(.not. &
+        (curve%data%measured%usable .or. curve%data%measured%skipped)), wp)) // ' outliers left out'
       lines = [lines, line]
       do i = 1, size(curve%unknown)
-        line%text = curve%unknown(i)%name // ' = ' // rounded(outcome%fitted%value(i)) // &
-          ' +- ' // rounded(outcome%fitted%deviation(i))
+        line%text = curve%unknown(i)%name // ' = ' // rounded_to(outcome%fitted%value(i), &
+          outcome%fitted%deviation(i)) // ' +- ' // rounded(outcome%fitted%deviation(i))
         lines = [lines, line]
       end do
     end associate
@@ -156,6 +180,18 @@ contains
       end associate
     end do
     lines = [lines, line]
+    do i = 1, size(outcome%theory)
+      associate (theory => outcome%theory(i))
+        if (.not. allocated(theory%fitted%effect) .or. .not. theory%fitted%lack%is_noise()) cycle
+        if (theory%fitted%chi_squared > outcome%fitted%chi_squared + as_well) cycle
+        line%text = trim(theory%theory) // ', which has no force before contact, describes these ' // &
+          'data ' // trim(merge('better ', 'as well', theory%fitted%chi_squared < &
+          outcome%fitted%chi_squared - as_well)) // ': chi squared ' // &
+          rounded_to(theory%fitted%chi_squared, 1.0_wp) // ' against ' // &
+          rounded_to(outcome%fitted%chi_squared, 1.0_wp)
+        lines = [lines, line]
+      end associate
+    end do
   end function fit_words
 
   !> What a fit leaves over the noise.

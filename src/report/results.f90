@@ -209,20 +209,23 @@ contains
     call self%begin(self%beside, name, columns, self%trouble)
   end subroutine begin_table
 
-  !> Adds a row: text first, then numbers, then 1 or 0 for `truth`, of which each may be absent.
-  subroutine row(self, text, numbers, truth)
+  !> Adds a row: text first, then numbers, then 1 or 0 for each of `truths`; text may be absent.
+  subroutine row(self, text, numbers, truths)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in), optional :: text
-    real(wp), intent(in), optional :: numbers(:)
-    logical, intent(in), optional :: truth
+    real(wp), intent(in) :: numbers(:)
+    logical, intent(in), optional :: truths(:)
     character(len=:), allocatable :: line
+    integer :: i
 
     if (allocated(self%trouble)) return
-    line = ''
-    if (present(text)) line = text
-    if (present(numbers)) line = line // ',' // cells(numbers)
-    if (present(truth)) line = line // merge(',1', ',0', truth)
-    if (.not. present(text)) line = line(2:)
+    line = cells(numbers)
+    if (present(text)) line = text // ',' // line
+    if (present(truths)) then
+      do i = 1, size(truths)
+        line = line // merge(',1', ',0', truths(i))
+      end do
+    end if
     call self%beside%line(line, self%trouble)
   end subroutine row
 

@@ -24,7 +24,7 @@ module summarise
   use quality_warnings, only: judge_resolution, judge_accuracy, judge_stopping
   implicit none
   private
-  public :: summary_of
+  public :: summary_of, describe_problem
 
 contains
 

@@ -76,7 +76,7 @@ contains
   end function range_of
 
   !> The extent of all rows.
-  pure type(extent_t) function extent_of(outcome) result(extent)
+  type(extent_t) function extent_of(outcome) result(extent)
     type(experiment_result_t), intent(in) :: outcome
     integer :: k
 
@@ -90,7 +90,7 @@ contains
 
   contains
 
-    pure subroutine join(other)
+    subroutine join(other)
       type(extent_t), intent(in) :: other
 
       extent%contact_radius = max(extent%contact_radius, other%contact_radius)

@@ -6,6 +6,7 @@ module fit_group
   use deck, only: deck_t
   use deck_numbers, only: find_number
   use deck_source, only: source_t, load_source
+  use data_table, only: largest_table
   use deck_keys, only: key_spec, group, real_key, list_key, text_key, word_key, names_key
   use fit_request, only: unknown_t, of_contact_point, of_sensitivity, of_spring
   use scene_groups, only: scene_t
@@ -14,7 +15,7 @@ module fit_group
   private
   public :: fit_keys, take_fit, family_of_fit
 
-  integer, parameter :: most_unknowns = 20
+  integer, parameter :: most_unknowns = 20, most_skipped = 40
 
 contains
 
@@ -38,6 +39,10 @@ contains
                // 'for a deflection in metres.', above=zero, otherwise='the signal is the force'), &
       real_key('measurement', 'contact_point', 'm', 'Position of the base at which undeformed ' // &
                'bodies would touch.', otherwise='found by the fit'), &
+      names_key('measurement', 'units', 2, 'Units of position (m, mm, um, nm, pm) and signal (N, ' // &
+                'mN, uN, nN, pN, V, mV) in the file.', otherwise='m and N or V'), &
+      list_key('measurement', 'skip', 'm', 'Pairs of positions of the base, SI; samples between ' // &
+               'the two of a pair do not count.', most=most_skipped, otherwise='none'), &
       word_key('measurement', 'segment', 'both approach retreat', 'Which way is fitted.', &
                default='both'), &
       group('fit', 'Keys of this deck found such that the path''s curve is that of ' // &
@@ -92,7 +97,7 @@ contains
 
     associate (deck => scene%deck, measurement => scene%measurement)
       measurement%file = deck%path_of('measurement', 'file')
-      call load_source(measurement%file, source, trouble)
+      call load_source(measurement%file, source, trouble, largest_table)
       if (allocated(trouble)) then
         call deck%mistake('measurement', 'file', trouble%message, error)
         return
@@ -108,9 +113,49 @@ contains
       call deck%get_optional('measurement', 'sensitivity', measurement%sensitivity)
       call deck%get_optional('measurement', 'contact_point', measurement%contact_point)
       call deck%get('measurement', 'segment', measurement%segment)
+      call take_skipped(deck, measurement%skip, error)
+      call take_units(deck, measurement%unit, error)
       call deck%get_optional('fit', 'noise', scene%fit%noise)
     end associate
   end subroutine take_measurement
+
+  !> The units of the file's columns: SI prefixes before metres, newtons and volts.
+  subroutine take_units(deck, unit, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), intent(out) :: unit(2)
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=*), parameter :: prefixes = 'munp', bases(2) = ['m ', 'NV']
+    integer, parameter :: powers(*) = [-3, -6, -9, -12]
+    character(len=:), allocatable :: names, name
+    integer :: i, k
+
+    unit = 1
+    call deck%get('measurement', 'units', names)
+    do i = 1, min(2, word_count(names))
+      name = word_of(names, i)
+      k = 0
+      if (len(name) == 2) k = index(prefixes, name(1:1))
+      if (k > 0) unit(i) = 10.0_wp**powers(k)
+      if (index(trim(bases(i)), name(len(name):)) == 0 .or. (k == 0 .and. len(name) /= 1)) &
+        call deck%mistake('measurement', 'units', quoted(name) // ' is no unit of ' // &
+        trim(merge('position', 'signal  ', i == 1)) // ' such as ' // &
+        trim(merge('nm', 'nN', i == 1)), error)
+    end do
+  end subroutine take_units
+
+  !> Ranges of position that do not count.
+  subroutine take_skipped(deck, skip, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), allocatable, intent(out) :: skip(:)
+    type(failure_t), allocatable, intent(inout) :: error
+
+    call deck%get('measurement', 'skip', skip)
+    if (mod(size(skip), 2) == 1) then
+      call deck%mistake('measurement', 'skip', 'positions come in pairs: from and to', error)
+    else if (any(skip(1::2) > skip(2::2))) then
+      call deck%mistake('measurement', 'skip', 'the first of each pair is the smaller', error)
+    end if
+  end subroutine take_skipped
 
   !> The problems whose parameters are the unknowns of bodies, shape and forces, in their order.
   subroutine family_of_fit(deck, family, error)

@@ -97,13 +97,14 @@ def test_data_without_noise_give_the_values_back(exact, name):
     result = run(fit_deck(start, exact(name), [*truth, POINT], FINE))
     found = values_of(result)
     assert result.converged
+    # The jumps are known to the distance of samples only, and pull by half of that.
     for key, value in truth.items():
-        assert found[key] == pytest.approx(value, rel=1e-6)
+        assert found[key] == pytest.approx(value, rel=2e-6)
     # To a thousandth of a picometre.
     assert found[POINT] == pytest.approx(CONTACT_POINT, abs=1e-15)
-    # Within a jump nothing counts; elsewhere the model is the data.
+    # Within a jump nothing counts; elsewhere the model is the data, to a fifth of the said noise.
     used = result.fit["used"] == 1
-    assert np.abs(result.fit["residual"][used]).max() < 1e-14
+    assert np.abs(result.fit["residual"][used]).max() < 2e-14
     # The last sample before each of two jumps, and what lies within.
     assert (~used).sum() <= 6
 
@@ -140,14 +141,13 @@ def test_errors_and_correlations_are_those_of_differences_between_curves(branche
     inward, used = segment == 0, result.fit["used"] == 1
 
     def model(groups, curve, shift=0.0):
-        """Samples, and the jump that stands out of so few, over their errors; shift: of the contact
-        point."""
+        """Samples and jumps over their errors; shift: of the contact point."""
         force = np.where(inward, curve.force(z - shift, True), curve.force(z - shift, False))
         summary = run({**groups, "equilibrium_path": {"h0_end": -2e-9},
                        "device": {"stiffness": SPRING}, "numerics": {"accuracy": 1e-9}}).summary
-        jump = summary["device_jump_out_z"] + shift
-        jump_error = result.fitted["fit"]["jump_out_z_uncertainty"]
-        return np.concatenate([force[used] / noise, jump / jump_error])
+        jumps = [(summary[f"device_jump_{way}_z"] + shift) /
+                 result.fitted["fit"][f"jump_{way}_z_uncertainty"] for way in ("in", "out")]
+        return np.concatenate([force[used] / noise, *jumps])
 
     # A measured jump lies between samples, and so the solution is a little off the truth.
     found = values_of(result)
@@ -163,7 +163,7 @@ def test_errors_and_correlations_are_those_of_differences_between_curves(branche
     curve = Branches(solution)
     columns.append((model(solution, curve, off) - model(solution, curve, -off)) / (2 * off))
     for baseline in (np.ones_like(z), z):
-        columns.append(np.append(baseline[used] / noise, 0))
+        columns.append(np.append(baseline[used] / noise, [0, 0]))
     jacobian = np.array(columns).T
     scale = np.abs(jacobian).max(axis=0)
     covariance = np.linalg.inv(jacobian.T / scale[:, None] @ jacobian / scale)

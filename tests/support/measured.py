@@ -80,11 +80,11 @@ def _hermite(at, x, y):
     )
 
 
-def write(path, z, signal, segment=None, header="z,force,segment"):
+def write(path, z, signal, segment=None, header="z,force,segment", digits=16):
     """Write a measured curve; without segments the file has two columns."""
     columns = [z, signal] if segment is None else [z, signal, segment]
     names = ",".join(header.split(",")[: len(columns)])
-    np.savetxt(path, np.column_stack(columns), "%.16e", ",", header=names, comments="")
+    np.savetxt(path, np.column_stack(columns), f"%.{digits}e", ",", header=names, comments="")
     return str(path)
 
 

@@ -1,0 +1,132 @@
+!> Where the search for a model's unknowns may start: at the deck's values, and at those with which
+!> work of adhesion, stiffness and range of the force are what the data say by themselves and by the
+!> classical theories.
+module fit_starts
+  use kinds, only: wp
+  use failure, only: failure_t
+  use linear_algebra, only: factorisation_t, factorise, solve
+  use dimensionless_problem, only: problem_t, surface_energy, largest_tension
+  use problem_family, only: problem_family_t
+  use fit_request, only: unknown_t, of_model
+  implicit none
+  private
+  public :: character_t, character_of, starts_like
+
+  !> Work of adhesion [J/m^2], stiffness [Pa] and range [m], which is work over largest tension.
+  type :: character_t
+    real(wp) :: work = 0, stiffness = 0, range = 0
+  end type character_t
+
+  !> Steps of Newton's method, and of its differences; how far from the deck's value a start may be,
+  !> as a logarithm; starts that differ by less are one.
+  integer, parameter :: steps = 6
+  real(wp), parameter :: change = 1.0e-3_wp, farthest = 4.5_wp, alike = 0.05_wp
+  !> What of a step is not worth moving an unknown for that has hardly an effect.
+  real(wp), parameter :: damping = 1.0e-4_wp
+
+contains
+
+  !> The character of a problem; range 0 for a law without a largest tension.
+  pure type(character_t) function character_of(problem) result(character)
+    type(problem_t), intent(in) :: problem
+    real(wp) :: tension
+
+    character%work = surface_energy(problem)
+    character%stiffness = problem%stiffness
+    tension = largest_tension(problem)
+    if (tension > 0) character%range = character%work/tension
+  end function character_of
+
+  !> Values of the unknowns, (unknown, start), first the deck's, then as like each of `wanted` as
+  !> the least change of the deck's can make them.
+  subroutine starts_like(wanted, family, unknown, start)
+    type(character_t), intent(in) :: wanted(:)
+    class(problem_family_t), intent(in) :: family
+    type(unknown_t), intent(in) :: unknown(:)
+    real(wp), allocatable, intent(out) :: start(:, :)
+    real(wp) :: value(size(unknown))
+    logical :: found, new
+    integer :: i, k, n
+
+    n = size(unknown)
+    start = reshape(unknown%value, [n, 1])
+    do i = 1, size(wanted)
+      call move_to(wanted(i), family, unknown, value, found)
+      if (.not. found) cycle
+      new = .true.
+      do k = 1, size(start, 2)
+        new = new .and. any(unknown%in_log .and. abs(value - start(:, k)) > alike*abs(value))
+      end do
+      if (new) start = reshape([start, value], [n, size(start, 2) + 1])
+    end do
+  end subroutine starts_like
+
+  !> The values nearest to the deck's, in their logarithms, whose problem has a character.
+  subroutine move_to(wanted, family, unknown, value, found)
+    type(character_t), intent(in) :: wanted
+    class(problem_family_t), intent(in) :: family
+    type(unknown_t), intent(in) :: unknown(:)
+    real(wp), intent(out) :: value(:)
+    logical, intent(out) :: found
+    type(factorisation_t) :: square
+    real(wp) :: now(3), next(3), missing(3), by(3, size(unknown)), varied(size(unknown)), low, high
+    integer :: i, k
+
+    value = unknown%value
+    do i = 1, steps
+      call traits(family, unknown, value, now, found)
+      if (.not. found) return
+      missing = logarithms(wanted) - now
+      by = 0
+      do k = 1, size(unknown)
+        if (unknown(k)%role /= of_model .or. .not. unknown(k)%in_log) cycle
+        varied = value
+        varied(k) = value(k)*exp(change)
+        call traits(family, unknown, varied, next, found)
+        if (found) by(:, k) = (next - now)/change
+      end do
+      square%lu = matmul(by, transpose(by))
+      do k = 1, 3
+        square%lu(k, k) = square%lu(k, k) + damping
+      end do
+      call factorise(square)
+      found = square%valid
+      if (.not. found) return
+      call solve(square, missing)
+      value = value*exp(max(-2.0_wp, min(2.0_wp, matmul(missing, by))))
+      do k = 1, size(unknown)
+        if (.not. unknown(k)%in_log) cycle
+        low = unknown(k)%value*exp(-farthest)
+        high = unknown(k)%value*exp(farthest)
+        if (allocated(unknown(k)%lower)) low = max(low, unknown(k)%lower)
+        if (allocated(unknown(k)%upper)) high = min(high, unknown(k)%upper)
+        value(k) = max(low, min(high, value(k)))
+      end do
+    end do
+  end subroutine move_to
+
+  !> What is to be made alike, for values of the unknowns.
+  subroutine traits(family, unknown, value, trait, found)
+    class(problem_family_t), intent(in) :: family
+    type(unknown_t), intent(in) :: unknown(:)
+    real(wp), intent(in) :: value(:)
+    real(wp), intent(out) :: trait(3)
+    logical, intent(out) :: found
+    type(problem_t) :: problem
+    type(failure_t), allocatable :: error
+
+    trait = 0
+    call family%pose(pack(value, unknown%role == of_model), problem, error)
+    found = .not. allocated(error)
+    if (found) found = surface_energy(problem) > 0
+    if (found) trait = logarithms(character_of(problem))
+  end subroutine traits
+
+  pure function logarithms(character) result(trait)
+    type(character_t), intent(in) :: character
+    real(wp) :: trait(3)
+
+    trait = log(max([character%work, character%stiffness, character%range], tiny(1.0_wp)))
+  end function logarithms
+
+end module fit_starts

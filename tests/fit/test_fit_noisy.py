@@ -1,0 +1,157 @@
+"""Claims about fits of curves as instruments give them: much noise, outliers, starts that are far off,
+little baseline, models that are wrong."""
+
+import numpy as np
+import pytest
+import snapin
+from support.measured import LENNARD_JONES, Branches, fit_deck, run, write
+
+POINT = "measurement.contact_point"
+STRENGTH, STIFFNESS = "force.hamaker", "bodies.stiffness"
+TRUTH = {STRENGTH: 1e-19, STIFFNESS: 1e10, POINT: 0.0}
+# Three hundredths of the pull-off; the spring changes by a fifth of it from sample to sample.
+NOISE, SAMPLES = 2e-10, 1500
+
+
+@pytest.fixture(scope="module")
+def branches():
+    return Branches(LENNARD_JONES)
+
+
+def started(strength=1.0, stiffness=1.0, **force):
+    return {"bodies": {"radius": 50e-9, "stiffness": 1e10 * stiffness},
+            "force": {**LENNARD_JONES["force"], "hamaker": 1e-19 * strength, **force}}
+
+
+def fitted(tmp_path, curve, groups, **others):
+    file = write(tmp_path / "curve.csv", *curve)
+    return run(fit_deck(groups, file, list(TRUTH), **others))
+
+
+def errors_off(result):
+    fit = result.fitted["fit"]
+    return (fit["estimate"] - list(TRUTH.values())) / fit["standard_error"]
+
+
+def jumps_off(result, branches):
+    """How many of their uncertainties the measured jumps are from those of the curve."""
+    fit = result.fitted["fit"]
+    true = branches.outer[0][0], branches.inner[0][-1]
+    return [(fit[f"jump_{way}_z"][0] - z) / fit[f"jump_{way}_z_uncertainty"][0]
+            for way, z in zip(("in", "out"), true)]
+
+
+@pytest.mark.parametrize("start", [(1.0, 1.0), (1.6, 1.0), (8.0, 0.15), (0.12, 5.0)])
+def test_a_noisy_oversampled_curve_gives_truth_and_jumps_from_any_start(branches, tmp_path, start):
+    result = fitted(tmp_path, branches.measure(SAMPLES, NOISE, seed=3), started(*start))
+    assert np.abs(errors_off(result)).max() < 4
+    assert np.abs(jumps_off(result, branches)).max() < 4
+    assert result.fitted["fit"]["noise"][0] == pytest.approx(NOISE, rel=0.1)
+    assert not any("does not describe" in text for text in result.summary.get("warnings", []))
+
+
+def test_outliers_are_left_out_and_marked(branches, tmp_path):
+    z, force, segment = branches.measure(SAMPLES, NOISE, seed=5)
+    rng = np.random.default_rng(6)
+    spoilt = rng.random(len(z)) < 0.05
+    force = force + spoilt * rng.choice([-1, 1], len(z)) * rng.uniform(10, 40, len(z)) * NOISE
+    result = fitted(tmp_path, (z, force, segment), started(2.0))
+    assert np.abs(errors_off(result)).max() < 4
+    assert np.abs(jumps_off(result, branches)).max() < 4
+    assert result.fitted["fit"]["noise"][0] == pytest.approx(NOISE, rel=0.1)
+    marked = result.fit["outlier"] == 1
+    assert result.fitted["fit"]["outliers"][0] == marked.sum()
+    assert (result.fit["used"][marked] == 0).all()
+    # All that count are good, and next to no good sample is marked.
+    assert not (spoilt & (result.fit["used"] == 1)).any()
+    assert (marked & ~spoilt).sum() <= 2
+
+
+def test_a_wrong_range_of_force_is_said(branches, tmp_path):
+    """z0 held at twice the truth: what is left exceeds the noise by little, but for long."""
+    result = fitted(tmp_path, branches.measure(SAMPLES, NOISE, seed=3), started(4.0, z0=6e-10))
+    fit = result.fitted["fit"]
+    assert np.abs(errors_off(result)).max() > 5
+    assert fit["chi_squared"][0] < 1.5 * fit["degrees_of_freedom"][0]
+    assert any("does not describe" in text for text in result.summary["warnings"])
+
+
+def test_little_baseline_is_enough(branches, tmp_path):
+    z, force, segment = branches.measure(SAMPLES, NOISE, seed=3)
+    near = z < branches.inner[0][-1] + 5 * 5.5e-11
+    result = fitted(tmp_path, (z[near], force[near], segment[near]), started())
+    assert np.abs(errors_off(result)).max() < 4
+
+
+def test_skipped_samples_do_not_count(branches, tmp_path):
+    z, force, segment = branches.measure(SAMPLES, NOISE, seed=3)
+    spoilt = (z > 20e-9) & (z < 25e-9)
+    clean = fitted(tmp_path, (z[~spoilt], force[~spoilt], segment[~spoilt]), started())
+    skipped = fitted(tmp_path, (z, force + 1e-8 * spoilt, segment), started(),
+                     measurement={"skip": [20e-9, 25e-9]})
+    assert skipped.fitted["fit"]["estimate"] == pytest.approx(
+        clean.fitted["fit"]["estimate"], rel=1e-3, abs=1e-12)
+    assert not result_uses(skipped, spoilt)
+
+
+def result_uses(result, samples):
+    return (result.fit["used"][samples] == 1).any()
+
+
+def test_the_summary_speaks_of_the_answer_and_intervals_are_wider_at_95(branches, tmp_path):
+    result = fitted(tmp_path, branches.measure(SAMPLES, NOISE, seed=3), started(3.0))
+    fit = result.fitted["fit"]
+    right = run({**LENNARD_JONES, "equilibrium_path": {"h0_end": -1e-9}}).summary
+    assert fit["sigma"][0] == pytest.approx(right["sigma"], rel=0.1)
+    for key in ("sigma", "tabor"):
+        assert result.summary[key] == fit[key][0]
+    wide, narrow = ((np.array(fit[f"upper_{p}"]) - fit[f"lower_{p}"])[2] for p in (95, 68))
+    assert wide == pytest.approx(1.96 * narrow, rel=1e-3)
+
+
+FORMS = {
+    "numpy": (lambda z, f, s: "# z force segment\n" + rows(z, f, s, " ", "."), {}),
+    "semicolons": (lambda z, f, s: "z;force;segment\n" + rows(z, f, s, ";", ","), {}),
+    "units": (lambda z, f, s: "z,force,segment\n" + rows(z * 1e9, f * 1e9, s, ",", "."),
+              {"units": ["nm", "nN"]}),
+}
+
+
+def rows(z, force, segment, between, point):
+    return "".join(between.join((f"{a:.12e}", f"{b:.12e}", str(c))).replace(".", point) + "\n"
+                   for a, b, c in zip(z, force, segment))
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_files_as_others_write_them_are_the_same_curve(branches, tmp_path, form):
+    z, force, segment = branches.measure(300, 2e-11, seed=1)
+    text, keys = FORMS[form]
+    file = tmp_path / "other.csv"
+    file.write_text(text(z, force, segment))
+    result = run(fit_deck(started(), str(file), list(TRUTH), measurement=keys))
+    plain = fitted(tmp_path, (z, force, segment), started())
+    assert result.fitted["fit"]["estimate"] == pytest.approx(
+        plain.fitted["fit"]["estimate"], rel=1e-6, abs=1e-15)
+
+
+MISTAKES = {
+    "exchanged columns": (lambda z, f, s: (f, z, s), "columns exchanged"),
+    "exchanged segments": (lambda z, f, s: (z, f, 1 - s), "approach and retreat are exchanged"),
+    "reversed rows": (lambda z, f, s: (z[::-1], f[::-1], s), "go backwards"),
+    "nanometres": (lambda z, f, s: (1e9 * z, 1e9 * f, s), "say units"),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_mistakes_in_files_are_named(branches, tmp_path, mistake):
+    change, said = MISTAKES[mistake]
+    result = fitted(tmp_path, change(*branches.measure(300, 2e-11, seed=1)), started())
+    assert not result.converged
+    assert any(said in text for text in result.summary["warnings"]), result.summary["warnings"]
+
+
+def test_units_and_skip_are_checked(tmp_path):
+    file = write(tmp_path / "a.csv", [0.0], [0.0], [0])
+    for keys, said in (({"units": ["N", "nN"]}, "no unit of position"), ({"skip": [1e-9]}, "pairs")):
+        with pytest.raises(snapin.DeckError, match=said):
+            run(fit_deck(started(), file, list(TRUTH), measurement=keys))
