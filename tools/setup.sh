@@ -55,11 +55,12 @@ has_lapack() {
 
 python_can() { python3 -c "$1" > /dev/null 2>&1; }
 
-# The Debian packages still needed, on one line. The compilers only recommend libc6-dev.
+# The Debian packages still needed, on one line. Compilers are called like their packages, and only
+# recommend libc6-dev.
 missing_packages() {
   links c '#include <stdio.h>\nint main(void) { return 0; }\n' "${CC:-cc}" ||
-    printf 'gcc libc6-dev '
-  has "${FC:-gfortran}" || printf 'gfortran '
+    printf '%s libc6-dev ' "${CC:-gcc}"
+  has "${FC:-gfortran}" || printf '%s ' "${FC:-gfortran}"
   has_lapack || printf 'libopenblas-dev '
   python_can 'import venv, ensurepip' || printf 'python3-venv '
   python_can 'import os, sysconfig as s
@@ -115,6 +116,15 @@ let_python_find_snapin() {
     [ -f "$site/snapin.pth" ] ||
       printf '../../../../%s\n' pywrap build/pywrap > "$site/snapin.pth"
   done
+}
+
+# builds FOLDER [OPTION...]: another build beside the usual one, by the compilers of FC and CC.
+builds() {
+  folder=$1
+  shift
+  [ -f "$folder/build.ninja" ] || "$venv/bin/meson" setup "$folder" "$@" > /dev/null || return
+  "$venv/bin/meson" compile -C "$folder" > "$folder/compile.log" ||
+    { tail -n 25 "$folder/compile.log"; return 1; }
 }
 
 # What environment and build depend on: their place, since both contain absolute paths, the Python

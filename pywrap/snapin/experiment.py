@@ -1,7 +1,7 @@
 """Runs of whole decks, as the program does them, and the two that need no more than arguments.
 
-A run is a run of the program: its results come through a pipe, so that nothing is on the disk that is
-not asked for, other threads go on meanwhile, and an interrupt ends it.
+A run is a run of the program: its results come through a pipe, so that nothing is on the disk that
+is not asked for, other threads go on meanwhile, and an interrupt ends it.
 """
 
 import os
@@ -83,7 +83,7 @@ def _stamp(folder):
 
 
 def _carry_out(arguments, text, quiet):
-    """Return the program's exit status, its standard output and what it said, shown if not quiet."""
+    """Return the program's exit status, standard output and what it said, shown if not quiet."""
     with subprocess.Popen(
         [_program(), *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

@@ -28,6 +28,8 @@ module preflight
   !> Cells of a row of the curve, of a profile, of a table of theories and of a sweep; bytes of a
   !> step that is kept so that an interrupted run can go on.
   integer, parameter :: of_curve = 10, of_profile = 7, of_theory = 5, of_case = 60, kept = 900
+  !> Nodes of a mesh, roughly.
+  real(wp), parameter :: of_mesh = 200
   !> Results that are announced, and for which there has to be room before they are begun [bytes].
   real(wp), parameter :: large = 1.0e8_wp
 
@@ -128,8 +130,7 @@ contains
     end if
     bytes = states_planned(scene)*(row(of_curve) + kept)
     if (allocated(scene%profiles)) then
-      ! Nodes of a mesh that resolves what is asked for, roughly.
-      bytes = bytes + size(scene%profiles%h0)*1.0e3_wp*row(of_profile)
+      bytes = bytes + size(scene%profiles%h0)*of_mesh*row(of_profile)
     end if
     if (allocated(scene%classical)) bytes = bytes + 4.0_wp*scene%classical%count*row(of_theory)
     if (allocated(scene%approximations)) &

@@ -20,8 +20,8 @@ module noise
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
-    !> By as many independent samples it is known; and whether these are the steps between the samples
-    !> that it is compared with.
+    !> By as many independent samples it is known; and whether these are the steps between the
+    !> samples that it is compared with.
     real(wp) :: known_by = huge(1.0_wp)
     logical :: of_steps = .false.
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
@@ -72,8 +72,8 @@ contains
     call find_weights(noise, n)
   end function noise_of
 
-  !> White noise that makes the steps between neighbours of one run in something smooth; `steps`: how
-  !> many there are (von Neumann, 1941).
+  !> White noise that makes the steps between neighbours of one run in something smooth; `steps`:
+  !> how many there are (von Neumann, 1941).
   pure subroutine noise_of_steps(smooth, run, noise, steps)
     real(wp), intent(in) :: smooth(:)
     integer, intent(in) :: run(:)

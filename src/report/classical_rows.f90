@@ -18,10 +18,11 @@ contains
 
   !> Writes Hertz and, for a law that attracts, JKR and DMT, at range%count values of h0 [m]; for
   !> one whose tension has a largest value, Maugis-Dugdale with that value as its strength and with
-  !> the law's surface energy. The theories put touching bodies at no separation, so the displacement
-  !> is -h0; the state is the one that is stable there, and where a theory has none there is no row.
-  !> `from` [m] stands in for a range without a start. None for rigid bodies, which have no
-  !> displacement. Of other shapes than the parabola Hertz and JKR in the form for any convex body.
+  !> the law's surface energy. The theories put touching bodies at no separation, so the
+  !> displacement is -h0; the state is the one that is stable there, and where a theory has none
+  !> there is no row. `from` [m] stands in for a range without a start. None for rigid bodies, which
+  !> have no displacement. Of other shapes than the parabola Hertz and JKR in the form for any
+  !> convex body.
   subroutine write_classical(problem, range, from, results)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range

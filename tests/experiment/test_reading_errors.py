@@ -34,8 +34,9 @@ def pair(request, run):
 def test_what_is_read_is_off_by_no_more_than_estimated(pair):
     found, truth = pair
     for key in KEYS:
-        values, errors, exact = (np.array(several(result.summary[name]), float) for result, name in (
-            (found, key), (found, f"{key}_error"), (truth, key)))
+        values, errors, exact = (
+            np.array(several(result.summary[name]), float)
+            for result, name in ((found, key), (found, f"{key}_error"), (truth, key)))
         there = np.isfinite(exact)
         assert (np.isfinite(values) == there).all() and (np.isfinite(errors) == there).all()
         off = abs(values - exact)[there]

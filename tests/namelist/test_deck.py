@@ -11,8 +11,8 @@ from support.decks import ACCEPTED, BODIES, FORCE, GOOD, LOADING, with_bodies, w
 def test_good_deck_is_accepted(check, text):
     status, out, err = check(text)
     assert (status, out) == (0, "d.nml: ok\n")
-    # That a run will be long is no mistake.
-    assert all("may take" in line for line in err.splitlines())
+    # That results will be large is no mistake.
+    assert all("its results take" in line for line in err.splitlines())
 
 
 # --- Refused

@@ -217,7 +217,8 @@ GROUPS = {
     "path": {"equilibrium_path": {"h0_end": -1e-9}, "device": {"stiffness": [1e4, 1e5]},
              "fixed_load": {"load": [1e-5, -1e-5]}, "table": {}, "regime": {},
              "sensitivity": {"parameters": ["force.hamaker"]}},
-    "sweep": {"equilibrium_path": {"h0_end": 0.0}, "sweep": {"key": "force.z0", "values": [4e-10, 5e-10]}},
+    "sweep": {"equilibrium_path": {"h0_end": 0.0},
+              "sweep": {"key": "force.z0", "values": [4e-10, 5e-10]}},
 }
 
 

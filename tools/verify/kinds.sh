@@ -1,8 +1,10 @@
 #!/bin/sh
 # tools/verify/kinds.sh [PYTEST ARGUMENTS]: the tests once for each kind of linear algebra that this
-# machine can run: OpenBLAS's kernels for other processors (OPENBLAS_CORETYPE), and the reference
-# LAPACK. Without arguments the quick ones, -m 'not slow and not long'. Kinds that cannot be had are
-# skipped, which is said. Ends with status 1 where a test fails. KINDS is the list of kinds.
+# machine can run, OpenBLAS's kernels for other processors (OPENBLAS_CORETYPE) and the reference
+# LAPACK, and for each other compiler, which is called like its Debian package; its results are then
+# compared with those of the usual build (levels.py). Without arguments the quick ones, -m 'not slow
+# and not long'. What is missing is installed. Kinds that cannot be had are skipped, which is said.
+# Ends with status 1 where a test fails. KINDS is the list of kinds.
 set -u
 here=$(dirname -- "$(readlink -f -- "$0")")
 top=$(dirname -- "$(dirname -- "$here")")
@@ -20,8 +22,8 @@ flags() {
   done
 }
 
-# can KERNEL: whether the processor has what it needs, and this OpenBLAS has the kernel.
-can() {
+# has_kernel KERNEL: whether the processor has what it needs, and this OpenBLAS has the kernel.
+has_kernel() {
   case $1 in
     Prescott) flags pni ;;
     Haswell | Zen) flags avx2 fma ;;
@@ -31,7 +33,17 @@ can() {
     grep -qix "core: $1" || { reason='this build has no such kernel'; return 1; }
 }
 
-tests() { "$venv/bin/python" -m pytest -q -n auto --dist worksteal -p no:cacheprovider "$@"; }
+# provides PACKAGE...: installs these where Debian offers them. What cannot be installed then ends all.
+provides() {
+  dpkg -s "$@" > /dev/null 2>&1 && return
+  reason="missing: $*"
+  { has apt-get && [ "$(id -u)" = 0 ]; } || return
+  logged 'updating the package lists' apt-get update
+  apt-cache show "$@" > /dev/null 2>&1 || { reason="not in the package lists: $*"; return 1; }
+  export DEBIAN_FRONTEND=noninteractive
+  logged "installing $*" \
+    apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "$@"
+}
 
 # Debian keeps the reference libraries beside OpenBLAS's, which answers to their names.
 reference_libraries() {
@@ -40,46 +52,79 @@ reference_libraries() {
   done
 }
 
-has_reference() {
-  [ -n "$(reference_libraries)" ] && return
-  reason='liblapack-dev and libblas-dev are missing'
-  { has apt-get && [ "$(id -u)" = 0 ]; } || return
-  say 'installing liblapack-dev libblas-dev'
-  { apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
-    liblapack-dev libblas-dev; } > /dev/null 2>&1
-  [ -n "$(reference_libraries)" ]
+has_reference() { [ -n "$(reference_libraries)" ] || provides liblapack-dev libblas-dev; }
+
+# The C compiler that goes with a Fortran compiler.
+c_compiler() {
+  case $1 in
+    flang-*) echo "clang-${1#*-}" ;;
+    *) echo "gcc-${1#*-}" ;;
+  esac
+}
+
+has_compiler() {
+  case $1 in
+    flang-*) provides "$1" "$(c_compiler "$1")" "libomp-${1#*-}-dev" ;;
+    *) provides "$1" "$(c_compiler "$1")" ;;
+  esac
+}
+
+tests() { "$venv/bin/python" -m pytest -q -n auto --dist worksteal -p no:cacheprovider "$@"; }
+
+# tests_of FOLDER [PYTEST ARGUMENTS]: the tests of another build.
+tests_of() {
+  folder=$1
+  shift
+  SNAPIN=$top/$folder/snapin tests -o pythonpath="pywrap $folder/pywrap tests" "$@"
+}
+
+kernel() {
+  export OPENBLAS_CORETYPE="$1"
+  shift
+  tests "$@"
 }
 
 reference() {
-  folder=$top/build-lapack
-  [ -f "$folder/build.ninja" ] ||
-    meson setup -Dblas=lapack -Dpython=enabled "$folder" > /dev/null || return
-  meson compile -C "$folder" > "$folder/compile.log" ||
-    { tail -n 25 "$folder/compile.log"; return 1; }
+  shift
+  builds build-lapack -Dblas=lapack -Dpython=enabled || return
   LD_LIBRARY_PATH=$(reference_libraries)${LD_LIBRARY_PATH-}
   export LD_LIBRARY_PATH
-  if ldd "$folder/snapin" | grep -q openblas; then
+  if ldd build-lapack/snapin | grep -q openblas; then
     say 'build-lapack runs on OpenBLAS after all'
     return 1
   fi
-  SNAPIN=$folder/snapin tests -o pythonpath="pywrap build-lapack/pywrap tests" "$@"
+  tests_of build-lapack "$@"
+}
+
+# The results of all decks are compared too.
+compiler() {
+  name=$1
+  shift
+  FC=$name
+  CC=$(c_compiler "$name")
+  export FC CC
+  builds "build-$name" -Dpython=enabled || return
+  tests_of "build-$name" "$@"
+  tested=$?
+  "$venv/bin/python" "$here/levels.py" --builds "$build/snapin" "$name=build-$name/snapin" \
+    > "build-$name/levels.log" 2>&1 || { cat "build-$name/levels.log"; return 1; }
+  tail -n 4 "build-$name/levels.log"
+  return $tested
 }
 
 failed=
-for kind in ${KINDS:-Prescott Haswell SkylakeX Zen reference}; do
+for kind in ${KINDS:-Prescott Haswell SkylakeX Zen reference flang-22 gfortran-11}; do
   reason=
-  if [ "$kind" = reference ]; then
-    if has_reference; then
-      say 'tests on the reference LAPACK'
-      (reference "$@") || failed="$failed $kind"
-    else
-      say "skipped: reference LAPACK: $reason"
-    fi
-  elif can "$kind"; then
-    say "tests on OpenBLAS's $kind kernels"
-    OPENBLAS_CORETYPE=$kind tests "$@" || failed="$failed $kind"
+  case $kind in
+    reference) sort=reference what='the reference LAPACK' ;;
+    flang-* | gfortran-*) sort=compiler what="a build by $kind" ;;
+    *) sort=kernel what="OpenBLAS's $kind kernels" ;;
+  esac
+  if "has_$sort" "$kind"; then
+    say "tests on $what"
+    ("$sort" "$kind" "$@") || failed="$failed $kind"
   else
-    say "skipped: OpenBLAS's $kind kernels: $reason"
+    say "skipped: $what: $reason"
   fi
 done
 [ -z "$failed" ] || { say "failed:$failed"; exit 1; }

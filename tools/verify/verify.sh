@@ -26,20 +26,10 @@ top=$(dirname -- "$(dirname -- "$here")")
 . "$top/tools/setup.sh"
 prepare
 cd "$top" || exit
-meson="$venv/bin/meson"
 python="$venv/bin/python"
 # Ninja may be there alone.
 PATH=$venv/bin:$PATH
 export PATH
-
-# builds FOLDER OPTION...: another build beside the usual one.
-builds() {
-  folder=$1
-  shift
-  [ -f "$folder/build.ninja" ] || "$meson" setup "$folder" "$@" > /dev/null || return
-  "$meson" compile -C "$folder" > "$folder/compile.log" ||
-    { tail -n 25 "$folder/compile.log"; return 1; }
-}
 
 long() { "$python" -m pytest -q --long -n auto --dist worksteal; }
 
