@@ -4,8 +4,8 @@ module text
   use decimal, only: put_real, longest_real
   implicit none
   private
-  public :: lower, quoted, unquoted, brief, rounded, rounded_to, full, guess, clip, listing, printable, &
-    word_count, word_of
+  public :: lower, quoted, unquoted, brief, rounded, rounded_to, full, guess, clip, listing, &
+    printable, word_count, word_of
 
 contains
 

@@ -19,7 +19,8 @@ module curve_fit
   !> Contact points that are kept of a candidate; searches from the best of all; how often the data
   !> are looked at again.
   integer, parameter :: most_points = 2, most_fits = 8, most_rounds = 8
-  !> What is found twice more is the best there is; sums of squares that differ by less are the same.
+  !> What is found twice more is the best there is; sums of squares that differ by less are
+  !> the same.
   integer, parameter :: enough = 2
   real(wp), parameter :: same = 1.0e-4_wp
 
@@ -118,8 +119,8 @@ contains
     end do
   end subroutine find_candidates
 
-  !> Searches from a start, and keeps what it finds if that is better than what there was; again: how
-  !> often it was found since.
+  !> Searches from a start, and keeps what it finds if that is better than what there was; again:
+  !> how often it was found since.
   subroutine improve(residuals, start, least, fitted, again)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: start(:)

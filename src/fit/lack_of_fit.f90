@@ -16,8 +16,8 @@ module lack_of_fit
     procedure :: is_noise
   end type lack_t
 
-  !> Fewer blocks say nothing. Standard deviations more than noise leaves that noise hardly ever does,
-  !> in one fit of two hundred by the seven or so widths.
+  !> Fewer blocks say nothing. What noise hardly ever leaves more than it should, in standard
+  !> deviations: by the seven or so widths in one fit of two hundred.
   integer, parameter :: fewest_blocks = 8
   real(wp), parameter :: hardly_ever = 3.2_wp
 
@@ -67,8 +67,8 @@ contains
     end do
   end function lack_in
 
-  !> A sum of n squares of normal numbers as a normal number (Wilson and Hilferty, 1931), where their
-  !> variance is known by `known_by` others.
+  !> A sum of n squares of normal numbers as a normal number (Wilson and Hilferty, 1931), where
+  !> their variance is known by `known_by` others.
   pure real(wp) function normal_of(total, n, known_by)
     real(wp), intent(in) :: total, known_by
     integer, intent(in) :: n

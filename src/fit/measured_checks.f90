@@ -46,8 +46,8 @@ contains
       'minus before the name of a column turns its sign'
   end subroutine check_measured
 
-  !> trouble where approach and retreat are exchanged: contact then is at the end that should be far,
-  !> or the bodies hold together better on the way in than on the way out.
+  !> trouble where approach and retreat are exchanged: contact then is at the end that should be
+  !> far, or the bodies hold together better on the way in than on the way out.
   subroutine check_ways(measured, left, noise, stiffness, trouble)
     type(measured_t), intent(in) :: measured
     real(wp), intent(in) :: left(:)
@@ -72,7 +72,8 @@ contains
       deepest(way) = minval(max(mine(3:), mine(2:size(mine) - 1), mine(:size(mine) - 2)))
     end do
     if (deepest(1) < deepest(2) - 2*stands_out*noise%deviation) trouble = 'the approach has ' // &
-      'the larger pull-off: the rows of the file go backwards, or approach and retreat are exchanged'
+      'the larger pull-off: the rows of the file go backwards, or approach and retreat are ' // &
+      'exchanged'
 
   contains
 

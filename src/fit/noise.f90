@@ -11,6 +11,8 @@ module noise
   !> Most samples from which another is foretold.
   integer, parameter :: longest = 8
 
+  !> What chance hardly adds to n ln(left^2) by any of so many orders.
+  real(wp), parameter :: by_chance = 10
   !> The median of the magnitude of a normal number.
   real(wp), parameter :: normal_median = 0.6745_wp
 
@@ -20,8 +22,8 @@ module noise
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
-    !> By as many independent samples it is known; and whether these are the steps between the samples
-    !> that it is compared with.
+    !> By as many independent samples it is known; and whether these are the steps between the
+    !> samples that it is compared with.
     real(wp) :: known_by = huge(1.0_wp)
     logical :: of_steps = .false.
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
@@ -72,8 +74,8 @@ contains
     call find_weights(noise, n)
   end function noise_of
 
-  !> White noise that makes the steps between neighbours of one run in something smooth; `steps`: how
-  !> many there are (von Neumann, 1941).
+  !> White noise that makes the steps between neighbours of one run in something smooth; `steps`:
+  !> how many there are (von Neumann, 1941).
   pure subroutine noise_of_steps(smooth, run, noise, steps)
     real(wp), intent(in) :: smooth(:)
     integer, intent(in) :: run(:)
@@ -134,7 +136,8 @@ contains
   end function off_line
 
   !> The weights of all orders from the correlations, and the order that is worth its unknowns: the
-  !> one with the least n ln(left^2) + order ln(n) (Schwarz, 1978).
+  !> one with the least n ln(left^2) + order ln(n) (Schwarz, 1978), if that is so much less than for
+  !> none that chance hardly makes it.
   pure subroutine find_weights(noise, n)
     type(noise_t), intent(inout) :: noise
     integer, intent(in) :: n
@@ -142,7 +145,7 @@ contains
     integer :: k
 
     left = 1
-    best = 0
+    best = -by_chance
     before = 0
     do k = 1, longest
       reflection = (noise%correlation(k) - dot_product(before(:k - 1), &

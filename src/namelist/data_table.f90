@@ -1,7 +1,7 @@
 !> A text file with a table of numbers, as measuring programs write it: comments after #, perhaps a
 !> line with the names of the columns, itself perhaps a comment, then a row a line, cells apart by
-!> blanks, tabs, commas or semicolons. Where semicolons or tabs stand between cells, a comma within a
-!> number is a decimal one.
+!> blanks, tabs, commas or semicolons. Where semicolons or tabs stand between cells, a comma within
+!> a number is a decimal one.
 module data_table
   use kinds, only: wp
   use failure, only: failure_t

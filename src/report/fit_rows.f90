@@ -22,7 +22,7 @@ module fit_rows
     'model [] the same by the model, with its baseline', &
     'baseline [] the signal without force', &
     'residual [] measured less model', &
-    'used [] 1: the sample counts; 0: it is an outlier, skipped, the last before a jump, or in it', &
+    'used [] 1: the sample counts; 0: an outlier, skipped, last before a jump, or within it', &
     'outlier [] 1: it stands apart from its neighbours by more than noise']
 
   !> More that a theory may leave, in chi squared, and still do as well.
@@ -37,9 +37,10 @@ contains
   function fit_lines(outcome) result(lines)
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), allocatable :: lines(:)
-    logical :: used(size(outcome%curve%data%way))
+    logical, dimension(size(outcome%curve%data%way)) :: used, outlier
     integer :: i
 
+    outlier = outcome%curve%data%measured%outlier()
     used = .false.
     used(outcome%curve%data%sample) = .true.
     associate (data => outcome%curve%data%measured, fitted => outcome%fitted)
@@ -48,7 +49,7 @@ contains
         lines(i)%text = trim(merge('approach', 'retreat ', data%inward(i))) // ',' // &
           cells([data%z(i), data%signal(i), fitted%model(i), fitted%baseline(i), &
           fitted%residual(i)]) // merge(',1', ',0', used(i)) // &
-          merge(',1', ',0', .not. (data%usable(i) .or. data%skipped(i)))
+          merge(',1', ',0', outlier(i))
       end do
     end associate
   end function fit_lines
@@ -67,7 +68,7 @@ contains
       '&fit' // nl // assignment_of('title', name) // &
       of_fitted(outcome%curve%unknown, outcome%fitted)
     associate (curve => outcome%curve)
-      numbers = [real(count(.not. (curve%data%measured%usable .or. curve%data%measured%skipped)), wp)]
+      numbers = [real(count(curve%data%measured%outlier()), wp)]
       text = text // assignment_of('outliers', numbers)
       if (allocated(outcome%problem)) then
         numbers = [adhesion_strength(outcome%problem)]
@@ -162,8 +163,8 @@ contains
     associate (curve => outcome%curve)
       line%text = brief(real(size(curve%data%sample), wp)) // ' samples, noise ' // &
         rounded(curve%data%noise%deviation) // ', correlation of neighbours ' // &
-        rounded(curve%data%noise%correlation(1)) // ', ' // brief(real(count(.not. &
-        (curve%data%measured%usable .or. curve%data%measured%skipped)), wp)) // ' outliers left out'
+        rounded(curve%data%noise%correlation(1)) // ', ' // brief(real(count( &
+        curve%data%measured%outlier()), wp)) // ' outliers left out'
       lines = [lines, line]
       do i = 1, size(curve%unknown)
         line%text = curve%unknown(i)%name // ' = ' // rounded_to(outcome%fitted%value(i), &
@@ -184,8 +185,8 @@ contains
       associate (theory => outcome%theory(i))
         if (.not. allocated(theory%fitted%effect) .or. .not. theory%fitted%lack%is_noise()) cycle
         if (theory%fitted%chi_squared > outcome%fitted%chi_squared + as_well) cycle
-        line%text = trim(theory%theory) // ', which has no force before contact, describes these ' // &
-          'data ' // trim(merge('better ', 'as well', theory%fitted%chi_squared < &
+        line%text = trim(theory%theory) // ', which has no force before contact, describes ' // &
+          'these data ' // trim(merge('better ', 'as well', theory%fitted%chi_squared < &
           outcome%fitted%chi_squared - as_well)) // ': chi squared ' // &
           rounded_to(theory%fitted%chi_squared, 1.0_wp) // ' against ' // &
           rounded_to(outcome%fitted%chi_squared, 1.0_wp)

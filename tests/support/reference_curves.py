@@ -1,6 +1,6 @@
-"""Force curves of the Lennard-Jones model behind a spring, by the independent solution (`reference`),
-as an instrument would have them: noise, outliers, a baseline. Paths are kept in a folder, so that
-many curves cost as much as one.
+"""Force curves of the Lennard-Jones model behind a spring, by the independent solution
+(`reference`), as an instrument would have them: noise, outliers, a baseline. Paths are kept in a
+folder, so that many curves cost as much as one.
 """
 
 import math
@@ -95,8 +95,8 @@ class Curve(NamedTuple):
 
 
 def measure(true, samples, noise, rng, outliers=0.0, push=0.7, baseline=0.5):
-    """A curve of `samples` on each way; noise over the pull-off; outliers: their share; push: load at
-    the turn over the pull-off; baseline: its length over what comes before."""
+    """A curve of `samples` on each way; noise over the pull-off; outliers: their share; push: load
+    at the turn over the pull-off; baseline: its length over what comes before."""
     driven = Driven(true)
     pulled = driven.load.argmin()
     near = np.interp(push * driven.pull_off, driven.load[pulled:], driven.z[pulled:])
@@ -104,7 +104,8 @@ def measure(true, samples, noise, rng, outliers=0.0, push=0.7, baseline=0.5):
     far = reach + baseline * (reach - near)
     step = (far - near) / samples
     number = np.arange(samples)
-    z = np.concatenate([far - step * (number + rng.random()), near + step * (number + rng.random())])
+    z = np.concatenate([far - step * (number + rng.random()),
+                        near + step * (number + rng.random())])
     segment = np.repeat([0, 1], samples)
     force = np.concatenate([driven.force(z[:samples], True), driven.force(z[samples:], False)])
     deviation = noise * driven.pull_off
@@ -112,5 +113,6 @@ def measure(true, samples, noise, rng, outliers=0.0, push=0.7, baseline=0.5):
     force += offsets[segment] + offsets[2] * z / (far - near)
     force += deviation * rng.standard_normal(2 * samples)
     outlier = rng.random(2 * samples) < outliers
-    force += outlier * deviation * rng.uniform(10, 40, 2 * samples) * rng.choice([-1, 1], 2 * samples)
+    off = rng.uniform(10, 40, 2 * samples) * rng.choice([-1, 1], 2 * samples)
+    force += outlier * deviation * off
     return Curve(z, force, segment, deviation, outlier)
