@@ -76,7 +76,7 @@ contains
       call improve(residuals, value(:, k), least, fitted, again)
       if (describes(residuals, fitted, least) .or. again == enough) exit
     end do
-    do round = 1, merge(most_rounds, 0, renew .and. fitted%found)
+    do round = 1, merge(most_rounds, 0, renew .and. allocated(fitted%value))
       call residuals%curve%ask(fitted%value, .false., settled)
       if (.not. settled) exit
       call look_again(residuals%curve, fitted%value, keep_noise, settled)

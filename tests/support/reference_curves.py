@@ -71,8 +71,11 @@ class Driven:
         self.outer = self._part(0, np.argmin(ahead) + 1 if self.turns else len(self.z))
         first = len(ahead) - np.argmin(ahead[::-1]) if self.turns else 0
         self.inner = self._part(first, len(self.z))
-        self.jump_in, self.jump_out = self.outer[0][0], self.inner[0][-1]
         self.pull_off = -self.load.min()
+        # Without jumps there is a place of largest tension at least.
+        self.jump_in = self.jump_out = self.z[self.load.argmin()]
+        if self.turns:
+            self.jump_in, self.jump_out = self.outer[0][0], self.inner[0][-1]
 
     def _part(self, first, last):
         return self.z[first:last][::-1], self.load[first:last][::-1]
