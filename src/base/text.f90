@@ -5,8 +5,7 @@ module text
   implicit none
   private
   public :: lower, quoted, unquoted, brief, rounded, rounded_to, full, guess, clip, listing, &
-    printable, &
-    word_count, word_of
+    printable, word_count, word_of
 
 contains
 

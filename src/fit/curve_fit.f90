@@ -16,13 +16,13 @@ module curve_fit
   private
   public :: fitted_t, fit_curve
 
-  !> Contact points that are kept of a candidate; searches from the best of all; how often the data
-  !> are looked at again.
-  integer, parameter :: most_points = 2, most_fits = 8, most_rounds = 8
-  !> What is found twice more is the best there is; sums of squares that differ by less are the
-  !> same.
-  integer, parameter :: enough = 2
-  real(wp), parameter :: same = 1.0e-4_wp
+  !> Contact points that are kept of a candidate; searches from the best of all; how many of what
+  !> they find are followed up, and how often the data are looked at again each time.
+  integer, parameter :: most_points = 2, most_fits = 8, most_looks = 3, most_rounds = 8
+  !> What so many searches find is the best there is; relative differences of sums of squares that
+  !> are none, and that show another place.
+  integer, parameter :: enough = 3
+  real(wp), parameter :: same = 1.0e-4_wp, apart = 0.02_wp
 
   !> What a fit found. value and its standard deviation in the unit of each key; the same of the
   !> fitted number (`unknowns`), of which the errors are symmetric; correlation of these.
@@ -44,6 +44,7 @@ module curve_fit
     real(wp) :: jump_z(2) = 0
   contains
     procedure :: end_of
+    procedure :: is_better_than
   end type fitted_t
 
 contains
@@ -57,36 +58,74 @@ contains
     real(wp), intent(in) :: start(:, :)
     logical, intent(in) :: renew, keep_noise
     type(fitted_t), intent(out) :: fitted
-    type(curve_residuals_t) :: residuals
-    real(wp), allocatable :: value(:, :), cost(:)
-    real(wp) :: least
-    integer :: i, k, round, again
-    logical :: settled
+    type(curve_residuals_t) :: residuals, trial
+    type(fitted_t) :: other
+    real(wp), allocatable :: value(:, :), cost(:), left(:)
+    logical, allocatable :: found(:)
+    integer :: i, k
 
     residuals%curve = curve
     call residuals%curve%use_model(model)
     call find_candidates(residuals, start, value, cost)
     fitted%has_curve = size(cost) > 0
     if (.not. fitted%has_curve) return
-    least = huge(least)
-    again = 0
+    call search_from(residuals, cost, value, left, found)
+    do i = 1, merge(most_looks, 1, renew)
+      k = minloc(left, 1)
+      if (.not. left(k) < huge(left)) exit
+      trial = residuals
+      other = fitted_t(has_curve=.true., found=found(k))
+      other%value = value(:, k)
+      if (renew) call settle(trial, keep_noise, other)
+      call judge(trial, other)
+      if (i == 1 .or. other%is_better_than(fitted)) then
+        fitted = other
+        curve = trial%curve
+      end if
+      if (fitted%lack%is_noise()) exit
+      ! Where the others lead to.
+      where (left < (1 + apart)*left(k)) left = huge(left)
+    end do
+  end subroutine fit_curve
+
+  !> Searches from the values with the least sums of squares, `cost`, and puts what it finds in
+  !> their place; left: the sums of squares there, huge where no search was made.
+  subroutine search_from(residuals, cost, value, left, found)
+    type(curve_residuals_t), intent(inout) :: residuals
+    real(wp), intent(inout) :: cost(:), value(:, :)
+    real(wp), allocatable, intent(out) :: left(:)
+    logical, allocatable, intent(out) :: found(:)
+    integer :: i, k, freedom
+
+    freedom = residuals%rows() - size(value, 1) - residuals%curve%data%baseline%unknowns()
+    allocate (left(size(cost)), source=huge(1.0_wp))
+    allocate (found(size(cost)), source=.false.)
     do i = 1, min(most_fits, size(cost))
       k = minloc(cost, 1)
       cost(k) = huge(cost)
-      call improve(residuals, value(:, k), least, fitted, again)
-      if (describes(residuals, fitted, least) .or. again == enough) exit
+      call search(residuals, value(:, k), left(k), found(k))
+      if (found(k) .and. left(k) < freedom + 3*sqrt(2.0_wp*freedom)) return
+      if (count(left < (1 + same)*minval(left)) == enough) return
     end do
-    do round = 1, merge(most_rounds, 0, renew .and. fitted%found)
-      call residuals%curve%ask(fitted%value, .false., settled)
-      if (.not. settled) exit
-      call look_again(residuals%curve, fitted%value, keep_noise, settled)
-      if (settled) exit
-      least = huge(least)
-      call improve(residuals, fitted%value, least, fitted, again)
+  end subroutine search_from
+
+  !> Noise, outliers and jumps of the data by the model, and the fit again, until nothing changes.
+  subroutine settle(residuals, keep_noise, fitted)
+    type(curve_residuals_t), intent(inout) :: residuals
+    logical, intent(in) :: keep_noise
+    type(fitted_t), intent(inout) :: fitted
+    real(wp) :: left
+    logical :: done
+    integer :: round
+
+    do round = 1, most_rounds
+      call residuals%curve%ask(fitted%value, .false., done)
+      if (.not. done) return
+      call look_again(residuals%curve, fitted%value, keep_noise, done)
+      if (done) return
+      call search(residuals, fitted%value, left, fitted%found)
     end do
-    if (allocated(fitted%value)) call judge(residuals, fitted)
-    curve = residuals%curve
-  end subroutine fit_curve
+  end subroutine settle
 
   !> Values to start from, with the sums of squares there.
   subroutine find_candidates(residuals, start, value, cost)
@@ -119,38 +158,30 @@ contains
     end do
   end subroutine find_candidates
 
-  !> Searches from a start, and keeps what it finds if that is better than what there was; again:
-  !> how often it was found since.
-  subroutine improve(residuals, start, least, fitted, again)
+  !> Moves values to where the sum of squares, `left`, is least.
+  subroutine search(residuals, value, left, found)
     type(curve_residuals_t), intent(inout) :: residuals
-    real(wp), intent(in) :: start(:)
-    real(wp), intent(inout) :: least
-    type(fitted_t), intent(inout) :: fitted
-    integer, intent(inout) :: again
-    real(wp) :: x(size(start)), residual(residuals%rows())
-    logical :: found
+    real(wp), intent(inout) :: value(:)
+    real(wp), intent(out) :: left
+    logical, intent(out) :: found
+    real(wp) :: x(size(value)), residual(residuals%rows())
 
-    where (residuals%curve%unknown%role == of_contact_point) residuals%curve%unknown%origin = start
-    x = free_of(residuals%curve%unknown, start)
+    where (residuals%curve%unknown%role == of_contact_point) residuals%curve%unknown%origin = value
+    x = free_of(residuals%curve%unknown, value)
     call minimise(residuals, x, residual, found)
-    if (abs(sum(residual**2) - least) < same*least) again = again + 1
-    if (.not. sum(residual**2) < least) return
-    if (sum(residual**2) < (1 - same)*least) again = 0
-    least = sum(residual**2)
-    fitted%value = residuals%values(x)
-    fitted%found = found
-  end subroutine improve
+    left = sum(residual**2)
+    value = residuals%values(x)
+  end subroutine search
 
-  !> Whether a sum of squares is what noise leaves.
-  pure logical function describes(residuals, fitted, least)
-    type(curve_residuals_t), intent(in) :: residuals
-    type(fitted_t), intent(in) :: fitted
-    real(wp), intent(in) :: least
-    integer :: freedom
+  !> Whether a fit could be judged and leaves less than another.
+  pure logical function is_better_than(self, other)
+    class(fitted_t), intent(in) :: self
+    type(fitted_t), intent(in) :: other
 
-    freedom = residuals%rows() - size(fitted%value) - residuals%curve%data%baseline%unknowns()
-    describes = fitted%found .and. least < freedom + 3*sqrt(2.0_wp*freedom)
-  end function describes
+    is_better_than = allocated(self%effect)
+    if (is_better_than .and. allocated(other%effect)) is_better_than = &
+      self%chi_squared/self%freedom < other%chi_squared/other%freedom
+  end function is_better_than
 
   !> Errors and correlations of the values, and what is left of the curve.
   subroutine judge(residuals, fitted)

@@ -9,9 +9,9 @@ module far_samples
   private
   public :: find_far
 
-  !> Fewer samples show no noise but by their differences. The part of the travel that may be far
-  !> from contact; it is halved where the half that is farther varies by less than this part of the
-  !> whole.
+  !> Fewer samples show no noise but by their differences. The part of the travel that may be
+  !> far from contact; it is halved where the half that is farther varies by less than this part of
+  !> the whole.
   integer, parameter :: fewest_far = 12
   real(wp), parameter :: far_part = 1.0_wp/3, less = 0.6_wp
   !> What a spike is more than the noise, and than a curve makes of the distance of samples, in

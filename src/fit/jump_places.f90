@@ -22,8 +22,8 @@ contains
 
   !> before(i), after(i): the squares of what either branch leaves of sample i in standard
   !> deviations, 0 for samples that do not count; change: of the signal in the jump, `noise` its
-  !> standard deviation. The number of a sample is counted from `first`. No jump where its place is
-  !> not seen.
+  !> standard deviation. The number of a sample is counted from `first`. No jump where its
+  !> place is not seen.
   pure type(measured_jump_t) function likely_jump(z, before, after, change, noise, first) &
     result(jump)
     real(wp), intent(in) :: z(:), before(:), after(:), change, noise

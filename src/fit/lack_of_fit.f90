@@ -16,8 +16,8 @@ module lack_of_fit
     procedure :: is_noise
   end type lack_t
 
-  !> Fewer blocks say nothing. Standard deviations more than noise leaves that noise hardly ever
-  !> does, in one fit of two hundred by the seven or so widths.
+  !> Fewer blocks say nothing. What noise hardly ever leaves more than it should, in standard
+  !> deviations: by the seven or so widths in one fit of two hundred.
   integer, parameter :: fewest_blocks = 8
   real(wp), parameter :: hardly_ever = 3.2_wp
 

@@ -10,8 +10,11 @@ module measured_checks
   public :: check_measured
 
   !> What stands out of the noise; the part of the samples that is nearest to the other body; how
-  !> steep, over the spring, the wrong end of a curve must be to be called so.
-  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp
+  !> steep, over the spring, the wrong end of a curve must be to be called so; how much larger the
+  !> pull-off of the approach. Fewer far samples say nothing of a slope.
+  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, &
+    larger = 1.3_wp
+  integer, parameter :: fewest_far = 12
 
 contains
 
@@ -33,7 +36,7 @@ contains
         rounded(noise%deviation) // '; measure nearer, or see that columns names the signal'
       return
     end if
-    call check_ways(measured, left, noise, stiffness, trouble)
+    call check_ways(measured, noise, stiffness, trouble)
     if (allocated(trouble)) return
     call nearest(measured, left, near, before, travel)
     if (near >= 0 .or. near >= before) return
@@ -48,14 +51,14 @@ contains
 
   !> trouble where approach and retreat are exchanged: contact then is at the end that should be
   !> far, or the bodies hold together better on the way in than on the way out.
-  subroutine check_ways(measured, left, noise, stiffness, trouble)
+  subroutine check_ways(measured, noise, stiffness, trouble)
     type(measured_t), intent(in) :: measured
-    real(wp), intent(in) :: left(:)
     type(noise_t), intent(in) :: noise
     real(wp), intent(in) :: stiffness
     character(len=:), allocatable, intent(inout) :: trouble
     real(wp) :: deepest(2), slope(2), position(size(measured%z))
     real(wp), allocatable :: mine(:)
+    logical :: own(size(measured%z))
     integer :: way
 
     if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
@@ -67,12 +70,16 @@ contains
       return
     end if
     do way = 1, 2
-      mine = pack(left, measured%usable .and. (measured%inward .eqv. way == 1))
+      own = measured%usable .and. (measured%inward .eqv. way == 1)
+      mine = pack(measured%signal, own)
       ! Three neighbours lie below it: outliers seldom do.
-      deepest(way) = minval(max(mine(3:), mine(2:size(mine) - 1), mine(:size(mine) - 2)))
+      deepest(way) = sum(measured%signal, own .and. measured%far)/ &
+        max(1, count(own .and. measured%far)) - &
+        minval(max(mine(3:), mine(2:size(mine) - 1), mine(:size(mine) - 2)))
     end do
-    if (deepest(1) < deepest(2) - 2*stands_out*noise%deviation) trouble = 'the approach has ' // &
-      'the larger pull-off: the rows of the file go backwards, or approach and retreat are exchanged'
+    if (deepest(1) > larger*deepest(2) + stands_out*noise%deviation) trouble = &
+      'the approach has the larger pull-off: the rows of the file go backwards, or approach ' // &
+      'and retreat are exchanged'
 
   contains
 
@@ -107,6 +114,7 @@ contains
         middle = [sum(z, far), sum(s, far)]/count(far)
         slope = sum((z - middle(1))*(s - middle(2)), far)/ &
           max(sum((z - middle(1))**2, far), tiny(1.0_wp))
+        if (count(far) < fewest_far) slope = 0
         where (measured%inward .eqv. way == 1) left = s - middle(2) - slope*(z - middle(1))
       end associate
     end do

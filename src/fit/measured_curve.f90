@@ -20,6 +20,8 @@ module measured_curve
     logical, allocatable :: far(:)
     !> Samples that are neither outliers nor left out by the deck.
     logical, allocatable :: usable(:), skipped(:)
+  contains
+    procedure :: outlier
   end type measured_t
 
   !> Samples of a way, fewer of which are no curve.
@@ -32,6 +34,14 @@ module measured_curve
   real(wp), parameter :: end_part = 0.1_wp
 
 contains
+
+  !> Which samples are outliers.
+  pure function outlier(self)
+    class(measured_t), intent(in) :: self
+    logical :: outlier(size(self%z))
+
+    outlier = .not. (self%usable .or. self%skipped)
+  end function outlier
 
   !> Reads what `request` says, whose file is where a path from here leads. A third column says
   !> which way a sample is of: 0 approach, 1 retreat; without one the ways part where z turns.
@@ -88,11 +98,11 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
 
     if (turns_of(z) > rough*size(z) .and. turns_of(signal) < even*size(z)) then
-      call fail(error, bad_input, file // ': the position goes up and down, the signal evenly; ' // &
-        'are the two columns exchanged? columns says which is which')
+      call fail(error, bad_input, file // ': the position goes up and down, the signal ' // &
+        'evenly; are the two columns exchanged? columns says which is which')
     else if (maxval(z) - minval(z) > longest) then
-      call fail(error, bad_input, file // ': positions span more than a millimetre; if they are ' // &
-        'not in metres, say units = ''nm'', ''nN'' or the like')
+      call fail(error, bad_input, file // ': positions span more than a millimetre; if they ' // &
+        'are not in metres, say units = ''nm'', ''nN'' or the like')
     end if
 
   contains

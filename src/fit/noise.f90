@@ -11,6 +11,8 @@ module noise
   !> Most samples from which another is foretold.
   integer, parameter :: longest = 8
 
+  !> What chance hardly adds to n ln(left^2) by any of so many orders.
+  real(wp), parameter :: by_chance = 10
   !> The median of the magnitude of a normal number.
   real(wp), parameter :: normal_median = 0.6745_wp
 
@@ -134,7 +136,8 @@ contains
   end function off_line
 
   !> The weights of all orders from the correlations, and the order that is worth its unknowns: the
-  !> one with the least n ln(left^2) + order ln(n) (Schwarz, 1978).
+  !> one with the least n ln(left^2) + order ln(n) (Schwarz, 1978), if that is so much less than for
+  !> none that chance hardly makes it.
   pure subroutine find_weights(noise, n)
     type(noise_t), intent(inout) :: noise
     integer, intent(in) :: n
@@ -142,7 +145,7 @@ contains
     integer :: k
 
     left = 1
-    best = 0
+    best = -by_chance
     before = 0
     do k = 1, longest
       reflection = (noise%correlation(k) - dot_product(before(:k - 1), &

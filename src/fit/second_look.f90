@@ -40,8 +40,10 @@ contains
       deviation = data%noise%deviation
       ! A model that is off leaves more than noise nearly everywhere.
       spread = max(deviation, median_of(abs(left(data%sample)))/normal_median)
-      data%measured%usable = .not. data%measured%skipped .and. (data%side < 0 .or. .not. &
-        stand_apart(left, 3*data%way + data%side, .not. data%measured%skipped, [(apart*spread, way=1, size(left))]))
+      ! Near a jump the model's side is in doubt, and what was an outlier stays one.
+      data%measured%usable = merge(usable, .not. (data%measured%skipped .or. &
+        stand_apart(left, 3*data%way + data%side, .not. data%measured%skipped, &
+        [(apart*spread, way=1, size(left))])), data%side < 0)
       settled = all(usable .eqv. data%measured%usable)
       if (.not. keep_noise) call renew_noise(curve, left)
       settled = settled .and. abs(data%noise%deviation - deviation) < 0.01_wp*deviation

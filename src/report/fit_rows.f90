@@ -4,7 +4,7 @@ module fit_rows
   use text, only: rounded, rounded_to, brief
   use dimensionless_problem, only: adhesion_strength, tabor_parameter
   use namelist_writer, only: line_t, assignment_of
-  use results, only: results_t
+  use tables, only: cells
   use fit_request, only: unknown_t
   use measured_jumps, only: measured_jump_t
   use curve_fit, only: fitted_t
@@ -12,7 +12,7 @@ module fit_rows
   use fit_doubts, only: doubts_of
   implicit none
   private
-  public :: fit_columns, write_fit_rows, fit_text, fit_words
+  public :: fit_columns, fit_lines, fit_text, fit_words
 
   !> Columns of fit.csv.
   character(len=*), parameter :: fit_columns(*) = [character(len=96) :: &
@@ -22,7 +22,7 @@ module fit_rows
     'model [] the same by the model, with its baseline', &
     'baseline [] the signal without force', &
     'residual [] measured less model', &
-    'used [] 1: the sample counts; 0: it is an outlier, skipped, the last before a jump, or in it', &
+    'used [] 1: the sample counts; 0: an outlier, skipped, last before a jump, or within it', &
     'outlier [] 1: it stands apart from its neighbours by more than noise']
 
   !> More that a theory may leave, in chi squared, and still do as well.
@@ -33,23 +33,26 @@ module fit_rows
 
 contains
 
-  !> Writes the rows of fit.csv.
-  subroutine write_fit_rows(outcome, results)
+  !> Rows of fit.csv.
+  function fit_lines(outcome) result(lines)
     type(fit_outcome_t), intent(in) :: outcome
-    type(results_t), intent(inout) :: results
-    logical :: used(size(outcome%curve%data%way))
+    type(line_t), allocatable :: lines(:)
+    logical, dimension(size(outcome%curve%data%way)) :: used, outlier
     integer :: i
 
+    outlier = outcome%curve%data%measured%outlier()
     used = .false.
     used(outcome%curve%data%sample) = .true.
     associate (data => outcome%curve%data%measured, fitted => outcome%fitted)
-      do i = 1, size(used)
-        call results%row(trim(merge('approach', 'retreat ', data%inward(i))), [data%z(i), &
-          data%signal(i), fitted%model(i), fitted%baseline(i), fitted%residual(i)], &
-          [used(i), .not. (data%usable(i) .or. data%skipped(i))])
+      allocate (lines(size(data%z)))
+      do i = 1, size(lines)
+        lines(i)%text = trim(merge('approach', 'retreat ', data%inward(i))) // ',' // &
+          cells([data%z(i), data%signal(i), fitted%model(i), fitted%baseline(i), &
+          fitted%residual(i)]) // merge(',1', ',0', used(i)) // &
+          merge(',1', ',0', outlier(i))
       end do
     end associate
-  end subroutine write_fit_rows
+  end function fit_lines
 
   !> fit.nml: a group for the fit of the path, and one for that of each theory.
   function fit_text(outcome, title) result(text)
@@ -57,7 +60,6 @@ contains
     character(len=*), intent(in) :: title
     character(len=:), allocatable :: text
     character(len=:), allocatable :: name
-    type(line_t), allocatable :: doubts(:)
     real(wp), allocatable :: numbers(:)
     integer :: i
 
@@ -66,7 +68,7 @@ contains
       '&fit' // nl // assignment_of('title', name) // &
       of_fitted(outcome%curve%unknown, outcome%fitted)
     associate (curve => outcome%curve)
-      numbers = [real(count(.not. (curve%data%measured%usable .or. curve%data%measured%skipped)), wp)]
+      numbers = [real(count(curve%data%measured%outlier()), wp)]
       text = text // assignment_of('outliers', numbers)
       if (allocated(outcome%problem)) then
         numbers = [adhesion_strength(outcome%problem)]
@@ -81,8 +83,7 @@ contains
       text = text // of_jump('jump_in', curve%data%jump(1), outcome%fitted%jump_z(1)) // &
         of_jump('jump_out', curve%data%jump(2), outcome%fitted%jump_z(2))
     end associate
-    doubts = doubts_of(outcome)
-    text = text // assignment_of('warnings', doubts) // '/' // nl
+    text = text // assignment_of('warnings', doubts_of(outcome)) // '/' // nl
     do i = 1, size(outcome%theory)
       associate (theory => outcome%theory(i))
         if (.not. allocated(theory%fitted%effect)) cycle
@@ -162,8 +163,8 @@ contains
     associate (curve => outcome%curve)
       line%text = brief(real(size(curve%data%sample), wp)) // ' samples, noise ' // &
         rounded(curve%data%noise%deviation) // ', correlation of neighbours ' // &
-        rounded(curve%data%noise%correlation(1)) // ', ' // brief(real(count(.not. &
-        (curve%data%measured%usable .or. curve%data%measured%skipped)), wp)) // ' outliers left out'
+        rounded(curve%data%noise%correlation(1)) // ', ' // brief(real(count( &
+        curve%data%measured%outlier()), wp)) // ' outliers left out'
       lines = [lines, line]
       do i = 1, size(curve%unknown)
         line%text = curve%unknown(i)%name // ' = ' // rounded_to(outcome%fitted%value(i), &
@@ -184,8 +185,8 @@ contains
       associate (theory => outcome%theory(i))
         if (.not. allocated(theory%fitted%effect) .or. .not. theory%fitted%lack%is_noise()) cycle
         if (theory%fitted%chi_squared > outcome%fitted%chi_squared + as_well) cycle
-        line%text = trim(theory%theory) // ', which has no force before contact, describes these ' // &
-          'data ' // trim(merge('better ', 'as well', theory%fitted%chi_squared < &
+        line%text = trim(theory%theory) // ', which has no force before contact, describes ' // &
+          'these data ' // trim(merge('better ', 'as well', theory%fitted%chi_squared < &
           outcome%fitted%chi_squared - as_well)) // ': chi squared ' // &
           rounded_to(theory%fitted%chi_squared, 1.0_wp) // ' against ' // &
           rounded_to(outcome%fitted%chi_squared, 1.0_wp)

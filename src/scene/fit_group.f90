@@ -39,10 +39,10 @@ contains
                // 'for a deflection in metres.', above=zero, otherwise='the signal is the force'), &
       real_key('measurement', 'contact_point', 'm', 'Position of the base at which undeformed ' // &
                'bodies would touch.', otherwise='found by the fit'), &
-      names_key('measurement', 'units', 2, 'Units of position (m, mm, um, nm, pm) and signal (N, ' // &
-                'mN, uN, nN, pN, V, mV) in the file.', otherwise='m and N or V'), &
-      list_key('measurement', 'skip', 'm', 'Pairs of positions of the base, SI; samples between ' // &
-               'the two of a pair do not count.', most=most_skipped, otherwise='none'), &
+      names_key('measurement', 'units', 2, 'Units of position (m, mm, um, nm, pm) and signal ' // &
+                '(N, mN, uN, nN, pN, V, mV) in the file.', otherwise='m and N or V'), &
+      list_key('measurement', 'skip', 'm', 'Pairs of positions of the base, SI; samples ' // &
+               'between the two of a pair do not count.', most=most_skipped, otherwise='none'), &
       word_key('measurement', 'segment', 'both approach retreat', 'Which way is fitted.', &
                default='both'), &
       group('fit', 'Keys of this deck found such that the path''s curve is that of ' // &

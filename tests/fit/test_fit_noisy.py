@@ -1,5 +1,5 @@
-"""Claims about fits of curves as instruments give them: much noise, outliers, starts far off,
-little baseline, models that are wrong."""
+"""Claims about fits of curves as instruments give them: much noise, outliers, starts that are far
+off, little baseline, models that are wrong."""
 
 import numpy as np
 import pytest
@@ -152,7 +152,7 @@ def test_mistakes_in_files_are_named(branches, tmp_path, mistake):
 
 def test_units_and_skip_are_checked(tmp_path):
     file = write(tmp_path / "a.csv", [0.0], [0.0], [0])
-    for keys, said in (({"units": ["N", "nN"]}, "no unit of position"),
-                       ({"skip": [1e-9]}, "pairs")):
+    wrong = ({"units": ["N", "nN"]}, "no unit of position"), ({"skip": [1e-9]}, "pairs")
+    for keys, said in wrong:
         with pytest.raises(snapin.DeckError, match=said):
             run(fit_deck(started(), file, list(TRUTH), measurement=keys))

@@ -1,6 +1,6 @@
-"""Force curves of the Lennard-Jones model behind a spring, by the independent `reference`,
-as an instrument would have them: noise, outliers, a baseline. Paths are kept in a folder, so that
-many curves cost as much as one.
+"""Force curves of the Lennard-Jones model behind a spring, by the independent solution
+(`reference`), as an instrument would have them: noise, outliers, a baseline. Paths are kept in a
+folder, so that many curves cost as much as one.
 """
 
 import math
@@ -71,8 +71,11 @@ class Driven:
         self.outer = self._part(0, np.argmin(ahead) + 1 if self.turns else len(self.z))
         first = len(ahead) - np.argmin(ahead[::-1]) if self.turns else 0
         self.inner = self._part(first, len(self.z))
-        self.jump_in, self.jump_out = self.outer[0][0], self.inner[0][-1]
         self.pull_off = -self.load.min()
+        # Without jumps there is a place of largest tension at least.
+        self.jump_in = self.jump_out = self.z[self.load.argmin()]
+        if self.turns:
+            self.jump_in, self.jump_out = self.outer[0][0], self.inner[0][-1]
 
     def _part(self, first, last):
         return self.z[first:last][::-1], self.load[first:last][::-1]
@@ -113,6 +116,6 @@ def measure(true, samples, noise, rng, outliers=0.0, push=0.7, baseline=0.5):
     force += offsets[segment] + offsets[2] * z / (far - near)
     force += deviation * rng.standard_normal(2 * samples)
     outlier = rng.random(2 * samples) < outliers
-    size = rng.uniform(10, 40, 2 * samples)
-    force += outlier * deviation * size * rng.choice([-1, 1], 2 * samples)
+    off = rng.uniform(10, 40, 2 * samples) * rng.choice([-1, 1], 2 * samples)
+    force += outlier * deviation * off
     return Curve(z, force, segment, deviation, outlier)

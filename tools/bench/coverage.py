@@ -3,8 +3,8 @@
 
     .venv/bin/python tools/bench/coverage.py [--curves 40] [--first 0] [--wrong]
 
-Strength of adhesion, spring, noise, number of samples, outliers and where the search starts are drawn
-for each curve by its number. A fit arrives if no estimate is 6 standard errors and a thousandth off.
+Strength of adhesion, spring, noise, number of samples, outliers and where the search starts are
+drawn for each curve by its number. A fit arrives if no estimate is 6 standard errors off.
 --wrong fits with z0 held at twice the truth, which is to be found. Rows go to standard output, the
 table after them.
 """
@@ -104,10 +104,11 @@ class Outcome:
 
 def line_of(case, outcome):
     return (f"{case.number:5} sigma {case.true.sigma:6g} k dz/noise {case.step:6.2f} noise "
-            f"{100 * case.noise:4.1f} % samples {case.samples:5} outliers {100 * case.outliers:2.0f} % "
-            f"start {' '.join(f'{x:5.2f}' for x in case.off[:len(outcome.off)])} off "
+            f"{100 * case.noise:4.1f} % samples {case.samples:5} "
+            f"outliers {100 * case.outliers:2.0f} % start {' '.join(f'{x:5.2f}' for x in case.off[:len(outcome.off)])} off "
             f"{' '.join(f'{x:7.2f}' for x in outcome.off)} left {outcome.reduced:7.3f} noise "
-            f"{outcome.noise:5.2f} {'WRONG' if outcome.found_wrong else ''} {outcome.seconds:5.1f} s")
+            f"{outcome.noise:5.2f} {'WRONG' if outcome.found_wrong else ''} "
+            f"{outcome.seconds:5.1f} s")
 
 
 def share(rows):
