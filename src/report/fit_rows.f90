@@ -4,7 +4,7 @@ module fit_rows
   use text, only: rounded, rounded_to, brief
   use dimensionless_problem, only: adhesion_strength, tabor_parameter
   use namelist_writer, only: line_t, assignment_of
-  use tables, only: cells
+  use results, only: results_t
   use fit_request, only: unknown_t
   use measured_jumps, only: measured_jump_t
   use curve_fit, only: fitted_t
@@ -12,7 +12,7 @@ module fit_rows
   use fit_doubts, only: doubts_of
   implicit none
   private
-  public :: fit_columns, fit_lines, fit_text, fit_words
+  public :: fit_columns, write_fit_rows, fit_text, fit_words
 
   !> Columns of fit.csv.
   character(len=*), parameter :: fit_columns(*) = [character(len=96) :: &
@@ -33,10 +33,10 @@ module fit_rows
 
 contains
 
-  !> Rows of fit.csv.
-  function fit_lines(outcome) result(lines)
+  !> Writes the rows of fit.csv.
+  subroutine write_fit_rows(outcome, results)
     type(fit_outcome_t), intent(in) :: outcome
-    type(line_t), allocatable :: lines(:)
+    type(results_t), intent(inout) :: results
     logical, dimension(size(outcome%curve%data%way)) :: used, outlier
     integer :: i
 
@@ -44,15 +44,13 @@ contains
     used = .false.
     used(outcome%curve%data%sample) = .true.
     associate (data => outcome%curve%data%measured, fitted => outcome%fitted)
-      allocate (lines(size(data%z)))
-      do i = 1, size(lines)
-        lines(i)%text = trim(merge('approach', 'retreat ', data%inward(i))) // ',' // &
-          cells([data%z(i), data%signal(i), fitted%model(i), fitted%baseline(i), &
-          fitted%residual(i)]) // merge(',1', ',0', used(i)) // &
-          merge(',1', ',0', outlier(i))
+      do i = 1, size(used)
+        call results%row(trim(merge('approach', 'retreat ', data%inward(i))), [data%z(i), &
+          data%signal(i), fitted%model(i), fitted%baseline(i), fitted%residual(i)], &
+          [used(i), outlier(i)])
       end do
     end associate
-  end function fit_lines
+  end subroutine write_fit_rows
 
   !> fit.nml: a group for the fit of the path, and one for that of each theory.
   function fit_text(outcome, title) result(text)
@@ -60,6 +58,7 @@ contains
     character(len=*), intent(in) :: title
     character(len=:), allocatable :: text
     character(len=:), allocatable :: name
+    type(line_t), allocatable :: doubts(:)
     real(wp), allocatable :: numbers(:)
     integer :: i
 
@@ -83,7 +82,8 @@ contains
       text = text // of_jump('jump_in', curve%data%jump(1), outcome%fitted%jump_z(1)) // &
         of_jump('jump_out', curve%data%jump(2), outcome%fitted%jump_z(2))
     end associate
-    text = text // assignment_of('warnings', doubts_of(outcome)) // '/' // nl
+    doubts = doubts_of(outcome)
+    text = text // assignment_of('warnings', doubts) // '/' // nl
     do i = 1, size(outcome%theory)
       associate (theory => outcome%theory(i))
         if (.not. allocated(theory%fitted%effect)) cycle

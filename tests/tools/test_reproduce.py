@@ -142,8 +142,8 @@ def test_only_decks_on_the_paper_s_rule_may_end_unconverged(tools, tmp_path, ste
 
     program = tmp_path / "unconverged"
     program.write_text('#!/bin/sh\nmkdir -p "$3/$(basename "$4" .nml)"\n'
-                       'echo "&summary converged = .false. /" > "$3/$(basename "$4" .nml)"'
-                       '/summary.nml\nexit 1\n')
+                       'printf "&summary\\n  converged = .false.\\n/\\n\\n&cost\\n/\\n" '
+                       '> "$3/$(basename "$4" .nml)"/summary.nml\nexit 1\n')
     program.chmod(0o755)
     deck = tmp_path / f"{stem}.nml"
     deck.write_text(DECK)
