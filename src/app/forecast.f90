@@ -8,7 +8,6 @@ module forecast
   use contact_scales, only: largest_radius, contact_level, smallest_feature, lost_in_rounding
   use h0_range, only: range_of
   use scene_problem, only: problem_of
-  use locked_stepper, only: has_path
   use h0_schedule, only: states_planned
   implicit none
   private
@@ -64,11 +63,12 @@ contains
 
     if (.not. scene%finds_states()) return
     problem = problem_of(scene)
+    if (problem%rigid) return
     call range_of(scene, problem, low, high)
     chosen = choose(scene%numerics, problem, low, allocated(scene%profiles))
     locked = chosen%grid == 'edge_locked'
     ! A cycle goes along the path too.
-    known = locked .and. has_path(problem)
+    known = locked .and. problem%law%adhesion > 0
     cases = 1
     if (allocated(scene%sweep)) then
       cases = size(scene%sweep%values)
@@ -86,7 +86,7 @@ contains
         expected%seconds = 0
     end if
     expected%seconds = expected%seconds*cases/expected%copies
-    if (.not. problem%rigid) expected%bytes = other_bytes + 8*entries*expected%copies
+    expected%bytes = other_bytes + 8*entries*expected%copies
   end function forecast_of
 
   !> Adds what the edge-locked meshes take and, where it is known or asked for, the path on them.

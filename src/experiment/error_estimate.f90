@@ -65,7 +65,7 @@ contains
     class(finer_t), intent(inout) :: self
     integer, intent(in) :: mesh
 
-    if (self%problem%rigid .or. allocated(self%meshes%grid(mesh)%kernel)) return
+    if (allocated(self%meshes%grid(mesh)%kernel)) return
     if (associated(self%store)) then
       call self%meshes%complete(mesh, self%store)
     else
@@ -118,7 +118,6 @@ contains
         rounding*abs(reported%load), displacement=fine%margin* &
         abs(state%axis_gap - state%h0 - reported%displacement), &
         profile=fine%margin*profile_error(own, fine, witness%mesh, witness%state, state))
-      if (.not. own%problem%coupling > 0) return
       control = witness%control
       control%value = control%value + shift
       shifted = state

@@ -1,20 +1,16 @@
 !> What acts beyond the end of a mesh, where the deformation hardly varies: from the position r0 on
 !> the gap is H(r) = H(r0) + f(r) - f(r0). For the parabola r dr = dH, and the integrals are the
-!> law's own, Derjaguin's (23); for other shapes they are integrated over r0/r. From r0 = 0 on they
-!> are those of whole bodies that do not deform.
+!> law's own, Derjaguin's (23); for other shapes they are integrated over r0/r.
 module beyond_mesh
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use quadrature, only: gauss_legendre
   implicit none
   private
-  public :: load_beyond, load_slope_beyond, energy_beyond, energy_density
+  public :: load_beyond, load_slope_beyond, energy_beyond, energy_density, farthest
 
   !> Points; and those for the energy of the parabola, where it is a power of the gap or nothing.
   integer, parameter :: points = 24, few = 8
-  !> From the axis: nodes of a panel; panels, each twice as long as the one before, so that beyond
-  !> them nothing is left of any law; those that lie where the gap is at most doubled.
-  integer, parameter :: nodes = 12, panels = 63, near_panels = 3
   !> Gaps beyond which no force acts, and whose powers are numbers.
   real(wp), parameter :: farthest = 1.0e30_wp
 
@@ -88,43 +84,17 @@ contains
     energy = energy - problem%law%energy(min(1 + problem%shape%height(r), farthest))
   end function energy_density
 
-  !> With r = from/x, or in panels from the axis.
+  !> With r = from/x.
   pure function rule_beyond(problem, gap, from) result(rule)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap, from
     type(rule_t) :: rule
     real(wp) :: x(points), weight(points)
 
-    if (.not. from > 0) then
-      rule = rule_from_axis(problem, gap)
-      return
-    end if
     call gauss_legendre(x, weight)
     rule%gap = min(gap + (problem%shape%height(from/x) - problem%shape%height(from)), farthest)
     rule%at = from/x
     rule%weight = weight*(from/x)**2/x
   end function rule_beyond
-
-  !> The same from the axis, where the gap is `gap`.
-  pure function rule_from_axis(problem, gap) result(rule)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: gap
-    type(rule_t) :: rule
-    real(wp), dimension(nodes) :: x, weight, r
-    real(wp) :: left, right
-    integer :: k
-
-    call gauss_legendre(x, weight)
-    allocate (rule%gap(nodes*panels), rule%at(nodes*panels), rule%weight(nodes*panels))
-    right = 0
-    do k = 1, panels
-      left = right
-      right = problem%shape%position_of(gap)*2.0_wp**(k - near_panels)
-      r = left + (right - left)*x
-      rule%gap(nodes*(k - 1) + 1:nodes*k) = min(gap + problem%shape%height(r), farthest)
-      rule%at(nodes*(k - 1) + 1:nodes*k) = r
-      rule%weight(nodes*(k - 1) + 1:nodes*k) = (right - left)*weight*r
-    end do
-  end function rule_from_axis
 
 end module beyond_mesh
