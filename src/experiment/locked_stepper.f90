@@ -1,7 +1,7 @@
 !> What quasi-static experiments in edge-locked coordinates have in common: nothing is pinned
 !> between nodes and nothing is stiff, at any adhesion strength. `path_stepper` goes along the
-!> traced path of a law that attracts; `unique_stepper` is for others, under which there is one state
-!> for every h0.
+!> traced path of a law that attracts; `unique_stepper` is for others, under which there is one
+!> state for every h0.
 module locked_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap

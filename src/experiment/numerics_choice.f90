@@ -53,8 +53,8 @@ contains
       chosen%grid = 'none'
       chosen%options%method = 'integral'
       chosen%because = 'the bodies are rigid: their load is an integral over the gap'
-      if (problem%shape%parabolic) chosen%because = 'the bodies are rigid: their load is 2 pi R '// &
-        'times the energy per area at h0'
+      if (problem%shape%parabolic) chosen%because = &
+        'the bodies are rigid: their load is 2 pi R times the energy per area at h0'
       return
     end if
     associate (options => chosen%options)

@@ -43,7 +43,6 @@ contains
     integer :: k
 
     began = seconds()
-    outcome%error_estimate = rounding
     if (allocated(request%path)) then
       allocate (outcome%stepped_path)
       call run_branch(problem, path_plan(request, problem%law, calm_gap(problem)), observer, &
@@ -91,6 +90,7 @@ contains
     end do
     outcome%cost%states = outcome%cost%states + branch%states
     if (branch%states == 0) return
+    if (.not. allocated(outcome%error_estimate)) outcome%error_estimate = rounding
     associate (n => branch%states)
       branch%finish = reported_at(problem, plan%h0(n))
       call find_largest_tension(problem, plan%h0(:n), load(:n), branch)
