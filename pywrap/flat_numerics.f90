@@ -149,9 +149,8 @@ contains
     call pose(deck, this%problem, stat, message)
     if (stat /= 0) return
     this%problem%coupling = coupling
-    this%problem%rigid = .not. coupling > 0
     allocate (this%meshes%grid(1))
-    this%meshes%grid(1) = mesh_of(kind, centre, lengths, orders, map, coupling > 0)
+    this%meshes%grid(1) = mesh_of(kind, centre, lengths, orders, map, .true.)
     this%options = solver_options_t(method=method, tolerance=tolerance, depth=depth, &
       patience=patience, most_iterations=most_iterations, mixing_limit=mixing_limit, &
       stop_on_change=stop_on_change /= 0, displacement_tolerance=displacement_tolerance)

@@ -9,7 +9,7 @@ module anderson
   use kinds, only: wp
   use contact_state, only: state_t
   use equilibrium, only: control_t, equations_t, residual, largest_step, unknowns_of, holds, &
-    at_h0, at_h0_with_edge
+    at_h0_with_edge
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: solve
   use solver_options, only: solver_options_t
@@ -55,11 +55,6 @@ contains
     type(iterate_t) :: now
     integer :: iteration
 
-    if (.not. equations%problem%coupling > 0 .and. control%kind == at_h0) then
-      call solve_rigid(equations, control, state)
-      converged = holds(equations%problem, options%tolerance, state)
-      return
-    end if
     now%z = unknowns_of(control, state)
     allocate (now%g(size(now%z)))
     frozen%factors%valid = frozen%serves(control, size(now%z))
@@ -86,20 +81,6 @@ contains
     frozen%excess = frozen%excess + max(0, state%iterations - few_iterations)
     if (unknowns_an_iteration*frozen%excess > size(now%z)) frozen%factors%valid = .false.
   end subroutine solve_anderson
-
-  !> Rigid bodies: their gap is known.
-  subroutine solve_rigid(equations, control, state)
-    type(equations_t), intent(inout) :: equations
-    type(control_t), intent(in) :: control
-    type(state_t), intent(inout) :: state
-    real(wp), dimension(size(state%gap)) :: z, g
-
-    associate (grid => equations%meshes%grid(control%mesh))
-      z = control%value + equations%problem%shape%height(control%scale*grid%x(:size(z)))
-    end associate
-    call residual(equations, control, z, g, state)
-    state%iterations = 0
-  end subroutine solve_rigid
 
   !> A factorisation at the present state; what was learnt with the old one is forgotten.
   subroutine renew(equations, control, state, frozen, now)

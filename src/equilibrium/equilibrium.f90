@@ -113,14 +113,10 @@ contains
       end if
       state%pressure = problem%law%pressure(state%gap)
       cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
-      if (problem%coupling > 0) then
-        columns = acting_columns(state%pressure)
-        call equations%operator%deform(problem, grid, state%scale, columns, state%pressure, rise)
-        cost%operator_products = cost%operator_products + 1
-        cost%operator_columns = cost%operator_columns + columns
-      else
-        rise = 0
-      end if
+      columns = acting_columns(state%pressure)
+      call equations%operator%deform(problem, grid, state%scale, columns, state%pressure, rise)
+      cost%operator_products = cost%operator_products + 1
+      cost%operator_columns = cost%operator_columns + columns
       do i = 1, n
         g(i) = state%gap(i) - state%h0 - problem%shape%height(state%scale*grid%x(i)) - &
           rise(first_node - 1 + i)

@@ -58,13 +58,9 @@ contains
     diagonal = 1
     if (present(shift)) diagonal = 1 + shift
     associate (lu => factors%lu)
-      if (problem%coupling > 0) then
-        call operator%matrix(problem, grid, state%scale, factor, first_node, lu(:n, :n))
-        if (m > n) call operator%matrix(problem, grid, state%scale, -factor, &
-          bordered_row(control), lu(m:, :n))
-      else
-        lu = 0
-      end if
+      call operator%matrix(problem, grid, state%scale, factor, first_node, lu(:n, :n))
+      if (m > n) call operator%matrix(problem, grid, state%scale, -factor, bordered_row(control), &
+        lu(m:, :n))
       do j = 1, n
         lu(j, j) = lu(j, j) + diagonal
       end do
@@ -85,14 +81,11 @@ contains
 
     associate (problem => equations%problem, grid => equations%meshes%grid(control%mesh), &
       n => size(state%gap), m => size(change), cost => equations%cost)
-      rise = 0
-      if (problem%coupling > 0) then
-        call equations%operator%deform(problem, grid, state%scale, n, &
-          problem%law%slope(state%gap)*change(:n), rise)
-        cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
-        cost%operator_products = cost%operator_products + 1
-        cost%operator_columns = cost%operator_columns + n
-      end if
+      call equations%operator%deform(problem, grid, state%scale, n, &
+        problem%law%slope(state%gap)*change(:n), rise)
+      cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
+      cost%operator_products = cost%operator_products + 1
+      cost%operator_columns = cost%operator_columns + n
       product(:n) = change(:n) - rise(first_node:)
       if (m == n) return
       call border(problem, grid, equations%operator, equations%meshes%locked_gap(problem%law, &

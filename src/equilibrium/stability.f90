@@ -148,6 +148,7 @@ contains
     logical :: attracted(size(state%gap))
 
     value = unknown()
+    if (problem%rigid .and. problem%law%adhesion > 0) value = 0
     associate (two_u => state%h0 + &
       problem%shape%height(state%scale*grid%x(:size(state%gap))) - state%gap, &
       slope => problem%law%slope(state%gap))

@@ -65,7 +65,7 @@ contains
     class(finer_t), intent(inout) :: self
     integer, intent(in) :: mesh
 
-    if (self%problem%rigid .or. allocated(self%meshes%grid(mesh)%kernel)) return
+    if (allocated(self%meshes%grid(mesh)%kernel)) return
     if (associated(self%store)) then
       call self%meshes%complete(mesh, self%store)
     else
@@ -118,11 +118,6 @@ contains
         rounding*abs(reported%load), displacement=fine%margin* &
         abs(state%axis_gap - state%h0 - reported%displacement), &
         profile=fine%margin*profile_error(own, fine, witness%mesh, witness%state, state))
-      if (.not. own%problem%coupling > 0) then
-        ! The load is the law's energy or one quadrature, and its extremum a root.
-        error%h0 = rounding*max(1.0_wp, abs(reported%h0))
-        return
-      end if
       control = witness%control
       control%value = control%value + shift
       shifted = state

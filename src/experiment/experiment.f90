@@ -9,13 +9,14 @@ module experiment
   use mesh_store, only: mesh_store_t
   use ending, only: turn_not_reached
   use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
-  use locked_stepper, only: locked_stepper_t, has_path
+  use locked_stepper, only: locked_stepper_t
   use path_stepper, only: path_stepper_t
   use unique_stepper, only: unique_stepper_t
   use fixed_stepper, only: fixed_stepper_t
+  use rigid_bodies, only: run_rigid
   use stepped_branch, only: h0_schedule_t, run_branch
   use h0_range, only: path_start, range_of
-  use h0_schedule, only: schedule_of
+  use h0_schedule, only: path_plan, loading_plan, unloading_plan
   use experiment_result, only: experiment_result_t
   use exact_path, only: trace_exactly
   use result_errors, only: judge_t, begin_judging, judge_locked, judge_fixed
@@ -29,9 +30,6 @@ module experiment
   implicit none
   private
   public :: run_experiment, prepare
-
-  !> States of a stepped path.
-  integer, parameter :: path_states = 100
 
 contains
 
@@ -51,7 +49,11 @@ contains
     if (.not. (allocated(request%path) .or. allocated(request%loading))) return
     call range_of(request, problem, low, high)
     outcome%chosen = choose(request%numerics, problem, low, allocated(request%profiles))
-    fixed = outcome%chosen%grid /= 'edge_locked'
+    if (problem%rigid) then
+      call run_rigid(request, problem, observer, outcome)
+      return
+    end if
+    fixed = outcome%chosen%is_fixed()
     if (allocated(request%path) .or. .not. fixed) &
       call run_locked(request, problem, high, low, .not. fixed, observer, outcome, keeper, store)
     if (allocated(request%loading) .and. fixed) &
@@ -77,7 +79,7 @@ contains
     real(wp) :: began
 
     ! Not allocatable: compiler note 3.
-    if (has_path(problem)) then
+    if (problem%law%adhesion > 0) then
       steps => along_path
     else
       steps => one_by_one
@@ -195,31 +197,18 @@ contains
     end associate
   end subroutine run_path
 
-  !> The path of a law that does not attract, or of rigid bodies: one state for every h0, so that
-  !> stepping h0 gives it.
+  !> The path of a law that does not attract: one state for every h0, so that stepping h0 gives it.
   subroutine run_stepped_path(request, steps, observer, outcome)
     class(request_t), intent(in) :: request
     class(unique_stepper_t), intent(inout) :: steps
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
     type(branch_point_t) :: position, none(0)
-    type(h0_schedule_t) :: plan
-    real(wp) :: start
     real(wp), allocatable :: nowhere(:)
 
-    allocate (nowhere(0))
-    associate (law => steps%problem%law)
-      if (allocated(request%path%h0_start)) then
-        start = request%path%h0_start
-      else
-        start = max(law%separation_of(steps%far_away()), request%path%h0_end + law%length)
-      end if
-      allocate (outcome%stepped_path)
-      plan = schedule_of('path', start, request%path%h0_end, &
-        abs(start - request%path%h0_end)/path_states, request, law, nowhere)
-      plan%unique = .true.
-      call run_branch(steps, plan, .true., position, observer, nowhere, none, outcome%stepped_path)
-    end associate
+    allocate (nowhere(0), outcome%stepped_path)
+    call run_branch(steps, path_plan(request, steps%problem%law, steps%far_away()), .true., &
+      position, observer, nowhere, none, outcome%stepped_path)
   end subroutine run_stepped_path
 
   !> The cycle, its steps kept where there is a keeper.
@@ -250,15 +239,13 @@ contains
     type(branch_point_t) :: position
     type(branch_point_t), allocatable :: turning(:), none(:)
     real(wp), allocatable :: from(:), nowhere(:)
-    character(len=24) :: name
     integer :: k
 
     allocate (from(0), nowhere(0), none(0))
     if (allocated(request%unloading)) from = steps%problem%law%gap_of(request%unloading%from)
     allocate (turning(size(from)))
     allocate (outcome%loading)
-    plan = schedule_of('loading', request%loading%h0_start, request%loading%h0_end, &
-      request%loading%h0_step, request, steps%problem%law, from)
+    plan = loading_plan(request, steps%problem%law, from)
     call run_branch(steps, plan, .true., position, observer, from, turning, outcome%loading)
     if (allocated(request%unloading)) then
       allocate (outcome%unloading(size(from)))
@@ -268,10 +255,7 @@ contains
           cycle
         end if
         position = turning(k)
-        ! Not by a function of deferred length, which cases of a sweep would share: compiler note 4.
-        write (name, '(a, i0)') 'unloading_', k
-        plan = schedule_of(trim(name), request%unloading%from(k), request%unloading%h0_end, &
-          request%unloading%h0_step, request, steps%problem%law, nowhere)
+        plan = unloading_plan(request, steps%problem%law, k)
         call run_branch(steps, plan, .false., position, observer, nowhere, none, &
           outcome%unloading(k))
       end do

@@ -74,7 +74,6 @@ contains
     continues = event%converged .and. change(expected, state) <= &
       0.5_wp*change(position%state, expected) + jump + merge(abs(h0 - position%state%h0), 0.0_wp, &
       position%held == 1)
-    if (self%problem%rigid) continues = .true.
   end subroutine continue_to
 
   !> The state that a step to h0 is expected to lead to.

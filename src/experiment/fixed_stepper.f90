@@ -6,7 +6,7 @@ module fixed_stepper
   use contact_state, only: state_t, state_from
   use fixed_branch, only: change
   use fixed_jumps, only: fixed_jumps_t, locate_jump
-  use ending, only: touching, beyond_rounding
+  use ending, only: beyond_rounding
   use stepper, only: branch_point_t, step_result_t, remember
   implicit none
   private
@@ -48,12 +48,7 @@ contains
     real(wp) :: far
     integer :: i, steps, lost
 
-    if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
-      event%ending%cause = touching
-      return
-    end if
-    far = h0
-    if (.not. self%problem%rigid) far = max(h0, calm_gap(self%problem))
+    far = max(h0, calm_gap(self%problem))
     state = state_from(self%meshes%grid(1)%nodes)
     state%h0 = far
     state%axis_gap = far
@@ -105,10 +100,6 @@ contains
     logical :: continues, arrived, stalled, has_landed
 
     slipped = .false.
-    if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
-      event%ending%cause = touching
-      return
-    end if
     if (self%options%stop_on_change) then
       call self%paper_step(h0, position, event)
       return

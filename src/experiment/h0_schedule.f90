@@ -6,7 +6,10 @@ module h0_schedule
   use stepped_branch, only: h0_schedule_t
   implicit none
   private
-  public :: schedule_of, states_planned
+  public :: path_plan, loading_plan, unloading_plan, states_planned
+
+  !> States of a path that is stepped.
+  integer, parameter :: path_states = 100
 
 contains
 
@@ -28,13 +31,63 @@ contains
     end associate
   end function states_planned
 
+  !> The plan of a path on which there is one state for every h0; far: where it may begin, law's
+  !> lengths.
+  function path_plan(request, law, far) result(plan)
+    class(request_t), intent(in) :: request
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: far
+    type(h0_schedule_t) :: plan
+    real(wp) :: start
+
+    associate (finish => request%path%h0_end)
+      if (allocated(request%path%h0_start)) then
+        start = request%path%h0_start
+      else
+        start = max(law%separation_of(far), finish + law%length)
+      end if
+      plan = schedule_of('path', start, finish, abs(start - finish)/path_states, request, law)
+    end associate
+    plan%unique = .true.
+  end function path_plan
+
+  !> The plan of the loading; also: values that it goes through as well, law's lengths.
+  function loading_plan(request, law, also) result(plan)
+    class(request_t), intent(in) :: request
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in), optional :: also(:)
+    type(h0_schedule_t) :: plan
+
+    associate (loading => request%loading)
+      plan = schedule_of('loading', loading%h0_start, loading%h0_end, loading%h0_step, request, &
+        law, also)
+    end associate
+  end function loading_plan
+
+  !> The plan of unloading k.
+  function unloading_plan(request, law, k) result(plan)
+    class(request_t), intent(in) :: request
+    class(force_law_t), intent(in) :: law
+    integer, intent(in) :: k
+    type(h0_schedule_t) :: plan
+    character(len=24) :: name
+
+    ! Not by a function of deferred length, which cases of a sweep would share: compiler note 4.
+    write (name, '(a, i0)') 'unloading_', k
+    associate (unloading => request%unloading)
+      plan = schedule_of(trim(name), unloading%from(k), unloading%h0_end, unloading%h0_step, &
+        request, law)
+    end associate
+  end function unloading_plan
+
   !> Values of h0 [m] from start to finish by step, whichever way that is, both ends included, with
   !> the profiles asked for and the values `also` (law's lengths) in their places.
   function schedule_of(name, start, finish, step, request, law, also) result(plan)
     character(len=*), intent(in) :: name
-    real(wp), intent(in) :: start, finish, step, also(:)
+    real(wp), intent(in) :: start, finish, step
     class(request_t), intent(in) :: request
     class(force_law_t), intent(in) :: law
+    real(wp), intent(in), optional :: also(:)
     type(h0_schedule_t) :: plan
     real(wp), allocatable :: h0(:), profiles(:)
     real(wp) :: sense, same
@@ -52,9 +105,11 @@ contains
     end if
     allocate (profiles(0))
     if (allocated(request%profiles)) profiles = request%profiles%h0
-    do i = 1, size(also)
-      call include(h0, law%separation_of(also(i)))
-    end do
+    if (present(also)) then
+      do i = 1, size(also)
+        call include(h0, law%separation_of(also(i)))
+      end do
+    end if
     do i = 1, size(profiles)
       if ((profiles(i) - start)*(profiles(i) - finish) <= 0) call include(h0, profiles(i))
     end do

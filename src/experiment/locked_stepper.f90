@@ -1,18 +1,18 @@
 !> What quasi-static experiments in edge-locked coordinates have in common: nothing is pinned
 !> between nodes and nothing is stiff, at any adhesion strength. `path_stepper` goes along the
-!> traced path of a law that attracts; `unique_stepper` is for laws and bodies that have one state
-!> for every h0.
+!> traced path of a law that attracts; `unique_stepper` is for others, under which there is one
+!> state for every h0.
 module locked_stepper
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t, calm_gap
+  use dimensionless_problem, only: calm_gap
   use contact_state, only: state_t, state_from
   use edge_locked, only: approach, contact
   use locked_meshes, only: h0_control, scale_at
-  use ending, only: ending_t, touching, nothing_afar
+  use ending, only: ending_t, nothing_afar
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   implicit none
   private
-  public :: locked_stepper_t, has_path
+  public :: locked_stepper_t
 
   type, abstract, extends(stepper_t) :: locked_stepper_t
   contains
@@ -23,16 +23,8 @@ module locked_stepper
 
 contains
 
-  !> Whether the equilibria of a problem lie on a path that can have folds: the law attracts and the
-  !> bodies yield.
-  pure logical function has_path(problem)
-    type(problem_t), intent(in) :: problem
-
-    has_path = problem%law%adhesion > 0 .and. .not. problem%rigid
-  end function has_path
-
   !> A state at h0 or, if the bodies would be near each other there, so far apart that they hardly
-  !> deform (rigid bodies: at h0).
+  !> deform.
   subroutine begin_afar(self, h0, position, event)
     class(locked_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -44,13 +36,6 @@ contains
 
     mesh = merge(approach, contact, self%meshes%traceable)
     far = max(h0, self%far_away())
-    if (self%problem%rigid) then
-      far = h0
-      if (h0 < self%problem%law%smallest_gap) then
-        event%ending%cause = touching
-        return
-      end if
-    end if
     associate (grid => self%meshes%grid(mesh))
       state = state_from(grid%nodes)
       state%h0 = far

@@ -14,7 +14,7 @@ module numerics_choice
   public :: choice_t, choose, fixed_mesh, companion
 
   type :: choice_t
-    !> 'edge_locked' panels, or fixed 'uniform' or 'panels'.
+    !> 'edge_locked' panels, fixed 'uniform' or 'panels', or 'none' for rigid bodies.
     character(len=:), allocatable :: grid, because
     type(solver_options_t) :: options
     !> Digits that edge-locked meshes are to have.
@@ -22,6 +22,8 @@ module numerics_choice
     !> Fixed grids: nodes and extent (lateral units), and nodes of a panel.
     integer :: nodes = 0, panel_order = 12
     real(wp) :: extent = 0
+  contains
+    procedure :: is_fixed
   end type choice_t
 
   !> Spacing over the smallest feature at which a uniform grid resolves it, and the paper's range of
@@ -47,6 +49,14 @@ contains
     type(choice_t) :: chosen
     real(wp) :: widest, feature
 
+    if (problem%rigid) then
+      chosen%grid = 'none'
+      chosen%options%method = 'integral'
+      chosen%because = 'the bodies are rigid: their load is an integral over the gap'
+      if (problem%shape%parabolic) chosen%because = &
+        'the bodies are rigid: their load is 2 pi R times the energy per area at h0'
+      return
+    end if
     associate (options => chosen%options)
       options%method = numerics%method
       if (numerics%method == 'auto') options%method = 'anderson'
@@ -87,11 +97,10 @@ contains
     else
       chosen%grid = 'edge_locked'
       chosen%because = 'panels locked to the contact edge converge at any adhesion strength'
-      if (problem%rigid) chosen%because = 'the bodies are rigid: the mesh only shows their gap'
       if (.not. problem%law%adhesion > 0) &
         chosen%because = 'panels scaled with the contact converge spectrally'
     end if
-    if (chosen%grid == 'edge_locked') return
+    if (.not. chosen%is_fixed()) return
 
     feature = smallest_feature(problem, widest)
     chosen%extent = 1.5_wp*widest + 8
@@ -101,6 +110,13 @@ contains
       chosen%extent/(comfortable*feature))))
     if (allocated(numerics%nodes)) chosen%nodes = numerics%nodes
   end function choose
+
+  !> Whether the grid is fixed in space.
+  pure logical function is_fixed(self)
+    class(choice_t), intent(in) :: self
+
+    is_fixed = self%grid == 'uniform' .or. self%grid == 'panels'
+  end function is_fixed
 
   !> Nodes of panels fixed in space for a relative accuracy of load and displacement.
   pure integer function panel_order_for(accuracy) result(order)
@@ -121,7 +137,7 @@ contains
     integer :: count, j
 
     if (chosen%grid == 'uniform') then
-      mesh = new_uniform_grid(chosen%nodes, chosen%extent, .not. problem%rigid)
+      mesh = new_uniform_grid(chosen%nodes, chosen%extent, elastic=.true.)
       return
     end if
     widest = min(largest_radius(problem, h0_low, contact_level(problem)), chosen%extent)
@@ -132,7 +148,7 @@ contains
     outer = widest + graded_ends(0.0_wp, max(chosen%extent, 2*widest) - widest, finest, 1.0_wp, &
       chosen%extent)
     mesh = new_panel_grid(0.0_wp, [[(finest*j, j=0, count - 1)], outer], chosen%panel_order, &
-      .not. problem%rigid)
+      elastic=.true.)
   end function fixed_mesh
 
   !> Another choice of a fixed grid, to estimate the error by: panels of two more nodes; twice the

@@ -29,7 +29,7 @@ contains
     real(wp) :: b, wanted
     integer :: i
 
-    if (problem%rigid .or. .not. problem%law%adhesion > 0) return
+    if (.not. problem%law%adhesion > 0) return
     high = max(high, min(farthest_wanted(request, problem), yielding_gap(problem, no_yielding)))
     if (allocated(request%fixed_load)) then
       do i = 1, size(request%fixed_load%load)

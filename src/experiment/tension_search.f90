@@ -3,8 +3,6 @@
 module tension_search
   use kinds, only: wp
   use interpolation, only: interpolated_maximum
-  use root_finding, only: root_search_t, new_root_search
-  use undeformed, only: load_slope_undeformed
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use reported, only: reported_t, reported_state
   implicit none
@@ -34,7 +32,6 @@ module tension_search
     procedure, private :: lower
     procedure, private :: end_stretch
     procedure, private :: refine
-    procedure, private :: find_rigid
     procedure, private :: search_jump_by_jump
   end type tension_search_t
 
@@ -177,10 +174,6 @@ contains
     ! Nor between states that the paper's rule has stopped anywhere: what is computed there is one
     ! more of them, and not of this experiment.
     if (steps%options%stop_on_change .and. steps%options%method == 'mixing') return
-    if (steps%problem%rigid) then
-      call self%find_rigid(steps, stretch)
-      return
-    end if
     if (stretch%jagged) then
       call self%search_jump_by_jump(steps, stretch)
       return
@@ -217,31 +210,6 @@ contains
     end do
     call self%lower(steps, best%state%load, best%state%h0, best)
   end subroutine refine
-
-  !> Of rigid bodies the load's derivative by h0 is known, and the largest tension is a root of it;
-  !> where it has none within the stretch, the tension is largest at an end.
-  subroutine find_rigid(self, steps, stretch)
-    class(tension_search_t), intent(inout) :: self
-    class(stepper_t), intent(inout) :: steps
-    type(stretch_t), intent(in) :: stretch
-    type(branch_point_t) :: there
-    type(step_result_t) :: event
-    type(root_search_t) :: search
-    real(wp) :: ends(2), slopes(2), h0
-
-    ends = [min(stretch%before, stretch%after), max(stretch%before, stretch%after)]
-    slopes = [load_slope_undeformed(steps%problem, ends(1)), &
-      load_slope_undeformed(steps%problem, ends(2))]
-    if (.not. (slopes(1) < 0 .and. slopes(2) > 0)) return
-    search = new_root_search(ends(1), slopes(1), ends(2), slopes(2))
-    do while (search%is_open())
-      h0 = search%place()
-      call search%note(h0, load_slope_undeformed(steps%problem, h0))
-    end do
-    there = stretch%lowest
-    call steps%step_to(search%root, there, event)
-    if (event%converged) call self%lower(steps, there%state%load, there%state%h0, there)
-  end subroutine find_rigid
 
   !> Goes once more from stretch%before to stretch%after, or from the lowest state where a jump came
   !> before it, with every jump of the contact edge located: the tension is largest just before one.

@@ -1,11 +1,11 @@
-!> A quasi-static experiment in edge-locked coordinates where every h0 has one state: under a law
-!> that does not attract, or between rigid bodies.
+!> A quasi-static experiment in edge-locked coordinates under a law that does not attract: every h0
+!> has one state.
 module unique_stepper
   use kinds, only: wp
   use contact_state, only: state_t
   use locked_stepper, only: locked_stepper_t
   use arc, only: between
-  use ending, only: touching, steps_lost
+  use ending, only: steps_lost
   use stepper, only: branch_point_t, step_result_t, remember, move_to
   implicit none
   private
@@ -43,10 +43,6 @@ contains
     type(step_result_t), intent(out) :: event
     type(state_t) :: state
 
-    if (self%problem%rigid .and. h0 < self%problem%law%smallest_gap) then
-      event%ending%cause = touching
-      return
-    end if
     state = self%guess(h0, position)
     call self%attempt(h0, state, position%mesh, event)
     if (event%converged) then

@@ -23,7 +23,6 @@ module path_model
   use path_demand, only: farthest_wanted
   use path_stepper, only: path_stepper_t
   use refinement, only: trace_resolved
-  use locked_stepper, only: has_path
   use dimensionless_problem, only: contact_level_of
   use force_branch, only: branch_t
   use force_model, only: force_model_t, response_t, inward, outward
@@ -115,7 +114,7 @@ contains
     self%steps = fresh
     call self%family%pose(value, problem, error)
     if (allocated(error)) return
-    if (.not. has_path(problem)) return
+    if (.not. problem%law%adhesion > 0) return
     request%numerics = self%numerics
     allocate (request%path, request%device, request%fixed_load)
     request%path%h0_end = problem%law%separation_of(problem%law%rest_gap)

@@ -43,7 +43,7 @@ module edge_locked
     !> Radius of what the next mesh is locked to at which the path passes to it, lateral units; of
     !> the last it is the largest that is expected.
     real(wp), allocatable :: passage(:)
-    !> Whether the path can be traced: the law attracts, or the bodies are rigid and it is trivial.
+    !> Whether the path can be traced: the law attracts.
     !> If not, there is one mesh for contact, and its scale is prescribed by `hertz_scale`.
     logical :: traceable = .true.
     !> Least and largest radius that each serves, lateral units; of the approach the highest H0.
@@ -85,15 +85,15 @@ contains
     logical :: elastic
     integer :: k
 
-    elastic = .not. problem%rigid
-    if (present(shape_only)) elastic = elastic .and. .not. shape_only
-    meshes%traceable = problem%law%adhesion > 0 .or. problem%rigid
+    elastic = .true.
+    if (present(shape_only)) elastic = .not. shape_only
+    meshes%traceable = problem%law%adhesion > 0
     if (.not. meshes%traceable) meshes%level = contact_level(problem)
     widest = largest_radius(problem, h0_low, meshes%level)
     allocate (low(0), high(0))
     if (.not. meshes%traceable) then
       call add_bands(1.0_wp, widest, 1, low, high)
-    else if (problem%law%edge_gap > 0 .and. .not. problem%rigid) then
+    else if (problem%law%edge_gap > 0) then
       associate (first => min(passage_to_contact(problem), widest))
         ! Where rounding hides the contact the path ends at its first fold.
         if (lost_in_rounding(problem, widest)) widest = widest_band*first

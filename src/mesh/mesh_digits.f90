@@ -38,8 +38,8 @@ contains
     decades = log10(1 + sigma)
     digits = of_load(-log10(accuracy))
     least = max(fewest, for_folds*decades)
-    ! But for the load of rigid bodies nothing is as sensitive as jumps are.
-    if (sigma < onset .and. .not. problem%rigid) digits = digits + without_jumps
+    ! Nothing is as sensitive as jumps are.
+    if (sigma < onset) digits = digits + without_jumps
     if (.not. problem%law%of_paper) then
       digits = digits + for_lengths
       least = fewest + for_lengths + for_folds_of_others*decades

@@ -1,27 +1,16 @@
 !> What acts beyond the end of a mesh, where the deformation hardly varies: from the position r0 on
 !> the gap is H(r) = H(r0) + f(r) - f(r0). For the parabola r dr = dH, and the integrals are the
-!> law's own, Derjaguin's (23); for other shapes they are integrated over r0/r. From r0 = 0 on they
-!> are those of whole bodies that do not deform.
+!> law's own, Derjaguin's (23); for other shapes they are integrated over r0/r.
 module beyond_mesh
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use quadrature, only: gauss_legendre
   implicit none
   private
-  public :: load_beyond, load_slope_beyond, energy_beyond, energy_density
+  public :: load_beyond, load_slope_beyond, energy_beyond, energy_density, farthest
 
   !> Points; and those for the energy of the parabola, where it is a power of the gap or nothing.
   integer, parameter :: points = 24, few = 8
-  !> From the axis: nodes of a panel; panels, each twice as long as the one before, so that beyond
-  !> them nothing is left of any law; those that lie where the gap is at most doubled.
-  integer, parameter :: nodes = 12, panels = 63, near_panels = 3
-  !> How often a panel may be halved, and the change, as a part of the whole, that ends it.
-  integer, parameter :: deepest = 40
-  real(wp), parameter :: settled = 1.0e-15_wp
-  !> Heights of a shape below which nothing is looked at more closely.
-  real(wp), parameter :: shallowest = 1.0e-3_wp
-  !> What is integrated.
-  integer, parameter :: of_pressure = 1, of_slope = 2, of_energy = 3
   !> Gaps beyond which no force acts, and whose powers are numbers.
   real(wp), parameter :: farthest = 1.0e30_wp
 
@@ -40,11 +29,9 @@ contains
 
     if (problem%shape%parabolic) then
       load = sum(problem%law%energy([gap]))
-    else if (from > 0) then
+    else
       rule = rule_beyond(problem, gap, from)
       load = sum(rule%weight*problem%law%pressure(rule%gap))
-    else
-      load = from_axis(problem, gap, of_pressure)
     end if
   end function load_beyond
 
@@ -58,10 +45,6 @@ contains
     slope(1) = -sum(problem%law%pressure([gap]))
     slope(2) = 0
     if (problem%shape%parabolic) return
-    if (.not. from > 0) then
-      slope(1) = from_axis(problem, gap, of_slope)
-      return
-    end if
     slope(2) = slope(1)*from
     rule = rule_beyond(problem, gap, from)
     slope(1) = sum(rule%weight*problem%law%slope(rule%gap))
@@ -79,11 +62,9 @@ contains
       ! With H = gap/x the interval is finite.
       call gauss_legendre(node, weight)
       energy = gap*sum(weight*problem%law%energy(gap/node)/node**2)
-    else if (from > 0) then
+    else
       rule = rule_beyond(problem, gap, from)
       energy = sum(rule%weight*energy_density(problem, rule%gap, rule%at))
-    else
-      energy = from_axis(problem, gap, of_energy)
     end if
   end function energy_beyond
 
@@ -115,64 +96,5 @@ contains
     rule%at = from/x
     rule%weight = weight*(from/x)**2/x
   end function rule_beyond
-
-  !> Int g(H) r dr from the axis, where the gap is `gap`; g is the pressure, its slope or the
-  !> energy density. Panels are halved until that changes nothing, so that steps and kinks of a law
-  !> or a shape cost panels and no digits.
-  pure real(wp) function from_axis(problem, gap, of) result(total)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: gap
-    integer, intent(in) :: of
-    real(wp), dimension(nodes) :: x, weight
-    real(wp) :: left, right, magnitude, whole
-    integer :: k
-
-    call gauss_legendre(x, weight)
-    total = 0
-    magnitude = 0
-    right = 0
-    do k = 1, panels
-      left = right
-      right = problem%shape%position_of(max(gap, shallowest))*2.0_wp**(k - near_panels)
-      whole = over_panel(left, right)
-      magnitude = max(magnitude, abs(whole), abs(total))
-      total = total + refined(left, right, whole, deepest)
-    end do
-
-  contains
-
-    !> The rule over one panel.
-    pure real(wp) function over_panel(left, right) result(sum_of)
-      real(wp), intent(in) :: left, right
-      real(wp), dimension(nodes) :: r, h, g
-
-      r = left + (right - left)*x
-      h = min(gap + problem%shape%height(r), farthest)
-      select case (of)
-      case (of_pressure)
-        g = problem%law%pressure(h)
-      case (of_slope)
-        g = problem%law%slope(h)
-      case default
-        g = energy_density(problem, h, r)
-      end select
-      sum_of = (right - left)*sum(weight*r*g)
-    end function over_panel
-
-    !> The integral over a panel of which the rule gives `whole`.
-    pure recursive real(wp) function refined(left, right, whole, more) result(integral)
-      real(wp), intent(in) :: left, right, whole
-      integer, intent(in) :: more
-      real(wp) :: middle, halves(2)
-
-      middle = 0.5_wp*(left + right)
-      halves = [over_panel(left, middle), over_panel(middle, right)]
-      integral = sum(halves)
-      if (more == 0 .or. abs(integral - whole) <= settled*max(magnitude, abs(integral))) return
-      integral = refined(left, middle, halves(1), more - 1) + &
-        refined(middle, right, halves(2), more - 1)
-    end function refined
-
-  end function from_axis
 
 end module beyond_mesh

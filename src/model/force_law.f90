@@ -40,6 +40,9 @@ module force_law
     real(wp) :: period = 0, step_at = 0, step_width = 0
     !> Whether the force is not smooth at some gaps: where it begins or ends, at a table's points.
     logical :: has_kink = .false.
+    !> Gaps at which the pressure or a derivative of it jumps or nearly does, where integrals over
+    !> the gap are split. Unallocated: none.
+    real(wp), allocatable :: breaks(:)
     !> How many forces are evaluated at a gap.
     integer :: terms = 1
     !> Whether the law is one of the paper's own, of which the summary says no more than its

@@ -125,6 +125,7 @@ contains
   subroutine take_units(law, length, unit, origin)
     type(force_sum_t), intent(inout) :: law
     real(wp), intent(in) :: length, unit, origin
+    real(wp), allocatable :: breaks(:)
     integer :: i
 
     law%terms = size(law%term)
@@ -144,6 +145,7 @@ contains
     law%has_kink = .false.
     law%step_at = 0
     law%step_width = 0
+    allocate (breaks(0))
     do i = 1, size(law%term)
       associate (term => law%term(i), part => law%term(i)%law)
         term%stretch = length/part%length
@@ -155,11 +157,13 @@ contains
         law%has_kink = law%has_kink .or. part%has_kink
         if (law%caveat == '') law%caveat = part%caveat
         if (part%period > 0) law%period = part%period/term%stretch
+        if (allocated(part%breaks)) breaks = [breaks, (part%breaks - term%shift)/term%stretch]
         if (.not. part%step_width > 0) cycle
         law%step_at = (part%step_at - term%shift)/term%stretch
         law%step_width = part%step_width/term%stretch
       end associate
     end do
+    call move_alloc(breaks, law%breaks)
     ! Messages point at the first.
     law%group = law%term(1)%law%group
     law%strength_key = law%term(1)%law%strength_key

@@ -25,6 +25,9 @@ module step_attraction
   !> Smoothing where the deck does not say, over the range; and beyond how many smoothing lengths
   !> the error function is what it is at infinity.
   real(wp), parameter :: usual = 0.02_wp, farthest = 26
+  !> Smoothing lengths from the step to where nothing of it is left beside what it steps between;
+  !> and a length below which rounding hides where the step is.
+  real(wp), parameter :: outside = 6, least = 1.0e-12_wp
 
 contains
 
@@ -72,6 +75,7 @@ contains
     this%smoothing = this%smoothing/range
     this%step_at = 1
     this%step_width = this%smoothing
+    this%breaks = 1 + max(outside*this%smoothing, least)*[-1.0_wp, 1.0_wp]
     this%group = group
     this%strength_key = strength_key
     this%length_key = length_key

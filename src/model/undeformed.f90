@@ -1,58 +1,181 @@
-!> Bodies so far apart that they do not deform: Derjaguin's load (23) and the energy, in the units
-!> of `dimensionless_problem`.
+!> Bodies that do not deform, because they are rigid or far apart: Derjaguin's load (23), which is
+!> the integral of the pressure over the gap H0 + f, and the energy; in the units of
+!> `dimensionless_problem`. The load of parabolas is the law's own energy; all else is a quadrature
+!> to rounding, in pieces between the places where law or shape are not smooth.
 module undeformed
   use kinds, only: wp, pi
+  use adaptive_quadrature, only: integral_t, new_integral, rule_nodes, in_order
   use dimensionless_problem, only: problem_t
-  use beyond_mesh, only: load_beyond, load_slope_beyond, energy_beyond
-  use quadrature, only: gauss_legendre
+  use beyond_mesh, only: energy_density, farthest
   implicit none
   private
+  public :: measured_t, measured_load, measured_slope
   public :: load_undeformed, load_slope_undeformed, energy_undeformed
 
-  !> The energy of parabolas is integrated over the logarithm of the gap: panels, their ratio, nodes
-  !> of each.
-  !> Beyond 1e18 gaps nothing is left of any law.
-  integer, parameter :: panels = 60, nodes = 8
-  real(wp), parameter :: ratio = 2
+  !> A number and its error.
+  type :: measured_t
+    real(wp) :: value = 0, error = 0
+  end type measured_t
+
+  !> What is integrated over the gap.
+  integer, parameter :: of_pressure = 1, of_slope = 2, of_energy = 3
+  !> Error of what needs no quadrature, relative.
+  real(wp), parameter :: rounding = 8*epsilon(1.0_wp)
+  !> Height of the shape at the end of the first piece; the others are twice as long as what is
+  !> before them, up to this many times the height h0 or 1, and from there one goes to infinity.
+  real(wp), parameter :: first = 0.25_wp, last = 4
+  !> Power of r from which on a pressure falls so fast that what is left at the largest gap that is
+  !> a number is nothing.
+  real(wp), parameter :: fast = 4
+  !> Length of a piece over its position up to which the slope in it is that of a step: its nodes
+  !> are too close for rounding to tell them apart.
+  real(wp), parameter :: narrow = 1.0e-5_wp
 
 contains
 
-  !> The load at h0; of parabolas 2 pi e(h0).
+  !> The load at h0.
+  pure type(measured_t) function measured_load(problem, h0) result(load)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+
+    if (problem%shape%parabolic) then
+      load%value = 2*pi*sum(problem%law%energy([h0]))
+      load%error = rounding*abs(load%value)
+    else
+      load = integral_of(problem, h0, of_pressure)
+    end if
+  end function measured_load
+
+  !> Its derivative by h0.
+  pure type(measured_t) function measured_slope(problem, h0) result(slope)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+
+    if (problem%shape%parabolic) then
+      slope%value = -2*pi*sum(problem%law%pressure([h0]))
+      slope%error = rounding*abs(slope%value)
+    else
+      slope = integral_of(problem, h0, of_slope)
+    end if
+  end function measured_slope
+
+  !> The load alone.
   pure real(wp) function load_undeformed(problem, h0) result(load)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
+    type(measured_t) :: found
 
-    load = 2*pi*load_beyond(problem, h0, 0.0_wp)
+    found = measured_load(problem, h0)
+    load = found%value
   end function load_undeformed
 
-  !> Its derivative by h0.
+  !> Its derivative alone.
   pure real(wp) function load_slope_undeformed(problem, h0) result(slope)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
-    real(wp) :: slopes(2)
+    type(measured_t) :: found
 
-    slopes = load_slope_beyond(problem, h0, 0.0_wp)
-    slope = 2*pi*slopes(1)
+    found = measured_slope(problem, h0)
+    slope = found%value
   end function load_slope_undeformed
 
-  !> The energy at h0 > 0, whose derivative by h0 is minus the load.
+  !> The energy at h0, whose derivative by h0 is minus the load.
   pure real(wp) function energy_undeformed(problem, h0) result(energy)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
-    real(wp) :: node(nodes), weight(nodes), gap(nodes)
-    integer :: panel
+    type(measured_t) :: found
 
-    if (.not. problem%shape%parabolic) then
-      energy = 2*pi*energy_beyond(problem, h0, 0.0_wp)
-      return
-    end if
-    call gauss_legendre(node, weight)
-    energy = 0
-    do panel = 1, panels
-      gap = h0*ratio**(panel - 1 + node)
-      energy = energy + log(ratio)*sum(weight*gap*problem%law%energy(gap))
-    end do
-    energy = 2*pi*energy
+    found = integral_of(problem, h0, of_energy)
+    energy = found%value
   end function energy_undeformed
+
+  !> 2 pi Int g(h0 + f(r)) r dr.
+  pure type(measured_t) function integral_of(problem, h0, what) result(found)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+    integer, intent(in) :: what
+    type(integral_t) :: near, tail
+    real(wp), dimension(rule_nodes) :: r, x
+    real(wp), allocatable :: ends(:)
+    logical, allocatable :: too_narrow(:)
+    real(wp) :: reach, jumps
+
+    ends = in_order(ends_of_pieces(problem, h0))
+    associate (n => size(ends) - 1)
+      reach = ends(n + 1)
+      too_narrow = ends(2:) - ends(:n) <= merge(narrow, 0.0_wp, what == of_slope)*ends(:n)
+      near = new_integral(pack(ends(:n), .not. too_narrow), pack(ends(2:), .not. too_narrow))
+    end associate
+    do while (near%is_open())
+      r = near%places()
+      call near%note(r*integrand(r))
+    end do
+    jumps = 0
+    if (what == of_slope) jumps = sum(jump_over(ends(:size(ends) - 1), ends(2:)), too_narrow)
+    found = measured_t(2*pi*(near%value + jumps), 2*pi*near%error)
+    ! Of a body that ends, what a force that falls slowly would do to its continuation is nothing.
+    if (problem%law%tail_power <= 2/problem%shape%growth) return
+    ! The tail in x = reach/r, as far as a gap is a number whose powers are.
+    associate (least => (problem%shape%height(reach)/farthest)**(1/problem%shape%growth))
+      tail = new_integral([least], [1.0_wp], near)
+      do while (tail%is_open())
+        x = tail%places()
+        call tail%note((reach/x)**2/x*integrand(reach/x))
+      end do
+      found = measured_t(found%value + 2*pi*tail%value, found%error + 2*pi*tail%error)
+      ! What is beyond is a power of r, and nothing but where that falls slowly.
+      if (problem%law%tail_power >= fast/problem%shape%growth .or. what == of_slope) return
+      x = least
+      x = (reach/x)**2*integrand(reach/x)
+      found%value = found%value + 2*pi*x(1)/(problem%shape%growth*problem%law%tail_power - 2)
+    end associate
+
+  contains
+
+    pure function integrand(r) result(g)
+      real(wp), intent(in) :: r(rule_nodes)
+      real(wp), dimension(rule_nodes) :: g, gap
+
+      gap = min(h0 + problem%shape%height(r), farthest)
+      select case (what)
+      case (of_pressure)
+        g = problem%law%pressure(gap)
+      case (of_slope)
+        g = problem%law%slope(gap)
+      case default
+        g = energy_density(problem, gap, r)
+      end select
+    end function integrand
+
+    !> The integral of the slope over a piece so narrow that the pressure alone varies in it.
+    elemental real(wp) function jump_over(left, right) result(jump)
+      real(wp), intent(in) :: left, right
+      real(wp) :: pressure(2)
+
+      jump = 0
+      if (.not. problem%shape%slope(right) > 0) return
+      pressure = problem%law%pressure(h0 + problem%shape%height([left, right]))
+      jump = (pressure(2) - pressure(1))*0.5_wp*(left + right)/ &
+        problem%shape%slope(0.5_wp*(left + right))
+    end function jump_over
+
+  end function integral_of
+
+  !> Where the pieces of an integral from the axis end, in any order.
+  pure function ends_of_pieces(problem, h0) result(r)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+    real(wp), allocatable :: r(:)
+    real(wp) :: nearest, reach
+    integer :: k
+
+    allocate (r(0))
+    if (allocated(problem%shape%breaks)) r = problem%shape%breaks
+    if (allocated(problem%law%breaks)) r = [r, problem%shape%position_of( &
+      pack(problem%law%breaks, problem%law%breaks > h0) - h0)]
+    nearest = problem%shape%position_of(first)
+    reach = max(problem%shape%position_of(last*max(1.0_wp, abs(h0))), 2*maxval([0.0_wp, r]))
+    r = [0.0_wp, r, (nearest*2.0_wp**k, k=0, ceiling(log(reach/nearest)/log(2.0_wp)))]
+  end function ends_of_pieces
 
 end module undeformed

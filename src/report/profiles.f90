@@ -67,6 +67,7 @@ contains
       energy = law%energy(gap)
       ! h = h0 + f - 2u.
       deformation = -0.5_wp*(gap - state%h0 - problem%shape%height(r))
+      if (problem%rigid) deformation = 0
     end associate
     do j = 1, size(r)
       ! A mesh may have a node on the axis.

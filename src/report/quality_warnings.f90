@@ -70,7 +70,7 @@ contains
     if (.not. summary%has('error_estimate')) return
     estimate = summary%number('error_estimate')
     enough = clearly*scene%numerics%accuracy
-    if (outcome%chosen%grid /= 'edge_locked') enough = max(enough, meaningless)
+    if (outcome%chosen%is_fixed()) enough = max(enough, meaningless)
     if (estimate >= 1) then
       call summary%warn('the error could not be estimated: a finer mesh has no such states, or '// &
         'these did not converge; the numbers may mean nothing')

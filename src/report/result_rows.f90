@@ -185,8 +185,8 @@ module result_rows
     row_t('resolved', '', 'whether spacing_over_neck is at most 0.2, or 0.4 on a mesh that ' // &
       'moves with the edge (sweep.csv: 1 or 0)', always), &
     row_t('error_estimate', '', 'largest estimated error of all numbers, relative', always), &
-    row_t('grid', '', 'grid in use'), &
-    row_t('method', '', 'iteration in use'), &
+    row_t('grid', '', 'grid in use; none for rigid bodies'), &
+    row_t('method', '', 'iteration in use; integral for rigid bodies'), &
     row_t('chosen_because', '', 'why this grid and this iteration'), &
     row_t('compiler', '', 'compiler that made the program'), &
     row_t('blas', '', 'library of linear algebra'), &

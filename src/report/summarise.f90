@@ -53,8 +53,7 @@ contains
     call judge_extent(problem, outcome, summary)
     if (.not. outcome%differentiated) &
       call summary%fail_with('sensitivity: not all derivatives were found')
-    if (.not. problem%rigid) &
-      call judge_resolution(outcome%chosen%grid == 'edge_locked', summary)
+    call judge_resolution(outcome%chosen%grid == 'edge_locked', summary)
     call judge_accuracy(scene, outcome, summary)
     call judge_stopping(outcome, ended_as_planned(outcome), summary)
   end function summary_of

@@ -22,7 +22,7 @@ module scene
   use fit_group, only: take_fit
   use numerics_group, only: take_numerics
   use magnitudes, only: check_derived
-  use shape_checks, only: check_end
+  use shape_checks, only: check_shape
   implicit none
   private
   public :: scene_t, read_scene, make_scene, swept_scene
@@ -82,7 +82,7 @@ contains
       call deck%mistake('', '', 'nothing to compute; a deck needs at least one of ' // &
                         listing(transfer(computing, all_names), '&', ''), error)
     if (.not. allocated(error)) call check_derived(scene, error)
-    if (.not. allocated(error)) call check_end(scene, error)
+    if (.not. allocated(error)) call check_shape(scene, error)
   end subroutine make_scene
 
   !> The scene, which has a sweep, with the sweep's key set to `value` and without the sweep.

@@ -1,7 +1,8 @@
-!> Whether a body is large enough for what a scene does to it.
+!> Whether a body is large enough for what a scene does to it, and its load a number.
 module shape_checks
   use kinds, only: wp, pi
   use failure, only: failure_t
+  use text, only: brief
   use dimensionless_problem, only: problem_t
   use contact_scales, only: largest_radius, contact_level
   use h0_range, only: range_of
@@ -9,9 +10,25 @@ module shape_checks
   use scene_problem, only: problem_of
   implicit none
   private
-  public :: check_end
+  public :: check_shape
 
 contains
+
+  !> Refuses what no load can be computed of.
+  subroutine check_shape(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (.not. scene%finds_states()) return
+    if (scene%shape%ends < huge(1.0_wp)) then
+      call check_end(scene, error)
+    else if (scene%law%tail_power <= 2/scene%shape%growth) then
+      call scene%deck%mistake('shape', 'kind', &
+        'the load has no limit: far out the gap grows as r^' // brief(scene%shape%growth) // &
+        ' and the pressure falls as its power -' // brief(scene%law%tail_power) // &
+        ', too slowly for the area there', error)
+    end if
+  end subroutine check_shape
 
   !> Refuses a body that ends where it touches the other or where the force still acts, which
   !> Derjaguin's approximation knows nothing of: at its end the pressure over an area of its size is
@@ -23,7 +40,6 @@ contains
     real(wp) :: low, high, gap, part, widest
     character(len=7) :: share
 
-    if (.not. scene%finds_states() .or. scene%shape%ends >= huge(1.0_wp)) return
     problem = problem_of(scene)
     call range_of(scene, problem, low, high)
     associate (law => problem%law, shape => problem%shape)
@@ -36,8 +52,9 @@ contains
           'body, ' // share // ' m from the axis', error)
         return
       end if
-      part = abs(sum(law%pressure([gap])))*shape%ends**2/ &
-        (2*pi*max(law%adhesion, abs(sum(law%energy([max(low, 1.0_wp)])))))
+      part = abs(sum(law%pressure([gap])))*shape%ends**2
+      if (part > 0) part = part/(2*pi*max(law%adhesion, tiny(1.0_wp), &
+        abs(sum(law%energy([max(low, 1.0_wp)])))))
     end associate
     write (share, '(es7.1)') min(part, 1.0_wp)
     if (.not. part <= scene%numerics%accuracy) call scene%deck%mistake('shape', 'kind', &

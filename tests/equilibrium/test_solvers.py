@@ -216,7 +216,7 @@ def test_exponential_law_depends_on_lambda_alone(method):
 @pytest.mark.parametrize(("law", "h0"), [("lennard_jones", 1.2), ("exponential", -3.0)])
 def test_rigid_bodies_keep_their_shape_and_have_derjaguins_load(law, h0, method):
     state = snapin.equilibrium(LAW[law], MESH, h0, 0.0, method=method, most_iterations=200)
-    assert state.converged and state.operator_products == 0
+    assert state.converged
     np.testing.assert_allclose(state.gap, h0 + MESH.x**2 / 2, atol=TOLERANCE)
     # The load of any law between rigid bodies is 2 pi R times its energy, (23). The gap errs by no
     # more than the tolerance, and the pressure by that times its slope, below 20.

@@ -35,11 +35,6 @@ CYCLES = {
         profiles={"h0": [1.0]},
     ),
     "no state at the end": lennard_jones(0.87, part="attractive", loading=loading(6, -1, 0.25)),
-    "rigid": deck(
-        bodies={"radius": 1.0, "rigid": True},
-        force={"law": "lennard_jones", "hamaker": 50.0, "z0": 1.0},
-        loading=loading(6, 1, 0.25), unloading={},
-    ),
 }
 FAILS = ("the paper's grid and rule", "no state at the end")
 

@@ -149,6 +149,7 @@ contains
     this%share = merge(share_of_spline, share_of_monotone, interpolation == 'spline')
     call take_scales(deck, this, error)
     if (.not. decay_length > 0) this%tail_power = exponent
+    this%breaks = g
 
   contains
 

@@ -18,6 +18,7 @@ module spheroid
   contains
     procedure :: height
     procedure :: slope
+    procedure :: position_of
   end type spheroid_t
 
   !> Part of the equator's radius up to which the body reaches.
@@ -79,7 +80,8 @@ contains
     real(wp) :: value, inside
 
     inside = min(r, self%ends)
-    value = inside**2/(1 + sqrt(1 - self%kappa*inside**2)) + (r - inside)*self%slope(r)
+    value = inside**2/(1 + sqrt(1 - self%kappa*inside**2))
+    if (r > inside) value = value + (r - inside)*self%slope(r)
   end function height
 
   elemental function slope(self, r) result(value)
@@ -90,5 +92,14 @@ contains
     inside = min(r, self%ends)
     value = inside/sqrt(1 - self%kappa*inside**2)
   end function slope
+
+  elemental real(wp) function position_of(self, height) result(r)
+    class(spheroid_t), intent(in) :: self
+    real(wp), intent(in) :: height
+    real(wp) :: inside
+
+    inside = min(height, self%height(self%ends))
+    r = sqrt(inside*(2 - self%kappa*inside)) + (height - inside)/self%slope(self%ends)
+  end function position_of
 
 end module spheroid

@@ -1,0 +1,273 @@
+!> Experiments with rigid bodies: at every h0 there is one state, whose gap is that of the shape and
+!> whose load is an integral over it (`undeformed`). Nothing is solved, and there are no meshes.
+module rigid_bodies
+  use kinds, only: wp
+  use root_finding, only: root_search_t, new_root_search
+  use force_law, only: force_law_t
+  use dimensionless_problem, only: problem_t, calm_gap, contact_level_of
+  use undeformed, only: measured_t, measured_load, measured_slope, load_undeformed, &
+    load_slope_undeformed
+  use discretisation, only: discretisation_t
+  use contact_state, only: state_t, state_from
+  use ending, only: touching, turn_not_reached
+  use reported, only: reported_t, error_t, add_reported, relative_error
+  use error_estimate, only: rounding
+  use records, only: observer_t, record_t, stable_yes, stable_unasked
+  use experiment_request, only: request_t
+  use experiment_result, only: experiment_result_t
+  use stepped_branch, only: branch_t, h0_schedule_t
+  use h0_schedule, only: path_plan, loading_plan, unloading_plan
+  use clock, only: seconds
+  implicit none
+  private
+  public :: run_rigid
+
+  !> Gaps that are looked at lie this part of their distance from the law's pole apart, or of
+  !> `least`; without a pole, which is a smallest gap below `no_pole`, this part of a gap or of one
+  !> length. A period has `of_period` of them or more.
+  real(wp), parameter :: part = 0.02_wp, least = 1.0e-3_wp, of_period = 12, no_pole = -60
+  !> How far out a profile goes, in units of the larger one of its h0 and the law's length.
+  real(wp), parameter :: far_out = 1000
+  !> Part of a bracket over which the curvature of a load is taken.
+  real(wp), parameter :: apart = 1.0e-3_wp
+
+contains
+
+  !> The path and the cycle of a scene.
+  subroutine run_rigid(request, problem, observer, outcome)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    real(wp) :: began
+    integer :: k
+
+    began = seconds()
+    if (allocated(request%path)) then
+      allocate (outcome%stepped_path)
+      call run_branch(problem, path_plan(request, problem%law, calm_gap(problem)), observer, &
+        outcome, outcome%stepped_path)
+    end if
+    if (allocated(request%loading)) then
+      allocate (outcome%loading)
+      call run_branch(problem, loading_plan(request, problem%law), observer, outcome, &
+        outcome%loading)
+    end if
+    if (allocated(request%unloading)) then
+      allocate (outcome%unloading(size(request%unloading%from)))
+      do k = 1, size(outcome%unloading)
+        if (problem%law%gap_of(request%unloading%from(k)) < problem%law%smallest_gap) then
+          outcome%unloading(k)%ending%cause = turn_not_reached
+          cycle
+        end if
+        call run_branch(problem, unloading_plan(request, problem%law, k), observer, outcome, &
+          outcome%unloading(k))
+      end do
+    end if
+    outcome%cost%solve_seconds = seconds() - began
+  end subroutine run_rigid
+
+  !> One branch, through plan%h0, as far as the law has a pressure.
+  subroutine run_branch(problem, plan, observer, outcome, branch)
+    type(problem_t), intent(in) :: problem
+    type(h0_schedule_t), intent(in) :: plan
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    type(branch_t), intent(out) :: branch
+    real(wp), allocatable :: load(:)
+    integer :: i
+
+    allocate (load(size(plan%h0)))
+    do i = 1, size(plan%h0)
+      if (plan%h0(i) < problem%law%smallest_gap) then
+        branch%ending%cause = touching
+        exit
+      end if
+      load(i) = load_undeformed(problem, plan%h0(i))
+      call show(problem, plan, i, load(i), observer)
+      if (plan%profile(i)) call add_reported(branch%profile, reported_at(problem, plan%h0(i)))
+      branch%states = i
+    end do
+    outcome%cost%states = outcome%cost%states + branch%states
+    if (branch%states == 0) return
+    if (.not. allocated(outcome%error_estimate)) outcome%error_estimate = rounding
+    associate (n => branch%states)
+      branch%finish = reported_at(problem, plan%h0(n))
+      call find_largest_tension(problem, plan%h0(:n), load(:n), branch)
+    end associate
+    call count_error(branch%finish)
+    if (allocated(branch%lowest)) call count_error(branch%lowest)
+
+  contains
+
+    subroutine count_error(reported)
+      type(reported_t), intent(in) :: reported
+
+      outcome%error_estimate = max(outcome%error_estimate, relative_error(reported))
+    end subroutine count_error
+
+  end subroutine run_branch
+
+  !> Hands step i of a branch to the observer; with positions only where its profile is asked for.
+  subroutine show(problem, plan, i, load, observer)
+    type(problem_t), intent(in) :: problem
+    type(h0_schedule_t), intent(in) :: plan
+    integer, intent(in) :: i
+    real(wp), intent(in) :: load
+    class(observer_t), intent(inout) :: observer
+    type(discretisation_t) :: grid
+    type(state_t) :: state
+    type(record_t) :: record
+
+    record%branch = plan%name
+    associate (h0 => plan%h0(i), level => contact_level_of(problem))
+      record%h0 = problem%law%separation_of(h0)
+      if (h0 < level) &
+        record%contact_radius = problem%lateral*problem%shape%position_of(level - h0)
+      grid%x = positions(problem, h0, plan%profile(i))
+      grid%nodes = size(grid%x)
+      state = state_from(grid%nodes)
+      state%gap = h0 + problem%shape%height(grid%x)
+      state%pressure = problem%law%pressure(state%gap)
+      state%h0 = h0
+      state%axis_gap = h0
+    end associate
+    record%h_centre = record%h0
+    record%load = load*problem%load
+    record%stable = merge(stable_yes, stable_unasked, plan%unique)
+    state%load = load
+    state%residual = 0
+    call observer%take(record, problem, grid, state, plan%profile(i))
+  end subroutine show
+
+  !> Positions, lateral units, at which a profile is shown: where the gap passes those that are
+  !> looked at, as far as the body reaches. None if `wanted` is not.
+  pure function positions(problem, h0, wanted) result(r)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+    logical, intent(in) :: wanted
+    real(wp), allocatable :: r(:)
+    real(wp), allocatable :: gap(:)
+
+    allocate (r(0))
+    if (.not. wanted) return
+    gap = gaps_between(problem%law, h0, h0 + far_out*max(1.0_wp, abs(h0)))
+    r = problem%shape%position_of(gap(2:) - h0)
+    r = pack(r, r <= problem%shape%ends)
+  end function positions
+
+  !> Gaps between two, which they include, so close that no law is likely to turn twice between
+  !> neighbours.
+  pure function gaps_between(law, low, high) result(gap)
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: low, high
+    real(wp), allocatable :: gap(:)
+    real(wp) :: place
+    integer :: count, i
+
+    place = low
+    count = 1
+    do while (place < high)
+      place = next(place)
+      count = count + 1
+    end do
+    allocate (gap(count))
+    gap(1) = low
+    do i = 2, count
+      gap(i) = min(next(gap(i - 1)), high)
+    end do
+
+  contains
+
+    pure real(wp) function next(gap)
+      real(wp), intent(in) :: gap
+      real(wp) :: step
+
+      if (law%smallest_gap < no_pole) then
+        step = part*max(abs(gap), 1.0_wp)
+      else
+        step = part*max(gap - law%smallest_gap, least)
+      end if
+      if (law%period > 0 .and. gap < law%range) step = min(step, law%period/of_period)
+      next = gap + step
+      if (allocated(law%breaks)) next = minval([next, pack(law%breaks, law%breaks > gap)])
+    end function next
+
+  end function gaps_between
+
+  !> The largest tension over the range of h0, which the branch went through with these loads; none
+  !> where nothing attracts.
+  pure subroutine find_largest_tension(problem, h0, load, branch)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0(:), load(:)
+    type(branch_t), intent(inout) :: branch
+    type(reported_t) :: found, of_rows
+    real(wp), allocatable :: gap(:)
+    integer :: k, i
+
+    gap = gaps_between(problem%law, minval(h0), maxval(h0))
+    k = minloc([(load_undeformed(problem, gap(i)), i=1, size(gap))], 1)
+    found = lowest_about(problem, gap(k), gap(max(1, k - 1)), gap(min(size(gap), k + 1)))
+    k = minloc(load, 1)
+    if (load(k) < found%load - found%error%load) then
+      of_rows = lowest_about(problem, h0(k), h0(max(1, k - 1)), h0(min(size(h0), k + 1)))
+      if (of_rows%load < found%load) found = of_rows
+    end if
+    if (found%load < 0) branch%lowest = found
+  end subroutine find_largest_tension
+
+  !> The lowest load about a state, between two values of h0 where it is higher, or one of which is
+  !> the state itself: at a root of its derivative, or else at the end of the range.
+  pure type(reported_t) function lowest_about(problem, h0, before, after) result(found)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0, before, after
+    type(root_search_t) :: search
+    type(measured_t) :: slope
+    real(wp) :: low, high, slopes(2), place, shift, curvature
+
+    low = min(before, after)
+    high = max(before, after)
+    slopes = [load_slope_undeformed(problem, low), load_slope_undeformed(problem, high)]
+    found = reported_at(problem, h0)
+    if (.not. (slopes(1) < 0 .and. slopes(2) > 0)) then
+      ! A turn between neighbours that was not resolved.
+      if (low < h0 .and. h0 < high) found%error%h0 = high - low
+      return
+    end if
+    search = new_root_search(low, slopes(1), high, slopes(2))
+    do while (search%is_open())
+      place = search%place()
+      call search%note(place, load_slope_undeformed(problem, place))
+    end do
+    found = reported_at(problem, search%root)
+    slope = measured_slope(problem, search%root)
+    shift = apart*(high - low)
+    curvature = (load_slope_undeformed(problem, search%root + shift) - &
+      load_slope_undeformed(problem, search%root - shift))/(2*shift)
+    found%error%h0 = min(high - low, given_error(problem, search%root) + &
+      (slope%error + abs(slope%value))/max(curvature, tiny(1.0_wp)))
+  end function lowest_about
+
+  !> A state as one that is reported, with its error: that of the integral, and what the rounding of
+  !> h0 makes of it.
+  pure type(reported_t) function reported_at(problem, h0) result(reported)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+    type(measured_t) :: load
+
+    load = measured_load(problem, h0)
+    reported%h0 = h0
+    reported%load = load%value
+    reported%error = error_t(load=load%error + rounding*abs(load%value) + &
+      given_error(problem, h0)*abs(load_slope_undeformed(problem, h0)), profile=rounding)
+  end function reported_at
+
+  !> What rounding leaves of an h0 that is given in metres.
+  pure real(wp) function given_error(problem, h0)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+
+    given_error = rounding*max(1.0_wp, abs(h0), abs(problem%law%origin/problem%length))
+  end function given_error
+
+end module rigid_bodies
