@@ -222,7 +222,8 @@ contains
     integer :: i
 
     call family_of_fit(scene%deck, family, error)
-    call run_fit(scene%measurement, scene%fit, scene%numerics, family, problem, results, outcome)
+    call run_fit(scene%measured, scene%measurement, scene%fit, scene%numerics, family, problem, &
+      results, outcome)
     call results%progress%finish()
     if (allocated(outcome%trouble)) then
       call summary%fail_with('no fit: ' // outcome%trouble)

@@ -10,7 +10,6 @@ module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t
   use beyond_mesh, only: load_beyond
-  use undeformed, only: load_undeformed
   use discretisation, only: axis_row, centre_row, first_node
   use contact_scales, only: largest_floor
   use contact_state, only: state_t, state_from, load_reach, gap_at_end, far_gap
@@ -135,7 +134,6 @@ contains
       state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
       if (grid%is_bounded()) state%load = state%load + 2*pi*load_beyond(problem, &
         gap_at_end(problem%shape, grid, state), load_reach(grid, state))
-      if (problem%rigid) state%load = load_undeformed(problem, state%h0)
       state%residual = largest_error(g, state%gap)
     end associate
   end subroutine residual

@@ -37,7 +37,7 @@ module curve_fit
     !> Sum of the squares of the residuals in standard deviations, and what it is expected to be.
     real(wp) :: chi_squared = 0
     integer :: freedom = 0
-    type(lack_t) :: lack
+    type(lack_t) :: lack = lack_t()
     !> Of all samples: model with baseline, and what is left.
     real(wp), allocatable :: model(:), residual(:), baseline(:)
     !> Where the base is when the model jumps in and out; NaN where it does not.

@@ -1,4 +1,4 @@
-!> A fit from beginning to end: the measured curve is read, its noise and jumps are found, the model
+!> A fit from beginning to end: noise and jumps of the measured curve are found, the model
 !> of the path is fitted, and the classical theories are beside it.
 module fit_run
   use kinds, only: wp, pi
@@ -8,7 +8,7 @@ module fit_run
   use problem_family, only: problem_family_t
   use experiment_request, only: numerics_t
   use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point
-  use measured_curve, only: measured_t, read_measured
+  use measured_curve, only: measured_t
   use measured_jumps, only: find_jump
   use measured_checks, only: check_measured
   use noise, only: white_noise
@@ -57,9 +57,10 @@ module fit_run
 
 contains
 
-  !> family: the problems, whose parameters are the unknowns of the model; problem: with their
-  !> values in the deck.
-  subroutine run_fit(measurement, fit, numerics, family, problem, listener, outcome)
+  !> measured: the curve of `measurement`; family: the problems, whose parameters are the unknowns
+  !> of the model; problem: with their values in the deck.
+  subroutine run_fit(measured, measurement, fit, numerics, family, problem, listener, outcome)
+    type(measured_t), intent(in) :: measured
     type(measurement_t), intent(in) :: measurement
     type(fit_t), intent(in) :: fit
     type(numerics_t), intent(in) :: numerics
@@ -72,7 +73,7 @@ contains
     real(wp), allocatable :: start(:, :)
     integer :: i
 
-    call take_curve(measurement, fit, problem, curve, outcome%trouble)
+    call take_curve(measured, measurement, fit, problem, curve, outcome%trouble)
     if (allocated(outcome%trouble)) return
     call listener%hear('fitting the path')
     allocate (model%family, source=family)
@@ -102,20 +103,16 @@ contains
   end subroutine run_fit
 
   !> The measured curve with its noise and its jumps, and what is unknown.
-  subroutine take_curve(measurement, fit, problem, curve, trouble)
+  subroutine take_curve(measured, measurement, fit, problem, curve, trouble)
+    type(measured_t), intent(in) :: measured
     type(measurement_t), intent(in) :: measurement
     type(fit_t), intent(in) :: fit
     type(problem_t), intent(in) :: problem
     type(modelled_curve_t), intent(inout) :: curve
     character(len=:), allocatable, intent(out) :: trouble
-    type(failure_t), allocatable :: error
     real(wp) :: slope
 
-    call read_measured(measurement, curve%data%measured, error)
-    if (allocated(error)) then
-      trouble = error%message
-      return
-    end if
+    curve%data%measured = measured
     curve%unknown = fit%unknown
     where (curve%unknown%role == of_contact_point) curve%unknown%scale = problem%length
     curve%spring = measurement%spring_constant

@@ -9,6 +9,7 @@ module fit_group
   use data_table, only: largest_table
   use deck_keys, only: key_spec, group, real_key, list_key, text_key, word_key, names_key
   use fit_request, only: unknown_t, of_contact_point, of_sensitivity, of_spring
+  use measured_curve, only: read_measured
   use scene_groups, only: scene_t
   use deck_family, only: deck_family_t, new_deck_family
   implicit none
@@ -65,6 +66,7 @@ contains
   subroutine take_fit(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
+    type(failure_t), allocatable :: trouble
 
     associate (deck => scene%deck)
       if (deck%has_group('measurement') .and. .not. deck%has_group('fit')) &
@@ -81,9 +83,13 @@ contains
       end if
     end associate
     if (allocated(error)) return
-    allocate (scene%measurement, scene%fit)
+    allocate (scene%measurement, scene%measured, scene%fit)
     call take_measurement(scene, error)
     if (.not. allocated(error)) call take_unknowns(scene, error)
+    if (allocated(error)) return
+    call read_measured(scene%measurement, scene%measured, trouble)
+    if (allocated(trouble)) call scene%deck%mistake('measurement', 'file', &
+      'the curve cannot be used: ' // trouble%message, error)
   end subroutine take_fit
 
   !> &measurement.

@@ -7,6 +7,7 @@ module scene_groups
   use force_law, only: force_law_t
   use shape, only: shape_t
   use fit_request, only: measurement_t, fit_t
+  use measured_curve, only: measured_t
   implicit none
   private
   public :: scene_t, bodies_t, range_t, stability_t, regime_t, sweep_t
@@ -57,6 +58,7 @@ module scene_groups
     type(regime_t), allocatable :: regime
     type(sweep_t), allocatable :: sweep
     type(measurement_t), allocatable :: measurement
+    type(measured_t), allocatable :: measured
     type(fit_t), allocatable :: fit
   contains
     procedure :: has_curve

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import snapin
 from support.measured import LENNARD_JONES, Branches, fit_deck, run, write
+from support.scenes import deck
 
 POINT = "measurement.contact_point"
 STRENGTH = "force.hamaker"
@@ -52,6 +53,16 @@ def test_files_that_cannot_be_read_are_refused_with_the_line(tmp_path, case):
     file.write_text(text)
     with pytest.raises(snapin.SnapinError, match=message):
         run(fit_deck(LENNARD_JONES, str(file), [STRENGTH, POINT]))
+
+
+def test_a_file_that_cannot_be_read_does_not_pass_the_check(snapin, tmp_path):
+    """`--check` reads the curve too; once a column that does not exist passed."""
+    (tmp_path / "a.csv").write_text("z,load\n1,2\n")
+    text = deck(**fit_deck(LENNARD_JONES, "a.csv", [STRENGTH, POINT]))
+    (tmp_path / "d.nml").write_text(text)
+    result = snapin("--check", "d.nml", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "no column 'force'" in result.stderr
 
 
 def test_a_parameter_without_effect_is_named(branches, tmp_path):

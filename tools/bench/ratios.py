@@ -53,6 +53,9 @@ def measure(program, quick, say):
             claim("states a factorisation", case, run.states / run.factorisations, math.nan)
     start = program.start_up()
     claim("G, whole run", "start alone (snapin --version)", start, 2)
+    # Here a user waits: elapsed time.
+    deck = problems.lennard_jones(0.87).path("accuracy = 1e-6")
+    claim("G, elapsed", "σ = 0.87 path from Python", program.from_python(deck), 5)
     scenes = 100 if quick else 1000
     run = program.best_of(1, {0: problems.sweep_of_paths(scenes)}, cap=300)[0]
     claim("G a scene", f"sweep of {scenes} paths, σ = 0.001 to 1000", run.price / scenes, 10,
