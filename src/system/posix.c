@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -211,11 +212,14 @@ void snapin_prepare(void) {
 }
 
 /* Nobody is left to read what goes to standard output once the process that began this one has
-   ended. */
+   ended. It may have before that is asked for; then the pipe has no reader. */
 void snapin_end_with_parent(void) {
+  struct pollfd out = {.fd = STDOUT_FILENO};
 #ifdef PR_SET_PDEATHSIG
   prctl(PR_SET_PDEATHSIG, SIGTERM);
 #endif
+  if (poll(&out, 1, 0) == 1 && (out.revents & POLLERR))
+    raise(SIGTERM);
 }
 
 /* The library that does the linear algebra may or may not be OpenBLAS: it is asked at run time, so
