@@ -1,5 +1,5 @@
-!> The path as exactly as a deck asks for. Two extrema that have just come to be move far with small
-!> errors, which no rule for meshes foresees.
+!> The path as exactly as a deck asks for. Where two extrema have just appeared, a small error of
+!> the mesh moves them far. No rule for meshes can know this beforehand: the path is traced again.
 module exact_path
   use kinds, only: wp
   use clock, only: seconds

@@ -55,7 +55,7 @@ contains
     call missed%follow(problem, span, position)
     first = missed%first_of_use(span, s)
     place = s
-    ! What it missed by says where the state is, and the place says what it misses by.
+    ! The correction depends on the place, and the place on the correction: two rounds settle both.
     if (first <= missed%held) then
       do round = 1, 2
         weight(first:missed%held) = polynomial_weights(missed%at(first:missed%held), place)

@@ -138,8 +138,8 @@ contains
   end function witness
 
   !> Makes `state` the position's present one; on another mesh, or after a jump, the past is
-  !> forgotten. foretold: the past told it well enough to be taken as it was; then it adds nothing
-  !> to that.
+  !> forgotten. foretold: the state was predicted from the past and needed no correction. Such a
+  !> state is not added to the past.
   subroutine remember(position, state, mesh, jumped, foretold)
     type(branch_point_t), intent(inout) :: position
     type(state_t), intent(in) :: state

@@ -70,8 +70,8 @@ contains
   !> shape_only leaves the kernels out: to learn how large they would be, or until they are needed
   !> (`complete`). store: meshes made before,
   !> to which these are added. coarser: meshes of fewer digits for the same problem and range.
-  !> Where these have halved or short panels, or as many nodes as those of more digits, the same
-  !> panels get more nodes: laid out anew they may be fewer, and then no better.
+  !> Where these have halved or short panels, or as many nodes as those of more digits, their panels
+  !> are kept and get more nodes. A new layout could have fewer nodes and would then be no better.
   function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store, coarser) &
     result(meshes)
     type(problem_t), intent(in) :: problem

@@ -140,8 +140,8 @@ contains
   end function between
 
   !> The gap at an offset from the centre: before contact with the gap h on the axis; about a front
-  !> of radius h; outside a JKR contact of radius h, at whose edge is the gap of largest tension,
-  !> rounded over d, as cohesion rounds it: the root of the distance is no gap that bodies have.
+  !> of radius h; outside a JKR contact of radius h, at whose edge is the gap of largest tension.
+  !> JKR theory opens that gap as the root of the distance; cohesion rounds the root over d.
   elemental real(wp) function gap_at(problem, about, h, offset, d) result(gap)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about

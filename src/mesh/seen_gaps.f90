@@ -56,7 +56,8 @@ contains
     self%scale(self%held) = scale
   end subroutine add
 
-  !> Tries the newest state as if what it has at the radius `from` were at another.
+  !> Adds the newest state once more, moved outwards or inwards: the gap that it has at the radius
+  !> `from` is placed at `radius`.
   pure subroutine try(self, from, radius)
     class(seen_gaps_t), intent(inout) :: self
     real(wp), intent(in) :: from, radius
