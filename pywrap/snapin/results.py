@@ -8,7 +8,7 @@ import numpy as np
 
 from .arguments import SnapinError
 
-_TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter")
+_TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter", "failure")
 # A text in quotes, doubled within, or another value.
 _WORD = re.compile(r"'((?:[^']|'')*)'|([^,\s]+)")
 _TRUTHS = {".true.": True, ".false.": False}
@@ -195,6 +195,8 @@ def _hint(path):
         return ": the run has not finished"
     if path.with_name("sweep.csv").is_file():
         return ": a &sweep keeps one row a case in sweep.csv, and no curves"
+    if path.name == "sweep.csv":
+        return ": the deck has no &sweep"
     if path.name == "profiles.csv":
         return ": the deck has no &profiles group"
     if path.name == "curve.csv":

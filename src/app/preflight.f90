@@ -48,7 +48,7 @@ contains
     call count_matrices(scene, bytes, nodes)
     if (allocated(scene%sweep)) then
       ! A sweep may be over what the mesh depends on: its last case stands for that.
-      call swept_scene(scene, scene%sweep%values(size(scene%sweep%values)), last, error)
+      call swept_scene(scene, scene%sweep%values(scene%sweep%cases()), last, error)
       if (.not. allocated(error)) then
         call count_matrices(last, more, most)
         bytes = max(bytes, more)
@@ -56,7 +56,7 @@ contains
       else
         deallocate (error)
       end if
-      copies = min(thread_count(), size(scene%sweep%values))
+      copies = min(thread_count(), scene%sweep%cases())
       bytes = copies*bytes
     end if
     available = available_memory(blas_buffers(nodes, copies))
@@ -125,7 +125,7 @@ contains
     type(scene_t), intent(in) :: scene
 
     if (allocated(scene%sweep)) then
-      bytes = 2*size(scene%sweep%values)*row(of_case)
+      bytes = 2.0_wp*scene%sweep%cases()*row(of_case)
       return
     end if
     bytes = states_planned(scene)*(row(of_curve) + kept)

@@ -5,7 +5,7 @@ module simulation
   use build_info, only: version, compiler, blas, options
   use dimensionless_problem, only: problem_t
   use scene_groups, only: scene_t
-  use text, only: brief
+  use text, only: brief, rounded
   use experiment_result, only: experiment_result_t
   use experiment, only: run_experiment
   use resumable_stepper, only: resumable_stepper_t
@@ -92,7 +92,7 @@ contains
       error%message = error%message//'; then go on with --resume'
       return
     end if
-    call tell(destination, summary, cost)
+    call tell(scene, destination, summary, cost)
     converged = summary%is_true('converged')
   end subroutine run_scene
 
@@ -166,12 +166,12 @@ contains
     if (.not. problem%rigid) call claim_buffers()
     if (large_results(scene) /= '') call destination%say(large_results(scene))
     if (allocated(scene%sweep)) then
-      call results%progress%start(size(scene%sweep%values), name, destination%quiet)
+      call results%progress%start(scene%sweep%cases(), name, destination%quiet)
       call run_sweep(scene, results, failed, cost)
       summary = summary_of(scene, problem, outcome)
       if (failed > 0) call summary%fail_with(brief(real(failed, wp))//' of '// &
-        brief(real(size(scene%sweep%values), wp))// &
-        ' cases failed: their rows in sweep.csv say converged = 0')
+        brief(real(scene%sweep%cases(), wp))// &
+        ' cases failed: their rows in sweep.csv say converged = 0, and why')
     else
       call results%progress%start(states_planned(scene), name, destination%quiet)
       call run_observed(scene, problem, results, summary, cost)
@@ -257,7 +257,8 @@ contains
   end subroutine describe_program
 
   !> Says what was found: warnings, the numerics, and a line of results.
-  subroutine tell(destination, summary, cost)
+  subroutine tell(scene, destination, summary, cost)
+    type(scene_t), intent(in) :: scene
     type(destination_t), intent(in) :: destination
     type(summary_t), intent(in) :: summary
     type(cost_t), intent(in) :: cost
@@ -291,6 +292,11 @@ contains
       ', largest tension', summary%number('max_tension'), ' N at h0 =', &
       summary%number('max_tension_h0'), ' m'
     call destination%say(trim(found)//trim(tension))
+    if (allocated(scene%sweep)) then
+      write (found, '(i0, a)') scene%sweep%cases(), ' cases, '
+      call destination%say(trim(found)//' '//rounded(scene%sweep%cases()/max(took, 1e-3_wp))// &
+        ' a second: sweep.csv; draw them with pywrap/plots/map.py '//destination%folder)
+    end if
 
   contains
 

@@ -57,6 +57,21 @@ program snapin
 
 contains
 
+  !> How many processes mpirun has started, by what OpenMPI and MPICH leave in the environment.
+  integer function started_together() result(processes)
+    character(len=*), parameter :: names(*) = [character(len=20) :: 'OMPI_COMM_WORLD_SIZE', &
+      'PMI_SIZE']
+    character(len=12) :: value
+    integer :: i, failed
+
+    do i = 1, size(names)
+      call get_environment_variable(trim(names(i)), value)
+      read (value, '(i12)', iostat=failed) processes
+      if (failed == 0 .and. processes > 1) return
+    end do
+    processes = 1
+  end function started_together
+
   !> Validates all decks, then computes them one by one; returns the exit status. Every deck is
   !> read before anything is written, so that a wrong one leaves nothing behind.
   function run_decks() result(status)
@@ -68,6 +83,12 @@ contains
     integer :: i
 
     status = 0
+    if (started_together() > 1) then
+      call print_line(error_unit, 'snapin: mpirun has started several of these, and this build ' &
+        // 'has no MPI; start one: it uses all cores of the machine')
+      status = 2
+      return
+    end if
     if (options%out == to_stream) call c_end_with_parent()
     allocate (scenes(size(options%decks)))
     do i = 1, size(scenes)

@@ -1,6 +1,8 @@
-!> The cases of a sweep, spread over the cores: one value of a key a case, one row of its summary.
+!> The cases of a sweep, spread over the cores: each is one row, its keys' values and its numbers.
 module sweeps
+  use, intrinsic :: iso_c_binding, only: c_bool
   use kinds, only: wp
+  use text, only: first_line
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t
   use scene_groups, only: scene_t
@@ -23,13 +25,31 @@ module sweeps
   private
   public :: run_sweep
 
-  !> What is kept of one case.
+  !> Characters of what is said of a case that failed.
+  integer, parameter :: failure_width = 160
+
+  !> What is kept of one case until its row is written.
   type :: case_t
-    logical :: done = .false., converged = .false.
+    !> Its number; 0: none.
+    integer :: number = 0
+    logical :: converged = .false.
     !> See `numbers_of`.
     real(wp), allocatable :: numbers(:)
+    !> Why it failed; not of deferred length: compiler note 4.
+    character(len=failure_width) :: failure = ''
     type(cost_t) :: cost
   end type case_t
+
+  !> The cases that have ended before others whose rows come first; how many rows are written, how
+  !> many cases have ended and failed, and what all took. A case is in `waiting` at its number, all
+  !> numbers modulo the size.
+  type :: queue_t
+    type(case_t), allocatable :: waiting(:)
+    integer :: written = 0, ended = 0, failed = 0
+    type(cost_t) :: cost
+  contains
+    procedure :: add
+  end type queue_t
 
   !> Says what a case is at, beside the others; takes no records.
   type, extends(silent_observer_t) :: case_observer_t
@@ -41,43 +61,41 @@ module sweeps
 
 contains
 
-  !> Computes every case of scene%sweep and hands its row to `results`, in the order of the values.
+  !> Computes every case of scene%sweep and hands its row to `results`, in the order of the cases.
   !> Cases that results%journal has are complete, whatever their order; the others join them as they
-  !> end. A case that fails is a row that says so. Once results cannot be written no case begins.
+  !> end. A case that fails is a row that says why. Once results cannot be written no case begins.
   !> failed: how many; cost: of all together.
   subroutine run_sweep(scene, results, failed, cost)
     type(scene_t), intent(in) :: scene
     type(results_t), intent(inout), target :: results
     integer, intent(out) :: failed
     type(cost_t), intent(out) :: cost
-    type(case_t), allocatable :: cases(:)
+    type(queue_t) :: queue
     type(mesh_store_t) :: store
     character(len=column_width), allocatable :: columns(:)
-    integer :: i, written
+    logical(c_bool), allocatable :: done(:)
+    integer :: i
 
-    allocate (cases(size(scene%sweep%values)))
+    allocate (done(scene%sweep%cases()))
     columns = columns_of(scene)
-    written = 0
-    call recall_cases(scene, columns, cases, written, results)
+    done = .false.
+    call recall_cases(scene, columns, done, queue, results)
     ! Each case has a thread of its own: its kernels and its linear algebra use no more.
     !$omp parallel do schedule(dynamic, 1)
-    do i = 1, size(cases)
-      if (.not. cases(i)%done) call complete(scene, i, columns, cases, written, results, store)
+    do i = 1, size(done)
+      if (.not. done(i)) call complete(scene, i, columns, queue, results, store)
     end do
     !$omp end parallel do
-    failed = count(cases%done .and. .not. cases%converged)
-    do i = 1, size(cases)
-      cost = sum_of(cost, cases(i)%cost)
-    end do
+    failed = queue%failed
+    cost = queue%cost
   end subroutine run_sweep
 
   !> Computes case i and enters it, unless results can no longer be written.
-  subroutine complete(scene, i, columns, cases, written, results, store)
+  subroutine complete(scene, i, columns, queue, results, store)
     type(scene_t), intent(in) :: scene
-    character(len=*), intent(in) :: columns(:)
     integer, intent(in) :: i
-    type(case_t), intent(inout) :: cases(:)
-    integer, intent(inout) :: written
+    character(len=*), intent(in) :: columns(:)
+    type(queue_t), intent(inout) :: queue
     type(results_t), intent(inout), target :: results
     type(mesh_store_t), intent(inout) :: store
     type(case_t) :: fresh
@@ -90,73 +108,112 @@ contains
     if (stopped) return
     observer%case = i
     observer%progress => results%progress
-    call run_case(scene, scene%sweep%values(i), observer, store, fresh)
+    call run_case(scene, i, observer, store, fresh)
     !$omp critical (one_at_a_time)
-    call keep_case(results%journal, i, fresh)
-    cases(i) = fresh
-    call results%progress%step('case')
-    call write_rows(scene, columns, cases, written, results)
+    call keep_case(results%journal, fresh)
+    call queue%add(scene, columns, fresh, results)
+    call results%progress%step(counted(queue%failed))
     !$omp end critical (one_at_a_time)
   end subroutine complete
 
+  !> 'case', with how many have failed so far.
+  function counted(failed) result(label)
+    integer, intent(in) :: failed
+    character(len=32) :: label
+
+    label = 'case'
+    if (failed > 0) write (label, '(a, i0, a)') 'case, ', failed, ' failed'
+  end function counted
+
   !> Takes the cases that an interrupted run has completed.
-  subroutine recall_cases(scene, columns, cases, written, results)
+  subroutine recall_cases(scene, columns, done, queue, results)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: columns(:)
-    type(case_t), intent(inout) :: cases(:)
-    integer, intent(inout) :: written
+    logical(c_bool), intent(inout) :: done(:)
+    type(queue_t), intent(inout) :: queue
     type(results_t), intent(inout) :: results
     type(byte_record_t) :: record
+    type(case_t) :: case
+    character(len=:), allocatable :: failure
     logical :: found
-    integer :: i
 
     do
       call results%journal%next(record, found)
       if (.not. found) exit
-      call record%take(i)
-      cases(i)%done = .true.
-      call record%take(cases(i)%converged)
-      call record%take(cases(i)%numbers)
-      call take_cost(record, cases(i)%cost)
-      call results%progress%skip('case')
-      call write_rows(scene, columns, cases, written, results)
+      call record%take(case%number)
+      call record%take(case%converged)
+      call record%take(case%numbers)
+      call record%take(failure)
+      call take_cost(record, case%cost)
+      case%failure = failure
+      done(case%number) = .true.
+      call queue%add(scene, columns, case, results)
+      call results%progress%skip(counted(queue%failed))
     end do
   end subroutine recall_cases
 
   !> Adds a case to the journal, as `recall_cases` finds it there.
-  subroutine keep_case(journal, i, case)
+  subroutine keep_case(journal, case)
     type(journal_t), intent(inout) :: journal
-    integer, intent(in) :: i
     type(case_t), intent(in) :: case
     type(byte_record_t) :: record
 
-    call record%put(i)
+    call record%put(case%number)
     call record%put(case%converged)
     call record%put(case%numbers)
+    call record%put(trim(case%failure))
     call put_cost(record, case%cost)
     call journal%append(record)
   end subroutine keep_case
 
-  !> Writes the rows whose turn it is, after the first `written`.
-  subroutine write_rows(scene, columns, cases, written, results)
+  !> Adds a case that has ended, and writes the rows whose turn it is.
+  subroutine add(self, scene, columns, case, results)
+    class(queue_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: columns(:)
-    type(case_t), intent(in) :: cases(:)
-    integer, intent(inout) :: written
+    type(case_t), intent(in) :: case
     type(results_t), intent(inout) :: results
 
-    do while (written < size(cases))
-      if (.not. cases(written + 1)%done) exit
-      written = written + 1
-      call results%take_case(scene%sweep%key, scene%sweep%values(written), columns, &
-        cases(written)%numbers)
+    self%ended = self%ended + 1
+    if (.not. case%converged) self%failed = self%failed + 1
+    self%cost = sum_of(self%cost, case%cost)
+    if (.not. allocated(self%waiting)) allocate (self%waiting(0:15))
+    call make_room(self%waiting, case%number - self%written)
+    self%waiting(mod(case%number, size(self%waiting))) = case
+    do
+      associate (next => self%waiting(mod(self%written + 1, size(self%waiting))))
+        if (next%number /= self%written + 1) exit
+        call results%take_case(scene%sweep%names, scene%sweep%values(next%number), columns, &
+          next%numbers, next%failure)
+        next = case_t()
+      end associate
+      self%written = self%written + 1
     end do
-  end subroutine write_rows
+  end subroutine add
 
-  !> The case of the scene with the swept key at a value, on meshes that the cases share.
-  subroutine run_case(scene, value, observer, store, case)
+  !> Lets a case wait that comes so many after the last one written.
+  subroutine make_room(waiting, ahead)
+    type(case_t), allocatable, intent(inout) :: waiting(:)
+    integer, intent(in) :: ahead
+    type(case_t), allocatable :: larger(:)
+    integer :: size_needed, i
+
+    if (ahead <= size(waiting)) return
+    size_needed = size(waiting)
+    do while (size_needed < ahead)
+      size_needed = 2*size_needed
+    end do
+    allocate (larger(0:size_needed - 1))
+    do i = 0, size(waiting) - 1
+      if (waiting(i)%number > 0) larger(mod(waiting(i)%number, size_needed)) = waiting(i)
+    end do
+    call move_alloc(larger, waiting)
+  end subroutine make_room
+
+  !> Case i of the scene's sweep, on meshes that the cases share.
+  subroutine run_case(scene, i, observer, store, case)
     type(scene_t), intent(in) :: scene
-    real(wp), intent(in) :: value
+    integer, intent(in) :: i
     type(case_observer_t), intent(inout) :: observer
     type(mesh_store_t), intent(inout) :: store
     type(case_t), intent(out) :: case
@@ -168,7 +225,7 @@ contains
 
     ! What makes strings is done by one thread at a time: compiler note 4.
     !$omp critical (one_at_a_time)
-    call swept_scene(scene, value, variant, error)
+    call swept_scene(scene, scene%sweep%values(i), variant, error)
     !$omp end critical (one_at_a_time)
     call summary%set('converged', .false.)
     if (.not. allocated(error)) then
@@ -177,10 +234,16 @@ contains
     end if
     !$omp critical (one_at_a_time)
     if (.not. allocated(error)) summary = summary_of(variant, problem, outcome)
+    case%number = i
     case%numbers = numbers_of(summary, scene)
-    !$omp end critical (one_at_a_time)
-    case%done = .true.
     case%converged = summary%is_true('converged')
+    if (allocated(error)) then
+      case%failure = first_line(error%message)
+    else if (.not. case%converged) then
+      case%failure = 'not converged'
+      if (allocated(summary%warnings)) case%failure = summary%warnings(1)%text
+    end if
+    !$omp end critical (one_at_a_time)
     case%cost = outcome%cost
   end subroutine run_case
 

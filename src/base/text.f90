@@ -5,7 +5,7 @@ module text
   implicit none
   private
   public :: lower, quoted, unquoted, brief, rounded, rounded_to, full, guess, clip, listing, &
-    printable, word_count, word_of
+    printable, word_count, word_of, first_line
 
 contains
 
@@ -240,5 +240,13 @@ contains
     text = token
     if (len(token) > 40) text = token(:37) // '...'
   end function clip
+
+  !> What comes before the end of the first line.
+  pure function first_line(text) result(line)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: line
+
+    line = text(:index(text // new_line('a'), new_line('a')) - 1)
+  end function first_line
 
 end module text

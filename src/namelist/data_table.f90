@@ -11,7 +11,7 @@ module data_table
   use number_columns, only: uncommented, between
   implicit none
   private
-  public :: data_table_t, read_data_table, largest_table
+  public :: data_table_t, read_data_table, read_named_table, largest_table
 
   !> The columns asked for, value(row, column), and where in the file's text each row stands.
   type :: data_table_t
@@ -38,15 +38,41 @@ contains
     character(len=*), intent(in) :: file, wanted(:)
     type(data_table_t), intent(out) :: table
     type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: names
+
+    call read_table(file, wanted, .false., table, names, error)
+  end subroutine read_data_table
+
+  !> Reads all columns of a file that has a line of names; names: blank-separated, in lower case.
+  subroutine read_named_table(file, table, names, error)
+    character(len=*), intent(in) :: file
+    type(data_table_t), intent(out) :: table
+    character(len=:), allocatable, intent(out) :: names
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=1) :: none(0)
+
+    call read_table(file, none, .true., table, names, error)
+  end subroutine read_named_table
+
+  !> Reads the columns `wanted`, or all of a file that names them.
+  subroutine read_table(file, wanted, all_of_them, table, found, error)
+    character(len=*), intent(in) :: file, wanted(:)
+    logical, intent(in) :: all_of_them
+    type(data_table_t), intent(out) :: table
+    character(len=:), allocatable, intent(out) :: found
+    type(failure_t), allocatable, intent(out) :: error
     type(cell_t), allocatable :: cells(:), names(:)
-    integer :: first, next, n, columns, at(size(wanted)), named
+    integer, allocatable :: at(:)
+    logical, allocatable :: turned(:)
+    integer :: first, next, n, columns, named
 
     call load_source(file, table%source, error, largest_table)
     if (allocated(error)) return
     call point_decimals(table%source%text)
     n = count([(table%source%text(first:first) == newline, first=1, &
       len(table%source%text))]) + 1
-    allocate (table%value(n, size(wanted)), table%place(n))
+    allocate (table%place(n), at(size(wanted)))
+    turned = index(adjustl(wanted), '-') == 1
     n = 0
     columns = 0
     named = 0
@@ -69,10 +95,21 @@ contains
         else
           named = 0
         end if
-        if (named > 0) call find_columns(table%source, named, names, wanted, at, error)
-        if (named == 0) call find_columns(table%source, first, cells, wanted, at, error)
+        if (named == 0) then
+          names = cells
+          if (is_header(table%source, first, cells) .or. .not. all_of_them) named = first
+        end if
+        if (all_of_them .and. named > 0) then
+          call take_all(table%source, named, names, found, at)
+          turned = spread(.false., 1, columns)
+        else if (all_of_them) then
+          call table%source%complain(first, '', '', 'no line of names before the numbers', error)
+        else
+          call find_columns(table%source, named, names, wanted, at, error)
+        end if
         if (allocated(error)) return
-        if (named == 0 .and. is_header(table%source, first, cells)) cycle
+        allocate (table%value(size(table%place), size(at)))
+        if (is_header(table%source, first, cells)) cycle
       end if
       if (size(cells) /= columns) then
         call table%source%complain(first, '', '', counted(size(cells)) // ' where ' // &
@@ -80,13 +117,32 @@ contains
         return
       end if
       n = n + 1
-      call read_row(table%source, first, cells(at), wanted, table%value(n, :), error)
+      call read_row(table%source, first, cells(at), turned, table%value(n, :), error)
       if (allocated(error)) return
       table%place(n) = first
     end do
+    if (.not. allocated(table%value)) allocate (table%value(0, size(at)))
     table%value = table%value(:n, :)
     table%place = table%place(:n)
-  end subroutine read_data_table
+  end subroutine read_table
+
+  !> The names in a line of them.
+  subroutine take_all(source, start, cells, names, at)
+    type(source_t), intent(in) :: source
+    integer, intent(in) :: start
+    type(cell_t), intent(in) :: cells(:)
+    character(len=:), allocatable, intent(out) :: names
+    integer, allocatable, intent(out) :: at(:)
+    integer :: k
+
+    names = ''
+    do k = 1, size(cells)
+      names = names // ' ' // lower(source%part(start + cells(k)%first - 1, &
+        start + cells(k)%last - 1))
+    end do
+    names = names(2:)
+    at = [(k, k=1, size(cells))]
+  end subroutine take_all
 
   !> The first line of some, with its comment mark a blank.
   pure function after_mark(lines) result(line)
@@ -206,12 +262,12 @@ contains
     if (index(unsigned, '-') == 1) unsigned = trim(adjustl(unsigned(2:)))
   end function unsigned
 
-  !> The numbers in these cells of a line.
-  subroutine read_row(source, start, cells, wanted, row, error)
+  !> The numbers in these cells of a line; turned: with the other sign.
+  subroutine read_row(source, start, cells, turned, row, error)
     type(source_t), intent(in) :: source
     integer, intent(in) :: start
     type(cell_t), intent(in) :: cells(:)
-    character(len=*), intent(in) :: wanted(:)
+    logical, intent(in) :: turned(:)
     real(wp), intent(out) :: row(:)
     type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: what
@@ -224,7 +280,7 @@ contains
         call source%complain(start + cells(i)%first - 1, '', '', what, error)
         return
       end if
-      if (index(adjustl(wanted(i)), '-') == 1) row(i) = -row(i)
+      if (turned(i)) row(i) = -row(i)
     end do
   end subroutine read_row
 

@@ -9,10 +9,13 @@ module case_columns
   use summary, only: summary_t
   implicit none
   private
-  public :: columns_of, numbers_of, column_width
+  public :: columns_of, numbers_of, column_width, failure_column
 
   !> Characters of a column's description.
   integer, parameter :: column_width = 132
+  !> The last column.
+  character(len=*), parameter :: failure_column = &
+    'failure [] why the case has no results, or not all; blank where it has'
 
 contains
 

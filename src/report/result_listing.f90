@@ -69,8 +69,8 @@ contains
         call heading('with &fit', 'A namelist: &fit, the values found, and a group for each ' // &
           'classical theory, fitted to the same samples.')
       case ('sweep.csv')
-        call heading('with &sweep', 'One row for each value of the key: the value, then the ' // &
-          'entries of &summary marked "in sweep.csv".')
+        call heading('with &sweep', 'One row for each case: the values of the keys, then the ' // &
+          'entries of &summary marked "in sweep.csv", and failure: why a case has not all of them.')
       case ('summary.nml')
         call heading('', 'A namelist: &summary, &cost, and the deck with every default.')
         write (unit, '(/, a, /, 4x, a)', iostat=status) '&summary', 'What was found.'

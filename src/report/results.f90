@@ -23,6 +23,8 @@ module results
   use run_identity, only: difference_between
   use text_file, only: output_t, partial
   use tables, only: table_t, cells
+  use text, only: word_of
+  use case_columns, only: failure_column
   use curve_rows, only: columns_of_curve, curve_row
   use profiles, only: columns_of_profiles, write_profile
   use summary, only: summary_t, summary_text
@@ -179,24 +181,41 @@ contains
       record%branch, record%h0, problem, grid, state, self%trouble)
   end subroutine take
 
-  !> Adds a case of a sweep, the value of its key and its numbers, to `sweep.csv`. `key` is
-  !> 'group.key', `columns` are those of the numbers.
-  subroutine take_case(self, key, value, columns, numbers)
+  !> Adds a case of a sweep to `sweep.csv`: the values of its keys, its numbers, and why it failed,
+  !> blank if it did not. `keys` are blank-separated names, `columns` are those of the numbers.
+  subroutine take_case(self, keys, values, columns, numbers, failure)
     class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: key, columns(:)
-    real(wp), intent(in) :: value, numbers(:)
-    character(len=max(len(columns), len(key) + 24)) :: header(1 + size(columns))
+    character(len=*), intent(in) :: keys, columns(:), failure
+    real(wp), intent(in) :: values(:), numbers(:)
+    character(len=max(len(columns), len(keys) + 24)) :: header(size(values) + size(columns) + 1)
+    integer :: k
 
     if (allocated(self%trouble)) return
     if (.not. self%cases%is_open()) then
-      header(1) = key // ' in the unit of the key'
-      header(2:) = columns
+      do k = 1, size(values)
+        header(k) = word_of(keys, k) // ' in the unit of the key'
+      end do
+      header(k:size(header) - 1) = columns
+      header(size(header)) = failure_column
       call self%begin(self%cases, 'sweep.csv', header, self%trouble)
     end if
-    if (.not. allocated(self%trouble)) &
-      call self%cases%line(cells([value, numbers]), self%trouble)
+    if (.not. allocated(self%trouble)) call self%cases%line(cells([values, numbers]) // ',' // &
+      trim(without_commas(failure)), self%trouble)
     if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
   end subroutine take_case
+
+  !> A text as a cell of a table.
+  pure function without_commas(text) result(cell)
+    character(len=*), intent(in) :: text
+    character(len=len(text)) :: cell
+    integer :: i
+
+    cell = text
+    do i = 1, len(cell)
+      if (cell(i:i) == ',') cell(i:i) = ';'
+      if (iachar(cell(i:i)) < 32) cell(i:i) = ' '
+    end do
+  end function without_commas
 
   !> Begins the table `name`, one of `result_files`, of which there is one at a time: its columns,
   !> each described as 'name [unit] what it is'. Rows follow, then its end.

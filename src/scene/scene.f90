@@ -2,7 +2,7 @@
 module scene
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: brief, listing
+  use text, only: brief, listing, first_line, word_count, word_of
   use deck, only: deck_t, read_deck
   use deck_numbers, only: find_number, set_number
   use scene_keys, only: keys_of_scene
@@ -85,66 +85,108 @@ contains
     if (.not. allocated(error)) call check_shape(scene, error)
   end subroutine make_scene
 
-  !> The scene, which has a sweep, with the sweep's key set to `value` and without the sweep.
-  subroutine swept_scene(scene, value, variant, error)
+  !> The scene, which has a sweep, with the sweep's keys set to `values` and without the sweep.
+  subroutine swept_scene(scene, values, variant, error)
     type(scene_t), intent(in) :: scene
-    real(wp), intent(in) :: value
+    real(wp), intent(in) :: values(:)
     type(scene_t), intent(out) :: variant
     type(failure_t), allocatable, intent(out) :: error
     type(deck_t) :: deck
+    integer :: k
 
     deck = scene%deck
     call deck%drop_group('sweep')
-    call set_number(deck, scene%sweep%key, value, error)
-    if (allocated(error)) return
+    do k = 1, size(values)
+      call set_number(deck, word_of(scene%sweep%names, k), values(k), error)
+      if (allocated(error)) return
+    end do
     call make_scene(deck, variant, error)
   end subroutine swept_scene
 
-  !> Tries the sweep: every value against the key's own bounds, smallest and largest in the whole
-  !> scene, so that a mistake shows before hours of work and not after.
+  !> Tries the sweep, so that a mistake shows before hours of work and not after: every value
+  !> against the bounds of its key, and in the whole scene the least and the largest of all keys
+  !> together, of a table its first and its last case.
   subroutine check_sweep(scene, error)
     type(scene_t), intent(in) :: scene
     type(failure_t), allocatable, intent(inout) :: error
     type(failure_t), allocatable :: trouble
     type(deck_t) :: trial
-    type(scene_t) :: variant
-    character(len=:), allocatable :: key
-    real(wp) :: ends(2)
-    integer :: i, row, term
+    integer :: k, row, term
 
     trial = scene%deck
     call trial%drop_group('sweep')
-    call find_number(trial, scene%sweep%key, row, term, trouble)
-    if (allocated(trouble)) then
-      call scene%deck%mistake('sweep', 'key', trouble%message, error)
-      return
-    end if
-    key = 'from'
-    if (scene%deck%is_set('sweep', 'values')) key = 'values'
-    do i = 1, size(scene%sweep%values)
-      call set_number(trial, scene%sweep%key, scene%sweep%values(i), trouble)
+    do k = 1, word_count(scene%sweep%names)
+      call find_number(trial, word_of(scene%sweep%names, k), row, term, trouble)
+      if (allocated(trouble)) then
+        call scene%deck%mistake('sweep', trim(merge('file', 'key ', &
+          allocated(scene%sweep%table))), trouble%message, error)
+        return
+      end if
+      if (allocated(scene%sweep%table)) then
+        call try_values(scene, trial, k, scene%sweep%table(:, k), 'file', error)
+      else if (scene%deck%is_set('sweep', 'values')) then
+        call try_values(scene, trial, k, scene%sweep%axis(k)%values, 'values', error)
+      else
+        call try_values(scene, trial, k, scene%sweep%axis(k)%values, 'from', error)
+      end if
+      if (allocated(error)) return
+    end do
+    call try_ends(scene, error)
+  end subroutine check_sweep
+
+  !> Refuses values of key k that are out of its bounds.
+  subroutine try_values(scene, trial, k, values, key, error)
+    type(scene_t), intent(in) :: scene
+    type(deck_t), intent(inout) :: trial
+    integer, intent(in) :: k
+    real(wp), intent(in) :: values(:)
+    character(len=*), intent(in) :: key
+    type(failure_t), allocatable, intent(inout) :: error
+    type(failure_t), allocatable :: trouble
+    integer :: i
+
+    do i = 1, size(values)
+      call set_number(trial, word_of(scene%sweep%names, k), values(i), trouble)
       if (.not. allocated(trouble)) cycle
+      if (key == 'file') trouble%message = 'case ' // brief(real(i, wp)) // ': ' // trouble%message
       call scene%deck%mistake('sweep', key, trouble%message, error)
       return
     end do
-    ends = [minval(scene%sweep%values), maxval(scene%sweep%values)]
-    do i = 1, size(ends)
-      call swept_scene(scene, ends(i), variant, trouble)
-      if (.not. allocated(trouble)) cycle
-      call scene%deck%mistake('sweep', key, 'with ' // scene%sweep%key // ' = ' // brief(ends(i)) &
-                              // ' the deck is wrong: ' // first_line(trouble%message), error)
-      return
-    end do
+  end subroutine try_values
 
-  contains
+  !> Refuses a sweep whose ends are no scenes.
+  subroutine try_ends(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    type(failure_t), allocatable :: trouble
+    type(scene_t) :: variant
+    character(len=:), allocatable :: key, said
+    real(wp), allocatable :: values(:)
+    integer :: i, k
 
-    pure function first_line(message) result(line)
-      character(len=*), intent(in) :: message
-      character(len=:), allocatable :: line
-
-      line = message(:index(message // new_line('a'), new_line('a')) - 1)
-    end function first_line
-
-  end subroutine check_sweep
+    associate (sweep => scene%sweep)
+      key = 'from'
+      if (scene%deck%is_set('sweep', 'values')) key = 'values'
+      if (allocated(sweep%table)) key = 'file'
+      do i = 1, 2
+        if (allocated(sweep%table)) then
+          values = sweep%values(merge(1, sweep%cases(), i == 1))
+        else
+          values = [(merge(minval(sweep%axis(k)%values), maxval(sweep%axis(k)%values), i == 1), &
+            k=1, size(sweep%axis))]
+        end if
+        call swept_scene(scene, values, variant, trouble)
+        if (.not. allocated(trouble)) cycle
+        said = 'with '
+        do k = 1, size(values)
+          if (k > 1) said = said // ', '
+          said = said // word_of(sweep%names, k) // ' = ' // brief(values(k))
+        end do
+        call scene%deck%mistake('sweep', key, said // ' the deck is wrong: ' // &
+          first_line(trouble%message), error)
+        return
+      end do
+    end associate
+  end subroutine try_ends
 
 end module scene

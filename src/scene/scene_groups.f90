@@ -10,7 +10,7 @@ module scene_groups
   use measured_curve, only: measured_t
   implicit none
   private
-  public :: scene_t, bodies_t, range_t, stability_t, regime_t, sweep_t
+  public :: scene_t, bodies_t, range_t, stability_t, regime_t, sweep_t, axis_t
 
   !> &bodies
   type :: bodies_t
@@ -37,10 +37,20 @@ module scene_groups
   type :: regime_t
   end type regime_t
 
-  !> &sweep: the key as 'group.key' and every value it takes, however they were given.
-  type :: sweep_t
-    character(len=:), allocatable :: key
+  !> The values of one key.
+  type :: axis_t
     real(wp), allocatable :: values(:)
+  end type axis_t
+
+  !> &sweep: blank-separated keys as 'group.key', and either the values of each, of which every
+  !> combination is a case, the last key varying fastest; or a table, row by row.
+  type :: sweep_t
+    character(len=:), allocatable :: names
+    type(axis_t), allocatable :: axis(:)
+    real(wp), allocatable :: table(:, :)
+  contains
+    procedure :: cases
+    procedure :: values
   end type sweep_t
 
   !> All that a deck asks for: of the experiments, and beside them.
@@ -66,6 +76,39 @@ module scene_groups
   end type scene_t
 
 contains
+
+  !> How many cases a sweep has.
+  pure integer function cases(self)
+    class(sweep_t), intent(in) :: self
+    integer :: i
+
+    if (allocated(self%table)) then
+      cases = size(self%table, 1)
+    else
+      cases = product([(size(self%axis(i)%values), i=1, size(self%axis))])
+    end if
+  end function cases
+
+  !> The values of the keys in case i.
+  pure function values(self, i)
+    class(sweep_t), intent(in) :: self
+    integer, intent(in) :: i
+    real(wp), allocatable :: values(:)
+    integer :: k, left
+
+    if (allocated(self%table)) then
+      values = self%table(i, :)
+      return
+    end if
+    allocate (values(size(self%axis)))
+    left = i - 1
+    do k = size(self%axis), 1, -1
+      associate (of_key => self%axis(k)%values)
+        values(k) = of_key(1 + mod(left, size(of_key)))
+        left = left/size(of_key)
+      end associate
+    end do
+  end function values
 
   !> Whether equilibria are shown one by one. The cases of a sweep leave numbers, not their curves.
   pure logical function has_curve(self)

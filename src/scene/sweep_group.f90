@@ -1,14 +1,22 @@
-!> &sweep: the values that one key takes, from a range or a list.
+!> &sweep: the values that keys take, from ranges, a list or a table. Of several ranges every
+!> combination is a case.
 module sweep_group
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: brief
+  use text, only: brief, quoted, word_count, word_of
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key, list_key, integer_key, word_key, text_key
-  use scene_groups, only: scene_t
+  use deck_source, only: source_t, load_source
+  use data_table, only: data_table_t, read_named_table, largest_table
+  use deck_keys, only: key_spec, group, list_key, text_key, names_key
+  use scene_groups, only: scene_t, sweep_t
   implicit none
   private
   public :: sweep_keys, take_sweep
+
+  !> Keys of one sweep; values of one key; cases.
+  integer, parameter :: most_keys = 8, most_values = 10000
+  real(wp), parameter :: most_cases = 1.0e7_wp
+  character(len=*), parameter :: of_range(4) = ['from ', 'to   ', 'count', 'scale']
 
 contains
 
@@ -17,60 +25,157 @@ contains
     type(key_spec), allocatable :: specs(:)
 
     specs = [ &
-      group('sweep', 'The same deck for several values of one key. Either values, or from, to ' // &
-            'and count.'), &
-      text_key('sweep', 'key', 49, 'The key to vary, as ''group.key''.', required=.true.), &
-      real_key('sweep', 'from', '', 'First value, in the unit of the key.'), &
-      real_key('sweep', 'to', '', 'Last value.'), &
-      integer_key('sweep', 'count', 'Number of values.', 2, 10000), &
-      word_key('sweep', 'scale', 'linear log', 'Spacing of the values.', otherwise='linear'), &
-      list_key('sweep', 'values', '', 'The values one by one.', most=10000)]
+      group('sweep', 'The same deck for several values of keys. Either key with from, to and ' // &
+            'count, one of each for each key, and then every combination is a case; or one key ' // &
+            'with values; or a file.'), &
+      names_key('sweep', 'key', most_keys, 'The keys to vary, as ''group.key''. The last one ' // &
+                'varies fastest.', otherwise='those of file'), &
+      list_key('sweep', 'from', '', 'First value of each, in the unit of the key.', most_keys), &
+      list_key('sweep', 'to', '', 'Last value of each.', most_keys), &
+      list_key('sweep', 'count', '', 'Number of values of each.', most_keys, low=2.0_wp, &
+               high=real(most_values, wp)), &
+      names_key('sweep', 'scale', most_keys, 'Spacing of the values, linear or log: one for ' // &
+                'each, or one for all.', otherwise='linear'), &
+      list_key('sweep', 'values', '', 'The values of one key, one by one.', most_values), &
+      text_key('sweep', 'file', 1000, 'A table of cases: a line of names as ''group.key'', ' // &
+               'then a row a case; in the folder of the deck unless a path.')]
   end function sweep_keys
 
-  !> &sweep: either values, or from, to and count.
+  !> &sweep: a file, or keys with values or ranges.
   subroutine take_sweep(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
-    character(len=*), parameter :: of_range(4) = ['from ', 'to   ', 'count', 'scale']
-    character(len=:), allocatable :: key
+    real(wp), allocatable :: values(:)
     integer :: i
 
     if (.not. scene%deck%has_group('sweep')) return
     allocate (scene%sweep)
-    call scene%deck%get('sweep', 'key', scene%sweep%key)
-    call scene%deck%get('sweep', 'values', scene%sweep%values)
-    do i = 1, size(of_range)
-      key = trim(of_range(i))
-      if (size(scene%sweep%values) > 0) then
-        if (scene%deck%is_set('sweep', key)) call scene%deck%mistake('sweep', key, &
-          'not together with values; give from, to and count, or values', error)
-      else if (.not. scene%deck%is_set('sweep', key) .and. key /= 'scale') then
-        call scene%deck%mistake('sweep', key, 'missing; give from, to and count, or values', error)
+    associate (deck => scene%deck, sweep => scene%sweep)
+      if (deck%is_set('sweep', 'file')) then
+        call refuse(deck, ['key   ', 'values', of_range//' '], 'file, whose columns say all', error)
+        if (.not. allocated(error)) call take_table(deck, sweep, error)
         return
       end if
-    end do
-    if (size(scene%sweep%values) == 0) call spread_values(scene%deck, scene%sweep%values, error)
+      if (.not. deck%is_set('sweep', 'key')) then
+        call deck%mistake('sweep', 'key', 'missing; give key, or file', error)
+        return
+      end if
+      call deck%get('sweep', 'key', sweep%names)
+      allocate (sweep%axis(word_count(sweep%names)))
+      call deck%get('sweep', 'values', values)
+      if (size(values) == 0) then
+        call take_ranges(deck, sweep, error)
+      else if (size(sweep%axis) > 1) then
+        call deck%mistake('sweep', 'values', 'values are those of one key; for several give ' // &
+          'from, to and count, or file', error)
+      else
+        call refuse(deck, of_range, 'values; give from, to and count, or values', error)
+        sweep%axis(1)%values = values
+      end if
+      if (allocated(error)) return
+      if (product([(real(size(sweep%axis(i)%values), wp), i=1, size(sweep%axis))]) > most_cases) &
+        call deck%mistake('sweep', 'count', 'these are more than ' // brief(most_cases) // &
+        ' cases', error)
+    end associate
   end subroutine take_sweep
 
-  !> The values from `from` to `to`; none where these are wrong.
-  subroutine spread_values(deck, values, error)
-    type(deck_t), intent(inout) :: deck
-    real(wp), allocatable, intent(inout) :: values(:)
+  !> Refuses keys that make no sense together with `other`.
+  subroutine refuse(deck, keys, other, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: keys(:), other
     type(failure_t), allocatable, intent(inout) :: error
-    character(len=*), parameter :: not_positive = ' is not > 0, as scale = ''log'' needs'
-    character(len=:), allocatable :: scale
-    real(wp) :: from, to
-    integer :: n, i
+    integer :: i
 
-    from = 0
-    to = 0
-    n = 0
+    do i = 1, size(keys)
+      if (deck%is_set('sweep', trim(keys(i)))) call deck%mistake('sweep', trim(keys(i)), &
+        'not together with ' // other, error)
+    end do
+  end subroutine refuse
+
+  !> The cases of a file.
+  subroutine take_table(deck, sweep, error)
+    type(deck_t), intent(inout) :: deck
+    type(sweep_t), intent(inout) :: sweep
+    type(failure_t), allocatable, intent(inout) :: error
+    type(failure_t), allocatable :: trouble
+    type(data_table_t) :: table
+    type(source_t) :: source
+    character(len=:), allocatable :: file
+
+    file = deck%path_of('sweep', 'file')
+    call load_source(file, source, trouble, largest_table)
+    if (.not. allocated(trouble)) then
+      call deck%note_file('sweep', 'file', source%text)
+      call read_named_table(file, table, sweep%names, trouble)
+    end if
+    if (allocated(trouble)) then
+      call deck%mistake('sweep', 'file', trouble%message, error)
+    else if (size(table%value, 1) == 0) then
+      call deck%mistake('sweep', 'file', quoted(file) // ' has no cases', error)
+    else
+      call move_alloc(table%value, sweep%table)
+    end if
+  end subroutine take_table
+
+  !> The values of every key from its range; none where these are wrong.
+  subroutine take_ranges(deck, sweep, error)
+    type(deck_t), intent(inout) :: deck
+    type(sweep_t), intent(inout) :: sweep
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: from(:), to(:), number(:)
+    character(len=:), allocatable :: scales
+    integer :: i
+
     call deck%assume('sweep', 'scale', 'linear')
     call deck%get('sweep', 'from', from)
     call deck%get('sweep', 'to', to)
-    call deck%get('sweep', 'count', n)
-    call deck%get('sweep', 'scale', scale)
-    if (scale == 'log' .and. from <= 0) then
+    call deck%get('sweep', 'count', number)
+    call deck%get('sweep', 'scale', scales)
+    call check_size('from', size(from))
+    call check_size('to', size(to))
+    call check_size('count', size(number))
+    if (word_count(scales) /= 1) call check_size('scale', word_count(scales))
+    if (allocated(error)) return
+    do i = 1, size(sweep%axis)
+      call spread_values(deck, from(i), to(i), number(i), &
+        word_of(scales, min(i, word_count(scales))), sweep%axis(i)%values, error)
+    end do
+
+  contains
+
+    !> Refuses a list that has not one item for each key.
+    subroutine check_size(key, items)
+      character(len=*), intent(in) :: key
+      integer, intent(in) :: items
+
+      if (items == size(sweep%axis)) return
+      if (items == 0) then
+        call deck%mistake('sweep', key, 'missing; give from, to and count, or values', error)
+      else
+        call deck%mistake('sweep', key, brief(real(items, wp)) // ' for ' // &
+          brief(real(size(sweep%axis), wp)) // ' of key; each needs one', error)
+      end if
+    end subroutine check_size
+
+  end subroutine take_ranges
+
+  !> The values from `from` to `to`; none where these are wrong.
+  subroutine spread_values(deck, from, to, number, scale, values, error)
+    type(deck_t), intent(in) :: deck
+    real(wp), intent(in) :: from, to, number
+    character(len=*), intent(in) :: scale
+    real(wp), allocatable, intent(inout) :: values(:)
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=*), parameter :: not_positive = ' is not > 0, as scale = ''log'' needs'
+    integer :: n, i
+
+    allocate (values(0))
+    n = nint(number)
+    if (abs(number - n) > 0) then
+      call deck%mistake('sweep', 'count', brief(number) // ' is not a whole number', error)
+    else if (scale /= 'log' .and. scale /= 'linear') then
+      call deck%mistake('sweep', 'scale', quoted(scale) // ' is neither linear nor log', error)
+    else if (scale == 'log' .and. from <= 0) then
       call deck%mistake('sweep', 'from', brief(from) // not_positive, error)
     else if (scale == 'log' .and. to <= 0) then
       call deck%mistake('sweep', 'to', brief(to) // not_positive, error)

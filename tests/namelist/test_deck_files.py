@@ -131,7 +131,7 @@ def sample_value(description):
         return match[1]
     if " names in quotes" in description:
         return "'x'"
-    if re.search(r" from 1 to \d+", description):
+    if re.search(r" from [12] to \d+", description):
         return "2"
     if " > 1" in description:
         return "9"

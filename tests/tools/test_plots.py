@@ -29,6 +29,8 @@ DECKS = {
     + "&loading h0_start = 4e-9, h0_end = 1e-9, h0_step = 1e-9 /\n&profiles h0 = 1e-9 /\n",
     "sweep": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n"
     "&sweep key = 'force.hamaker', values = 1e-21, 1e-20 /\n",
+    "map": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n&sweep key = 'force.hamaker', "
+    "'bodies.radius', from = 1e-21, 1e-3, to = 1e-20, 1e-1, count = 3, 9, scale = 'log' /\n",
     "regime": BODIES + FORCE + "&equilibrium_path h0_end = -1e-9 /\n&regime /\n",
     "theories": BODIES + FORCE + "&classical h0_start = 1e-9, h0_end = -1e-9 /\n",
 }
@@ -113,6 +115,17 @@ def test_the_map_of_theories_shows_the_scene(plot, results):
     assert size_of(results / "regime" / "regime.png") == (930, 690)
 
 
+@pytest.mark.parametrize("args", [
+    ("map",), ("sweep",), ("map", "--value", "jump_in_h0"),
+    ("map", "--value", "max_tension", "--per", "jkr_pull_off", "--over", "tabor"),
+    ("map", "--over", "bodies.radius", "force.hamaker"),
+])
+def test_sweeps_are_drawn_as_maps_and_curves(plot, results, tmp_path, args):
+    done = plot("map.py", results / args[0], *args[1:], "-o", "map.png")
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr
+    assert size_of(tmp_path / "map.png") == (960, 690)
+
+
 def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):
     done = plot("profiles.py", results / "cycle", "-o", "here.png", "--dpi", 300, "--branch",
                 "unloading_2")
@@ -127,6 +140,9 @@ def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):
         (("force_curve.py", "theories"), "no curve.csv in .*neither &loading nor"),
         (("force_curve.py", "sweep"), "no curve.csv in .*&sweep"),
         (("regime.py", "theories"), "deck needs &regime"),
+        (("map.py", "theories"), "no sweep.csv in .*&sweep"),
+        (("map.py", "sweep", "--value", "speed"), "no column 'speed'; it has force.hamaker"),
+        (("map.py", "sweep", "--value", "failure"), "failure has words"),
         (("profiles.py", "theories"), "no profiles.csv in .*no &profiles group"),
         (("profiles.py", "cycle", "--branch", "path"), "loading, unloading_1, unloading_2"),
         (("force_curve.py", "cycle", "-o", "no/such/folder.png"), "no/such"),

@@ -1,0 +1,136 @@
+"""Claims about sweeps over several keys: every combination, or the cases of a table."""
+
+import itertools
+
+import numpy as np
+import pytest
+from support.processes import status_and_memory
+from support.scenes import deck, loading, runner
+
+BODIES = {"radius": 1e-6, "stiffness": 1e10}
+FORCE = {"law": "lennard_jones", "hamaker": 1e-19, "z0": 3e-10}
+PATH = {"h0_end": -1e-9}
+GRID = {"key": ["bodies.stiffness", "force.hamaker"], "from": [1e9, 1e-20], "to": [1e11, 1e-19],
+        "count": [3, 4], "scale": ["log", "linear"]}
+CASES = list(itertools.product([1e9, 1e10, 1e11], [1e-20, 4e-20, 7e-20, 1e-19]))
+
+
+def scene(sweep=None, **groups):
+    return deck(**{"bodies": BODIES, "force": FORCE, "equilibrium_path": PATH, "sweep": sweep,
+                   **groups})
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("maps")
+
+
+@pytest.fixture(scope="module")
+def run(snapin, folder):
+    return runner(snapin, folder)
+
+
+def rows_of(result):
+    """The table's text without its comments."""
+    lines = (result.folder / "sweep.csv").read_text().splitlines()
+    return [line for line in lines if not line.startswith("#")]
+
+
+def test_every_combination_is_a_case_and_the_last_key_is_the_fastest(run):
+    table = run(scene(GRID)).table("sweep.csv")
+    assert table.names[:2] == GRID["key"]
+    for i, name in enumerate(GRID["key"]):
+        np.testing.assert_allclose(table[name], [case[i] for case in CASES], rtol=1e-14)
+    for row in (0, 6, 11):
+        stiffness, hamaker = (table[name][row] for name in GRID["key"])
+        alone = run(scene(bodies={**BODIES, "stiffness": stiffness},
+                          force={**FORCE, "hamaker": hamaker})).summary
+        for name in ("max_tension", "jump_in_h0", "end_load", "sigma"):
+            assert table[name][row] == pytest.approx(alone.get(name, np.nan), rel=1e-8,
+                                                     nan_ok=True)
+    assert set(table["failure"]) == {""}
+
+
+def test_one_scale_serves_all_keys(run):
+    both = run(scene({**GRID, "scale": ["log", "log"]}))
+    assert rows_of(both) == rows_of(run(scene({**GRID, "scale": "log"})))
+
+
+def test_a_table_of_the_same_cases_gives_the_same_rows(run, folder):
+    grid = run(scene(GRID))
+    keys = [row.split(",")[:2] for row in rows_of(grid)]
+    (folder / "cases.csv").write_text("# cases\n" + "\n".join(map(", ".join, keys)) + "\n")
+    assert rows_of(run(scene({"file": "cases.csv"}))) == rows_of(grid)
+
+
+def test_two_threads_leave_the_same_bytes(run):
+    one, two = (run(scene(GRID), threads=threads) for threads in (1, 2))
+    assert rows_of(one) == rows_of(two)
+
+
+def test_a_case_that_fails_is_a_row_that_says_why(run):
+    """Least and greatest of both keys make scenes, the others do not."""
+    sweep = {"key": ["loading.h0_start", "loading.h0_end"], "from": [2e-9, 1e-9],
+             "to": [5e-9, 4e-9], "count": [2, 2]}
+    result = run(scene(sweep, loading=loading(2e-9, 1e-9, 1e-9), equilibrium_path=None), status=1)
+    table = result.table("sweep.csv")
+    np.testing.assert_array_equal(table["converged"], [1, 0, 1, 1])
+    assert "h0_end" in table["failure"][1] and "below" in table["failure"][1]
+    assert [bool(text) for text in table["failure"]] == [False, True, False, False]
+    assert np.isnan(table["end_load"][1])
+    assert any("1 of 4 cases failed" in text for text in result.warnings)
+
+
+WRONG = {
+    "count": ({**GRID, "count": [3]}, "1 for 2 of key"),
+    "fraction": ({**GRID, "count": [3, 2.5]}, "not a whole number"),
+    "scale": ({**GRID, "scale": ["log", "cubic"]}, "neither linear nor log"),
+    "values": ({"key": GRID["key"], "values": [1e-19]}, "values are those of one key"),
+    "nothing": ({"from": [1.0]}, "give key, or file"),
+    "name": ({**GRID, "key": ["bodies.stiffness", "force.strength"]}, "force.strength"),
+    "bounds": ({**GRID, "from": [-1e9, 1e-20], "scale": "linear"}, "out of range"),
+    "too many": ({**GRID, "count": [10000, 10000]}, "more than 10000000 cases"),
+    "no file": ({"file": "nowhere.csv"}, "no such file"),
+    "both": ({"file": "nowhere.csv", "key": "force.hamaker"}, "not together with file"),
+    "no names": ({"file": "bare.csv"}, "no line of names"),
+    "cell": ({"file": "word.csv"}, "word.csv:2"),
+    "value": ({"file": "sign.csv"}, "case 2: -1"),
+    "empty": ({"file": "empty.csv"}, "has no cases"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_a_wrong_sweep_is_refused(snapin, tmp_path, case):
+    sweep, said = WRONG[case]
+    for name, text in (("bare", "1e9\n"), ("word", "bodies.stiffness\nsoft\n"),
+                       ("sign", "bodies.stiffness\n1\n-1\n"), ("empty", "bodies.stiffness\n")):
+        (tmp_path / f"{name}.csv").write_text(text)
+    (tmp_path / "d.nml").write_text(scene(sweep))
+    result = snapin("d.nml", cwd=tmp_path)
+    assert result.returncode == 2
+    assert said in result.stderr
+    assert not (tmp_path / "results").exists()
+
+
+@pytest.mark.parametrize("name", ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"])
+def test_several_at_once_are_refused_without_mpi(snapin, tmp_path, name, monkeypatch):
+    monkeypatch.setenv(name, "3")
+    (tmp_path / "d.nml").write_text(scene())
+    result = snapin("d.nml", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "this build has no MPI" in result.stderr
+    assert not (tmp_path / "results").exists()
+
+
+@pytest.mark.alone
+def test_memory_does_not_grow_with_the_number_of_cases(snapin_path, tmp_path):
+    used = []
+    for count in (10, 200):
+        (tmp_path / "d.nml").write_text(scene(
+            {**GRID, "count": [count, 20]}, bodies={"radius": 1e-6, "stiffness": 1e10},
+            equilibrium_path=None, classical={"h0_start": 1e-9, "h0_end": 0.0, "count": 2},
+            loading=loading(3e-9, 2e-9, 1e-9)))
+        status, memory = status_and_memory(snapin_path, "--quiet", "d.nml", cwd=tmp_path)
+        assert status == 0
+        used.append(memory)
+    assert used[1] < 1.1 * used[0]
