@@ -26,8 +26,8 @@ contains
 
     specs = [ &
       group('sweep', 'The same deck for several values of keys. Either key with from, to and ' // &
-            'count, one of each for each key, and then every combination is a case; or one key ' // &
-            'with values; or a file.'), &
+            'count, one of each for each key, and then every combination is a case; or one ' // &
+            'key with values; or a file.'), &
       names_key('sweep', 'key', most_keys, 'The keys to vary, as ''group.key''. The last one ' // &
                 'varies fastest.', otherwise='those of file'), &
       list_key('sweep', 'from', '', 'First value of each, in the unit of the key.', most_keys), &
