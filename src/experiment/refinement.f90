@@ -25,7 +25,7 @@ module refinement
   !> With so many times the nodes no panel is halved any more, until the path says again which are
   !> too long: what a path that is lost leaves may ask for any number.
   real(wp), parameter :: most_growth = 1.5_wp
-  real(wp), parameter :: times = 30, least = 1.0e-8_wp
+  real(wp), parameter :: least = 1.0e-8_wp
 
 contains
 
@@ -33,7 +33,7 @@ contains
   pure real(wp) function unresolved_from(accuracy) result(tail)
     real(wp), intent(in) :: accuracy
 
-    tail = max(times*accuracy, least)
+    tail = max(sqrt(accuracy), least)
   end function unresolved_from
 
   !> Traces the path (`know_path`), again where panels were too long; panel_tail: the largest tail

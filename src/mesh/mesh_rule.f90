@@ -37,7 +37,7 @@ module mesh_rule
   !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0, as
   !> it is under the paper's laws: nodes integrate polynomials of twice the degree.
   !> Where adhesion is strong, what is far from the edge deforms the bodies more.
-  real(wp), parameter :: of_tail = 0.65_wp, more_of_strong = 0.5_wp
+  real(wp), parameter :: of_tail = 0.5_wp, more_of_strong = 0.5_wp
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
@@ -180,7 +180,8 @@ contains
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0) > &
       problem%shape%ends
     fewest = ceiling(short_order + short_orders*digits)
-    smoothness = merge(min(digits, digits_of_broken), digits, broken)
+    smoothness = of_tail*merge(min(digits, digits_of_broken), digits, broken) + &
+      more_of_strong*log10(1 + adhesion_strength(problem))
     associate (law => problem%law)
       if (law%period > 0 .or. law%has_kink .or. broken .or. &
         law%step_width > 0 .and. .not. present(seen) .or. abs(problem%shape%exponent - 2) > 0 .or. &
@@ -190,7 +191,6 @@ contains
       else
         lengths = [rung*ceiling(z_length/rung)]
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
-        smoothness = of_tail*smoothness + more_of_strong*log10(1 + adhesion_strength(problem))
       end if
       ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
       if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
