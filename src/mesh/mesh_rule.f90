@@ -31,13 +31,11 @@ module mesh_rule
   real(wp), parameter :: for_others = 1.3_wp
   !> Short panels: their length in z, so many nodes, and more for each digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
-  !> Strongest adhesion at which long panels were found to do under other laws: beyond it states at
-  !> a given h0 may not converge on them.
-  real(wp), parameter :: strongest = 300
   !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0, as
-  !> it is under the paper's laws: nodes integrate polynomials of twice the degree.
+  !> it is under the paper's laws: nodes integrate what is smooth as if they had twice the degree, but
+  !> a kink with no more digits than these.
   !> Where adhesion is strong, what is far from the edge deforms the bodies more.
-  real(wp), parameter :: of_tail = 0.5_wp, more_of_strong = 0.5_wp
+  real(wp), parameter :: of_tail = 0.65_wp, more_of_strong = 0.5_wp
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
@@ -160,9 +158,9 @@ contains
   !> Adds sinh panels over z_length. One is enough for the paper's laws, which are powers of the gap
   !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
   !> these. Other laws have lengths of their own anywhere within their reach, and where these are
-  !> seen the panel is halved. Laws that oscillate or have a kink, other shapes, and strong adhesion
-  !> have short panels from the beginning, and as long as gaps are only foreseen, laws that end in a
-  !> step. about, side, low, high, seen: see `fit_panels`.
+  !> seen the panel is halved. Laws that oscillate or have a kink, and other shapes, have short
+  !> panels from the beginning, and laws that end in a step where no pressure is tried. about, side,
+  !> low, high, seen: see `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -173,28 +171,29 @@ contains
     real(wp) :: smoothness
     integer, allocatable :: orders(:)
     integer :: panels, fewest
-    logical :: broken
+    logical :: broken, tried
 
     broken = problem%shape%smooth_from() > 0
     if (side > 0) broken = broken .or. &
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0) > &
       problem%shape%ends
     fewest = ceiling(short_order + short_orders*digits)
-    smoothness = of_tail*merge(min(digits, digits_of_broken), digits, broken) + &
-      more_of_strong*log10(1 + adhesion_strength(problem))
+    smoothness = of_tail*digits + more_of_strong*log10(1 + adhesion_strength(problem))
+    if (problem%law%has_kink) smoothness = digits
+    if (broken) smoothness = min(digits, digits_of_broken)
     associate (law => problem%law)
-      if (law%period > 0 .or. law%has_kink .or. broken .or. &
-        law%step_width > 0 .and. .not. present(seen) .or. abs(problem%shape%exponent - 2) > 0 .or. &
-        .not. law%of_paper .and. adhesion_strength(problem) > strongest) then
+      ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
+      tried = law%edge_gap > 0 .and. .not. law%of_paper .and. &
+        (present(seen) .or. .not. (about == about_edge .and. side < 0))
+      if (law%has_kink .or. broken .or. abs(problem%shape%exponent - 2) > 0 .or. &
+        law%period > 0 .or. .not. tried .and. law%step_width > 0) then
         panels = ceiling(z_length/short)
         lengths = spread(z_length/panels, 1, panels)
       else
         lengths = [rung*ceiling(z_length/rung)]
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
       end if
-      ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
-      if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
-        (present(seen) .or. .not. (about == about_edge .and. side < 0))) then
+      if (tried) then
         call fit_panels(problem, about, side, shape%d, low, high, density, fewest, smoothness, &
           lengths, orders, seen)
       else
