@@ -23,23 +23,30 @@ module refinement
   !> With so many times the nodes no panel is halved any more, until the path says again which are
   !> too long: what a path that is lost leaves may ask for any number.
   real(wp), parameter :: most_growth = 1.5_wp
-  !> The tail from which on panels are too long: never below what the iteration leaves of a stiff
-  !> pressure; about a kink so many times the accuracy. There a load feels some hundredths of the tail.
-  real(wp), parameter :: least = 1.0e-8_wp, times_of_kinks = 30
+  !> The tail from which on a panel is too long, over the accuracy, where there are kinks: at a fold the
+  !> load feels 7 % of it. And no tail is too large that the iteration may leave of a stiff pressure.
+  real(wp), parameter :: times_of_kinks = 30, least = 1.0e-8_wp
 
 contains
 
   !> The tail of a pressure, over the largest, from which on a panel is too long. The errors of load
-  !> and h0 go with its square, because the nodes integrate polynomials of twice the degree. About a
-  !> kink of the law or of a body coefficients fall slowly, and errors go with the tail itself.
+  !> and h0 go with its square, because the nodes integrate polynomials of twice the degree; about a
+  !> kink, where coefficients fall slowly, with the tail itself.
   pure real(wp) function unresolved_from(law, shape, accuracy) result(tail)
     class(force_law_t), intent(in) :: law
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: accuracy
 
-    tail = max(sqrt(accuracy), least)
-    if (law%has_kink .or. shape%smooth_from() > 0) tail = max(times_of_kinks*accuracy, least)
+    tail = max(merge(sqrt(accuracy), times_of_kinks*accuracy, is_smooth(law, shape)), least)
   end function unresolved_from
+
+  !> Whether neither the law nor the bodies have a kink.
+  pure logical function is_smooth(law, shape)
+    class(force_law_t), intent(in) :: law
+    class(shape_t), intent(in) :: shape
+
+    is_smooth = .not. (law%has_kink .or. shape%smooth_from() > 0)
+  end function is_smooth
 
   !> Traces the path (`know_path`), again where panels were too long; panel_tail: the largest tail
   !> that is left, but of a fall onto each other, which ends on no mesh. The paper's laws need none
@@ -58,7 +65,6 @@ contains
 
     panel_tail = 0
     call steps%know_path(h0_high, h0_low, into_contact, closely, listener)
-    if (steps%problem%law%of_paper) return
     fitted = .false.
     most = unresolved_from(steps%problem%law, steps%problem%shape, accuracy)
     do round = 0, most_rounds
@@ -84,15 +90,13 @@ contains
 
     do mesh = 1, size(fitted)
       associate (path => steps%known%path, meshes => steps%meshes, cost => steps%cost)
+        if (.not. any(tails_on(steps, mesh, meshes%grid(mesh)) > most)) cycle
         seen = path%point(path%held)%mesh > mesh .or. .not. steps%known%ending%early()
-        if (seen) seen = any(path%point(:path%held)%mesh == mesh)
         if (seen .and. .not. fitted(mesh)) then
           fitted(mesh) = .true.
           shape = meshes%shape_for(steps%problem, mesh, gaps_seen(steps, mesh))
-        else if (any(tails_on(steps, mesh, meshes%grid(mesh)) > most)) then
-          shape = with_short_panels(steps, mesh, most)
         else
-          cycle
+          shape = with_short_panels(steps, mesh, most)
         end if
         call meshes%renew(mesh, shape)
         cost%kernel_entries = cost%kernel_entries + meshes%grid(mesh)%kernel_entries()
@@ -165,18 +169,20 @@ contains
     integer, intent(in) :: mesh
     type(discretisation_t), intent(in) :: grid
     real(wp) :: tails(size(grid%panel))
+    logical :: smooth
     integer :: i, j
 
     tails = 0
+    smooth = is_smooth(steps%problem%law, steps%problem%shape)
     associate (own => steps%meshes%grid(mesh), problem => steps%problem)
       do i = 1, steps%known%path%held
         associate (point => steps%known%path%point(i))
           if (point%mesh /= mesh) cycle
           if (grid%nodes == own%nodes) then
-            tails = max(tails, grid%panel_tails(point%state%pressure))
+            tails = max(tails, grid%panel_tails(point%state%pressure, smooth))
           else
             tails = max(tails, grid%panel_tails(problem%law%pressure( &
-              [(gap_at(problem%shape, own, point%state, grid%x(j)), j=1, grid%nodes)])))
+              [(gap_at(problem%shape, own, point%state, grid%x(j)), j=1, grid%nodes)]), smooth))
           end if
         end associate
       end do
