@@ -37,16 +37,10 @@ contains
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: accuracy
 
-    tail = max(merge(sqrt(accuracy), times_of_kinks*accuracy, is_smooth(law, shape)), least)
+    tail = sqrt(accuracy)
+    if (law%has_kink .or. shape%smooth_from() > 0) tail = times_of_kinks*accuracy
+    tail = max(tail, least)
   end function unresolved_from
-
-  !> Whether neither the law nor the bodies have a kink.
-  pure logical function is_smooth(law, shape)
-    class(force_law_t), intent(in) :: law
-    class(shape_t), intent(in) :: shape
-
-    is_smooth = .not. (law%has_kink .or. shape%smooth_from() > 0)
-  end function is_smooth
 
   !> Traces the path (`know_path`), again where panels were too long; panel_tail: the largest tail
   !> that is left, but of a fall onto each other, which ends on no mesh. The paper's laws need none
@@ -65,6 +59,7 @@ contains
 
     panel_tail = 0
     call steps%know_path(h0_high, h0_low, into_contact, closely, listener)
+    if (steps%problem%law%of_paper) return
     fitted = .false.
     most = unresolved_from(steps%problem%law, steps%problem%shape, accuracy)
     do round = 0, most_rounds
@@ -169,20 +164,18 @@ contains
     integer, intent(in) :: mesh
     type(discretisation_t), intent(in) :: grid
     real(wp) :: tails(size(grid%panel))
-    logical :: smooth
     integer :: i, j
 
     tails = 0
-    smooth = is_smooth(steps%problem%law, steps%problem%shape)
     associate (own => steps%meshes%grid(mesh), problem => steps%problem)
       do i = 1, steps%known%path%held
         associate (point => steps%known%path%point(i))
           if (point%mesh /= mesh) cycle
           if (grid%nodes == own%nodes) then
-            tails = max(tails, grid%panel_tails(point%state%pressure, smooth))
+            tails = max(tails, grid%panel_tails(point%state%pressure))
           else
             tails = max(tails, grid%panel_tails(problem%law%pressure( &
-              [(gap_at(problem%shape, own, point%state, grid%x(j)), j=1, grid%nodes)]), smooth))
+              [(gap_at(problem%shape, own, point%state, grid%x(j)), j=1, grid%nodes)])))
           end if
         end associate
       end do

@@ -128,28 +128,21 @@ contains
   end function coefficient
 
   !> The tail of a pressure on each panel, over the largest pressure or its unit, which is the law's
-  !> largest tension or near it; 0 on a panel to infinity. smooth: what a load misses goes with the
-  !> square of the tail and with the panel's area, so that a small panel counts as the root of its share
-  !> of the area over which the largest pressure would be the whole load.
-  pure function panel_tails(self, pressure, smooth) result(tails)
+  !> largest tension or near it; 0 on a panel to infinity.
+  pure function panel_tails(self, pressure) result(tails)
     class(discretisation_t), intent(in) :: self
     real(wp), intent(in) :: pressure(:)
-    logical, intent(in) :: smooth
-    real(wp) :: tails(size(self%panel)), most, area
+    real(wp) :: tails(size(self%panel))
     integer :: k
 
     tails = 0
-    most = max(maxval(abs(pressure)), 1.0_wp)
-    area = max(sum(self%weight*abs(pressure))/most, tiny(most))
     do k = 1, size(self%panel)
       if (self%panel(k)%kind == algebraic_map) cycle
       associate (local => self%local(self%which(k)), first => self%first(k))
-        associate (last => first + size(local%node) - 1)
-          tails(k) = local%tail(pressure(first:last))/most
-          if (smooth) tails(k) = tails(k)*sqrt(min(1.0_wp, sum(self%weight(first:last))/area))
-        end associate
+        tails(k) = local%tail(pressure(first:first + size(local%node) - 1))
       end associate
     end do
+    tails = tails/max(maxval(abs(pressure)), 1.0_wp)
   end function panel_tails
 
   !> Value at position x of the function with the given nodal values, by the panel's polynomial: of

@@ -115,7 +115,7 @@ contains
       if (k >= contact) meshes%reach(:, k) = [low(k - 1), high(k - 1)]
       meshes%shape(k) = meshes%shape_for(problem, k)
     end do
-    if (present(coarser)) call follow(meshes, coarser)
+    if (present(coarser)) call follow(meshes, coarser, problem%law%of_paper)
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
       call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
     end do
@@ -200,16 +200,18 @@ contains
   !> Lets meshes, not made yet, be what coarser ones are with more nodes: where these have short
   !> panels or halves and, under laws that nodes were tried for, where laid out anew they have fewer
   !> than that and so would be off by the same.
-  pure subroutine follow(self, coarser)
+  pure subroutine follow(self, coarser, of_paper)
     type(mesh_family_t), intent(inout) :: self
     type(mesh_family_t), intent(in) :: coarser
+    logical, intent(in) :: of_paper
     type(mapped_shape_t) :: richer
     integer :: k
 
     do k = 1, size(coarser%grid)
       if (.not. allocated(coarser%grid(k)%kernel)) cycle
       richer = coarser%shape(k)%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
-      if (coarser%has_short_panels(k) .or. sum(self%shape(k)%order) < sum(richer%order)) self%shape(k) = richer
+      if (coarser%has_short_panels(k) .or. .not. of_paper .and. &
+        sum(self%shape(k)%order) < sum(richer%order)) self%shape(k) = richer
     end do
   end subroutine follow
 

@@ -26,10 +26,13 @@ module mesh_rule
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
+  !> How many times the nodes laws have to which the rule was not fitted, where no pressure is tried
+  !> or none as sharp as between bodies that pull each other together.
+  real(wp), parameter :: for_others = 1.3_wp
   !> Short panels: their length in z, so many nodes, and more for each digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
-  !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0:
-  !> nodes integrate polynomials of twice the degree.
+  !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0, as
+  !> it is under the paper's laws: nodes integrate polynomials of twice the degree.
   !> Where adhesion is strong, what is far from the edge deforms the bodies more.
   real(wp), parameter :: of_tail = 0.65_wp, more_of_strong = 0.5_wp
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
@@ -51,6 +54,7 @@ contains
 
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
       (1 + 0.03_wp*log(1 + adhesion_strength(problem)))
+    if (.not. problem%law%of_paper) density = for_others*density
     reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
     feature = smallest_feature(problem, 1.0_wp)
@@ -86,6 +90,7 @@ contains
       inner = 1.5_wp*inner
       outer = inner
     end if
+    if (.not. problem%law%of_paper) inner = for_others*inner
     reach = max(nearest_tail, beyond_poles*problem%shape%position_of(0.5_wp*calm_gap(problem)))
     ! As long as a contact is smaller than its neck, the pressure around it is that before contact;
     ! where the neck is wider than the force reaches, this is smooth enough.
@@ -152,9 +157,9 @@ contains
   !> Adds sinh panels over z_length. One is enough for the paper's laws, which are powers of the gap
   !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
   !> these. Other laws have lengths of their own anywhere within their reach, and where these are
-  !> seen the panel is halved. Laws that oscillate or have a kink, and other shapes, have short
-  !> panels from the beginning, and as long as gaps are only foreseen, laws that end in a step. about,
-  !> side, low, high, seen: see `fit_panels`.
+  !> seen the panel is halved. Laws that oscillate or have a kink, and other shapes,
+  !> have short panels from the beginning, and as long as gaps are only foreseen, laws that end in a
+  !> step. about, side, low, high, seen: see `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -165,7 +170,7 @@ contains
     real(wp) :: smoothness
     integer, allocatable :: orders(:)
     integer :: panels, fewest
-    logical :: broken, tried
+    logical :: broken
 
     broken = problem%shape%smooth_from() > 0
     if (side > 0) broken = broken .or. &
@@ -174,8 +179,6 @@ contains
     fewest = ceiling(short_order + short_orders*digits)
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
     associate (law => problem%law)
-      ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
-      tried = law%edge_gap > 0 .and. (present(seen) .or. .not. (about == about_edge .and. side < 0))
       if (law%period > 0 .or. law%has_kink .or. broken .or. &
         law%step_width > 0 .and. .not. present(seen) .or. abs(problem%shape%exponent - 2) > 0) then
         panels = ceiling(z_length/short)
@@ -185,7 +188,9 @@ contains
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
         smoothness = of_tail*smoothness + more_of_strong*log10(1 + adhesion_strength(problem))
       end if
-      if (tried) then
+      ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
+      if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
+        (present(seen) .or. .not. (about == about_edge .and. side < 0))) then
         call fit_panels(problem, about, side, shape%d, low, high, density, fewest, smoothness, &
           lengths, orders, seen)
       else
