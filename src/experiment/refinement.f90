@@ -23,8 +23,8 @@ module refinement
   !> With so many times the nodes no panel is halved any more, until the path says again which are
   !> too long: what a path that is lost leaves may ask for any number.
   real(wp), parameter :: most_growth = 1.5_wp
-  !> The tail from which on a panel is too long, over the accuracy, where there are kinks: at a fold the
-  !> load feels 7 % of it. And no tail is too large that the iteration may leave of a stiff pressure.
+  !> The tail from which on a panel is too long, over the accuracy, where there are kinks: at a fold
+  !> the load feels 7 % of it. And a tail that the iteration may leave of a stiff pressure.
   real(wp), parameter :: times_of_kinks = 30, least = 1.0e-8_wp
 
 contains

@@ -71,7 +71,8 @@ def example(name):
     """Return the problem of an example's deck, for its path as far as the deck goes."""
     deck = (_EXAMPLES / f"{name}.nml").read_text(encoding="utf-8")
     turn = float(re.search(r"h0_end *= *([-+.\de]+)", deck)[1])
-    physics = re.sub(r"&(loading|unloading|equilibrium_path|scene|classical)\b[^/]*/.*\n?", "", deck)
+    left_out = "loading|unloading|equilibrium_path|scene|classical"
+    physics = re.sub(rf"&({left_out})\b[^/]*/.*\n?", "", deck)
     return Problem(name, name, physics.strip(), 1e-9, math.nan, turn / 1e-9, math.nan)
 
 
