@@ -23,22 +23,23 @@ module refinement
   !> With so many times the nodes no panel is halved any more, until the path says again which are
   !> too long: what a path that is lost leaves may ask for any number.
   real(wp), parameter :: most_growth = 1.5_wp
-  !> The tail from which on a panel is too long, over the accuracy, where there are kinks: at a fold
-  !> the load feels 7 % of it. And a tail that the iteration may leave of a stiff pressure.
-  real(wp), parameter :: times_of_kinks = 30, least = 1.0e-8_wp
+  !> The tail from which on a panel is too long, over the accuracy, about steps and kinks: at a
+  !> fold the load feels 7 % of it. And a tail that the iteration may leave of a stiff pressure.
+  real(wp), parameter :: times_of_sharp = 30, least = 1.0e-8_wp
 
 contains
 
   !> The tail of a pressure, over the largest, from which on a panel is too long. The errors of load
   !> and h0 go with its square, because the nodes integrate polynomials of twice the degree; about a
-  !> kink, where coefficients fall slowly, with the tail itself.
+  !> step or a kink, where coefficients fall slowly, with the tail itself.
   pure real(wp) function unresolved_from(law, shape, accuracy) result(tail)
     class(force_law_t), intent(in) :: law
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: accuracy
 
     tail = sqrt(accuracy)
-    if (law%has_kink .or. shape%smooth_from() > 0) tail = times_of_kinks*accuracy
+    if (law%has_kink .or. law%step_width > 0 .or. shape%smooth_from() > 0) &
+      tail = times_of_sharp*accuracy
     tail = max(tail, least)
   end function unresolved_from
 
@@ -85,13 +86,15 @@ contains
 
     do mesh = 1, size(fitted)
       associate (path => steps%known%path, meshes => steps%meshes, cost => steps%cost)
-        if (.not. any(tails_on(steps, mesh, meshes%grid(mesh)) > most)) cycle
         seen = path%point(path%held)%mesh > mesh .or. .not. steps%known%ending%early()
+        if (seen) seen = any(path%point(:path%held)%mesh == mesh)
         if (seen .and. .not. fitted(mesh)) then
           fitted(mesh) = .true.
           shape = meshes%shape_for(steps%problem, mesh, gaps_seen(steps, mesh))
-        else
+        else if (any(tails_on(steps, mesh, meshes%grid(mesh)) > most)) then
           shape = with_short_panels(steps, mesh, most)
+        else
+          cycle
         end if
         call meshes%renew(mesh, shape)
         cost%kernel_entries = cost%kernel_entries + meshes%grid(mesh)%kernel_entries()
