@@ -65,7 +65,8 @@ contains
         end if
         if (.not. worst > accuracy .or. round == most_rounds) return
         if (round > 1 .and. worst > helped*before%worst) return
-        if (panel_tail > unresolved_from(accuracy) .or. .not. digits_help(steps)) return
+        if (panel_tail > unresolved_from(steps%problem%law, steps%problem%shape, accuracy) .or. &
+          .not. digits_help(steps)) return
         before%meshes = steps%meshes
         before%known = steps%known
         before%judge = judge

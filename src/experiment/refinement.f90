@@ -6,6 +6,8 @@
 module refinement
   use kinds, only: wp
   use listener, only: listener_t
+  use force_law, only: force_law_t
+  use shape, only: shape_t
   use known_path, only: known_path_t
   use contact_state, only: gap_at
   use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
@@ -16,24 +18,29 @@ module refinement
   private
   public :: trace_resolved, unresolved_from
 
-  !> How often the path is traced again, and a panel halved for that; and the tail over the accuracy
-  !> from which on panels are too long. Tails are of pressures, on the worst panel of the worst
-  !> state that the path happens to have; load and h0 are far better, but at a fold the load feels
-  !> 7 % of a tail (Dugdale's with a hard repulsion), and the states between may have tails three
-  !> times as large. Never below what the iteration leaves of a stiff pressure.
+  !> How often the path is traced again, and a panel halved for that.
   integer, parameter :: most_rounds = 6, most_halvings = 3
   !> With so many times the nodes no panel is halved any more, until the path says again which are
   !> too long: what a path that is lost leaves may ask for any number.
   real(wp), parameter :: most_growth = 1.5_wp
-  real(wp), parameter :: times = 30, least = 1.0e-8_wp
+  !> The tail from which on a panel is too long, over the accuracy, about steps and kinks: at a
+  !> fold the load feels 7 % of it. And a tail that the iteration may leave of a stiff pressure.
+  real(wp), parameter :: times_of_sharp = 30, least = 1.0e-8_wp
 
 contains
 
-  !> The tail of a pressure, over the largest, from which on a panel is too long.
-  pure real(wp) function unresolved_from(accuracy) result(tail)
+  !> The tail of a pressure, over the largest, from which on a panel is too long. The errors of load
+  !> and h0 go with its square, because the nodes integrate polynomials of twice the degree; about a
+  !> step or a kink, where coefficients fall slowly, with the tail itself.
+  pure real(wp) function unresolved_from(law, shape, accuracy) result(tail)
+    class(force_law_t), intent(in) :: law
+    class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: accuracy
 
-    tail = max(times*accuracy, least)
+    tail = sqrt(accuracy)
+    if (law%has_kink .or. law%step_width > 0 .or. shape%smooth_from() > 0) &
+      tail = times_of_sharp*accuracy
+    tail = max(tail, least)
   end function unresolved_from
 
   !> Traces the path (`know_path`), again where panels were too long; panel_tail: the largest tail
@@ -48,16 +55,18 @@ contains
     real(wp), intent(out) :: panel_tail
     logical :: fitted(size(steps%meshes%grid))
     type(known_path_t) :: nothing
+    real(wp) :: most
     integer :: round
 
     panel_tail = 0
     call steps%know_path(h0_high, h0_low, into_contact, closely, listener)
     if (steps%problem%law%of_paper) return
     fitted = .false.
+    most = unresolved_from(steps%problem%law, steps%problem%shape, accuracy)
     do round = 0, most_rounds
       panel_tail = largest_tail(steps)
-      if (.not. panel_tail > unresolved_from(accuracy) .or. round == most_rounds) exit
-      call refine(steps, unresolved_from(accuracy), fitted)
+      if (.not. panel_tail > most .or. round == most_rounds) exit
+      call refine(steps, most, fitted)
       steps%known = nothing
       call steps%know_path(h0_high, h0_low, into_contact, closely, listener)
     end do

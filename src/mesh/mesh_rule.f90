@@ -31,9 +31,6 @@ module mesh_rule
   real(wp), parameter :: for_others = 1.3_wp
   !> Short panels: their length in z, so many nodes, and more for each digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
-  !> Strongest adhesion at which long panels were found to do under other laws: beyond it states at
-  !> a given h0 may not converge on them.
-  real(wp), parameter :: strongest = 300
   !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0, as
   !> it is under the paper's laws: nodes integrate polynomials of twice the degree.
   !> Where adhesion is strong, what is far from the edge deforms the bodies more.
@@ -160,7 +157,7 @@ contains
   !> Adds sinh panels over z_length. One is enough for the paper's laws, which are powers of the gap
   !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
   !> these. Other laws have lengths of their own anywhere within their reach, and where these are
-  !> seen the panel is halved. Laws that oscillate or have a kink, other shapes, and strong adhesion
+  !> seen the panel is halved. Laws that oscillate or have a kink, and other shapes,
   !> have short panels from the beginning, and as long as gaps are only foreseen, laws that end in a
   !> step. about, side, low, high, seen: see `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
@@ -183,8 +180,7 @@ contains
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
     associate (law => problem%law)
       if (law%period > 0 .or. law%has_kink .or. broken .or. &
-        law%step_width > 0 .and. .not. present(seen) .or. abs(problem%shape%exponent - 2) > 0 .or. &
-        .not. law%of_paper .and. adhesion_strength(problem) > strongest) then
+        law%step_width > 0 .and. .not. present(seen) .or. abs(problem%shape%exponent - 2) > 0) then
         panels = ceiling(z_length/short)
         lengths = spread(z_length/panels, 1, panels)
       else

@@ -197,3 +197,20 @@ def test_what_no_mesh_resolves_is_not_silent(run):
     }
     result = run(steps(0.3, accuracy=1e-2, h0_end=0.5, **law), status=1)
     assert any("lost" in warning for warning in result.warnings)
+
+
+@pytest.mark.parametrize("sigma", [8.7, 1000.0])
+def test_a_law_in_two_parts_costs_little_more_than_in_one(run, sigma):
+    """Nodes, factorisations and products: the same pressure needs the same meshes, traced once."""
+    radius, z0, hamaker = 1.5e-2, 0.5e-9, 1e-19
+    stiffness = hamaker / (16 * math.pi * z0**2) / sigma * math.sqrt(radius / z0**3)
+    asked = {
+        "bodies": {"radius": radius, "stiffness": stiffness},
+        "equilibrium_path": {"h0_end": -4 * z0},
+        "numerics": {"accuracy": 1e-6},
+    }
+    whole = run(deck(force={"law": "lennard_jones", "hamaker": hamaker, "z0": z0}, **asked))
+    parts = run(deck(van_der_waals={"hamaker": hamaker}, born={"z0": z0}, **asked))
+    assert parts.summary["max_tension"] == pytest.approx(whole.summary["max_tension"], rel=1e-7)
+    for cost in ("nodes", "factorisations", "operator_products"):
+        assert parts.cost[cost] < 1.5 * whole.cost[cost]

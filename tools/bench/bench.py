@@ -21,6 +21,7 @@ import time
 
 import accuracy
 import hot_spots
+import laws
 import program
 import ratios
 import scaling
@@ -36,6 +37,7 @@ _GUIDE = program.ROOT / "docs" / "accuracy.md"
 # What measures, what draws, what makes the guide's tables.
 _PARTS = {
     "accuracy": (accuracy.measure, accuracy.draw, accuracy.tables),
+    "laws": (laws.measure, None, laws.tables),
     "error_law": (accuracy.measure_law, accuracy.draw_law, accuracy.tables_law),
     "ratios": (ratios.measure, None, ratios.tables),
     "sigma": (scaling.measure_sigma, scaling.draw_sigma, None),
@@ -46,7 +48,7 @@ _PARTS = {
 }
 
 # Those whose tables compare with the sources before.
-_COMPARED = ("accuracy", "ratios")
+_COMPARED = ("accuracy", "laws", "ratios")
 
 
 def main():

@@ -2,7 +2,10 @@
 
 import dataclasses
 import math
+import pathlib
+import re
 
+_EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "inputs" / "examples"
 _RADIUS, _Z0, _HAMAKER = 1.5e-2, 0.5e-9, 1e-19
 _P0, _DECAY = 2.5e8, 0.2e-9
 
@@ -54,6 +57,23 @@ def lennard_jones(sigma):
         f"&bodies radius = {_RADIUS}, stiffness = {stiffness!r} /\n"
         f"&force law = 'lennard_jones', hamaker = {_HAMAKER}, z0 = {_Z0} /",
         _Z0, start, turn, (start - turn) / 50)
+
+
+def in_two_parts(problem):
+    """Return a Lennard-Jones problem with the law written as attraction and repulsion."""
+    physics = re.sub(r"&force.*", f"&van_der_waals hamaker = {_HAMAKER} /\n&born z0 = {_Z0} /",
+                     problem.physics)
+    return dataclasses.replace(problem, name=f"{problem.name}_parts", physics=physics,
+                               label=f"van der Waals + Born, {problem.label}")
+
+
+def example(name):
+    """Return the problem of an example's deck, for its path as far as the deck goes."""
+    deck = (_EXAMPLES / f"{name}.nml").read_text(encoding="utf-8")
+    turn = float(re.search(r"h0_end *= *([-+.\de]+)", deck)[1])
+    left_out = "loading|unloading|equilibrium_path|scene|classical"
+    physics = re.sub(rf"&({left_out})\b[^/]*/.*\n?", "", deck)
+    return Problem(name, name, physics.strip(), 1e-9, math.nan, turn / 1e-9, math.nan)
 
 
 def _stiffness_of(sigma):
