@@ -13,7 +13,8 @@
 !> 55, 335 (1965)), here with signs that make them positive in a half-space:
 !>
 !>     p = -|U W|,  q = |U S|,  r = -|W S| = |U T|,  v = -|W T|,  x = |S T| ,
-!>     d/d(-z) (p, q, r, v, x) = (v + beta q, x + 2 r, v - eta q, gamma p - 2 eta r + beta x, gamma q) .
+!>     d/d(-z) (p, q, r, v, x) =
+!>       (v + beta q, x + 2 r, v - eta q, gamma p - 2 eta r + beta x, gamma q) .
 !>
 !> This matrix M satisfies M^3 (M^2 - 4) = 0, so that a layer of k t = a turns minors y into
 !>

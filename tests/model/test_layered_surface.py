@@ -1,5 +1,5 @@
-"""Claims about what the surface of layers on a base yields to waves of pressure, against the layers'
-equations solved in sixty digits."""
+"""Claims about what the surface of layers on a base yields to waves of pressure, against the
+layers' equations solved in sixty digits."""
 
 import math
 import subprocess

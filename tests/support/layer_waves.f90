@@ -1,5 +1,5 @@
-!> layer_waves: for tests of `layered_surface`. Reads the number of layers, thicknesses, shear moduli
-!> and Poisson's ratios from the top down, whether the base is rigid, its shear modulus and
+!> layer_waves: for tests of `layered_surface`. Reads the number of layers, thicknesses, shear
+!> moduli and Poisson's ratios from the top down, whether the base is rigid, its shear modulus and
 !> Poisson's ratio, the number of wave numbers and these; prints what the surface yields to each.
 program layer_waves
   use kinds, only: wp

@@ -1,5 +1,5 @@
-"""Waves of pressure on layered bodies, solved directly, in arithmetic of so many digits that nothing
-is lost: each layer has four waves, and all conditions at once are one linear system."""
+"""Waves of pressure on layered bodies, solved directly, in arithmetic of so many digits that
+nothing is lost: each layer has four waves, and all conditions at once are one linear system."""
 
 from decimal import Decimal, localcontext
 
