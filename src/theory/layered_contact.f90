@@ -28,7 +28,8 @@ module layered_contact
   real(wp), parameter :: span = 100
   !> Nodes of the system: at least, for each thickness in the radius, at most.
   integer, parameter :: fewest = 32, a_thickness = 4, most = 500
-  integer, parameter :: sections = 60
+  !> Radii that are looked at, and golden sections about the best.
+  integer, parameter :: looks = 400, sections = 50
 
   !> Displacement over a^2 and load over a^3 between two radii, as series in ln a; (degree, theory).
   type :: layered_contact_t
@@ -169,25 +170,37 @@ contains
     pull_off = self%load(jkr, least(self, .false.))
   end function pull_off
 
-  !> Contact radius of the least displacement, or load, of JKR theory.
+  !> Contact radius of the least displacement, or load, of JKR theory. On layers there may be
+  !> several minima, so that all radii are looked at before golden sections.
   pure real(wp) function least(self, of_displacement) result(a)
     type(layered_contact_t), intent(in) :: self
     logical, intent(in) :: of_displacement
     type(bracket_t) :: bracket
-    real(wp) :: points(2), values(2)
-    integer :: i
+    real(wp) :: places(0:looks)
+    integer :: i, lowest
 
-    bracket = bracket_t(log(self%first), log(self%last))
+    places = [(log(self%first) + log(self%last/self%first)*i/looks, i=0, looks)]
+    lowest = minloc([(value(places(i)), i=0, looks)], 1) - 1
+    bracket = bracket_t(places(max(0, lowest - 1)), places(min(looks, lowest + 1)))
     do i = 1, sections
-      points = exp(bracket%golden_points())
-      if (of_displacement) then
-        values = -[self%displacement(jkr, points(1)), self%displacement(jkr, points(2))]
-      else
-        values = -[self%load(jkr, points(1)), self%load(jkr, points(2))]
-      end if
-      call bracket%keep_larger(values)
+      associate (points => bracket%golden_points())
+        call bracket%keep_larger([-value(points(1)), -value(points(2))])
+      end associate
     end do
     a = exp(bracket%middle())
+
+  contains
+
+    pure real(wp) function value(place)
+      real(wp), intent(in) :: place
+
+      if (of_displacement) then
+        value = self%displacement(jkr, exp(place))
+      else
+        value = self%load(jkr, exp(place))
+      end if
+    end function value
+
   end function least
 
 end module layered_contact
