@@ -16,17 +16,17 @@ module wave_quadrature
 
 contains
 
-  !> Nodes in order from 0 to `last`, and weights. sharpest: up to where each x matters. The
+  !> Nodes in order from `start` to `last`, and weights. sharpest: up to where each x matters. The
   !> function is a polynomial of low degree up to `first` and between k and 3 k.
-  pure subroutine wave_rule(x, sharpest, first, last, k, weight)
-    real(wp), intent(in) :: x(:), sharpest(:), first, last
+  pure subroutine wave_rule(x, sharpest, start, first, last, k, weight)
+    real(wp), intent(in) :: x(:), sharpest(:), start, first, last
     real(wp), allocatable, intent(out) :: k(:), weight(:)
     real(wp), allocatable :: ends(:)
     real(wp) :: node(nodes), part(nodes), from, to
     integer :: i
 
     allocate (ends(1))
-    ends = 0
+    ends = start
     do while (ends(size(ends)) < last)
       from = ends(size(ends))
       to = min(last, merge(ratio*from, first, from > 0), from + swing/maxval(x, sharpest > from))

@@ -22,8 +22,8 @@ module elastic_operator
   !> waves over its radius, and smoothly, as exp(-x^8), which is nothing from 1.6 on.
   real(wp), parameter :: passing = 12, crossing = 30, left_out = 1.6_wp
   integer, parameter :: sharpness = 8
-  !> Scales for which waves are found, over the present one.
-  real(wp), parameter :: smaller = 0.1_wp, larger = 1.3_wp
+  !> Scales for which waves are found, over the present one. For larger ones some are added.
+  real(wp), parameter :: smaller = 0.1_wp, larger = 1.5_wp
 
   type :: elastic_operator_t
     private
@@ -43,7 +43,8 @@ module elastic_operator
     procedure :: matrix
     procedure :: unlike_scaling
     procedure, private :: prepare
-    procedure, private :: find_waves
+    procedure, private :: begin_waves
+    procedure, private :: add_waves
     procedure, private :: fill_remainder
   end type elastic_operator_t
 
@@ -150,8 +151,9 @@ contains
     if (same) same = all(abs(self%x - grid%x) <= 0)
     if (same .and. .not. abs(self%scale - scale) > 0) return
     range = scale*problem%body%wave_range()
-    if (same) same = range(1) >= self%range(1) .and. range(2) <= self%range(2)
-    if (.not. same) call self%find_waves(grid, [smaller, larger]*range)
+    if (same) same = range(1) >= self%range(1)
+    if (.not. same) call self%begin_waves(grid, smaller*range(1))
+    if (.not. range(2) <= self%range(2)) call self%add_waves(grid, larger*range(2))
     self%scale = scale
     if (allocated(self%remainder)) deallocate (self%remainder)
     ! Beyond the last wave there is nothing.
@@ -162,16 +164,29 @@ contains
     self%growth = -self%weight(:waves)*growth
   end subroutine prepare
 
-  !> Finds the waves on a mesh.
-  subroutine find_waves(self, grid, range)
+  !> Begins with no waves on a mesh; first: up to where what bodies yield is of low degree.
+  pure subroutine begin_waves(self, grid, first)
     class(elastic_operator_t), intent(inout) :: self
     type(discretisation_t), intent(in) :: grid
-    real(wp), intent(in) :: range(2)
-    real(wp) :: x(first_node - 1 + grid%nodes), sharpest(first_node - 1 + grid%nodes)
-    integer :: i, j
+    real(wp), intent(in) :: first
 
     self%x = grid%x
-    self%range = range
+    self%range = [first, 0.0_wp]
+    self%k = [real(wp) ::]
+    self%weight = [real(wp) ::]
+    if (allocated(self%wave)) deallocate (self%wave)
+    allocate (self%wave(0, first_node - 1 + grid%nodes))
+  end subroutine begin_waves
+
+  !> Adds waves to those there are, up to the wave number `last`.
+  subroutine add_waves(self, grid, last)
+    class(elastic_operator_t), intent(inout) :: self
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: last
+    real(wp) :: x(first_node - 1 + grid%nodes), sharpest(first_node - 1 + grid%nodes)
+    real(wp), allocatable :: k(:), weight(:), wave(:, :)
+    integer :: i, j, before
+
     x = [0.0_wp, grid%centre, grid%x]
     sharpest(:first_node - 1) = huge(1.0_wp)
     do i = 1, grid%nodes
@@ -180,17 +195,21 @@ contains
           abs(near - grid%x(i)) > 0), crossing/max(grid%x(i), tiny(1.0_wp)))
       end associate
     end do
-    call wave_rule(x, left_out*sharpest, range(1), range(2), self%k, self%weight)
-    self%weight = 2*self%weight
-    if (allocated(self%wave)) deallocate (self%wave)
-    allocate (self%wave(size(self%k), size(x)), source=0.0_wp)
+    call wave_rule(x, left_out*sharpest, self%range(2), self%range(1), last, k, weight)
+    before = size(self%k)
+    self%range(2) = last
+    self%k = [self%k, k]
+    self%weight = [self%weight, 2*weight]
+    allocate (wave(size(self%k), size(x)), source=0.0_wp)
+    wave(:before, :) = self%wave
     do i = 1, size(x)
-      do j = 1, size(self%k)
+      do j = before + 1, size(self%k)
         if (self%k(j) > left_out*sharpest(i)) exit
-        self%wave(j, i) = bessel_j0(self%k(j)*x(i))*exp(-(self%k(j)/sharpest(i))**sharpness)
+        wave(j, i) = bessel_j0(self%k(j)*x(i))*exp(-(self%k(j)/sharpest(i))**sharpness)
       end do
     end do
-  end subroutine find_waves
+    call move_alloc(wave, self%wave)
+  end subroutine add_waves
 
   !> Makes the matrix of the second part, unless it is there.
   subroutine fill_remainder(self, grid)

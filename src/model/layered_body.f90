@@ -169,7 +169,8 @@ contains
     integer :: j
 
     range = self%wave_range()
-    call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], range(1), range(2), k, weight)
+    call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], 0.0_wp, range(1), range(2), k, &
+      weight)
     allocate (more, growth, mold=k)
     call self%beside_half_space(k, more, growth)
     allocate (left(size(k), size(x)), right(size(k), size(y)))

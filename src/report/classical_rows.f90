@@ -148,11 +148,13 @@ contains
     real(wp) :: delta, a, homogeneous
 
     contact = layered_contact_of(problem, range%h0_end)
-    if (problem%law%work > 0) &
-      call summary%set('jkr_pull_off', -contact%pull_off()*problem%load)
+    a = contact%pull_off()
+    if (problem%law%work > 0 .and. .not. ieee_is_nan(a)) &
+      call summary%set('jkr_pull_off', -a*problem%load)
     delta = (problem%law%origin - range%h0_end)/problem%length
     if (.not. delta > 0) return
     a = contact%radius_at(hertz, delta)
+    if (ieee_is_nan(a)) return
     homogeneous = hertz_like_load(problem, problem%shape%contact_radius(delta))
     call summary%set('effective_modulus', &
       0.5_wp*problem%stiffness*contact%load(hertz, a)/homogeneous)

@@ -26,8 +26,11 @@ module layered_contact
   !> Degree of the series, and the ratio of the radii that they span below that of no displacement.
   integer, parameter :: degree = 80
   real(wp), parameter :: span = 100
-  !> Nodes of the system: at least, for each thickness in the radius, at most.
-  integer, parameter :: fewest = 32, a_thickness = 4, most = 500
+  !> A minimum this near the end of the span is none.
+  real(wp), parameter :: inside = 0.97_wp
+  !> Nodes of the system: at least, and for each thickness of the thinnest top layer in the radius;
+  !> as many thicknesses as the radius may have.
+  integer, parameter :: fewest = 32, a_thickness = 4, widest = 40
   !> Radii that are looked at, and golden sections about the best.
   integer, parameter :: looks = 400, sections = 50
 
@@ -44,7 +47,8 @@ module layered_contact
 
 contains
 
-  !> Contacts up to a displacement; the problem is that of a law with a `work` that is not negative.
+  !> Contacts up to a displacement, or to `widest`. A `work` of the law that is negative counts as
+  !> none.
   function new_layered_contact(problem, body, largest) result(contact)
     type(problem_t), intent(in) :: problem
     type(layered_body_t), intent(in) :: body
@@ -53,11 +57,12 @@ contains
     real(wp) :: delta(2), force(2), a(0:degree), values(0:degree, 4)
     integer :: i
 
-    contact%last = 1
+    contact%last = min(1.0_wp, widest*body%thinnest)
     do
       call contact_at(problem, body, contact%last, delta, force)
       if (delta(jkr) > max(0.0_wp, largest) .and. force(jkr) > 0) exit
-      contact%last = 2*contact%last
+      if (.not. contact%last < widest*body%thinnest) exit
+      contact%last = min(2*contact%last, widest*body%thinnest)
     end do
     contact%first = contact%last
     do
@@ -88,7 +93,7 @@ contains
     real(wp) :: at_edge(2)
     integer :: n, j
 
-    n = min(most, fewest + ceiling(a_thickness*min(a/body%thinnest, real(most, wp))))
+    n = fewest + ceiling(a_thickness*a/body%thinnest)
     allocate (x(n), w(n), sums(n + 1, n))
     call gauss_legendre(x, w)
     x = a*x
@@ -163,11 +168,14 @@ contains
     a = bracket%middle()
   end function radius_at
 
-  !> The least load of JKR theory, negative.
+  !> The least load of JKR theory, negative; NaN where it lies beyond the span.
   pure real(wp) function pull_off(self)
     class(layered_contact_t), intent(in) :: self
+    real(wp) :: a
 
-    pull_off = self%load(jkr, least(self, .false.))
+    a = least(self, .false.)
+    pull_off = ieee_value(a, ieee_quiet_nan)
+    if (a < inside*self%last) pull_off = self%load(jkr, a)
   end function pull_off
 
   !> Contact radius of the least displacement, or load, of JKR theory. On layers there may be
