@@ -236,6 +236,7 @@ contains
     if (allocated(error)) return
     outcome%problem = final
     if (.not. problem%shape%parabolic .or. .not. final%law%work > 0) return
+    if (.not. final%body%is_homogeneous()) return
     elastic = [(index(family%parameter(i)%name, 'bodies.') == 1 .and. &
       family%parameter(i)%name /= 'bodies.radius', i=1, size(elastic))]
     model%radius = final%radius

@@ -1,12 +1,15 @@
 !> What the two bodies, seen as one, yield to a pressure: an elastic half-space and, for bodies that
-!> are not homogeneous, a remainder. With the half-space's kernel k of (15), of which the coupling
-!> says how much it yields, the gap rises at r by
+!> are not homogeneous, a remainder. Under a pressure p J0(k r) the surfaces of a half-space come
+!> closer by something over k, and those of the bodies by L(k) times that. The gap rises at r by
 !>
-!>     2 coupling Int P(t) [k(r, t) + remainder(r, t)] t dt .
+!>     2 coupling Int P(t) [k(r, t) + D(r, t)] t dt ,
+!>     D = 2 Int_0^inf (L(k) - 1) J0(k r) J0(k t) dk ,
+!>
+!> with the half-space's kernel of (15), of which the coupling says how much it yields.
 !>
 !> A homogeneous body has no remainder. Its kernel scales with all lengths at once, so that one
 !> matrix serves every contact radius; that of other bodies is made anew for each
-!> (`elastic_operator`). No other module asks which body it has.
+!> (`elastic_operator`). No other module of the equations asks which body it has.
 module elastic_body
   use kinds, only: wp
   implicit none
@@ -16,7 +19,10 @@ module elastic_body
   type, abstract :: elastic_body_t
   contains
     procedure(ask), deferred :: is_homogeneous
-    procedure(evaluate), deferred :: remainder
+    procedure(describe), deferred :: beside_half_space
+    procedure(bound), deferred :: wave_range
+    procedure :: is_alike
+    procedure :: take_one
   end type elastic_body_t
 
   abstract interface
@@ -26,25 +32,48 @@ module elastic_body
       class(elastic_body_t), intent(in) :: self
     end function ask
 
-    !> kernel(i, j) = remainder(r(i), t(j)), smooth and symmetric, and growth(i, j), its derivative
-    !> by the logarithm of a scale that both arguments have: r d/dr + t d/dt. Lateral units, results
-    !> in one over them; (size(r), size(t)).
-    pure subroutine evaluate(self, r, t, kernel, growth)
+    !> L - 1 and k dL/dk at wave numbers in one over the lateral unit.
+    pure subroutine describe(self, k, more, growth)
       import :: elastic_body_t, wp
       class(elastic_body_t), intent(in) :: self
-      real(wp), intent(in) :: r(:), t(:)
-      real(wp), intent(out) :: kernel(:, :), growth(:, :)
-    end subroutine evaluate
+      real(wp), intent(in) :: k(:)
+      real(wp), intent(out) :: more(:), growth(:)
+    end subroutine describe
+
+    !> Wave numbers up to the first of which L is a polynomial of low degree, as it is between k and
+    !> 3 k from there on, and beyond the last of which L - 1 is nothing.
+    pure function bound(self) result(k)
+      import :: elastic_body_t, wp
+      class(elastic_body_t), intent(in) :: self
+      real(wp) :: k(2)
+    end function bound
   end interface
 
   !> Homogeneous bodies, each an elastic half-space.
   type, extends(elastic_body_t) :: half_space_t
   contains
     procedure :: is_homogeneous
-    procedure :: remainder
+    procedure :: beside_half_space
+    procedure :: wave_range
   end type half_space_t
 
 contains
+
+  !> Whether both bodies yield by the same but for a factor.
+  pure logical function is_alike(self)
+    class(elastic_body_t), intent(in) :: self
+
+    is_alike = .true.
+  end function is_alike
+
+  !> What one of the two bodies, 1 or 2, yields beside its own half-space.
+  subroutine take_one(self, which, one)
+    class(elastic_body_t), intent(in) :: self
+    integer, intent(in) :: which
+    class(elastic_body_t), allocatable, intent(out) :: one
+
+    allocate (one, source=self)
+  end subroutine take_one
 
   pure logical function is_homogeneous(self)
     class(half_space_t), intent(in) :: self
@@ -52,13 +81,20 @@ contains
     is_homogeneous = .true.
   end function is_homogeneous
 
-  pure subroutine remainder(self, r, t, kernel, growth)
+  pure subroutine beside_half_space(self, k, more, growth)
     class(half_space_t), intent(in) :: self
-    real(wp), intent(in) :: r(:), t(:)
-    real(wp), intent(out) :: kernel(:, :), growth(:, :)
+    real(wp), intent(in) :: k(:)
+    real(wp), intent(out) :: more(:), growth(:)
 
-    kernel = 0
+    more = 0
     growth = 0
-  end subroutine remainder
+  end subroutine beside_half_space
+
+  pure function wave_range(self) result(k)
+    class(half_space_t), intent(in) :: self
+    real(wp) :: k(2)
+
+    k = 0
+  end function wave_range
 
 end module elastic_body

@@ -60,7 +60,7 @@ contains
       literal = token(1:1) == '''' .or. token(1:1) == '"'
       if (literal .and. .not. wanted) then
         what = clip(token) // ' is text in quotes'
-      else if (wanted .and. .not. literal) then
+      else if (wanted .and. .not. literal .and. .not. is_number(spec, token)) then
         what = clip(token) // ' is not in quotes'
       else
         if (literal) token = unquoted(token)
@@ -69,6 +69,14 @@ contains
       if (allocated(what)) return
     end do
   end subroutine interpret
+
+  !> Whether a token is a word of digits, which needs no quotes.
+  pure logical function is_number(spec, token)
+    type(key_spec), intent(in) :: spec
+    character(len=*), intent(in) :: token
+
+    is_number = spec%kind == word_value .and. verify(token, '0123456789') == 0
+  end function is_number
 
   !> Converts one token, without quotes, and checks it against the bounds of `spec`; elements of a
   !> list, and names, are appended.

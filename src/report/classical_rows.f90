@@ -7,6 +7,8 @@ module classical_rows
     jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
   use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius
   use maugis, only: maugis_load, maugis_radius_at_displacement, maugis_lambda, maugis_pull_off
+  use layered_body, only: layered_body_t
+  use layered_contact, only: layered_contact_t, new_layered_contact, hertz, jkr
   use scene_groups, only: range_t
   use results, only: results_t
   use summary, only: summary_t
@@ -22,7 +24,7 @@ contains
   !> displacement is -h0; the state is the one that is stable there, and where a theory has none
   !> there is no row. `from` [m] stands in for a range without a start. None for rigid bodies, which
   !> have no displacement. Of other shapes than the parabola Hertz and JKR in the form for any
-  !> convex body.
+  !> convex body; of layered bodies in the form for these.
   subroutine write_classical(problem, range, from, results)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -32,6 +34,10 @@ contains
     integer :: i
 
     if (problem%rigid) return
+    if (.not. problem%body%is_homogeneous()) then
+      call write_layered(problem, range, from, results)
+      return
+    end if
     start = from
     if (allocated(range%h0_start)) start = range%h0_start
     gamma = surface_energy(problem)
@@ -86,12 +92,85 @@ contains
 
   end subroutine write_classical
 
-  !> Maugis-Dugdale theory with the law's surface energy and largest tension, where both exist.
-  subroutine summarise_classical(problem, summary)
+  !> Writes Hertz and, for a law that attracts, JKR of layered bodies, in the same way.
+  subroutine write_layered(problem, range, from, results)
     type(problem_t), intent(in) :: problem
+    type(range_t), intent(in) :: range
+    real(wp), intent(in) :: from
+    type(results_t), intent(inout) :: results
+    type(layered_contact_t) :: contact
+    real(wp) :: start, h0, delta
+    integer :: i
+
+    start = from
+    if (allocated(range%h0_start)) start = range%h0_start
+    contact = layered_contact_of(problem, range%h0_end)
+    do i = 1, range%count
+      h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
+      delta = problem%law%origin - h0
+      call add('hertz_layered', hertz)
+      if (problem%law%work > 0) call add('jkr_layered', jkr)
+    end do
+
+  contains
+
+    subroutine add(name, theory)
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: theory
+      real(wp) :: a
+
+      a = contact%radius_at(theory, delta/problem%length)
+      if (ieee_is_nan(a)) return
+      call results%row(name, [h0, delta, contact%load(theory, a)*problem%load, a*problem%lateral])
+    end subroutine add
+
+  end subroutine write_layered
+
+  !> The contacts of layered bodies down to an h0 [m].
+  function layered_contact_of(problem, h0) result(contact)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+    type(layered_contact_t) :: contact
+
+    select type (body => problem%body)
+    type is (layered_body_t)
+      contact = new_layered_contact(problem, body, (problem%law%origin - h0)/problem%length)
+    end select
+  end function layered_contact_of
+
+  !> What theory says of layered bodies: the pull-off of JKR, and E* of the half-spaces on which
+  !> Hertz finds the load of the deepest contact at its displacement.
+  subroutine summarise_layered(problem, range, summary)
+    type(problem_t), intent(in) :: problem
+    type(range_t), intent(in) :: range
+    type(summary_t), intent(inout) :: summary
+    type(layered_contact_t) :: contact
+    real(wp) :: delta, a, homogeneous
+
+    contact = layered_contact_of(problem, range%h0_end)
+    a = contact%pull_off()
+    if (problem%law%work > 0 .and. .not. ieee_is_nan(a)) &
+      call summary%set('jkr_pull_off', -a*problem%load)
+    delta = (problem%law%origin - range%h0_end)/problem%length
+    if (.not. delta > 0) return
+    a = contact%radius_at(hertz, delta)
+    if (ieee_is_nan(a)) return
+    homogeneous = hertz_like_load(problem, problem%shape%contact_radius(delta))
+    call summary%set('effective_modulus', &
+      0.5_wp*problem%stiffness*contact%load(hertz, a)/homogeneous)
+  end subroutine summarise_layered
+
+  !> Maugis-Dugdale theory with the law's surface energy and largest tension, where both exist.
+  subroutine summarise_classical(problem, range, summary)
+    type(problem_t), intent(in) :: problem
+    type(range_t), intent(in) :: range
     type(summary_t), intent(inout) :: summary
     real(wp) :: gamma, strength
 
+    if (.not. problem%body%is_homogeneous()) then
+      call summarise_layered(problem, range, summary)
+      return
+    end if
     gamma = surface_energy(problem)
     strength = largest_tension(problem)
     if (problem%rigid .or. .not. problem%shape%parabolic) return

@@ -3,7 +3,8 @@ module profiles
   use kinds, only: wp
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t
-  use discretisation, only: discretisation_t
+  use discretisation, only: discretisation_t, axis_row, first_node
+  use elastic_operator, only: elastic_operator_t
   use contact_state, only: state_t
   use tables, only: table_t, cells
   implicit none
@@ -43,7 +44,7 @@ contains
   pure logical function alike(problem)
     type(problem_t), intent(in) :: problem
 
-    alike = .not. abs(problem%share(1) - problem%share(2)) > 0
+    alike = problem%body%is_alike() .and. .not. abs(problem%share(1) - problem%share(2)) > 0
   end function alike
 
   !> Adds a state to a table of profiles: the axis, then its nodes. `h0` is in metres.
@@ -56,6 +57,7 @@ contains
     type(state_t), intent(in) :: state
     type(failure_t), allocatable, intent(inout) :: error
     real(wp), dimension(size(state%gap) + 1) :: r, gap, deformation, pressure, energy
+    real(wp) :: each(size(state%gap) + 1, 2)
     character(len=:), allocatable :: row
     integer :: j
 
@@ -69,6 +71,9 @@ contains
       deformation = -0.5_wp*(gap - state%h0 - problem%shape%height(r))
       if (problem%rigid) deformation = 0
     end associate
+    each(:, 1) = problem%share(1)*deformation
+    if (.not. problem%body%is_alike()) each(:, 1) = deformation_of_first(problem, grid, state)
+    each(:, 2) = 2*deformation - each(:, 1)
     do j = 1, size(r)
       ! A mesh may have a node on the axis.
       if (j == 2 .and. .not. r(j) > 0) cycle
@@ -76,11 +81,29 @@ contains
         deformation(j)*problem%length, pressure(j)*problem%pressure, &
         energy(j)*problem%pressure*problem%length])
       if (.not. alike(problem)) &
-        row = row // ',' // cells(problem%share*deformation(j)*problem%length)
+        row = row // ',' // cells(each(j, :)*problem%length)
       call table%line(row, error)
       if (allocated(error)) return
     end do
     call table%flush(error)
   end subroutine write_profile
+
+  !> By how much the first body's surface moves outward, on the axis and at the nodes, where bodies
+  !> do not yield alike.
+  function deformation_of_first(problem, grid, state) result(deformation)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp) :: deformation(size(state%gap) + 1)
+    type(problem_t) :: first
+    type(elastic_operator_t) :: operator
+    real(wp) :: rise(first_node - 1 + size(state%gap))
+
+    first = problem
+    first%coupling = problem%coupling*problem%share(1)/2
+    call problem%body%take_one(1, first%body)
+    call operator%deform(first, grid, state%scale, size(state%gap), state%pressure, rise)
+    deformation = -[rise(axis_row), rise(first_node:)]
+  end function deformation_of_first
 
 end module profiles

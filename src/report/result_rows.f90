@@ -10,7 +10,8 @@ module result_rows
   !> When a row is a column of sweep.csv: never, always, with a group of the deck, with forces that
   !> are not the paper's, or once for each turning point.
   character(len=*), parameter :: never = '', always = 'always', classical = 'classical', &
-    approximations = 'approximations', regime = 'regime', forces = '(forces)', turning = 'unloading'
+    approximations = 'approximations', regime = 'regime', forces = '(forces)', &
+    turning = 'unloading', layer = 'layer'
 
   !> Key, unit and meaning; a list has one value a turning point, fold, profile or the like.
   type :: row_t
@@ -32,6 +33,12 @@ module result_rows
     row_t('tabor', '', 'Tabor''s parameter, (4 sigma^2)^(1/3)', always), &
     row_t('big_lambda', '', &
       'strength of exponential repulsion, (39) of the paper at h0 = 0', always), &
+    row_t('top_modulus', 'Pa', 'with &layer: E* of half-spaces of the top layers', layer), &
+    row_t('bottom_modulus', 'Pa', 'with &layer: E* of what the layers are on, where it yields', &
+      layer), &
+    row_t('effective_modulus', 'Pa', &
+      'with &layer and &classical: E* with which Hertz''s load is that of hertz_layered', &
+      layer), &
     row_t('surface_energy', 'J/m^2', &
       'surface energy of the force law, the depth of its minimum', always), &
     row_t('work_of_adhesion', 'J/m^2', &

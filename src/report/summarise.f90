@@ -21,6 +21,7 @@ module summarise
   use fixed_load_rows, only: summarise_fixed_loads
   use regime_rows, only: summarise_regime
   use validity, only: judge_law, judge_extent
+  use layer_entries, only: summarise_layers, judge_layers
   use quality_warnings, only: judge_resolution, judge_accuracy, judge_stopping
   implicit none
   private
@@ -40,7 +41,7 @@ contains
     call describe_problem(scene, problem, summary)
     if (allocated(scene%sensitivity)) call rate_description(scene, summary)
     call judge_law(problem, summary)
-    if (allocated(scene%classical)) call summarise_classical(problem, summary)
+    if (allocated(scene%classical)) call summarise_classical(problem, scene%classical, summary)
     if (allocated(scene%approximations)) call summarise_approximations(problem, summary)
     if (.not. allocated(outcome%chosen%grid)) return
     call describe_numerics(outcome, summary)
@@ -51,6 +52,7 @@ contains
     call take_energy(problem, outcome, summary)
     call take_end(problem, outcome, summary)
     call judge_extent(problem, outcome, summary)
+    call judge_layers(problem, summary)
     if (.not. outcome%differentiated) &
       call summary%fail_with('sensitivity: not all derivatives were found')
     call judge_resolution(outcome%chosen%grid == 'edge_locked', summary)
@@ -103,6 +105,7 @@ contains
     else if (problem%law%coupling_name /= '' .and. .not. problem%rigid) then
       call summary%set(trim(problem%law%coupling_name), problem%coupling)
     end if
+    call summarise_layers(problem, summary)
     if (problem%law%rest_gap > 0) &
       call summary%set('rest_gap', problem%law%separation_of(problem%law%rest_gap))
     if (.not. problem%law%of_paper) call take_forces(problem, summary)
@@ -171,7 +174,11 @@ contains
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
 
-    if (problem%shape%parabolic) then
+    if (.not. problem%body%is_homogeneous()) then
+      ! JKR of layered bodies is with &classical.
+      if (problem%shape%parabolic) call summary%set('dmt_pull_off', &
+        -dmt_pull_off(problem%radius, surface_energy(problem)))
+    else if (problem%shape%parabolic) then
       call summary%set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
       call summary%set('dmt_pull_off', -dmt_pull_off(problem%radius, surface_energy(problem)))
     else if (.not. problem%rigid) then

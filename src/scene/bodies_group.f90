@@ -5,6 +5,7 @@ module bodies_group
   use bodies, only: composite_stiffness, compliance_shares
   use deck_keys, only: key_spec, group, real_key, list_key, logical_key
   use scene_groups, only: scene_t
+  use layer_group, only: layer_bears_all
   implicit none
   private
   public :: bodies_keys, take_bodies
@@ -48,7 +49,9 @@ contains
       call deck%get('bodies', 'poisson', poisson)
       pair = size(young) > 0 .or. size(poisson) > 0
       ways = count([deck%is_set('bodies', 'stiffness'), pair, bodies%rigid])
-      if (ways == 0) then
+      if (ways == 0 .and. layer_bears_all(deck)) then
+        bodies%rigid = .true.
+      else if (ways == 0) then
         call deck%mistake('bodies', 'stiffness', 'missing; ' // one_way, error)
       else if (ways > 1) then
         call deck%mistake('bodies', second_way(), 'one way too many to say how the bodies ' // &
@@ -58,8 +61,10 @@ contains
       else if (size(poisson) > 0 .and. size(young) == 0) then
         call deck%mistake('bodies', 'young', 'missing; young and poisson go together', error)
       else if (pair) then
-        bodies%stiffness = composite_stiffness(spread_out(young), spread_out(poisson))
-        bodies%share = compliance_shares(spread_out(young), spread_out(poisson))
+        bodies%young = spread_out(young)
+        bodies%poisson = spread_out(poisson)
+        bodies%stiffness = composite_stiffness(bodies%young, bodies%poisson)
+        bodies%share = compliance_shares(bodies%young, bodies%poisson)
       else
         call deck%get('bodies', 'stiffness', bodies%stiffness)
       end if

@@ -6,6 +6,7 @@ module scene_groups
   use experiment_request, only: request_t
   use force_law, only: force_law_t
   use shape, only: shape_t
+  use layered_surface, only: layered_surface_t
   use fit_request, only: measurement_t, fit_t
   use measured_curve, only: measured_t
   implicit none
@@ -16,6 +17,10 @@ module scene_groups
   type :: bodies_t
     !> E/(1-nu^2) of two identical bodies equivalent to these [Pa]; without meaning if `rigid`.
     real(wp) :: stiffness = 0
+    !> Moduli [Pa] and Poisson's ratios of the bodies, where they are given.
+    real(wp), allocatable :: young(:), poisson(:)
+    !> With &layer: the surfaces, SI units. Stiffness and shares are those of the top layers then.
+    type(layered_surface_t), allocatable :: surface(:)
     !> Compliance of each body over their mean.
     real(wp) :: share(2) = 1
     logical :: rigid = .false.

@@ -6,6 +6,9 @@ module scene_problem
   use laws, only: keys_of_laws, read_laws
   use shapes, only: keys_of_shapes, read_shapes
   use bodies_group, only: bodies_keys, take_bodies
+  use layer_group, only: layer_keys, take_layer
+  use layered_surface, only: layered_surface_t
+  use layered_body, only: new_layered_body
   use scene_groups, only: scene_t
   implicit none
   private
@@ -13,19 +16,20 @@ module scene_problem
 
 contains
 
-  !> The rows of bodies, shapes and forces in the table of keys.
+  !> The rows of bodies, layers, shapes and forces in the table of keys.
   pure function keys_of_model() result(specs)
     type(key_spec), allocatable :: specs(:)
 
-    specs = [bodies_keys(), keys_of_shapes(), keys_of_laws()]
+    specs = [bodies_keys(), layer_keys(), keys_of_shapes(), keys_of_laws()]
   end function keys_of_model
 
-  !> Bodies, forces and shape of the scene's deck.
+  !> Bodies, layers, forces and shape of the scene's deck.
   subroutine take_model(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
 
     call take_bodies(scene, error)
+    call take_layer(scene, error)
     call read_laws(scene%deck, scene%law, error)
     if (allocated(scene%law)) &
       call read_shapes(scene%deck, scene%law%length, scene%shape, error)
@@ -35,9 +39,18 @@ contains
   function problem_of(scene) result(problem)
     type(scene_t), intent(in) :: scene
     type(problem_t) :: problem
+    type(layered_surface_t) :: surface(2)
+    integer :: i
 
     problem = new_problem(scene%law, scene%shape, scene%bodies%stiffness, scene%bodies%rigid)
     problem%share = scene%bodies%share
+    if (.not. allocated(scene%bodies%surface)) return
+    surface = scene%bodies%surface
+    do i = 1, 2
+      surface(i)%thickness = surface(i)%thickness/problem%lateral
+    end do
+    deallocate (problem%body)
+    allocate (problem%body, source=new_layered_body(surface, problem%share/2))
   end function problem_of
 
 end module scene_problem

@@ -44,6 +44,9 @@ contains
     if (scene%deck%has_group('approximations') .and. .not. scene%shape%parabolic) &
       call scene%deck%mistake('approximations', '', 'the approximations are those of the ' // &
                               'parabola; leave out this group or &shape', error)
+    if (scene%deck%has_group('approximations') .and. scene%deck%has_group('layer')) &
+      call scene%deck%mistake('approximations', '', 'the approximations are those of ' // &
+                              'half-spaces; leave out this group or &layer', error)
     call take_range(scene, 'approximations', scene%approximations, error)
     call take_range(scene, 'classical', scene%classical, error)
   end subroutine take_theories

@@ -7,7 +7,7 @@ import re
 
 import pytest
 from conftest import ROOT
-from support.decks import BODIES, FORCE, GOOD, LOADING, with_bodies, with_extra
+from support.decks import BODIES, FORCE, GOOD, LAYERED, LOADING, with_bodies, with_extra
 
 # --- Refused
 
@@ -72,6 +72,36 @@ REFUSED = {
         "sensitivity", "parameters", "is not one name"),
     "no load": (with_extra("&equilibrium_path /\n&fixed_load /"), 5, "fixed_load", "load",
                 "missing"),
+    "layer of no thickness": (LAYERED.replace("1e-6,", "0,"), 2, "layer", "thickness", "> 0 m"),
+    "layer too incompressible": (LAYERED.replace("0.5, body", "0.51, body"), 2, "layer",
+                                 "poisson", "<= 0.5"),
+    "layers without thickness": (LAYERED.replace("thickness = 1e-6, 2e-6, ", ""), 2, "layer",
+                                 "thickness", "missing"),
+    "fewer moduli than layers": (LAYERED.replace("1e6, 2e6", "1e6"), 2, "layer", "young",
+                                 "1 for 2 layers"),
+    "more ratios than layers": (LAYERED.replace("0.5, body", "0.5, 0.3, 0.3, body"), 2, "layer",
+                                "poisson", "4 for 2 layers"),
+    "layers of a third body": (LAYERED.replace("body = 1", "body = 3"), 2, "layer", "body",
+                               "not known"),
+    "layers on what is not known": (
+        LAYERED.replace("young = 70e9, poisson = 0.2", "stiffness = 1e9"), 1, "bodies",
+        "stiffness", "by itself"),
+    "layers without a base": (
+        LAYERED.replace(", young = 70e9, poisson = 0.2", "").replace("body = 1", "body = 'both'"),
+        1, "bodies", "stiffness", "give one of"),
+    "an elastic base of rigid bodies": (
+        LAYERED.replace("young = 70e9, poisson = 0.2", "rigid = T").replace(
+            "body = 1", "base = 'elastic'"), 2, "layer", "base", "the bodies are rigid"),
+    "an elastic partner of rigid bodies": (
+        LAYERED.replace("young = 70e9, poisson = 0.2", "rigid = T").replace(
+            "body = 1", "partner = 'elastic'"), 2, "layer", "partner", "the bodies are rigid"),
+    "a partner of layers on both": (
+        LAYERED.replace("body = 1", "body = 'both', partner = 'rigid'"), 2, "layer", "partner",
+        "both bodies have layers"),
+    "approximations of layers": (LAYERED + "&approximations /", 5, "approximations", "",
+                                 "half-spaces"),
+    "regime of layers": (LAYERED + "&equilibrium_path /\n&regime /", 6, "regime", "",
+                         "half-spaces"),
     "no stiffness": (with_bodies("radius = 1 /"), 1, "bodies", "stiffness", "give one of"),
     "rigid false alone": (with_bodies("radius = 1, rigid = .false. /"), 1, "bodies", "stiffness",
                           "give one of"),

@@ -6,6 +6,10 @@ BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
 FORCE = "&force law = 'lennard_jones', hamaker = 1.0e-19, z0 = 0.5e-9 /\n"
 LOADING = "&loading h0_start = 7e-9, h0_end = -2e-9, h0_step = 0.05e-9 /\n"
 GOOD = BODIES + FORCE + LOADING
+LAYERED = (
+    "&bodies radius = 1.5e-2, young = 70e9, poisson = 0.2 /\n"
+    "&layer thickness = 1e-6, 2e-6, young = 1e6, 2e6, poisson = 0.45, 0.5, body = 1 /\n"
+    + FORCE + LOADING)
 
 FULL = """! every group at once
 &scene  title = 'Fig. 10(c), it''s "full"' /
@@ -68,6 +72,15 @@ ACCEPTED = {
     "rigid false beside stiffness": GOOD.replace("stiffness", "rigid = F, stiffness"),
     "one value for both bodies": GOOD.replace("stiffness = 1.0e10", "young = 1e9, poisson = 0.3"),
     "one body far stiffer": GOOD.replace("stiffness = 1.0e10", "young = 1e6 1e30 poisson = 0.5 0"),
+    "layers": LAYERED,
+    "a word of digits in quotes": LAYERED.replace("body = 1", "body = '1'"),
+    "layers on both": LAYERED.replace("body = 1", "body = 'both'"),
+    "layers under a rigid body": LAYERED.replace("body = 1", "body = 2, partner = 'rigid'"),
+    "layers alone yield": LAYERED.replace(", young = 70e9, poisson = 0.2", "").replace(
+        "body = 1", "body = 'both', base = 'rigid'"),
+    "rigid bodies with layers": LAYERED.replace("young = 70e9, poisson = 0.2", "rigid = .true."),
+    "layers on something rigid": LAYERED.replace("young = 70e9, poisson = 0.2", "stiffness = 1e9")
+    .replace("body = 1", "base = 'rigid'"),
     "exponential law": BODIES + "&force law = 'exponential', p0 = 2.5e8, decay_length = 2e-10 /\n"
     + LOADING,
     "defaults of unloading": GOOD + "&unloading /\n",

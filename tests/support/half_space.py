@@ -4,6 +4,8 @@ H = H0 + r^2/2 + 2 s Int P(H(t)) k(r, t) t dt on fixed Gauss-Legendre panels, by
 continuation in H0. In units of the law's length; s is sigma or Lambda.
 """
 
+import ctypes
+import ctypes.util
 import json
 import os
 import pathlib
@@ -52,13 +54,62 @@ def ring_image(r, t, depth):
     return 4 / (np.pi * far) * agm_k(near / far)
 
 
+def waves_of_layer(a, ratio, nu, base):
+    """L at a = k t of a layer on a base, from Burmister's solution; ratio: of the shear moduli,
+    layer over base, 0 for a rigid base."""
+    fade = np.exp(-2 * a)
+    if ratio:
+        lam = 1 - 4 * (1 - nu) / (1 + ratio * (3 - 4 * base))
+        kap = (ratio - 1) / (ratio + 3 - 4 * nu)
+    else:
+        lam, kap = 4 * nu - 3, -1 / (3 - 4 * nu)
+    return ((1 + 4 * a * kap * fade - lam * kap * fade**2)
+            / (1 - (lam + kap + 4 * kap * a**2) * fade + lam * kap * fade**2))
+
+
+def layer_image(r, t, layer):
+    """2 Int (L - 1) J0(k r) J0(k t) dk for layer: thickness, ratio of moduli, Poisson's ratios of
+    layer and base, and the part of the bodies' yield that has the layer."""
+    near = 12
+    if r.max() > near:
+        # Far away only the base shows, and pressures there are so small that little of it matters.
+        image = layer_image_to(5 / layer[0], r, t, layer)
+        image[np.ix_(r <= near, t <= near)] = layer_image_to(20 / layer[0], r[r <= near],
+                                                             t[t <= near], layer)
+        return image
+    return layer_image_to(20 / layer[0], r, t, layer)
+
+
+def layer_image_to(last, r, t, layer):
+    """The integral up to k = last; past 20 over the thickness exp(-40) is left."""
+    thickness, ratio, nu, base, part = layer
+    x, w = np.polynomial.legendre.leggauss(16)
+    # Panels are short for the waves and, near 0, for stiff layers.
+    length = min(0.5 / thickness, 10 / max(r.max(), t.max()))
+    ends = np.concatenate([length * 0.5 ** np.arange(12, 0, -1),
+                           np.arange(length, last, length)])
+    ends = np.concatenate([[0], ends])
+    k = (ends[:-1, None] + np.diff(ends)[:, None] * (x + 1) / 2).ravel()
+    weight = (np.diff(ends)[:, None] * w / 2).ravel()
+    strength = 2 * part * weight * (waves_of_layer(k * thickness, ratio, nu, base) - 1)
+    return (bessel_j0(np.outer(r, k)) * strength) @ bessel_j0(np.outer(t, k)).T
+
+
+def bessel_j0(x):
+    """J0, from the C library."""
+    j0 = ctypes.CDLL(ctypes.util.find_library("m")).j0
+    j0.argtypes, j0.restype = [ctypes.c_double], ctypes.c_double
+    return np.fromiter(map(j0, x.ravel().tolist()), float, x.size).reshape(x.shape)
+
+
 class HalfSpace:
     """Panels and the matrix of the kernel on them; row 0 is the axis.
 
-    image: strength and depth of a ring image that is added to the kernel.
+    image: strength and depth of a ring image that is added to the kernel; layer: as in
+    `layer_image`.
     """
 
-    def __init__(self, ends, order=12, image=None):
+    def __init__(self, ends, order=12, image=None, layer=None):
         x, w = np.polynomial.legendre.leggauss(order)
         local, weight = (x + 1) / 2, w / 2
         ends = np.asarray(ends, float)
@@ -91,6 +142,8 @@ class HalfSpace:
         if image:
             strength, depth = image
             self.matrix += strength * ring_image(targets[:, None], self.r, depth) * self.weight
+        if layer:
+            self.matrix += layer_image(targets, self.r, layer) * self.weight
 
     def solve(self, law, s, h0, largest=0.8):
         """The gaps (axis first) at each of several H0; none falls by more than `largest` a step."""
@@ -210,20 +263,20 @@ def independent_states(law, s, h0, ends, largest=0.8):
     return carried_out({"law": law, "s": s, "h0": list(h0), "ends": list(ends), "largest": largest})
 
 
-def states_by_axis(law, s, axis, ends, image=None):
+def states_by_axis(law, s, axis, ends, image=None, layer=None):
     """H0 and loads, (two, states), at each gap on the axis."""
     return carried_out({"law": law, "s": s, "axis": list(axis), "ends": list(ends),
-                        "image": image})
+                        "image": image, "layer": layer})
 
 
-def independent_folds(law, s, axis, ends, image=None, softness=0.0, **keys):
+def independent_folds(law, s, axis, ends, image=None, softness=0.0, layer=None, **keys):
     """H0 and load, (two, folds), where H0 turns as the gap on the axis closes through `axis`.
 
     softness, in lengths over loads of the result: where H0 - softness*load turns, the position of a
     drive behind a spring.
     """
     return carried_out({"law": law, "s": s, "folds": list(axis), "ends": list(ends), "keys": keys,
-                        "image": image, "softness": softness})
+                        "image": image, "softness": softness, "layer": layer})
 
 
 def carried_out(task):
@@ -251,7 +304,7 @@ def main():
     law = {
         "exponential": exponential, "lennard_jones": lennard_jones, "barrier": behind_a_barrier,
     }.get(task["law"]) or dlvo(**task["keys"])
-    half_space = HalfSpace(task["ends"], image=task.get("image"))
+    half_space = HalfSpace(task["ends"], image=task.get("image"), layer=task.get("layer"))
     if "axis" in task:
         states = half_space.with_axis(law, task["s"], task["axis"])
         print(json.dumps([[h0, half_space.load(law, task["s"], gap)] for gap, h0 in states]))

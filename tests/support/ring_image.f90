@@ -7,8 +7,7 @@
 !> with m = 4 r t/s^2. Prints the rows of the curve, with eigenvalues for &stability, and the
 !> summary; derivatives as comments.
 module ring_image_body
-  use kinds, only: wp, pi
-  use elastic_kernel, only: image_kernel => kernel
+  use kinds, only: wp
   use elastic_body, only: elastic_body_t
   implicit none
   private
@@ -19,7 +18,8 @@ module ring_image_body
     real(wp) :: strength = 0, depth = 1
   contains
     procedure :: is_homogeneous
-    procedure :: remainder
+    procedure :: beside_half_space
+    procedure :: wave_range
   end type ring_image_t
 
 contains
@@ -30,44 +30,21 @@ contains
     is_homogeneous = .false.
   end function is_homogeneous
 
-  !> Of degree -1 in r, t and the depth b, so that growth = -kernel - b d/db kernel, and the last
-  !> is -4 b^2 E(m)/(pi s d^2), d^2 = (r - t)^2 + b^2.
-  pure subroutine remainder(self, r, t, kernel, growth)
+  pure subroutine beside_half_space(self, k, more, growth)
     class(ring_image_t), intent(in) :: self
-    real(wp), intent(in) :: r(:), t(:)
-    real(wp), intent(out) :: kernel(:, :), growth(:, :)
-    integer :: j
+    real(wp), intent(in) :: k(:)
+    real(wp), intent(out) :: more(:), growth(:)
 
-    do j = 1, size(t)
-      associate (far => sqrt((r + t(j))**2 + self%depth**2), &
-        near => sqrt((r - t(j))**2 + self%depth**2))
-        kernel(:, j) = self%strength*image_kernel(far, near)
-        growth(:, j) = -kernel(:, j) + self%strength*4/pi*self%depth**2*second_integral( &
-          near/far)/(far*near**2)
-      end associate
-    end do
-  end subroutine remainder
+    more = self%strength*exp(-self%depth*k)
+    growth = -self%depth*k*more
+  end subroutine beside_half_space
 
-  !> E(m) from sqrt(1 - m), by the arithmetic-geometric mean.
-  elemental real(wp) function second_integral(complement) result(e)
-    real(wp), intent(in) :: complement
-    real(wp) :: a, b, c, total, power
-    integer :: step
+  pure function wave_range(self) result(k)
+    class(ring_image_t), intent(in) :: self
+    real(wp) :: k(2)
 
-    a = 1
-    b = complement
-    c = sqrt((1 - b)*(1 + b))
-    power = 0.5_wp
-    total = power*c**2
-    do step = 1, 8
-      c = 0.5_wp*(a - b)
-      a = a - c
-      b = sqrt(b*(a + c))
-      power = 2*power
-      total = total + power*c**2
-    end do
-    e = (1 - total)*pi/(2*a)
-  end function second_integral
+    k = [1, 32]/self%depth
+  end function wave_range
 
 end module ring_image_body
 

@@ -1,0 +1,186 @@
+!> Bodies of bonded layers. Their surfaces yield to a wave k by L(k) of what half-spaces of the top
+!> layers do (`layered_surface`). L - 1 falls as exp(-2 k thickness) with the thickness of the top
+!> layer; it is tabulated once, as Chebyshev series on panels of k.
+module layered_body
+  use kinds, only: wp
+  use linear_algebra, only: multiply_transposed
+  use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope
+  use wave_quadrature, only: wave_rule
+  use elastic_body, only: elastic_body_t, half_space_t
+  use layered_surface, only: layered_surface_t
+  implicit none
+  private
+  public :: layered_body_t, new_layered_body
+
+  !> Largest k times twice the top layer's thickness: exp(-32) (32)^2 = 1e-11 is left of L - 1.
+  real(wp), parameter :: last_wave = 32
+  !> Degree of L - 1 on a panel of waves, what may be left of its last coefficients, and how often a
+  !> panel is halved.
+  integer, parameter :: degree = 16, halvings = 60
+  real(wp), parameter :: resolved = 1.0e-13_wp
+  !> L - 1 of both bodies together, in lateral units.
+  type, extends(elastic_body_t) :: layered_body_t
+    private
+    !> Ends of panels of k, and L - 1 and dL/dk on them as series.
+    real(wp), allocatable :: ends(:), series(:, :), slope(:, :)
+    !> L(0), of the base; infinite waves.
+    real(wp), public :: bottom = 1
+    !> The thinnest of the top layers.
+    real(wp), public :: thinnest = 1
+    !> The bodies, and the part that the half-space of the top layer of each has in what both yield.
+    type(layered_surface_t), public :: surface(2)
+    real(wp), public :: part(2) = 0.5_wp
+  contains
+    procedure :: is_homogeneous
+    procedure :: beside_half_space
+    procedure :: wave_range
+    procedure :: is_alike
+    procedure :: take_one
+    procedure :: cosine_sums
+    procedure :: yielding
+  end type layered_body_t
+
+contains
+
+  !> Bodies of these surfaces, thicknesses in lateral units.
+  type(layered_body_t) function new_layered_body(surface, part) result(body)
+    type(layered_surface_t), intent(in) :: surface(2)
+    real(wp), intent(in) :: part(2)
+    real(wp) :: last, first, series(0:degree)
+    integer :: i, halved
+
+    body%surface = surface
+    body%part = part
+    allocate (body%ends(1), body%series(0:degree, 0), body%slope(0:degree, 0))
+    body%ends = 0
+    body%thinnest = huge(last)
+    do i = 1, 2
+      if (size(surface(i)%thickness) > 0) &
+        body%thinnest = min(body%thinnest, surface(i)%thickness(1))
+    end do
+    last = last_wave/(2*body%thinnest)
+    do while (body%ends(size(body%ends)) < last)
+      first = body%ends(size(body%ends))
+      do halved = 0, halvings
+        series = series_on(first, first + (last - first)/2**halved)
+        if (maxval(abs(series(degree - 1:))) <= resolved*max(1.0_wp, maxval(abs(series)))) exit
+      end do
+      body%ends = [body%ends, merge(last, first + (last - first)/2**halved, halved == 0)]
+      body%series = reshape([body%series, series], [degree + 1, size(body%ends) - 1])
+      body%slope = reshape([body%slope, series_slope(series)*2/ &
+        (body%ends(size(body%ends)) - first)], [degree + 1, size(body%ends) - 1])
+    end do
+    body%bottom = 1 + series_value(body%series(:, 1), -1.0_wp)
+
+  contains
+
+    !> L - 1 on a panel.
+    function series_on(from, to) result(coefficient)
+      real(wp), intent(in) :: from, to
+      real(wp) :: coefficient(0:degree), k(0:degree)
+      integer :: j
+
+      k = from + (to - from)*(1 + chebyshev_points(degree))/2
+      coefficient = chebyshev_series([(body%yielding(max(k(j), tiny(last))) - 1, j=0, degree)])
+    end function series_on
+
+  end function new_layered_body
+
+  !> L at a wave number.
+  pure real(wp) function yielding(self, k)
+    class(layered_body_t), intent(in) :: self
+    real(wp), intent(in) :: k
+    integer :: i
+
+    yielding = 0
+    do i = 1, 2
+      if (self%part(i) > 0) yielding = yielding + self%part(i)*self%surface(i)%yielding(k)
+    end do
+  end function yielding
+
+  pure logical function is_homogeneous(self)
+    class(layered_body_t), intent(in) :: self
+
+    is_homogeneous = .false.
+  end function is_homogeneous
+
+  !> Whether both have the same layers on the same base.
+  pure logical function is_alike(self)
+    class(layered_body_t), intent(in) :: self
+
+    associate (a => self%surface(1), b => self%surface(2))
+      is_alike = size(a%thickness) == size(b%thickness) .and. (a%on_rigid .eqv. b%on_rigid)
+      if (.not. is_alike) return
+      is_alike = a%on_rigid .or. .not. (abs(a%base_shear - b%base_shear) > 0 .or. &
+        abs(a%base_poisson - b%base_poisson) > 0)
+    end associate
+  end function is_alike
+
+  subroutine take_one(self, which, one)
+    class(layered_body_t), intent(in) :: self
+    integer, intent(in) :: which
+    class(elastic_body_t), allocatable, intent(out) :: one
+
+    if (size(self%surface(which)%thickness) == 0) then
+      allocate (half_space_t :: one)
+    else
+      allocate (one, source=new_layered_body(spread(self%surface(which), 1, 2), [1.0_wp, 0.0_wp]))
+    end if
+  end subroutine take_one
+
+  !> The series of the panels in which the wave numbers lie; nothing beyond.
+  pure subroutine beside_half_space(self, k, more, growth)
+    class(layered_body_t), intent(in) :: self
+    real(wp), intent(in) :: k(:)
+    real(wp), intent(out) :: more(:), growth(:)
+    real(wp) :: x
+    integer :: panel, i
+
+    panel = 1
+    do i = 1, size(k)
+      more(i) = 0
+      growth(i) = 0
+      if (k(i) > self%ends(size(self%ends))) cycle
+      ! Wave numbers mostly come in order.
+      if (k(i) < self%ends(panel)) panel = 1
+      do while (k(i) > self%ends(panel + 1))
+        panel = panel + 1
+      end do
+      x = 2*(k(i) - self%ends(panel))/(self%ends(panel + 1) - self%ends(panel)) - 1
+      more(i) = series_value(self%series(:, panel), x)
+      growth(i) = k(i)*series_value(self%slope(:, panel), x)
+    end do
+  end subroutine beside_half_space
+
+  pure function wave_range(self) result(k)
+    class(layered_body_t), intent(in) :: self
+    real(wp) :: k(2)
+
+    k = [self%ends(2), self%ends(size(self%ends))]
+  end function wave_range
+
+  !> sums(i, j) = 2 Int (L - 1) cos(k x(i)) cos(k y(j)) dk.
+  subroutine cosine_sums(self, x, y, sums)
+    class(layered_body_t), intent(in) :: self
+    real(wp), intent(in) :: x(:), y(:)
+    real(wp), intent(out) :: sums(:, :)
+    real(wp), allocatable :: k(:), weight(:), more(:), growth(:), left(:, :), right(:, :)
+    real(wp) :: range(2)
+    integer :: j
+
+    range = self%wave_range()
+    call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], 0.0_wp, range(1), range(2), k, &
+      weight)
+    allocate (more, growth, mold=k)
+    call self%beside_half_space(k, more, growth)
+    allocate (left(size(k), size(x)), right(size(k), size(y)))
+    do j = 1, size(x)
+      left(:, j) = cos(k*x(j))
+    end do
+    do j = 1, size(y)
+      right(:, j) = 2*weight*more*cos(k*y(j))
+    end do
+    call multiply_transposed(left, right, sums)
+  end subroutine cosine_sums
+
+end module layered_body

@@ -1,0 +1,157 @@
+!> &layer: layers bonded to one of the bodies of &bodies, or to both.
+module layer_group
+  use kinds, only: wp
+  use failure, only: failure_t
+  use text, only: brief
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, list_key, word_key
+  use layered_surface, only: layered_surface_t
+  use scene_groups, only: scene_t, bodies_t
+  implicit none
+  private
+  public :: layer_keys, layer_bears_all, take_layer
+
+contains
+
+  !> Its rows of the table.
+  pure function layer_keys() result(specs)
+    type(key_spec), allocatable :: specs(:)
+    integer, parameter :: most = 20
+
+    specs = [ &
+      group('layer', 'Layers bonded to a body, from the top down; &bodies has what they are on.'), &
+      list_key('layer', 'thickness', 'm', 'Thickness of each layer.', most=most, above=0.0_wp, &
+               required=.true.), &
+      list_key('layer', 'young', 'Pa', 'Young''s modulus of each layer.', most=most, above=0.0_wp, &
+               required=.true.), &
+      list_key('layer', 'poisson', '', 'Poisson''s ratio of each layer; 0.5: incompressible.', &
+               most=most, above=-1.0_wp, high=0.5_wp, required=.true.), &
+      word_key('layer', 'body', '1 2 both', 'The body that has the layers.', default='1'), &
+      word_key('layer', 'base', 'elastic rigid', 'What the layers are on: the half-space of ' // &
+               '&bodies or something rigid.', otherwise='elastic, or as &bodies rigid'), &
+      word_key('layer', 'partner', 'elastic rigid', 'The body without layers.', &
+               otherwise='elastic, or as &bodies rigid')]
+  end function layer_keys
+
+  !> Whether nothing deforms but layers, so that &bodies need not say how.
+  logical function layer_bears_all(deck)
+    type(deck_t), intent(in) :: deck
+
+    layer_bears_all = .false.
+    if (.not. deck%has_group('layer') .or. word_of('base') /= 'rigid') return
+    layer_bears_all = word_of('body') == 'both' .or. word_of('partner') == 'rigid'
+
+  contains
+
+    function word_of(key) result(word)
+      character(len=*), intent(in) :: key
+      character(len=:), allocatable :: word
+
+      call deck%get('layer', key, word)
+    end function word_of
+
+  end function layer_bears_all
+
+  !> &layer, after &bodies: the surfaces, and the stiffness that both bodies have by their top
+  !> layers.
+  subroutine take_layer(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    type(layered_surface_t) :: coat
+    real(wp), allocatable :: young(:)
+    real(wp) :: compliance(2)
+    character(len=:), allocatable :: body, partner
+    logical :: has_coat(2)
+    integer :: i
+
+    if (.not. scene%deck%has_group('layer') .or. allocated(error)) return
+    associate (deck => scene%deck, bodies => scene%bodies)
+      call deck%assume('layer', 'base', trim(merge('rigid  ', 'elastic', bodies%rigid)))
+      call deck%assume('layer', 'partner', trim(merge('rigid  ', 'elastic', bodies%rigid)))
+      call deck%get('layer', 'body', body)
+      call deck%get('layer', 'partner', partner)
+      call check_layers(scene, error)
+      if (allocated(error)) return
+      call deck%get('layer', 'thickness', coat%thickness)
+      call deck%get('layer', 'young', young)
+      call deck%get('layer', 'poisson', coat%poisson)
+      coat%shear = young/(2*(1 + coat%poisson))
+      coat%on_rigid = word_is(scene, 'base', 'rigid')
+      has_coat = [body /= '2', body /= '1']
+      allocate (bodies%surface(2))
+      do i = 1, 2
+        if (has_coat(i)) then
+          compliance(i) = (1 - coat%poisson(1))*(1 + coat%poisson(1))/young(1)
+          if (.not. coat%on_rigid) then
+            coat%base_shear = bodies%young(i)/(2*(1 + bodies%poisson(i)))
+            coat%base_poisson = bodies%poisson(i)
+          end if
+          bodies%surface(i) = coat
+        else
+          allocate (bodies%surface(i)%thickness(0))
+          compliance(i) = 0
+          if (partner == 'elastic') compliance(i) = compliance_of(bodies, i)
+        end if
+      end do
+      bodies%stiffness = 2/sum(compliance)
+      bodies%share = compliance*bodies%stiffness
+      bodies%rigid = .false.
+    end associate
+  end subroutine take_layer
+
+  !> (1-nu^2)/E of a body of &bodies.
+  pure real(wp) function compliance_of(bodies, i)
+    type(bodies_t), intent(in) :: bodies
+    integer, intent(in) :: i
+
+    compliance_of = 1/bodies%stiffness
+    if (allocated(bodies%young)) compliance_of = &
+      (1 - bodies%poisson(i))*(1 + bodies%poisson(i))/bodies%young(i)
+  end function compliance_of
+
+  !> Keys that contradict each other or &bodies.
+  subroutine check_layers(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: thickness(:), young(:), poisson(:)
+
+    associate (deck => scene%deck, bodies => scene%bodies)
+      call deck%get('layer', 'thickness', thickness)
+      call deck%get('layer', 'young', young)
+      call deck%get('layer', 'poisson', poisson)
+      if (size(young) /= size(thickness)) call deck%mistake('layer', 'young', &
+        brief(real(size(young), wp)) // ' for ' // brief(real(size(thickness), wp)) // &
+        ' layers; give one value for each thickness, from the top down', error)
+      if (size(poisson) /= size(thickness)) call deck%mistake('layer', 'poisson', &
+        brief(real(size(poisson), wp)) // ' for ' // brief(real(size(thickness), wp)) // &
+        ' layers; give one value for each thickness, from the top down', error)
+      if (word_is(scene, 'base', 'elastic')) then
+        if (bodies%rigid) then
+          call deck%mistake('layer', 'base', 'the bodies are rigid; give base = ''rigid'', or ' // &
+            'young and poisson in &bodies', error)
+        else if (.not. allocated(bodies%young)) then
+          call deck%mistake('bodies', 'stiffness', 'what layers are on has to be known by ' // &
+            'itself; give young and poisson here, or base = ''rigid'' in &layer', error)
+        end if
+      end if
+      if (word_is(scene, 'body', 'both')) then
+        if (deck%is_set('layer', 'partner')) call deck%mistake('layer', 'partner', &
+          'both bodies have layers; leave it out', error)
+      else if (bodies%rigid .and. word_is(scene, 'partner', 'elastic')) then
+        call deck%mistake('layer', 'partner', 'the bodies are rigid; leave it out, or give ' // &
+          'how they deform in &bodies', error)
+      end if
+    end associate
+  end subroutine check_layers
+
+  !> Whether a key of the group has this value.
+  pure logical function word_is(scene, key, word)
+    type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: key, word
+    character(len=:), allocatable :: held
+
+    call scene%deck%get('layer', key, held)
+    word_is = held == word
+  end function word_is
+
+end module layer_group

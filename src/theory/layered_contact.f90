@@ -1,0 +1,214 @@
+!> Contact of layered bodies: Hertz's theory without adhesion, and that of Johnson, Kendall and
+!> Roberts with it, of any convex shape. In the units of `dimensionless_problem`, with q of the
+!> shape (`shape`) and L of the bodies (`layered_body`), a function phi on the radius of the
+!> contact obeys
+!>
+!>     phi(y) + Int_0^a M(x, y) phi(x) dx = delta - q(y),  F = (1/coupling) Int_0^a phi dx ,
+!>     M(x, y) = (2/pi) Int_0^inf (L(k) - 1) cos(k x) cos(k y) dk ,
+!>
+!> with phi(a) = 0 for Hertz and -sqrt(4 pi sigma a) for JKR, sigma = coupling*work. Both follow
+!> from two solutions of one linear system. As functions of ln a they become Chebyshev series.
+module layered_contact
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: wp, pi
+  use chebyshev, only: chebyshev_points, chebyshev_series, series_value
+  use quadrature, only: gauss_legendre
+  use linear_algebra, only: factorisation_t, factorise, solve
+  use root_finding, only: bracket_t
+  use dimensionless_problem, only: problem_t
+  use layered_body, only: layered_body_t
+  implicit none
+  private
+  public :: layered_contact_t, new_layered_contact, contact_at, hertz, jkr
+
+  !> The theories, and what is known of a contact.
+  integer, parameter :: hertz = 1, jkr = 2
+  !> Degree of the series, and the ratio of the radii that they span below that of no displacement.
+  integer, parameter :: degree = 80
+  real(wp), parameter :: span = 100
+  !> A minimum this near the end of the span is none.
+  real(wp), parameter :: inside = 0.97_wp
+  !> Nodes of the system: at least, and for each thickness of the thinnest top layer in the radius;
+  !> as many thicknesses as the radius may have.
+  integer, parameter :: fewest = 32, a_thickness = 4, widest = 40
+  !> Radii that are looked at, and golden sections about the best.
+  integer, parameter :: looks = 400, sections = 50
+
+  !> Displacement over a^2 and load over a^3 between two radii, as series in ln a; (degree, theory).
+  type :: layered_contact_t
+    real(wp) :: first = 1, last = 1
+    real(wp) :: displacement_series(0:degree, 2) = 0, load_series(0:degree, 2) = 0
+  contains
+    procedure :: displacement
+    procedure :: load
+    procedure :: radius_at
+    procedure :: pull_off
+  end type layered_contact_t
+
+contains
+
+  !> Contacts up to a displacement, or to `widest`. A `work` of the law that is negative counts as
+  !> none.
+  function new_layered_contact(problem, body, largest) result(contact)
+    type(problem_t), intent(in) :: problem
+    type(layered_body_t), intent(in) :: body
+    real(wp), intent(in) :: largest
+    type(layered_contact_t) :: contact
+    real(wp) :: delta(2), force(2), a(0:degree), values(0:degree, 4)
+    integer :: i
+
+    contact%last = min(1.0_wp, widest*body%thinnest)
+    do
+      call contact_at(problem, body, contact%last, delta, force)
+      if (delta(jkr) > max(0.0_wp, largest) .and. force(jkr) > 0) exit
+      if (.not. contact%last < widest*body%thinnest) exit
+      contact%last = min(2*contact%last, widest*body%thinnest)
+    end do
+    contact%first = contact%last
+    do
+      call contact_at(problem, body, contact%first/2, delta, force)
+      if (.not. delta(jkr) > 0 .or. contact%first < contact%last/span) exit
+      contact%first = contact%first/2
+    end do
+    contact%first = contact%first/span
+    a = contact%first*(contact%last/contact%first)**((1 + chebyshev_points(degree))/2)
+    do i = 0, degree
+      call contact_at(problem, body, a(i), delta, force)
+      values(i, :) = [delta/a(i)**2, force/a(i)**3]
+    end do
+    do i = 1, 2
+      contact%displacement_series(:, i) = chebyshev_series(values(:, i))
+      contact%load_series(:, i) = chebyshev_series(values(:, 2 + i))
+    end do
+  end function new_layered_contact
+
+  !> Displacements and loads of both theories at a contact radius.
+  subroutine contact_at(problem, body, a, delta, force)
+    type(problem_t), intent(in) :: problem
+    type(layered_body_t), intent(in) :: body
+    real(wp), intent(in) :: a
+    real(wp), intent(out) :: delta(2), force(2)
+    real(wp), allocatable :: x(:), w(:), sums(:, :), of_one(:), of_shape(:)
+    type(factorisation_t) :: factors
+    real(wp) :: at_edge(2)
+    integer :: n, j
+
+    n = fewest + ceiling(a_thickness*a/body%thinnest)
+    allocate (x(n), w(n), sums(n + 1, n))
+    call gauss_legendre(x, w)
+    x = a*x
+    w = a*w
+    ! The last row is the edge.
+    call body%cosine_sums([x, a], x, sums)
+    sums = sums/pi
+    do j = 1, n
+      sums(:, j) = sums(:, j)*w(j)
+    end do
+    factors%lu = sums(:n, :)
+    do j = 1, n
+      factors%lu(j, j) = factors%lu(j, j) + 1
+    end do
+    call factorise(factors)
+    of_one = spread(1.0_wp, 1, n)
+    of_shape = problem%shape%indentation(x)
+    call solve(factors, of_one)
+    call solve(factors, of_shape)
+    at_edge = [1 - dot_product(sums(n + 1, :), of_one), &
+      problem%shape%indentation(a) - dot_product(sums(n + 1, :), of_shape)]
+    delta(hertz) = at_edge(2)/at_edge(1)
+    delta(jkr) = (at_edge(2) - sqrt(4*pi*problem%coupling*max(0.0_wp, problem%law%work)*a))/ &
+      at_edge(1)
+    force = (delta*dot_product(w, of_one) - dot_product(w, of_shape))/problem%coupling
+  end subroutine contact_at
+
+  !> Displacement at a contact radius within the span.
+  pure real(wp) function displacement(self, theory, a)
+    class(layered_contact_t), intent(in) :: self
+    integer, intent(in) :: theory
+    real(wp), intent(in) :: a
+
+    displacement = a**2*series_value(self%displacement_series(:, theory), place(self, a))
+  end function displacement
+
+  !> Load at a contact radius within the span.
+  pure real(wp) function load(self, theory, a)
+    class(layered_contact_t), intent(in) :: self
+    integer, intent(in) :: theory
+    real(wp), intent(in) :: a
+
+    load = a**3*series_value(self%load_series(:, theory), place(self, a))
+  end function load
+
+  !> Where ln a lies in the span, from -1 to 1.
+  pure real(wp) function place(self, a)
+    type(layered_contact_t), intent(in) :: self
+    real(wp), intent(in) :: a
+
+    place = 2*log(a/self%first)/log(self%last/self%first) - 1
+  end function place
+
+  !> Contact radius of the state that is stable at a displacement; NaN where there is none or it is
+  !> outside the span.
+  pure real(wp) function radius_at(self, theory, delta) result(a)
+    class(layered_contact_t), intent(in) :: self
+    integer, intent(in) :: theory
+    real(wp), intent(in) :: delta
+    type(bracket_t) :: bracket
+
+    bracket = bracket_t(self%first, self%last)
+    if (theory == jkr) bracket%low = least(self, .true.)
+    if (self%displacement(theory, bracket%low) > delta .or. &
+      self%displacement(theory, bracket%high) < delta) then
+      a = ieee_value(a, ieee_quiet_nan)
+      return
+    end if
+    do while (bracket%is_open())
+      call bracket%narrow(self%displacement(theory, bracket%middle()) < delta)
+    end do
+    a = bracket%middle()
+  end function radius_at
+
+  !> The least load of JKR theory, negative; NaN where it lies beyond the span.
+  pure real(wp) function pull_off(self)
+    class(layered_contact_t), intent(in) :: self
+    real(wp) :: a
+
+    a = least(self, .false.)
+    pull_off = ieee_value(a, ieee_quiet_nan)
+    if (a < inside*self%last) pull_off = self%load(jkr, a)
+  end function pull_off
+
+  !> Contact radius of the least displacement, or load, of JKR theory. On layers there may be
+  !> several minima, so that all radii are looked at before golden sections.
+  pure real(wp) function least(self, of_displacement) result(a)
+    type(layered_contact_t), intent(in) :: self
+    logical, intent(in) :: of_displacement
+    type(bracket_t) :: bracket
+    real(wp) :: places(0:looks)
+    integer :: i, lowest
+
+    places = [(log(self%first) + log(self%last/self%first)*i/looks, i=0, looks)]
+    lowest = minloc([(value(places(i)), i=0, looks)], 1) - 1
+    bracket = bracket_t(places(max(0, lowest - 1)), places(min(looks, lowest + 1)))
+    do i = 1, sections
+      associate (points => bracket%golden_points())
+        call bracket%keep_larger([-value(points(1)), -value(points(2))])
+      end associate
+    end do
+    a = exp(bracket%middle())
+
+  contains
+
+    pure real(wp) function value(place)
+      real(wp), intent(in) :: place
+
+      if (of_displacement) then
+        value = self%displacement(jkr, exp(place))
+      else
+        value = self%load(jkr, exp(place))
+      end if
+    end function value
+
+  end function least
+
+end module layered_contact

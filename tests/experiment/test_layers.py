@@ -1,0 +1,156 @@
+"""Claims about bodies with layers: what a half-space has they have too, and it agrees with dense
+states that share nothing with the program, with limits, and with layers put differently."""
+
+import math
+
+import numpy as np
+import pytest
+from support.half_space import independent_folds, states_by_axis
+from support.scenes import deck, loading, runner
+
+CLOSE = [*np.linspace(2.8, 1.1, 18), *np.linspace(1.09, 0.98, 16)]
+FAR = np.linspace(12, 3, 12)
+ENDS = [*np.arange(0, 3.6, 0.15), 3.8, 4.4, *np.geomspace(6, 150, 7)]
+
+# Thickness, shear modulus over that of the base (0: rigid), Poisson's ratios, part in the yield.
+FILM = (2.5, 0.0, 0.5, 0.0, 1.0)
+COAT = (0.8, 2.0, 0.3, 0.45, 1.0)
+SOFT = (1.0, 0.2, 0.45, 0.2, 0.5)
+SCENES = {"film": FILM, "coat": COAT, "soft": SOFT}
+
+
+def layered(layer, sigma=1.0, pieces=1, accuracy=1e-8, **groups):
+    """A deck in units of z0 and of the stiffness that the bodies have by their top layers."""
+    thickness, ratio, nu, base, part = layer
+    # E/(1-nu^2) such that the mean compliance is one; the bodies that are alike have half each.
+    young = part * (1 - nu**2) / 2 if part == 1 else 1 - nu**2
+    keys = {"thickness": [thickness / pieces] * pieces, "young": [young] * pieces,
+            "poisson": [nu] * pieces, "body": "1"}
+    bodies = {"radius": 1.0}
+    if ratio:
+        bodies |= {"young": young / (1 + nu) * (1 + base) / ratio, "poisson": base}
+        if part == 1:
+            keys["partner"] = "rigid"
+        else:
+            # The other body has the compliance of this one's layer.
+            bodies["young"] = [bodies["young"], 1 - base**2]
+    else:
+        bodies["rigid"] = True
+    return deck(bodies=bodies, layer=keys,
+                force={"law": "lennard_jones", "hamaker": 16 * math.pi * sigma, "z0": 1.0},
+                numerics={"accuracy": accuracy}, **groups)
+
+
+PATH = {"h0_end": -1.0}
+
+
+@pytest.fixture(scope="module")
+def solve(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("layers"))
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_folds_and_states_are_those_of_independent_states(solve, scene):
+    layer, axis = SCENES[scene], [*FAR, *CLOSE]
+    h0, load = states_by_axis("lennard_jones", 1.0, axis, ENDS, layer=layer)
+    last = h0[-1]
+    run = solve(layered(layer, equilibrium_path={"h0_end": float(last)}))
+    assert run.summary["end_load"] == pytest.approx(load[-1], rel=1e-7)
+    if scene != "film":
+        return
+    h0, load = independent_folds("lennard_jones", 1.0, axis, ENDS, layer=layer)
+    found = run.summary
+    assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-7)
+    # Beside a fold the load goes with the root of an error in H0.
+    assert [found["jump_in_load"], found["jump_out_load"]] == pytest.approx(load, rel=1e-6)
+
+
+def test_equal_moduli_are_a_half_space(solve):
+    plain = solve(deck(bodies={"radius": 1.0, "young": 0.91, "poisson": 0.3},
+                        force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
+                        equilibrium_path=PATH)).summary
+    same = solve(deck(bodies={"radius": 1.0, "young": 0.91, "poisson": 0.3},
+                       layer={"thickness": 1.0, "young": 0.91, "poisson": 0.3, "body": "both"},
+                       force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
+                       equilibrium_path=PATH)).summary
+    for key in ("max_tension", "jump_in_h0", "jump_out_load", "end_load"):
+        assert same[key] == pytest.approx(plain[key], rel=1e-10)
+    assert same["top_modulus"] == pytest.approx(same["bottom_modulus"], rel=1e-14)
+
+
+def test_two_layers_of_one_material_are_one(solve):
+    one, two = (solve(layered(COAT, pieces=n, accuracy=1e-6, equilibrium_path=PATH)).summary
+                for n in (1, 2))
+    for key in ("max_tension", "jump_in_h0", "jump_out_load", "end_load"):
+        assert two[key] == pytest.approx(one[key], rel=1e-9)
+
+
+def test_a_thick_layer_is_its_half_space_and_a_thin_one_nothing(solve):
+    half = solve(deck(bodies={"radius": 1.0, "stiffness": 1.0},
+                       force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
+                       equilibrium_path=PATH)).summary
+    apart = []
+    for thickness in (300.0, 3000.0):
+        thick = solve(layered((thickness, *COAT[1:]), accuracy=1e-6,
+                               equilibrium_path=PATH)).summary
+        apart.append(abs(thick["max_tension"] / half["max_tension"] - 1))
+    # The base moves as one under the load, which shifts h0 and not the pull-off; the rest falls as
+    # the cube of contact radius over thickness.
+    assert apart[0] < 1e-4 and apart[1] < 1e-6
+
+
+def test_a_cycle_and_a_spring_are_read_from_the_same_states(solve):
+    run = solve(layered(COAT, accuracy=1e-6, loading=loading(6, -1, 0.25), unloading={},
+                         equilibrium_path=PATH, device={"stiffness": [0.0, 5.0]},
+                         fixed_load={"load": [-3.0]}, stability={}))
+    found = run.summary
+    assert run.status == 0 and found["converged"]
+    cycle, path = run.table("curve.csv").rows("unloading_1"), run.table("curve.csv").rows("path")
+    assert found["unload_max_tension"] == pytest.approx(found["max_tension"], rel=1e-9)
+    # Under a dead load the bodies part at the largest tension.
+    assert found["device_jump_out_load"][0] == pytest.approx(-found["max_tension"], rel=1e-7)
+    deepest = path["h0"].argmin()
+    assert cycle["load"][0] == pytest.approx(path["load"][deepest], rel=1e-7)
+
+
+def test_derivatives_are_differences_of_runs(solve):
+    step, layer = 1e-3, np.array(COAT)
+    factors = np.array([1 - step, 1.0, 1 + step])
+    runs = []
+    for factor in factors:
+        changed = layer.copy()
+        changed[0] *= factor
+        runs.append(solve(layered(tuple(changed.tolist()), equilibrium_path=PATH, sensitivity={
+            "parameters": ["layer.thickness", "layer.young"]})))
+    rates = runs[1].table("sensitivity.csv")
+    mine = rates["parameter"] == "layer.thickness"
+    for key in ("max_tension", "max_tension_h0"):
+        difference = (runs[2].summary[key] - runs[0].summary[key]) / (2 * step * COAT[0])
+        row = mine & (rates["quantity"] == key)
+        assert rates["derivative"][row][0] == pytest.approx(difference, rel=1e-5)
+
+
+def test_deformations_of_both_surfaces_add_up(solve):
+    run = solve(layered(SOFT, accuracy=1e-6, equilibrium_path=PATH, profiles={"h0": -0.5}))
+    rows = run.table("profiles.csv")
+    total = rows["deformation_1"] + rows["deformation_2"]
+    assert total == pytest.approx(2 * rows["deformation"], rel=1e-9, abs=1e-10)
+    # Far from the contact the layer on its stiffer base moves by less than the half-space.
+    far = rows["r"] > 20
+    assert (abs(rows["deformation_1"][far]) < abs(rows["deformation_2"][far])).all()
+    # There each is a point load's, 2 F/(2 pi E' r) with E' of the base and of the half-space.
+    base = 0.2 * (1 - 0.2) / (1 - 0.45)  # E'(layer)/E'(base)
+    ratio = rows["deformation_1"][far] / rows["deformation_2"][far]
+    assert ratio[rows["r"][far] > 60] == pytest.approx(base, rel=0.02)
+
+
+def warnings(run):
+    found = run.summary.get("warnings", [])
+    return [found] if isinstance(found, str) else found
+
+
+def test_what_is_beyond_the_model_is_said(solve):
+    thin = solve(layered((0.5, *FILM[1:]), accuracy=1e-4, equilibrium_path=PATH))
+    assert any("thinner than the range of the force" in text for text in warnings(thin))
+    thick = solve(layered((50.0, *COAT[1:]), accuracy=1e-4, equilibrium_path=PATH))
+    assert not any("layer" in text for text in warnings(thick))

@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Renew the table of indentation of layers and the pictures of docs/layers.md: half a minute.
+
+    .venv/bin/python tools/layers.py
+"""
+
+import math
+import os
+import sys
+import warnings
+
+# Before anything loads OpenMP.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import pages  # noqa: E402
+
+sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap")]
+
+import matplotlib  # noqa: E402
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+import snapin  # noqa: E402
+
+TABLE = pages.ROOT / "docs" / "layers_indentation.csv"
+PICTURE = pages.ROOT / "docs" / "layers.png"
+CHI = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0]
+# Films on something rigid by their Poisson's ratio; incompressible films on bases of Poisson's ratio
+# 0.5 by the ratio of moduli, film over base.
+BONDED = [0.3, 0.4, 0.45, 0.49, 0.5]
+ON_ELASTIC = [0.01, 0.1, 0.5, 2.0, 10.0, 100.0]
+SIGMA = 25.0
+# In these units R is as short as the range of the force.
+warnings.simplefilter("ignore", snapin.SnapinWarning)
+
+
+def film(thickness, nu, ratio, sigma, h0_end):
+    """The summary of theory for a film under something rigid, in units of z0 and of its modulus;
+    ratio: of the shear moduli, film over base, 0 for a rigid base."""
+    young = (1 - nu**2) / 2
+    bodies = {"radius": 1.0, "rigid": True}
+    if ratio:
+        bodies = {"radius": 1.0, "young": young / (1 + nu) * 1.5 / ratio, "poisson": 0.5}
+    return snapin.run({
+        "bodies": bodies,
+        "layer": {"thickness": thickness, "young": young, "poisson": nu, "partner": "rigid"},
+        "force": {"law": "lennard_jones", "surface_energy": sigma, "z0": 1.0},
+        "classical": {"h0_start": 20.0, "h0_end": h0_end, "count": 2}}).summary
+
+
+def over_hertz(chi, nu, ratio):
+    """Load over Hertz's at the same indentation, chi = sqrt(R delta)/thickness."""
+    found = film(1 / chi, nu, ratio, 1.0, -1.0)
+    return found["effective_modulus"] / found["top_modulus"]
+
+
+def dimitriadis(chi):
+    """Of incompressible films: Dimitriadis et al. (2002), as the formula is quoted."""
+    return 1 + 1.133 * chi + 1.283 * chi**2 + 0.769 * chi**3 + 0.0975 * chi**4
+
+
+def garcia(chi):
+    """The same of Garcia and Garcia (2018)."""
+    return 1 + 1.133 * chi + 1.497 * chi**2 + 1.469 * chi**3 + 0.755 * chi**4
+
+
+def write_table():
+    """Write the table and return it, a column a film."""
+    columns = {"chi": CHI}
+    columns |= {f"rigid_base_nu_{nu:g}": [over_hertz(chi, nu, 0) for chi in CHI] for nu in BONDED}
+    columns["dimitriadis_2002_nu_0.5"] = [dimitriadis(chi) for chi in CHI]
+    columns["garcia_2018_nu_0.5"] = [garcia(chi) for chi in CHI]
+    columns |= {f"film_over_base_{ratio:g}": [over_hertz(chi, 0.5, ratio) for chi in CHI]
+                for ratio in ON_ELASTIC}
+    lines = ["# Load over Hertz's load on a half-space of the film, at the same indentation delta.",
+             "# chi = sqrt(R delta)/thickness; sphere rigid, parabola; film bonded, no adhesion.",
+             "# film_over_base: ratio of moduli, film and base incompressible.",
+             ",".join(columns)]
+    lines += [",".join(f"{value:.6g}" for value in row) for row in zip(*columns.values())]
+    TABLE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return {name: np.array(column) for name, column in columns.items()}
+
+
+def draw(table):
+    """Draw load over Hertz's, and pull-off against thickness."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
+    for nu in BONDED:
+        left.plot(CHI, table[f"rigid_base_nu_{nu:g}"], label=f"rigid base, ν = {nu:g}")
+    left.plot(CHI, table["dimitriadis_2002_nu_0.5"], "k--", label="Dimitriadis 2002, ν = 0.5")
+    left.plot(CHI, table["garcia_2018_nu_0.5"], "k:", label="García 2018, ν = 0.5")
+    left.set(xlabel="χ = √(Rδ)/t", ylabel="load over Hertz's of the film", yscale="log",
+             xlim=(0, 2), ylim=(1, 40))
+    left.legend(fontsize=8)
+    contact = (9 * math.pi * SIGMA) ** (1 / 3)
+    parts = np.geomspace(0.1, 10, 40)
+    for ratio in (0, 0.2, 1, 5):
+        pull = [film(part * contact, 0.5, ratio, SIGMA, -2.0)["jkr_pull_off"]
+                / (math.pi * SIGMA) for part in parts]
+        label = f"film {ratio:g} times its base" if ratio else "rigid base"
+        right.plot(parts, pull, label=label)
+    right.set(xlabel="t/a₀", ylabel="JKR pull-off over πwR", xscale="log", ylim=(0.9, 2.5))
+    right.legend(fontsize=8, title="modulus, ν = 0.5")
+    figure.savefig(PICTURE, dpi=90)
+
+
+if __name__ == "__main__":
+    draw(write_table())
