@@ -14,7 +14,7 @@ import numpy as np
 from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, run, title_of
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.tri import Triangulation
 from snapin.results import ResultsError, read_summary, read_table
 
@@ -74,11 +74,13 @@ def _draw_colours(figure, axes, places, values, good, label):
                              rasterized=True)
     low, high = values[good].min(), values[good].max()
     if high > low:
-        levels = (np.geomspace if norm else np.linspace)(low, high, 9)[1:-1]
+        levels = LogLocator(subs=(1, 2, 5)) if norm else MaxNLocator(8)
+        levels = levels.tick_values(low, high)
         lines = axes.tricontour(mesh, values[good], levels=levels, colors="white", linewidths=0.7)
-        axes.clabel(lines, fmt="%.2g", fontsize=7)
     axes.plot(x[~good], y[~good], "x", color=VERMILION, markersize=4)
-    figure.colorbar(colours, ax=axes, label=label)
+    bar = figure.colorbar(colours, ax=axes, label=label)
+    if high > low:
+        bar.add_lines(lines)
 
 
 def _as_drawn(place, axis):

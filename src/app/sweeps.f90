@@ -185,7 +185,8 @@ contains
         if (next%number /= self%written + 1) exit
         call results%take_case(scene%sweep%names, scene%sweep%values(next%number), columns, &
           next%numbers, next%failure)
-        next = case_t()
+        next%number = 0
+        deallocate (next%numbers)
       end associate
       self%written = self%written + 1
     end do

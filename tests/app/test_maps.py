@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+from support.interrupted import Bench, frames
 from support.processes import status_and_memory
 from support.scenes import deck, loading, runner
 
@@ -66,6 +67,14 @@ def test_a_table_of_the_same_cases_gives_the_same_rows(run, folder):
 def test_two_threads_leave_the_same_bytes(run):
     one, two = (run(scene(GRID), threads=threads) for threads in (1, 2))
     assert rows_of(one) == rows_of(two)
+
+
+def test_an_interrupted_map_goes_on_to_the_same_bytes(snapin, snapin_path, tmp_path):
+    bench = Bench(snapin, snapin_path, tmp_path, scene(GRID), threads=2)
+    parts = frames(bench.journal)
+    assert len(parts) == 1 + len(CASES)
+    for count in (1, 6, len(parts)):
+        bench.check(b"".join(parts[:count]))
 
 
 def test_a_case_that_fails_is_a_row_that_says_why(run):

@@ -100,7 +100,8 @@ def test_between_start_and_end_of_a_jump_the_mean_slope_is_the_stiffness(field):
             assert rise / (start - end) == pytest.approx(stiffness, rel=1e-6)
 
 
-@pytest.mark.parametrize("fraction", [0.05, 0.3, 0.8])
+@pytest.mark.parametrize("fraction", [
+    pytest.param(0.05, marks=pytest.mark.long), pytest.param(0.3, marks=pytest.mark.long), 0.8])
 @pytest.mark.parametrize("field", FIELDS)
 def test_a_slow_cycle_jumps_there_and_never_rests_between_the_starts(field, fraction):
     force, *_ = FIELDS[field]
