@@ -2,6 +2,7 @@
 !> layers do (`layered_surface`). L - 1 falls as exp(-2 k thickness) with the thickness of the top
 !> layer; it is tabulated once, as Chebyshev series on panels of k.
 module layered_body
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use linear_algebra, only: multiply_transposed
   use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope
@@ -17,6 +18,8 @@ module layered_body
   !> Degree of L - 1 on a panel of waves, what may be left of its last coefficients, and how often a
   !> panel is halved.
   integer, parameter :: degree = 16, halvings = 60
+  !> More panels than any layers need whose numbers are not too unlike (`layer_group`).
+  integer, parameter :: most_panels = 1000
   real(wp), parameter :: resolved = 1.0e-13_wp
   !> L - 1 of both bodies together, in lateral units.
   type, extends(elastic_body_t) :: layered_body_t
@@ -59,7 +62,7 @@ contains
         body%thinnest = min(body%thinnest, surface(i)%thickness(1))
     end do
     last = last_wave/(2*body%thinnest)
-    do while (body%ends(size(body%ends)) < last)
+    do while (body%ends(size(body%ends)) < last .and. size(body%ends) < most_panels)
       first = body%ends(size(body%ends))
       do halved = 0, halvings
         series = series_on(first, first + (last - first)/2**halved)
@@ -70,6 +73,8 @@ contains
       body%slope = reshape([body%slope, series_slope(series)*2/ &
         (body%ends(size(body%ends)) - first)], [degree + 1, size(body%ends) - 1])
     end do
+    ! Without an end of the series no state may converge.
+    if (body%ends(size(body%ends)) < last) body%series = ieee_value(last, ieee_quiet_nan)
     body%bottom = 1 + series_value(body%series(:, 1), -1.0_wp)
 
   contains

@@ -11,6 +11,9 @@ module layer_group
   private
   public :: layer_keys, layer_bears_all, take_layer
 
+  !> Largest ratio of two thicknesses or moduli.
+  real(wp), parameter :: most_unlike = 1.0e9_wp
+
 contains
 
   !> Its rows of the table.
@@ -125,6 +128,11 @@ contains
       if (size(poisson) /= size(thickness)) call deck%mistake('layer', 'poisson', &
         brief(real(size(poisson), wp)) // ' for ' // brief(real(size(thickness), wp)) // &
         ' layers; give one value for each thickness, from the top down', error)
+      call check_spread(scene, 'thickness', thickness, error)
+      call check_spread(scene, 'young', young, error)
+      if (allocated(bodies%young) .and. word_is(scene, 'base', 'elastic')) &
+        call check_spread(scene, 'young', [young, bodies%young], error)
+      if (allocated(error)) return
       if (word_is(scene, 'base', 'elastic')) then
         if (bodies%rigid) then
           call deck%mistake('layer', 'base', 'the bodies are rigid; give base = ''rigid'', or ' // &
@@ -143,6 +151,19 @@ contains
       end if
     end associate
   end subroutine check_layers
+
+  !> Refuses numbers so unlike that nothing would be left of the smaller ones.
+  subroutine check_spread(scene, key, values, error)
+    type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: key
+    real(wp), intent(in) :: values(:)
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (maxval(values) > most_unlike*minval(values)) call scene%deck%mistake('layer', key, &
+      'from ' // brief(minval(values)) // ' to ' // brief(maxval(values)) // ' is more than a ' // &
+      'factor of ' // brief(most_unlike) // '; leave out what is so thin or so soft, or take ' // &
+      'for rigid what is so stiff', error)
+  end subroutine check_spread
 
   !> Whether a key of the group has this value.
   pure logical function word_is(scene, key, word)

@@ -75,6 +75,11 @@ REFUSED = {
     "layer of no thickness": (LAYERED.replace("1e-6,", "0,"), 2, "layer", "thickness", "> 0 m"),
     "layer too incompressible": (LAYERED.replace("0.5, body", "0.51, body"), 2, "layer",
                                  "poisson", "<= 0.5"),
+    # Once the table of waves had no end.
+    "layers too unlike": (LAYERED.replace("1e6, 2e6", "1e-6, 2e6"), 2, "layer", "young",
+                          "more than a factor of"),
+    "base too unlike": (LAYERED.replace("70e9", "70e-9"), 2, "layer", "young",
+                        "more than a factor of"),
     "layers without thickness": (LAYERED.replace("thickness = 1e-6, 2e-6, ", ""), 2, "layer",
                                  "thickness", "missing"),
     "fewer moduli than layers": (LAYERED.replace("1e6, 2e6", "1e6"), 2, "layer", "young",
