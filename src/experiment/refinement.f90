@@ -29,28 +29,30 @@ module refinement
 
 contains
 
-  !> The tail of a pressure, over the largest, from which on a panel is too long. The errors of load
-  !> and h0 go with its square, because the nodes integrate polynomials of twice the degree; about a
-  !> step or a kink, where coefficients fall slowly, with the tail itself.
-  pure real(wp) function unresolved_from(law, shape, accuracy) result(tail)
+  !> The tail of a pressure, over the largest, from which on a panel is too long. Errors of load and
+  !> h0 go with its square, because the nodes integrate polynomials of twice the degree; about a
+  !> step or a kink, where coefficients fall slowly, with the tail itself. compared: paths with other
+  !> numbers are compared, on meshes that may differ, and a search among them has to see less.
+  pure real(wp) function unresolved_from(law, shape, accuracy, compared) result(tail)
     class(force_law_t), intent(in) :: law
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: accuracy
+    logical, intent(in) :: compared
 
     tail = sqrt(accuracy)
-    if (law%has_kink .or. law%step_width > 0 .or. shape%smooth_from() > 0) &
+    if (compared .or. law%has_kink .or. law%step_width > 0 .or. shape%smooth_from() > 0) &
       tail = times_of_sharp*accuracy
     tail = max(tail, least)
   end function unresolved_from
 
   !> Traces the path (`know_path`), again where panels were too long; panel_tail: the largest tail
   !> that is left, but of a fall onto each other, which ends on no mesh. The paper's laws need none
-  !> of it: their meshes were fitted to their errors.
-  subroutine trace_resolved(steps, h0_high, h0_low, into_contact, closely, accuracy, listener, &
-    panel_tail)
+  !> of it: their meshes were fitted to their errors. compared: see `unresolved_from`.
+  subroutine trace_resolved(steps, h0_high, h0_low, into_contact, closely, accuracy, compared, &
+    listener, panel_tail)
     class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_high, h0_low, accuracy
-    logical, intent(in) :: into_contact, closely
+    logical, intent(in) :: into_contact, closely, compared
     class(listener_t), intent(inout) :: listener
     real(wp), intent(out) :: panel_tail
     logical :: fitted(size(steps%meshes%grid))
@@ -62,7 +64,7 @@ contains
     call steps%know_path(h0_high, h0_low, into_contact, closely, listener)
     if (steps%problem%law%of_paper) return
     fitted = .false.
-    most = unresolved_from(steps%problem%law, steps%problem%shape, accuracy)
+    most = unresolved_from(steps%problem%law, steps%problem%shape, accuracy, compared)
     do round = 0, most_rounds
       panel_tail = largest_tail(steps)
       if (.not. panel_tail > most .or. round == most_rounds) exit

@@ -81,7 +81,7 @@ contains
     call starts_like(likely_characters(curve, problem), family, curve%unknown, start)
     call fit_curve(curve, model, start, .true., allocated(fit%noise), outcome%fitted)
     outcome%resolved = model%panel_tail <= unresolved_from(problem%law, problem%shape, &
-      numerics%accuracy)
+      numerics%accuracy, .true.)
     outcome%curve = curve
     if (.not. outcome%fitted%has_curve) then
       outcome%trouble = 'with the values of the deck the path could not be solved as ' // &

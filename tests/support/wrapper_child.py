@@ -102,8 +102,8 @@ def fault(entry, name, value, clean):
         alone = clean is REFUSED and entry.kinds[name] != "paired"
         if not names_one(result, [name] if alone else entry.good, entry.kinds):
             return f"the message names no argument: {type(result).__name__}: {str(result)[:200]}"
-        if max(map(len, str(result).splitlines())) > 400:
-            return "the message has more than 400 characters in a line"
+        if max(map(len, str(result).splitlines())) > 500:
+            return "the message has more than 500 characters in a line"
         return None
     if clean is REFUSED:
         return f"was taken: {str(result)[:100]}"

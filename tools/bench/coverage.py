@@ -77,12 +77,16 @@ class Outcome:
             warnings.simplefilter("ignore", snapin.SnapinWarning)
             curve = case.curve
             file = write(f"{folder}/curve.csv", curve.z, curve.force, curve.segment, digits=6)
-            result = snapin.run(case.deck(file))
+            result, self.warnings = None, []
+            try:
+                result = snapin.run(case.deck(file))
+                self.warnings = list(result.summary.get("warnings", []))
+            except snapin.SnapinError as refused:
+                self.warnings = [str(refused)]
         self.seconds = time.perf_counter() - began
-        self.warnings = list(result.summary.get("warnings", []))
         self.off = np.full(len(case.truths), np.inf)
         self.reduced = self.noise = math.nan
-        if result.fitted:
+        if result is not None and result.fitted:
             fit = result.fitted["fit"]
             logs = np.array([1, 1, 0, 1][:len(self.off)], bool)
             estimate, error = np.array(fit["estimate"]), np.array(fit["standard_error"])
