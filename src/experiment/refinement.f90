@@ -31,7 +31,7 @@ contains
 
   !> The tail of a pressure, over the largest, from which on a panel is too long. Errors of load and
   !> h0 go with its square, because the nodes integrate polynomials of twice the degree; about a
-  !> step or a kink, where coefficients fall slowly, with the tail itself. compared: paths with other
+  !> step or a kink, where coefficients fall slowly, with the tail itself. compared: paths of other
   !> numbers are compared, on meshes that may differ, and a search among them has to see less.
   pure real(wp) function unresolved_from(law, shape, accuracy, compared) result(tail)
     class(force_law_t), intent(in) :: law

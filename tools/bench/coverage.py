@@ -107,9 +107,10 @@ class Outcome:
 
 
 def line_of(case, outcome):
+    start = " ".join(f"{x:5.2f}" for x in case.off[:len(outcome.off)])
     return (f"{case.number:5} sigma {case.true.sigma:6g} k dz/noise {case.step:6.2f} noise "
             f"{100 * case.noise:4.1f} % samples {case.samples:5} "
-            f"outliers {100 * case.outliers:2.0f} % start {' '.join(f'{x:5.2f}' for x in case.off[:len(outcome.off)])} off "
+            f"outliers {100 * case.outliers:2.0f} % start {start} off "
             f"{' '.join(f'{x:7.2f}' for x in outcome.off)} left {outcome.reduced:7.3f} noise "
             f"{outcome.noise:5.2f} {'WRONG' if outcome.found_wrong else ''} "
             f"{outcome.seconds:5.1f} s")
