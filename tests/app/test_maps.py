@@ -133,10 +133,11 @@ def test_several_at_once_are_refused_without_mpi(snapin, tmp_path, name, monkeyp
 
 @pytest.mark.alone
 def test_memory_does_not_grow_with_the_number_of_cases(snapin, snapin_path, tmp_path):
-    # What flang 22 makes of the same sources loses half a kB a case.
-    most = 1.3 if "flang" in snapin("--version").stdout else 1.1
+    # The first thousand cases touch what the program needs but once, some half a megabyte. A case's
+    # row of numbers alone has 100 bytes. What flang 22 makes of the same sources loses half a kB.
+    most = 1000 if "flang" in snapin("--version").stdout else 100
     used = []
-    for count in (10, 200):
+    for count in (50, 400):
         (tmp_path / "d.nml").write_text(scene(
             {**GRID, "count": [count, 20]}, bodies={"radius": 1e-6, "stiffness": 1e10},
             equilibrium_path=None, classical={"h0_start": 1e-9, "h0_end": 0.0, "count": 2},
@@ -144,4 +145,4 @@ def test_memory_does_not_grow_with_the_number_of_cases(snapin, snapin_path, tmp_
         status, memory = status_and_memory(snapin_path, "--quiet", "d.nml", cwd=tmp_path)
         assert status == 0
         used.append(memory)
-    assert used[1] < most * used[0]
+    assert used[1] - used[0] < most * (400 - 50) * 20
