@@ -5,7 +5,7 @@
 #   traps      the tests that go through the program, on a build that stops at the first invalid
 #              operation, overflow, index out of bounds or use of an unset real number
 #   memory     valgrind over tools/verify/decks: no leak, no use of memory that was not set
-#   coverage   which lines of src/ the tests reach; those that they do not are listed
+#   coverage   which lines of src/ the quick tests reach; those that they do not are listed
 #   levels     builds at -O0, -O2, -O3 and -march=native, 1, 2 and 4 threads, OpenBLAS's kernels for
 #              other processors: how far results differ; then the quick tests on each of these
 #              kernels and on the reference LAPACK (kinds.sh)
@@ -72,8 +72,8 @@ coverage() {
     "$python" -m pip install --quiet --disable-pip-version-check gcovr==8.3 || return
   builds build-coverage --buildtype=debug -Db_coverage=true -Dpython=enabled || return
   find build-coverage -name '*.gcda' -delete
-  SNAPIN=$top/build-coverage/snapin "$python" -m pytest -q --long \
-    -o pythonpath='pywrap build-coverage/pywrap tests'
+  SNAPIN=$top/build-coverage/snapin "$python" -m pytest -q -n auto --dist worksteal \
+    -m 'not slow and not long' -o pythonpath='pywrap build-coverage/pywrap tests'
   tested=$?
   "$python" -m gcovr -r "$top" --filter src/ --sort uncovered-percent --print-summary \
     --gcov-ignore-parse-errors=all --exclude-lines-by-pattern '\s*end module.*' \
