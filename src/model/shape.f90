@@ -11,7 +11,7 @@
 module shape
   use kinds, only: wp, pi
   use quadrature, only: gauss_legendre
-  use root_finding, only: bracket_t
+  use root_finding, only: bracket_t, root_search_t, new_root_search
   implicit none
   private
   public :: shape_t
@@ -129,20 +129,23 @@ contains
   elemental real(wp) function contact_radius(self, depth) result(a)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: depth
-    type(bracket_t) :: bracket
-    !> The estimates that it serves need no more.
-    real(wp), parameter :: close = 1.0e-12_wp
+    type(root_search_t) :: search
+    real(wp) :: high, excess
 
     a = 0
     if (.not. depth > 0) return
-    bracket = bracket_t(0.0_wp, 1.0_wp)
-    do while (self%indentation(bracket%high) < depth)
-      bracket%high = 2*bracket%high
+    high = 1
+    do
+      excess = self%indentation(high) - depth
+      if (.not. excess < 0) exit
+      high = 2*high
     end do
-    do while (bracket%is_open() .and. bracket%high - bracket%low > close*bracket%high)
-      call bracket%narrow(self%indentation(bracket%middle()) < depth)
+    search = new_root_search(0.0_wp, -depth, high, excess)
+    do while (search%is_open())
+      a = search%place()
+      call search%note(a, self%indentation(a) - depth)
     end do
-    a = bracket%middle()
+    a = search%root
   end function contact_radius
 
   !> How fast the gap outside a contact of radius a opens: with the distance s from the edge as
