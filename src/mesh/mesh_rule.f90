@@ -173,9 +173,8 @@ contains
     logical :: broken
 
     broken = problem%shape%smooth_from() > 0
-    if (side > 0) broken = broken .or. &
-      (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0) > &
-      problem%shape%ends
+    if (side > 0) broken = broken .or. end_matters(problem, digits, &
+      (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0), high)
     fewest = ceiling(short_order + short_orders*digits)
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
     associate (law => problem%law)
@@ -206,6 +205,23 @@ contains
     shape%order = [shape%order, orders]
     shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
+
+  !> Whether a mesh up to a radius holds the end of the bodies, and forces act there. contact: the
+  !> radius of a contact, 0 before; without adhesion the gap around it is the smallest.
+  pure logical function end_matters(problem, digits, radius, contact) result(matters)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: digits, radius, contact
+    real(wp) :: gap(1), pressure(2)
+
+    associate (shape => problem%shape, law => problem%law)
+      matters = radius > shape%ends
+      if (.not. (matters .and. law%edge_gap > 0 .and. contact < shape%ends)) return
+      gap = shape%height(shape%ends)
+      if (contact > 0) gap = shape%hertz_gap(contact, [shape%ends/contact])
+      pressure = abs(law%pressure([law%edge_gap, law%edge_gap + gap]))
+      matters = pressure(2)*shape%ends**2 > negligible*10.0_wp**(-digits)*pressure(1)
+    end associate
+  end function end_matters
 
   !> Halves the panel on the axis of shapes that are not smooth there. The pressure of a contact is
   !> there r^(n-1), with a logarithm if n is odd, and what the panel cannot resolve is a part

@@ -160,19 +160,22 @@ contains
 
   !> The gap outside a contact of radius a without adhesion, at x >= 1 radii from the axis,
   !> 2/pi Int_a^r [q(t) - q(a)]/sqrt(r^2 - t^2) dt; both integrals by one rule, for estimates.
-  elemental real(wp) function hertz_gap(self, a, x) result(gap)
+  pure function hertz_gap(self, a, x) result(gap)
     class(shape_t), intent(in) :: self
-    real(wp), intent(in) :: a, x
+    real(wp), intent(in) :: a, x(:)
+    real(wp) :: gap(size(x))
     integer, parameter :: nodes = 12
-    real(wp) :: node(nodes), weight(nodes), angle, of_contact
-    integer :: k
+    real(wp) :: node(nodes), weight(nodes), sines(nodes), angle(size(x)), of_contact
+    integer :: j, k
 
     call gauss_legendre(node, weight)
-    angle = acos(min(1/x, 1.0_wp))
+    sines = sin(0.5_wp*pi*node)
     of_contact = depth(a)
+    angle = acos(min(1/x, 1.0_wp))
     gap = 0
     do k = 1, nodes
-      gap = gap + 2/pi*angle*weight(k)*(depth(a*x*cos(angle*node(k))) - of_contact)
+      gap = gap + 2/pi*angle*weight(k)* &
+        ([(depth(a*x(j)*cos(angle(j)*node(k))), j=1, size(x))] - of_contact)
     end do
 
   contains
@@ -180,7 +183,7 @@ contains
     pure real(wp) function depth(r)
       real(wp), intent(in) :: r
 
-      depth = 0.5_wp*pi*r*sum(weight*self%slope(r*sin(0.5_wp*pi*node)))
+      depth = 0.5_wp*pi*r*sum(weight*self%slope(r*sines))
     end function depth
 
   end function hertz_gap
