@@ -126,8 +126,8 @@ contains
     call prepare(self%steps, problem, chosen, self%numerics%accuracy)
     if (self%steps%options%method == 'mixing') self%steps%options%method = 'anderson'
     self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits, store=self%store)
-    call trace_resolved(self%steps, high, low, .true., .true., self%numerics%accuracy, .true., &
-      silent, self%panel_tail)
+    call trace_resolved(self%steps, high, low, .true., .true., self%numerics%accuracy, silent, &
+      self%panel_tail)
     solver%options = self%steps%options
     call new_curve(self%steps%equations_t, self%steps%known, farthest_wanted(request, problem), &
       contact_level_of(problem), solver%curve, self%solved)

@@ -31,10 +31,9 @@ module mesh_rule
   real(wp), parameter :: for_others = 1.3_wp
   !> Short panels: their length in z, so many nodes, and more for each digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
-  !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0, as
-  !> it is under the paper's laws: nodes integrate polynomials of twice the degree.
-  !> Where adhesion is strong, what is far from the edge deforms the bodies more.
-  real(wp), parameter :: of_tail = 0.65_wp, more_of_strong = 0.5_wp
+  !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0:
+  !> nodes integrate polynomials of twice the degree. About a kink coefficients fall too slowly.
+  real(wp), parameter :: of_tail = 0.5_wp
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
@@ -177,15 +176,15 @@ contains
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0), high)
     fewest = ceiling(short_order + short_orders*digits)
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
+    if (.not. problem%law%has_kink) smoothness = of_tail*smoothness
     associate (law => problem%law)
       if (law%period > 0 .or. law%has_kink .or. broken .or. &
-        law%step_width > 0 .and. .not. present(seen) .or. abs(problem%shape%exponent - 2) > 0) then
+        law%step_width > 0 .and. .not. present(seen) .or. problem%shape%exponent > 2) then
         panels = ceiling(z_length/short)
         lengths = spread(z_length/panels, 1, panels)
       else
         lengths = [rung*ceiling(z_length/rung)]
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
-        smoothness = of_tail*smoothness + more_of_strong*log10(1 + adhesion_strength(problem))
       end if
       ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
       if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
@@ -225,18 +224,29 @@ contains
 
   !> Halves the panel on the axis of shapes that are not smooth there. The pressure of a contact is
   !> there r^(n-1), with a logarithm if n is odd, and what the panel cannot resolve is a part
-  !> r^(n+1) of the load: `beyond` n is 1. Before contact it is two powers more.
+  !> r^(n+1) of the load: `beyond` n is 1. Before contact it is two powers more. On a panel as long
+  !> as it is far from the axis a node makes that smaller by 3 + sqrt(8), so that every halving
+  !> needs so many nodes `fewer`. The one on the axis tells the gap there.
   pure subroutine refine_axis(problem, digits, beyond, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, beyond
+    real(wp), parameter :: fewer = log(2.0_wp)/log(3 + sqrt(8.0_wp)), least = 2
     type(mapped_shape_t), intent(inout) :: shape
-    real(wp) :: tip
+    real(wp) :: power, order
+    integer :: on_axis
 
     if (is_even(problem%shape)) return
-    tip = 10.0_wp**(-digits/(problem%shape%exponent + beyond))
-    do while (shape%z_length(1) > tip)
+    power = problem%shape%exponent + beyond
+    order = short_order + short_orders*digits
+    on_axis = ceiling(order)
+    if (shape%z_length(1) > 2*short) then
+      shape%z_length = [short, shape%z_length(1) - short, shape%z_length(2:)]
+      shape%order = [on_axis, shape%order]
+    end if
+    do while (shape%z_length(1) > 10.0_wp**(-digits/power))
       shape%z_length = [0.5_wp*shape%z_length(1), 0.5_wp*shape%z_length(1), shape%z_length(2:)]
-      shape%order = [shape%order(1), shape%order]
+      shape%order = [on_axis, ceiling(order), shape%order(2:)]
+      order = max(least, order - power*fewer)
     end do
   end subroutine refine_axis
 
