@@ -67,15 +67,15 @@ contains
       shape%height(state%scale*grid%x(grid%nodes)))
   end function gap_at_end
 
-  !> The gap of a state at a position on its mesh. Where that goes on to infinity, what the gap has
-  !> beside the shape is interpolated, which is bounded there.
+  !> The gap of a state at a position on its mesh. Where that goes on to infinity, or bodies may end
+  !> in a panel, what the gap has beside the shape is interpolated: it is bounded and smooth.
   pure real(wp) function gap_at(shape, grid, state, x) result(gap)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: x
 
-    if (grid%in_tail(x)) then
+    if (grid%in_tail(x) .or. .not. shape%parabolic) then
       gap = shape%height(state%scale*x) + &
         grid%interpolate(state%gap - shape%height(state%scale*grid%x), x)
     else

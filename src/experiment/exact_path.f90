@@ -53,7 +53,7 @@ contains
     associate (accuracy => request%numerics%accuracy, cost => steps%cost)
       do round = 1, most_rounds
         call trace_resolved(steps, h0_high, h0_low, allocated(request%path), request%reads_path(), &
-          accuracy*10.0_wp**(-further_digits*(round - 1)), .false., listener, panel_tail)
+          accuracy*10.0_wp**(-further_digits*(round - 1)), listener, panel_tail)
         began = seconds()
         call begin_judging(judge, steps, h0_high, h0_low, store)
         worst = 0
@@ -65,8 +65,8 @@ contains
         end if
         if (.not. worst > accuracy .or. round == most_rounds) return
         if (round > 1 .and. worst > helped*before%worst) return
-        if (panel_tail > unresolved_from(steps%problem%law, steps%problem%shape, accuracy, &
-          .false.) .or. .not. digits_help(steps)) return
+        if (panel_tail > unresolved_from(steps%problem%law, steps%problem%shape, accuracy) &
+          .or. .not. digits_help(steps)) return
         before%meshes = steps%meshes
         before%known = steps%known
         before%judge = judge

@@ -4,6 +4,7 @@ module path_prediction
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use interpolation, only: polynomial_weights
+  use discretisation, only: discretisation_t
   use contact_state, only: state_t
   use path_coordinate, only: coordinate_of
   use path_span, only: path_span_t
@@ -42,8 +43,9 @@ contains
 
   !> The state that is expected at h0, where the span has the coordinate s: that of the span, and by
   !> how much it missed the last states, extrapolated.
-  subroutine expect(problem, span, missed, h0, s, position, state)
+  subroutine expect(problem, grid, span, missed, h0, s, position, state)
     type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
     type(path_span_t), intent(in) :: span
     type(missed_t), intent(inout) :: missed
     real(wp), intent(in) :: h0, s
@@ -52,7 +54,7 @@ contains
     real(wp) :: weight(memory), place
     integer :: k, first, round
 
-    call missed%follow(problem, span, position)
+    call missed%follow(problem, grid, span, position)
     first = missed%first_of_use(span, s)
     place = s
     ! The correction depends on the place, and the place on the correction: two rounds settle both.
@@ -63,7 +65,7 @@ contains
           missed%h0(first:missed%held)), place)
       end do
     end if
-    call span%guess(place, state)
+    call span%guess(problem%shape, grid, place, state)
     do k = first, missed%held
       state%gap = state%gap + weight(k)*missed%gap(:, k)
       state%scale = state%scale + weight(k)*missed%scale(k)
@@ -71,9 +73,10 @@ contains
   end subroutine expect
 
   !> Brings it to the position's past; a state that it has already keeps what was found.
-  subroutine follow(self, problem, span, position)
+  subroutine follow(self, problem, grid, span, position)
     class(missed_t), intent(inout) :: self
     type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
     type(path_span_t), intent(in) :: span
     type(branch_point_t), intent(in) :: position
     type(state_t) :: guessed
@@ -107,7 +110,7 @@ contains
       if (j == 0) then
         associate (past => position%past(k))
           self%at(k) = coordinate_of(problem, span%mesh, past)
-          call span%guess(self%at(k), guessed)
+          call span%guess(problem%shape, grid, self%at(k), guessed)
           self%h0(k) = past%h0 - guessed%h0
           self%scale(k) = past%scale - guessed%scale
           self%gap(:, k) = past%gap - guessed%gap

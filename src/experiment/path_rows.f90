@@ -93,7 +93,7 @@ contains
     row%for_curve = .true.
     row%modes = steps%known%path%point(i)%modes
     row%mesh = span%mesh
-    call span%guess(s, row%state)
+    call span%guess(steps%problem%shape, steps%meshes%grid(span%mesh), s, row%state)
     call solve_anderson(steps%equations_t, steps%options, frozen, &
       path_control(steps%problem, span%mesh, s), row%state, row%converged)
   end function row_for_curve

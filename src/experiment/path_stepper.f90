@@ -192,7 +192,8 @@ contains
         s = self%span%at_h0(h0)
       end if
       if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
-        call expect(self%problem, self%span, self%missed, h0, s, position, state)
+        call expect(self%problem, self%meshes%grid(self%span%mesh), self%span, self%missed, h0, s, &
+          position, state)
         call self%attempt(h0, state, mesh, event)
         if (event%converged) then
           s = coordinate_of(self%problem, mesh, state)

@@ -23,36 +23,34 @@ module refinement
   !> With so many times the nodes no panel is halved any more, until the path says again which are
   !> too long: what a path that is lost leaves may ask for any number.
   real(wp), parameter :: most_growth = 1.5_wp
-  !> The tail from which on a panel is too long, over the accuracy, about steps and kinks: at a
-  !> fold the load feels 7 % of it. And a tail that the iteration may leave of a stiff pressure.
-  real(wp), parameter :: times_of_sharp = 30, least = 1.0e-8_wp
+  !> The tail from which on a panel is too long, over the accuracy, where there are kinks: at a fold
+  !> the load feels 7 % of it. A tail that the iteration may leave of a stiff pressure; and one from
+  !> which on coefficients do not fall yet.
+  real(wp), parameter :: times_of_kinks = 30, least = 1.0e-8_wp, largest = 1.0e-2_wp
 
 contains
 
   !> The tail of a pressure, over the largest, from which on a panel is too long. Errors of load and
   !> h0 go with its square, because the nodes integrate polynomials of twice the degree; about a
-  !> step or a kink, where coefficients fall slowly, with the tail itself. compared: paths of other
-  !> numbers are compared, on meshes that may differ, and a search among them has to see less.
-  pure real(wp) function unresolved_from(law, shape, accuracy, compared) result(tail)
+  !> kink, where coefficients fall slowly, with the tail itself.
+  pure real(wp) function unresolved_from(law, shape, accuracy) result(tail)
     class(force_law_t), intent(in) :: law
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: accuracy
-    logical, intent(in) :: compared
 
-    tail = sqrt(accuracy)
-    if (compared .or. law%has_kink .or. law%step_width > 0 .or. shape%smooth_from() > 0) &
-      tail = times_of_sharp*accuracy
+    tail = min(sqrt(accuracy), largest)
+    if (law%has_kink .or. shape%smooth_from() > 0) tail = times_of_kinks*accuracy
     tail = max(tail, least)
   end function unresolved_from
 
   !> Traces the path (`know_path`), again where panels were too long; panel_tail: the largest tail
   !> that is left, but of a fall onto each other, which ends on no mesh. The paper's laws need none
-  !> of it: their meshes were fitted to their errors. compared: see `unresolved_from`.
-  subroutine trace_resolved(steps, h0_high, h0_low, into_contact, closely, accuracy, compared, &
-    listener, panel_tail)
+  !> of it: their meshes were fitted to their errors.
+  subroutine trace_resolved(steps, h0_high, h0_low, into_contact, closely, accuracy, listener, &
+    panel_tail)
     class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_high, h0_low, accuracy
-    logical, intent(in) :: into_contact, closely, compared
+    logical, intent(in) :: into_contact, closely
     class(listener_t), intent(inout) :: listener
     real(wp), intent(out) :: panel_tail
     logical :: fitted(size(steps%meshes%grid))
@@ -64,7 +62,7 @@ contains
     call steps%know_path(h0_high, h0_low, into_contact, closely, listener)
     if (steps%problem%law%of_paper) return
     fitted = .false.
-    most = unresolved_from(steps%problem%law, steps%problem%shape, accuracy, compared)
+    most = unresolved_from(steps%problem%law, steps%problem%shape, accuracy)
     do round = 0, most_rounds
       panel_tail = largest_tail(steps)
       if (.not. panel_tail > most .or. round == most_rounds) exit

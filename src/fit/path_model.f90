@@ -7,7 +7,7 @@ module path_model
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
   use problem_family, only: problem_family_t
-  use variation, only: variation_t, vary
+  use variation, only: variation_t, vary, to_search
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
   use path_curve, only: curve_t, new_curve
@@ -126,8 +126,8 @@ contains
     call prepare(self%steps, problem, chosen, self%numerics%accuracy)
     if (self%steps%options%method == 'mixing') self%steps%options%method = 'anderson'
     self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits, store=self%store)
-    call trace_resolved(self%steps, high, low, .true., .true., self%numerics%accuracy, .true., &
-      silent, self%panel_tail)
+    call trace_resolved(self%steps, high, low, .true., .true., self%numerics%accuracy, silent, &
+      self%panel_tail)
     solver%options = self%steps%options
     call new_curve(self%steps%equations_t, self%steps%known, farthest_wanted(request, problem), &
       contact_level_of(problem), solver%curve, self%solved)
@@ -152,7 +152,7 @@ contains
     where (abs(self%value) > 0) self%family%parameter%scale = abs(self%value)
     found = .true.
     do i = 1, size(varied)
-      call vary(self%family, i, varied(i), error)
+      call vary(self%family, i, to_search, varied(i), error)
       found = found .and. .not. allocated(error)
     end do
     if (found) call rates_along(self%steps%equations_t, self%steps%known, self%curve, varied, &

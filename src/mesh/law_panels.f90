@@ -142,11 +142,11 @@ contains
   !> The gap at an offset from the centre: before contact with the gap h on the axis; about a front
   !> of radius h; outside a JKR contact of radius h, at whose edge is the gap of largest tension.
   !> JKR theory opens that gap as the root of the distance; cohesion rounds the root over d.
-  elemental real(wp) function gap_at(problem, about, h, offset, d) result(gap)
+  pure function gap_at(problem, about, h, offset, d) result(gap)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about
-    real(wp), intent(in) :: h, offset, d
-    real(wp) :: x, angle
+    real(wp), intent(in) :: h, offset(:), d
+    real(wp), dimension(size(offset)) :: gap, x, angle
 
     select case (about)
     case (about_axis)

@@ -31,10 +31,11 @@ module mesh_rule
   real(wp), parameter :: for_others = 1.3_wp
   !> Short panels: their length in z, so many nodes, and more for each digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
-  !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0, as
-  !> it is under the paper's laws: nodes integrate polynomials of twice the degree.
-  !> Where adhesion is strong, what is far from the edge deforms the bodies more.
-  real(wp), parameter :: of_tail = 0.65_wp, more_of_strong = 0.5_wp
+  !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0:
+  !> nodes integrate polynomials of twice the degree. About a kink coefficients fall too slowly. With
+  !> fewer than three digits they do not fall yet. Waves of a pressure leave small loads far out,
+  !> which need some more.
+  real(wp), parameter :: of_tail = 0.5_wp, of_waves = 0.7_wp, fewest_of_tail = 3
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
@@ -173,20 +174,20 @@ contains
     logical :: broken
 
     broken = problem%shape%smooth_from() > 0
-    if (side > 0) broken = broken .or. &
-      (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0) > &
-      problem%shape%ends
+    if (side > 0) broken = broken .or. end_matters(problem, digits, &
+      (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0), high)
     fewest = ceiling(short_order + short_orders*digits)
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
+    if (.not. problem%law%has_kink) smoothness = max(fewest_of_tail, smoothness* &
+      merge(of_waves, of_tail, problem%law%period > 0))
     associate (law => problem%law)
       if (law%period > 0 .or. law%has_kink .or. broken .or. &
-        law%step_width > 0 .and. .not. present(seen) .or. abs(problem%shape%exponent - 2) > 0) then
+        law%step_width > 0 .and. .not. present(seen) .or. problem%shape%exponent > 2) then
         panels = ceiling(z_length/short)
         lengths = spread(z_length/panels, 1, panels)
       else
         lengths = [rung*ceiling(z_length/rung)]
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
-        smoothness = of_tail*smoothness + more_of_strong*log10(1 + adhesion_strength(problem))
       end if
       ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
       if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
@@ -207,20 +208,48 @@ contains
     shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
 
+  !> Whether a mesh up to a radius holds the end of the bodies, and forces act there. contact: the
+  !> radius of a contact, 0 before; without adhesion the gap around it is the smallest.
+  pure logical function end_matters(problem, digits, radius, contact) result(matters)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: digits, radius, contact
+    real(wp) :: gap(1), pressure(2)
+
+    associate (shape => problem%shape, law => problem%law)
+      matters = radius > shape%ends
+      if (.not. (matters .and. law%edge_gap > 0 .and. contact < shape%ends)) return
+      gap = shape%height(shape%ends)
+      if (contact > 0) gap = shape%hertz_gap(contact, [shape%ends/contact])
+      pressure = abs(law%pressure([law%edge_gap, law%edge_gap + gap]))
+      matters = pressure(2)*shape%ends**2 > negligible*10.0_wp**(-digits)*pressure(1)
+    end associate
+  end function end_matters
+
   !> Halves the panel on the axis of shapes that are not smooth there. The pressure of a contact is
   !> there r^(n-1), with a logarithm if n is odd, and what the panel cannot resolve is a part
-  !> r^(n+1) of the load: `beyond` n is 1. Before contact it is two powers more.
+  !> r^(n+1) of the load: `beyond` n is 1. Before contact it is two powers more. On a panel as long
+  !> as it is far from the axis a node makes that smaller by 3 + sqrt(8), so that every halving
+  !> needs so many nodes `fewer`. The one on the axis tells the gap there.
   pure subroutine refine_axis(problem, digits, beyond, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, beyond
+    real(wp), parameter :: fewer = log(2.0_wp)/log(3 + sqrt(8.0_wp)), least = 2
     type(mapped_shape_t), intent(inout) :: shape
-    real(wp) :: tip
+    real(wp) :: power, order
+    integer :: on_axis
 
     if (is_even(problem%shape)) return
-    tip = 10.0_wp**(-digits/(problem%shape%exponent + beyond))
-    do while (shape%z_length(1) > tip)
+    power = problem%shape%exponent + beyond
+    order = short_order + short_orders*digits
+    on_axis = ceiling(order)
+    if (shape%z_length(1) > 2*short) then
+      shape%z_length = [short, shape%z_length(1) - short, shape%z_length(2:)]
+      shape%order = [on_axis, shape%order]
+    end if
+    do while (shape%z_length(1) > 10.0_wp**(-digits/power))
       shape%z_length = [0.5_wp*shape%z_length(1), 0.5_wp*shape%z_length(1), shape%z_length(2:)]
-      shape%order = [shape%order(1), shape%order]
+      shape%order = [on_axis, ceiling(order), shape%order(2:)]
+      order = max(least, order - power*fewer)
     end do
   end subroutine refine_axis
 

@@ -10,7 +10,10 @@ module layer_table
   use poisson_boltzmann, only: surface_t, gap_state_t, far_amplitude, far_state, solve_gap
   implicit none
   private
-  public :: layer_table_t, new_layer_table, nearest_gap
+  public :: layer_table_t, new_layer_table, nearest_gap, of_pressure, of_slope, of_energy
+
+  !> What is read.
+  integer, parameter :: of_pressure = 1, of_slope = 2, of_energy = 3
 
   !> Smallest gap of the table, in Debye lengths. Even the 1 um of pure water makes that smaller
   !> than an atom by a factor of a hundred.
@@ -31,7 +34,7 @@ module layer_table
     real(wp), allocatable :: first(:), last(:)
     real(wp), allocatable :: q(:, :), slope(:, :), energy(:, :)
   contains
-    procedure :: values
+    procedure :: value
   end type layer_table_t
 
   !> The last two gaps that were solved, from which the next is extrapolated; their number, and the
@@ -142,25 +145,29 @@ contains
     table%energy = reshape([table%energy, integral], [degree + 2, n + 1])
   end subroutine append
 
-  !> Pressure, slope and energy at a gap in Debye lengths, from `nearest_gap` on.
-  pure function values(self, gap) result(value)
+  !> Pressure, slope or energy (`quantity`) at a gap in Debye lengths, from `nearest_gap` on.
+  pure real(wp) function value(self, quantity, gap)
     class(layer_table_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap
-    real(wp) :: value(3)
-    real(wp) :: u, x, q, slope
+    real(wp) :: u, x
     integer :: i
 
     u = u_at(gap)
     i = max(count(self%first <= u), 1)
     ! Beyond the table q is its limit, that of the first point.
     x = max(-1.0_wp, 2*(u - self%first(i))/(self%last(i) - self%first(i)) - 1)
-    q = series_value(self%q(:, i), x)
-    slope = 0
-    if (u >= self%first(i)) slope = series_value(self%slope(:, i), x)
-    value(1) = q/sinh(gap)
-    value(2) = -(slope/sinh(gap) + q*cosh(gap)/sinh(gap))/sinh(gap)
-    value(3) = series_value(self%energy(:, i), x) - q*max(0.0_wp, self%first(i) - u)
-  end function values
+    value = series_value(self%q(:, i), x)
+    select case (quantity)
+    case (of_pressure)
+      value = value/sinh(gap)
+    case (of_slope)
+      value = -value*cosh(gap)/sinh(gap)**2
+      if (u >= self%first(i)) value = value - series_value(self%slope(:, i), x)/sinh(gap)**2
+    case default
+      value = series_value(self%energy(:, i), x) - value*max(0.0_wp, self%first(i) - u)
+    end select
+  end function value
 
   !> u = -ln tanh(gap/2), to all digits near and far. The function is its own inverse.
   pure real(wp) function u_at(gap) result(u)

@@ -3,7 +3,7 @@
 !> osmotic pressure of the bulk.
 !>
 !> Its first integral, y'^2 = 2 (cosh y - 1 - P), holds the pressure P, and the gap is an integral
-!> of 1/y' over y. The force is attractive, P < 0, where the electric field vanishes nowhere.
+!> of 1/y' over y, an elliptic one. The force is attractive, P < 0, where the electric field vanishes nowhere.
 !>
 !> A surface that regulates its charge, p = 1 constant charge, p = 0 constant potential, keeps
 !> p (s - s0) + (1 - p) cosh(y0/2) (y - y0) = 0, s being the slope of y towards the surface, y0 and
@@ -13,7 +13,7 @@
 !> y = y0 + p t and s = s0 - (1 - p) cosh(y0/2) t. Unknown are the two t.
 module poisson_boltzmann
   use kinds, only: wp
-  use quadrature, only: gauss_legendre
+  use elliptic, only: carlson_rf
   implicit none
   private
   public :: surface_t, gap_state_t, far_amplitude, far_state, solve_gap
@@ -27,12 +27,6 @@ module poisson_boltzmann
   type :: gap_state_t
     real(wp) :: t(2) = 0, pressure = 0
   end type gap_state_t
-
-  !> Order of the quadrature on a piece of the gap, and the longest piece where y and y' are small.
-  !> The integrand is analytic to a distance of about pi/2 from the real line there, and of 3/b
-  !> where b, below, is large; with pieces of 2/(1 + b/2) the error is below rounding.
-  integer, parameter :: order = 16
-  real(wp), parameter :: longest_piece = 2
 
 contains
 
@@ -70,10 +64,9 @@ contains
     !> A t that is less than so much of the other counts as that much.
     real(wp), parameter :: negligible = 1.0e-3_wp
     integer, parameter :: most_steps = 60, most_halvings = 20
-    real(wp) :: x(order), w(order), r(2), trial(2), jacobian(2, 2), step(2), t(2), scale, unit
+    real(wp) :: r(2), trial(2), jacobian(2, 2), step(2), t(2), scale, unit
     integer :: i, k
 
-    call gauss_legendre(x, w)
     solved = .false.
     t = state%t
     unit = maxval(abs([pressure_at(surface(1), t(1)), pressure_at(surface(2), t(2))]))
@@ -111,7 +104,7 @@ contains
       real(wp) :: r(2)
 
       r = [(pressure_at(surface(1), t(1)) - pressure_at(surface(2), t(2)))/unit, &
-        (gap_of(surface, t, x, w) - gap)/min(gap, 1.0_wp)]
+        (gap_of(surface(1), surface(2), t(1), t(2)) - gap)/min(gap, 1.0_wp)]
     end function residual
 
   end subroutine solve_gap
@@ -128,54 +121,70 @@ contains
       + drop*(2*sinh(surface%potential/2) - drop/2)
   end function pressure_at
 
-  !> The gap between two surfaces, from quadrature nodes and weights on [0, 1]: the integral of 1/y'
-  !> with y = b cosh v, b where the field vanishes, or y = b sinh v where it does so nowhere, which
-  !> make 1/y' smooth.
-  pure real(wp) function gap_of(surface, t, x, w) result(gap)
-    type(surface_t), intent(in) :: surface(2)
-    real(wp), intent(in) :: t(2), x(:), w(:)
-    real(wp) :: y(2), s(2), v(2), p, b, piece
-    integer :: pieces, i
+  !> y' towards a surface at t.
+  elemental real(wp) function slope_at(surface, t) result(slope)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: t
 
-    y = surface%potential + surface%regulation*t
-    s = 2*sinh(surface%potential/2) - (1 - surface%regulation)*cosh(surface%potential/2)*t
-    p = pressure_at(surface(2), t(2))
+    slope = 2*sinh(surface%potential/2) - (1 - surface%regulation)*cosh(surface%potential/2)*t
+  end function slope_at
+
+  !> The gap between two surfaces: the integral of 1/y' over y. With w = sinh(y/2)^2 it is that of
+  !> 1/(2 sqrt(w (w - P/2) (1 + w))) over w, from one surface to the other or, where w has its
+  !> minimum between them, P/2 or 0, from there to both.
+  elemental real(wp) function gap_of(surface_1, surface_2, t_1, t_2) result(gap)
+    type(surface_t), intent(in) :: surface_1, surface_2
+    real(wp), intent(in) :: t_1, t_2
+    real(wp) :: y(2), s(2), root(3, 2), least(3), difference, p
+    logical :: between
+
+    y = [surface_1%potential + surface_1%regulation*t_1, &
+      surface_2%potential + surface_2%regulation*t_2]
+    s = [slope_at(surface_1, t_1), slope_at(surface_2, t_2)]
+    p = pressure_at(surface_2, t_2)
     p = sign(max(abs(p), tiny(p)), p)
+    ! Of a state that is not solved yet, slopes and potentials are at odds: the smaller tell w.
     if (p > 0) then
-      b = 2*asinh(sqrt(p/2))
-      ! The difference of |y| and b follows from the slope without cancellation.
-      v = 2*asinh(s**2/(4*sinh((abs(y) + b)/2)))
-      v = sign(2*asinh(sqrt(v/(2*b))), s*sign(1.0_wp, y(1)))
-      v = [-v(2), v(1)]
+      between = .not. s(1)*s(2) < 0
+      root(2, :) = abs(s)/2
+      root(1, :) = sqrt(root(2, :)**2 + p/2)
+      difference = (s(1) - s(2))*(s(1) + s(2))/4
+      least = [sqrt(p/2), 0.0_wp, sqrt(1 + p/2)]
+      if (between) s(1) = sum(s)
     else
-      b = sqrt(-2*p)
-      v = asinh(y/b)
-      v = [v(2), v(1)]*sign(1.0_wp, s(1))
+      between = y(1)*y(2) < 0
+      root(1, :) = abs(sinh(y/2))
+      root(2, :) = sqrt(root(1, :)**2 - p/2)
+      difference = sinh((y(1) + y(2))/2)*sinh((y(1) - y(2))/2)
+      least = [0.0_wp, sqrt(-p/2), 1.0_wp]
     end if
-    pieces = max(1, min(200, ceiling(abs(v(2) - v(1))*(1 + b/2)/longest_piece)))
-    piece = (v(2) - v(1))/pieces
-    gap = 0
-    do i = 1, pieces
-      gap = gap + piece*sum(w*rate(v(1) + piece*(i - 1 + x)))
-    end do
+    root(3, :) = sqrt(1 + root(1, :)**2)
+    if (between) then
+      gap = from_least(1) + from_least(2)
+    else
+      gap = integral(difference, root(:, 1), root(:, 2))
+    end if
+    gap = sign(gap, gap*s(1)*y(1))
 
   contains
 
-    !> dy/dv over |y'|.
-    elemental real(wp) function rate(v)
-      real(wp), intent(in) :: v
-      real(wp) :: rise
+    !> The integral from the minimum of w to a surface.
+    pure real(wp) function from_least(i)
+      integer, intent(in) :: i
 
-      if (p > 0) then
-        rise = 2*b*sinh(v/2)**2
-        rate = 1
-        if (rise > 0) rate = b*abs(sinh(v))/sqrt(4*sinh(b + rise/2)*sinh(rise/2))
-        ! Where the field vanishes, the limit.
-        if (.not. rise > 0) rate = sqrt(b/sinh(b))
-      else
-        rate = b*cosh(v)/sqrt(4*sinh(b*sinh(v)/2)**2 + b**2)
-      end if
-    end function rate
+      from_least = integral(root(merge(2, 1, p > 0), i)**2, root(:, i), least)
+    end function from_least
+
+    !> The integral between two w, from their difference and the roots of the three factors at the
+    !> first, x, and the second, y.
+    pure real(wp) function integral(difference, x, y)
+      real(wp), intent(in) :: difference, x(3), y(3)
+
+      integral = difference
+      if (abs(difference) > 0) integral = difference* &
+        carlson_rf((x(1)*x(2)*y(3) + y(1)*y(2)*x(3))**2, &
+        (x(1)*x(3)*y(2) + y(1)*y(3)*x(2))**2, (x(2)*x(3)*y(1) + y(2)*y(3)*x(1))**2)
+    end function integral
 
   end function gap_of
 

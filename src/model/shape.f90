@@ -11,7 +11,7 @@
 module shape
   use kinds, only: wp, pi
   use quadrature, only: gauss_legendre
-  use root_finding, only: bracket_t
+  use root_finding, only: bracket_t, root_search_t, new_root_search
   implicit none
   private
   public :: shape_t
@@ -129,20 +129,23 @@ contains
   elemental real(wp) function contact_radius(self, depth) result(a)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: depth
-    type(bracket_t) :: bracket
-    !> The estimates that it serves need no more.
-    real(wp), parameter :: close = 1.0e-12_wp
+    type(root_search_t) :: search
+    real(wp) :: high, excess
 
     a = 0
     if (.not. depth > 0) return
-    bracket = bracket_t(0.0_wp, 1.0_wp)
-    do while (self%indentation(bracket%high) < depth)
-      bracket%high = 2*bracket%high
+    high = 1
+    do
+      excess = self%indentation(high) - depth
+      if (.not. excess < 0) exit
+      high = 2*high
     end do
-    do while (bracket%is_open() .and. bracket%high - bracket%low > close*bracket%high)
-      call bracket%narrow(self%indentation(bracket%middle()) < depth)
+    search = new_root_search(0.0_wp, -depth, high, excess)
+    do while (search%is_open())
+      a = search%place()
+      call search%note(a, self%indentation(a) - depth)
     end do
-    a = bracket%middle()
+    a = search%root
   end function contact_radius
 
   !> How fast the gap outside a contact of radius a opens: with the distance s from the edge as
@@ -157,19 +160,22 @@ contains
 
   !> The gap outside a contact of radius a without adhesion, at x >= 1 radii from the axis,
   !> 2/pi Int_a^r [q(t) - q(a)]/sqrt(r^2 - t^2) dt; both integrals by one rule, for estimates.
-  elemental real(wp) function hertz_gap(self, a, x) result(gap)
+  pure function hertz_gap(self, a, x) result(gap)
     class(shape_t), intent(in) :: self
-    real(wp), intent(in) :: a, x
+    real(wp), intent(in) :: a, x(:)
+    real(wp) :: gap(size(x))
     integer, parameter :: nodes = 12
-    real(wp) :: node(nodes), weight(nodes), angle, of_contact
-    integer :: k
+    real(wp) :: node(nodes), weight(nodes), sines(nodes), angle(size(x)), of_contact
+    integer :: j, k
 
     call gauss_legendre(node, weight)
-    angle = acos(min(1/x, 1.0_wp))
+    sines = sin(0.5_wp*pi*node)
     of_contact = depth(a)
+    angle = acos(min(1/x, 1.0_wp))
     gap = 0
     do k = 1, nodes
-      gap = gap + 2/pi*angle*weight(k)*(depth(a*x*cos(angle*node(k))) - of_contact)
+      gap = gap + 2/pi*angle*weight(k)* &
+        ([(depth(a*x(j)*cos(angle(j)*node(k))), j=1, size(x))] - of_contact)
     end do
 
   contains
@@ -177,7 +183,7 @@ contains
     pure real(wp) function depth(r)
       real(wp), intent(in) :: r
 
-      depth = 0.5_wp*pi*r*sum(weight*self%slope(r*sin(0.5_wp*pi*node)))
+      depth = 0.5_wp*pi*r*sum(weight*self%slope(r*sines))
     end function depth
 
   end function hertz_gap

@@ -1,6 +1,6 @@
 !> A problem with one of its parameters varied, and the rule that makes derivatives by it out of
-!> values at the varied problems: differences of sixth order, so that laws, shapes and bodies need
-!> no derivatives of their own.
+!> values at the varied problems: differences, so that laws, shapes and bodies need no derivatives of
+!> their own. Those that are reported are of sixth order; for a search second order is enough.
 module variation
   use kinds, only: wp
   use failure, only: failure_t
@@ -9,43 +9,45 @@ module variation
   use problem_family, only: problem_family_t, parameter_t
   implicit none
   private
-  public :: variation_t, vary, along_path
+  public :: variation_t, vary, along_path, to_report, to_search
 
-  !> Problems on either side of the one in hand, and the step between two as a part of the
+  !> Problems on either side of the one in hand; and for these the step between two as a part of the
   !> parameter's scale. What differences of sixth order leave out, for h^-n about n^7/140 step^6, is
-  !> below what rounding makes of them, about 1e-16/step.
-  integer, parameter :: aside = 3
-  real(wp), parameter :: step = 1.0e-3_wp
+  !> below what rounding makes of them, about 1e-16/step; those of second order, n^3/6 step^2, have
+  !> six digits.
+  integer, parameter :: to_report = 3, to_search = 1
+  real(wp), parameter :: step(to_report) = [1.0e-4_wp, 1.0e-3_wp, 1.0e-3_wp]
 
   type :: variation_t
     type(parameter_t) :: parameter
     !> By how much the parameter differs in each problem, SI units.
-    real(wp) :: offset(2*aside + 1) = 0
-    !> dQ/dp = sum(weight*Q); and by the five points in the middle, whose difference from it says
-    !> how good it is.
-    real(wp), dimension(2*aside + 1) :: weight = 0, coarser = 0
+    real(wp), allocatable :: offset(:)
+    !> dQ/dp = sum(weight*Q); and without the outermost points, whose difference from it says how
+    !> good it is.
+    real(wp), allocatable, dimension(:) :: weight, coarser
     !> Allocatable: compiler note 11.
     type(problem_t), allocatable :: problem(:)
     !> By how much the place on the path differs (`continuation`); it is what is varied then.
-    real(wp) :: shift(2*aside + 1) = 0
+    real(wp), allocatable :: shift(:)
   end type variation_t
 
 contains
 
-  !> Varies parameter i. Where its range ends nearby, the problems are all on one side of it. Fails
-  !> where it can be varied on neither.
-  subroutine vary(family, i, varied, error)
+  !> Varies parameter i by so many problems on either side, `to_report` or `to_search`. Where its
+  !> range ends nearby, the problems are all on one side of it. Fails where it can be varied on
+  !> neither.
+  subroutine vary(family, i, aside, varied, error)
     class(problem_family_t), intent(in) :: family
-    integer, intent(in) :: i
+    integer, intent(in) :: i, aside
     type(variation_t), intent(out) :: varied
     type(failure_t), allocatable, intent(out) :: error
     real(wp) :: value(size(family%parameter))
     integer :: shift, k
 
     varied%parameter = family%parameter(i)
-    allocate (varied%problem(size(varied%offset)))
+    allocate (varied%problem(2*aside + 1))
     do shift = 0, 2
-      varied%offset = step*varied%parameter%scale*[(k + aside*merge(-1, shift, shift == 2), &
+      varied%offset = step(aside)*varied%parameter%scale*[(k + aside*merge(-1, shift, shift == 2), &
         k=-aside, aside)]
       do k = 1, size(varied%offset)
         value = family%parameter%value
@@ -56,6 +58,7 @@ contains
       if (.not. allocated(error)) exit
     end do
     if (allocated(error)) return
+    varied%shift = 0*varied%offset
     call find_rule(varied)
   end subroutine vary
 
@@ -65,7 +68,7 @@ contains
     integer :: k
 
     varied%parameter%name = 'coordinate'
-    varied%offset = step*[(k, k=-aside, aside)]
+    varied%offset = step(to_report)*[(k, k=-to_report, to_report)]
     varied%shift = varied%offset
     varied%problem = [(problem, k=1, size(varied%offset))]
     call find_rule(varied)
@@ -74,9 +77,10 @@ contains
   !> The weights that belong to the offsets.
   subroutine find_rule(varied)
     type(variation_t), intent(inout) :: varied
-    real(wp) :: one(2*aside + 1)
+    real(wp) :: one(size(varied%offset))
     integer :: k
 
+    allocate (varied%weight(size(one)), varied%coarser(size(one)), source=0.0_wp)
     do k = 1, size(one)
       one = 0
       one(k) = 1

@@ -4,6 +4,8 @@ module arc
   use kinds, only: wp
   use interpolation, only: polynomial_weights, hermite_weights, hermite_t, hermite_through, &
     most_hermite_nodes
+  use shape, only: shape_t
+  use discretisation, only: discretisation_t
   use contact_state, only: state_t
   use equilibrium, only: equations_t
   use solver_options, only: solver_options_t, tightened
@@ -83,7 +85,9 @@ contains
     real(wp), intent(out), optional :: miss
     real(wp), allocatable :: guessed(:)
 
-    state = self%guess(s)
+    associate (grid => equations%meshes%grid(self%mesh))
+      state = self%guess(equations%problem%shape, grid, s)
+    end associate
     guessed = state%gap
     call solve_anderson(equations, options, frozen, path_control(equations%problem, self%mesh, s), &
       state, converged)
@@ -185,20 +189,28 @@ contains
     end associate
   end subroutine support
 
-  !> The state that the arc lets expect at s.
-  pure function guess(self, s) result(expected)
+  !> The state that the arc lets expect at s; grid: its mesh.
+  pure function guess(self, shape, grid, s) result(expected)
     class(arc_t), intent(in) :: self
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: s
     type(state_t) :: expected
     integer :: nodes(most_hermite_nodes), n
 
     call self%support(s, nodes, n)
-    call self%guess_from(nodes(:n), s, expected)
+    call self%guess_from(shape, grid, nodes(:n), s, expected)
   end function guess
 
   !> The state that some of the arc's states let expect at s, in the arrays that `expected` has.
-  pure subroutine guess_from(self, nodes, s, expected)
+  !> Gaps are interpolated, and so are the heights of the shape beneath them, which are known: the
+  !> guess is rid of what the polynomial misses of these. About an end of the bodies or a break of
+  !> their slope that is most of it. A parabola's heights go with the square of the scale and need
+  !> no such care.
+  pure subroutine guess_from(self, shape, grid, nodes, s, expected)
     class(arc_t), intent(in) :: self
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: nodes(:)
     real(wp), intent(in) :: s
     type(state_t), intent(inout) :: expected
@@ -218,8 +230,13 @@ contains
         expected%pressure = expected%pressure + of_value(j)*state%gap + of_slope(j)*tangent%gap
         h0 = h0 + of_value(j)*state%h0 + of_slope(j)*tangent%h0
         scale = scale + of_value(j)*state%scale + of_slope(j)*tangent%scale
+        if (shape%parabolic) cycle
+        expected%pressure = expected%pressure - of_value(j)*shape%height(state%scale*grid%x) - &
+          of_slope(j)*tangent%scale*grid%x*shape%slope(state%scale*grid%x)
       end associate
     end do
+    if (.not. shape%parabolic) &
+      expected%pressure = expected%pressure + shape%height(scale*grid%x)
     call take_if_sound(h0, scale, expected)
   end subroutine guess_from
 

@@ -154,14 +154,16 @@ contains
     step = min(self%step, self%step_past_step(equations%problem))
     if (.not. equations%problem%law%edge_gap > 0) return
     s = self%coordinate(self%held)
-    associate (passage => equations%meshes%passage(self%mesh)*beyond_passage)
+    associate (meshes => equations%meshes, &
+      passage => equations%meshes%passage(self%mesh)*beyond_passage)
       if (locked_alike(equations, self%mesh, self%mesh + 1)) then
         step = min(step, max(log(passage) - s, shortest_passage))
         return
       end if
       do while (step > shortest_passage)
         if (radius_for(equations, self%mesh, self%mesh + 1, &
-          self%guess(s + inward(self%mesh)*step)) <= passage) exit
+          self%guess(equations%problem%shape, meshes%grid(self%mesh), &
+          s + inward(self%mesh)*step)) <= passage) exit
         step = 0.6_wp*step
       end do
     end associate

@@ -4,6 +4,8 @@
 module path_span
   use kinds, only: wp
   use interpolation, only: hermite_t, most_hermite_nodes
+  use shape, only: shape_t
+  use discretisation, only: discretisation_t
   use contact_state, only: state_t
   use arc, only: of_h0, of_load
   use solve_at_h0, only: neighbours_t, neighbours_of, coordinate_at_h0
@@ -54,13 +56,15 @@ contains
     s = coordinate_at_h0(self%near, self%h0, h0, from)
   end function at_h0
 
-  !> The state that is expected at the coordinate s, beyond the ends too.
-  pure subroutine guess(self, s, state)
+  !> The state that is expected at the coordinate s, beyond the ends too; grid: its mesh.
+  pure subroutine guess(self, shape, grid, s, state)
     class(path_span_t), intent(in) :: self
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: s
     type(state_t), intent(inout) :: state
 
-    call self%near%guess_from(self%nodes(:self%held), s, state)
+    call self%near%guess_from(shape, grid, self%nodes(:self%held), s, state)
   end subroutine guess
 
   !> H0 and load that are expected at s.

@@ -60,10 +60,11 @@ contains
       if (control%kind /= at_axis_gap) return
       values(3) = 0
       if (control%value >= contact_level_of(equations%problem)) return
-      call span%guess(s, state)
-      state%axis_gap = control%value
-      values(3) = radius_of_gap(equations%problem%shape, contact_level_of(equations%problem), &
-        equations%meshes%grid(span%mesh), state)
+      associate (shape => equations%problem%shape, grid => equations%meshes%grid(span%mesh))
+        call span%guess(shape, grid, s, state)
+        state%axis_gap = control%value
+        values(3) = radius_of_gap(shape, contact_level_of(equations%problem), grid, state)
+      end associate
     end function seen_at
 
   end function places_between

@@ -5,7 +5,8 @@ module classical_rows
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
   use classical, only: hertz_load_at_displacement, hertz_radius_at_displacement, &
     jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
-  use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius
+  use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius, &
+    detachment_radius
   use maugis, only: maugis_load, maugis_radius_at_displacement, maugis_lambda, maugis_pull_off
   use layered_body, only: layered_body_t
   use layered_contact, only: layered_contact_t, new_layered_contact, hertz, jkr
@@ -30,7 +31,7 @@ contains
     type(range_t), intent(in) :: range
     real(wp), intent(in) :: from
     type(results_t), intent(inout) :: results
-    real(wp) :: start, h0, delta, gamma, strength, a
+    real(wp) :: start, h0, delta, gamma, strength, narrowest, a
     integer :: i
 
     if (problem%rigid) return
@@ -42,6 +43,8 @@ contains
     if (allocated(range%h0_start)) start = range%h0_start
     gamma = surface_energy(problem)
     strength = largest_tension(problem)
+    if (gamma > 0 .and. .not. problem%shape%parabolic) &
+      narrowest = detachment_radius(problem%shape, problem%coupling*problem%law%work)
     do i = 1, range%count
       h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
       delta = problem%law%origin - h0
@@ -76,7 +79,8 @@ contains
         call add('hertz', hertz_like_load(problem, a)*problem%load, a*problem%lateral)
       end if
       if (.not. gamma > 0) return
-      a = jkr_like_radius(problem%shape, problem%coupling*problem%law%work, delta/problem%length)
+      a = jkr_like_radius(problem%shape, problem%coupling*problem%law%work, narrowest, &
+        delta/problem%length)
       if (.not. ieee_is_nan(a)) &
         call add('jkr', jkr_like_load(problem, a)*problem%load, a*problem%lateral)
     end subroutine add_convex

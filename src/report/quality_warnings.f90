@@ -64,8 +64,7 @@ contains
         short_number(summary%number('worst_residual'))// &
         ' lengths of the force law, above the tolerance of '//short_number(tolerance))
     end associate
-    if (outcome%panel_tail > unresolved_from(scene%law, scene%shape, scene%numerics%accuracy, &
-      .false.)) &
+    if (outcome%panel_tail > unresolved_from(scene%law, scene%shape, scene%numerics%accuracy)) &
       call summary%warn( &
       'the mesh does not resolve the force law: '//short_number(outcome%panel_tail)// &
       ' of the largest pressure is left between nodes; smoother forces are resolved')

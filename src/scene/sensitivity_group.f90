@@ -2,7 +2,7 @@
 module sensitivity_group
   use failure, only: failure_t
   use deck_keys, only: key_spec, group, names_key
-  use variation, only: vary
+  use variation, only: vary, to_report
   use scene_groups, only: scene_t
   use path_group, only: check_path
   use deck_family, only: deck_family_t, new_deck_family
@@ -43,7 +43,7 @@ contains
     if (.not. allocated(trouble)) then
       allocate (scene%sensitivity%varied(size(family%parameter)))
       do i = 1, size(family%parameter)
-        call vary(family, i, scene%sensitivity%varied(i), trouble)
+        call vary(family, i, to_report, scene%sensitivity%varied(i), trouble)
         if (allocated(trouble)) exit
       end do
     end if

@@ -10,18 +10,19 @@
 module convex_contact
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp, pi
-  use root_finding, only: bracket_t
+  use root_finding, only: bracket_t, root_search_t, new_root_search
   use shape, only: shape_t
   use dimensionless_problem, only: problem_t
   implicit none
   private
   public :: hertz_like_load, jkr_like_load, jkr_like_radius
-  public :: jkr_like_pull_off, jkr_like_detachment
+  public :: jkr_like_pull_off, jkr_like_detachment, detachment_radius
 
   !> A contact on which the adhesion is as large as what it works against is this many times as wide
-  !> as the narrowest that may be an extremum; and the sections that find it.
+  !> as the narrowest that may be an extremum; and the sections that find its place to as many digits
+  !> as the values tell, half of them.
   real(wp), parameter :: widest_range = 1.0e4_wp
-  integer, parameter :: sections = 80
+  integer, parameter :: sections = 45
 
 contains
 
@@ -50,24 +51,28 @@ contains
   end function jkr_like_displacement
 
   !> Contact radius at a displacement, of the state that is stable there; NaN where there is none.
-  pure real(wp) function jkr_like_radius(shape, sigma, displacement) result(a)
+  !> narrowest: the `detachment_radius`.
+  pure real(wp) function jkr_like_radius(shape, sigma, narrowest, displacement) result(a)
     class(shape_t), intent(in) :: shape
-    real(wp), intent(in) :: sigma, displacement
-    type(bracket_t) :: bracket
+    real(wp), intent(in) :: sigma, narrowest, displacement
+    type(root_search_t) :: search
+    real(wp) :: ends(2), excess(2)
 
-    a = detachment_radius(shape, sigma)
-    if (jkr_like_displacement(shape, sigma, a) > displacement) then
-      a = ieee_value(a, ieee_quiet_nan)
-      return
-    end if
-    bracket = bracket_t(a, 2*a)
-    do while (jkr_like_displacement(shape, sigma, bracket%high) < displacement)
-      bracket%high = 2*bracket%high
+    a = ieee_value(a, ieee_quiet_nan)
+    ends(2) = narrowest
+    excess(2) = jkr_like_displacement(shape, sigma, narrowest) - displacement
+    if (excess(2) > 0) return
+    do
+      ends = [ends(2), 2*ends(2)]
+      excess = [excess(2), jkr_like_displacement(shape, sigma, ends(2)) - displacement]
+      if (.not. excess(2) < 0) exit
     end do
-    do while (bracket%is_open())
-      call bracket%narrow(jkr_like_displacement(shape, sigma, bracket%middle()) < displacement)
+    search = new_root_search(ends(1), excess(1), ends(2), excess(2))
+    do while (search%is_open())
+      a = search%place()
+      call search%note(a, jkr_like_displacement(shape, sigma, a) - displacement)
     end do
-    a = bracket%middle()
+    a = search%root
   end function jkr_like_radius
 
   !> H0 at which bodies come apart at fixed displacement: the largest -delta. 0 without adhesion.
@@ -84,7 +89,7 @@ contains
     end if
   end function jkr_like_detachment
 
-  !> Contact radius there, by golden section in its logarithm.
+  !> Contact radius there, by golden section in its logarithm; sigma > 0.
   pure real(wp) function detachment_radius(shape, sigma) result(a)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma

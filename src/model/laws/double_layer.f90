@@ -17,7 +17,8 @@ module double_layer
   use law_reading, only: check_decades
   use poisson_boltzmann, only: surface_t
   use linear_layers, only: linear_values
-  use layer_table, only: layer_table_t, new_layer_table, nearest_gap
+  use layer_table, only: layer_table_t, new_layer_table, nearest_gap, of_pressure, &
+    of_slope, of_energy
   implicit none
   private
   public :: keys, read_law
@@ -185,11 +186,12 @@ contains
     end if
   end subroutine take_surfaces
 
-  !> Pressure, slope and energy, by rows, in the law's units.
-  pure function values(self, gap) result(value)
+  !> Pressure, slope or energy (`quantity`) in the law's units.
+  pure function values(self, quantity, gap) result(value)
     class(double_layer_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(3, size(gap))
+    real(wp) :: value(size(gap)), all_values(3)
     real(wp) :: h
     integer :: i
 
@@ -197,12 +199,14 @@ contains
       h = max(self%smallest_gap, min(gap(i), largest_gap))
       select case (self%model)
       case (linear)
-        value(:, i) = self%scale*linear_values(self%surface, h)
+        all_values = self%scale*linear_values(self%surface, h)
+        value(i) = all_values(quantity)
       case (superposition)
-        value(:, i) = product(tanh(self%surface%potential/4))/ &
-          tanh(self%surface(1)%potential/4)**2*exp(-h)*[1, -1, 1]
+        value(i) = product(tanh(self%surface%potential/4))/ &
+          tanh(self%surface(1)%potential/4)**2*exp(-h)
+        if (quantity == of_slope) value(i) = -value(i)
       case default
-        value(:, i) = self%scale*self%table%values(h)
+        value(i) = self%scale*self%table%value(quantity, h)
       end select
     end do
   end function values
@@ -210,28 +214,25 @@ contains
   pure function pressure(self, gap) result(value)
     class(double_layer_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), all_values(3, size(gap))
+    real(wp) :: value(size(gap))
 
-    all_values = self%values(gap)
-    value = all_values(1, :)
+    value = self%values(of_pressure, gap)
   end function pressure
 
   pure function slope(self, gap) result(value)
     class(double_layer_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), all_values(3, size(gap))
+    real(wp) :: value(size(gap))
 
-    all_values = self%values(gap)
-    value = all_values(2, :)
+    value = self%values(of_slope, gap)
   end function slope
 
   pure function energy(self, gap) result(value)
     class(double_layer_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), all_values(3, size(gap))
+    real(wp) :: value(size(gap))
 
-    all_values = self%values(gap)
-    value = all_values(3, :)
+    value = self%values(of_energy, gap)
   end function energy
 
 end module double_layer

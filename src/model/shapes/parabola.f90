@@ -122,9 +122,10 @@ contains
     opening = a
   end function opening
 
-  elemental real(wp) function hertz_gap(self, a, x) result(gap)
+  pure function hertz_gap(self, a, x) result(gap)
     class(parabola_t), intent(in) :: self
-    real(wp), intent(in) :: a, x
+    real(wp), intent(in) :: a, x(:)
+    real(wp) :: gap(size(x))
 
     gap = a**2/pi*(sqrt(max(x**2 - 1, 0.0_wp)) + (x**2 - 2)*acos(min(1/x, 1.0_wp)))
   end function hertz_gap

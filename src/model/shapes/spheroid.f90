@@ -19,6 +19,7 @@ module spheroid
     procedure :: height
     procedure :: slope
     procedure :: position_of
+    procedure :: indentation
   end type spheroid_t
 
   !> Part of the equator's radius up to which the body reaches.
@@ -101,5 +102,21 @@ contains
     inside = min(height, self%height(self%ends))
     r = sqrt(inside*(2 - self%kappa*inside)) + (height - inside)/self%slope(self%ends)
   end function position_of
+
+  !> In closed form: what is within the end, up to part e of a, and the straight line beyond.
+  elemental real(wp) function indentation(self, a)
+    class(spheroid_t), intent(in) :: self
+    real(wp), intent(in) :: a
+    real(wp) :: e, k
+
+    k = sqrt(self%kappa)*a
+    if (a <= self%ends) then
+      indentation = a/sqrt(self%kappa)*atanh(k)
+    else
+      e = self%ends/a
+      indentation = a/sqrt(self%kappa)* &
+        log((1 + k)/(k*sqrt(1 - e**2) + sqrt(1 - (k*e)**2))) + a*self%slope(a)*acos(e)
+    end if
+  end function indentation
 
 end module spheroid
