@@ -32,9 +32,9 @@ module mesh_rule
   !> Short panels: their length in z, so many nodes, and more for each digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
   !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0:
-  !> nodes integrate polynomials of twice the degree. About a kink coefficients fall too slowly. With
-  !> fewer than three digits they do not fall yet. Waves of a pressure leave small loads far out,
-  !> which need some more.
+  !> nodes integrate polynomials of twice the degree. About a kink coefficients fall too slowly.
+  !> With fewer than three digits they do not fall yet. Waves of a pressure leave small loads far
+  !> out, which need some more.
   real(wp), parameter :: of_tail = 0.5_wp, of_waves = 0.7_wp, fewest_of_tail = 3
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100

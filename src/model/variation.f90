@@ -1,6 +1,6 @@
 !> A problem with one of its parameters varied, and the rule that makes derivatives by it out of
-!> values at the varied problems: differences, so that laws, shapes and bodies need no derivatives of
-!> their own. Those that are reported are of sixth order; for a search second order is enough.
+!> values at the varied problems: differences, so that laws, shapes and bodies need no derivatives
+!> of their own. Those that are reported are of sixth order; for a search second order is enough.
 module variation
   use kinds, only: wp
   use failure, only: failure_t

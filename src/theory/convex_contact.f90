@@ -19,8 +19,8 @@ module convex_contact
   public :: jkr_like_pull_off, jkr_like_detachment, detachment_radius
 
   !> A contact on which the adhesion is as large as what it works against is this many times as wide
-  !> as the narrowest that may be an extremum; and the sections that find its place to as many digits
-  !> as the values tell, half of them.
+  !> as the narrowest that may be an extremum; and the sections that find its place to half the
+  !> digits, which is all that values tell.
   real(wp), parameter :: widest_range = 1.0e4_wp
   integer, parameter :: sections = 45
 
