@@ -4,7 +4,7 @@
 !> The pressure is tried over gaps as bodies have them: undeformed before contact; about the front
 !> of a step those of a disk under tension; in contact the gap outside a JKR contact. Or, once there
 !> is a path, over the gaps seen on it. Panels in z on which the last Legendre coefficients of that
-!> pressure are not small are halved.
+!> pressure are not small get more nodes or are halved, whichever takes fewer.
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
@@ -24,8 +24,9 @@ module law_panels
   !> No panel shorter than twice this is halved; gaps on the axis, or radii, that are tried.
   real(wp), parameter :: shortest = 0.01_wp
   integer, parameter :: tried = 9
-  !> How many times the nodes are tried before a panel is halved.
-  real(wp), parameter :: times(3) = [1.0_wp, 1.3_wp, 1.7_wp]
+  !> How many times the nodes are tried. A panel that needs no more than its halves would is not
+  !> halved: waves want nodes, and steps short panels.
+  real(wp), parameter :: times(*) = [1.0_wp, 1.3_wp, 1.7_wp, 2.2_wp, 2.8_wp, 3.6_wp]
 
 contains
 
@@ -39,11 +40,14 @@ contains
 
   !> Lengths in z and nodes of panels at positions centre + side*d sinh(z): those given, with
   !> `nodes_on` them or more, or halves of them. Radii go from low to high; `about`:
-  !> what is at the centre. seen: gaps to try instead of those foreseen.
-  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, length, &
-    order, seen)
+  !> what is at the centre. digits: of load and h0, which go with the square of what a panel lacks of
+  !> the pressure, since nodes integrate polynomials of twice the degree; or with that itself, where
+  !> coefficients fall slowly. seen: gaps to try instead of those foreseen.
+  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, squared, &
+    length, order, seen)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about, side, fewest
+    logical, intent(in) :: squared
     real(wp), intent(in) :: d, low, high, density, digits
     real(wp), allocatable, intent(inout) :: length(:)
     integer, allocatable, intent(out) :: order(:)
@@ -63,30 +67,56 @@ contains
     call move_alloc(length, given)
     allocate (length(0), order(0))
     do k = 1, size(given)
-      call add(sum(given(:k - 1)), given(k))
+      call add(sum(given(:k - 1)), given(k), huge(1), length, order)
     end do
 
   contains
 
-    !> Adds the panel from z on, or its halves.
-    recursive subroutine add(z, z_length)
+    !> Adds the panel from z on, or its halves where these have fewer nodes; nothing where both have
+    !> more than `allowed`.
+    recursive subroutine add(z, z_length, allowed, length, order)
       real(wp), intent(in) :: z, z_length
-      integer :: nodes, before, k
+      integer, intent(in) :: allowed
+      real(wp), allocatable, intent(inout) :: length(:)
+      integer, allocatable, intent(inout) :: order(:)
+      real(wp), allocatable :: halves(:)
+      integer, allocatable :: orders(:)
+      integer :: nodes, left, first
 
-      before = 0
-      do k = 1, size(times)
-        nodes = nodes_on(z_length, times(k)*density, fewest)
-        if (nodes == before) cycle
-        if (tail_on(z, z_length, nodes) <= most(1) .or. z_length < 2*shortest) then
-          length = [length, z_length]
-          order = [order, nodes]
+      nodes = order_of(z, z_length, allowed)
+      left = allowed
+      if (nodes > 0) left = nodes - 1
+      if (left >= 2*fewest .and. .not. z_length < 2*shortest) then
+        allocate (halves(0), orders(0))
+        call add(z, 0.5_wp*z_length, left - fewest, halves, orders)
+        first = size(halves)
+        if (first > 0) call add(z + 0.5_wp*z_length, 0.5_wp*z_length, left - sum(orders), halves, &
+          orders)
+        if (size(halves) > first) then
+          length = [length, halves]
+          order = [order, orders]
           return
         end if
-        before = nodes
-      end do
-      call add(z, 0.5_wp*z_length)
-      call add(z + 0.5_wp*z_length, 0.5_wp*z_length)
+      end if
+      if (nodes == 0) return
+      length = [length, z_length]
+      order = [order, nodes]
     end subroutine add
+
+    !> Nodes that resolve the pressure on a panel; 0 where `allowed` do not.
+    integer function order_of(z, z_length, allowed) result(nodes)
+      real(wp), intent(in) :: z, z_length
+      integer, intent(in) :: allowed
+      integer :: k
+
+      do k = 1, size(times)
+        nodes = ceiling(times(k)*nodes_on(z_length, density, fewest))
+        if (nodes > allowed) exit
+        if (z_length < 2*shortest) return
+        if (tail_on(z, z_length, nodes) <= most(1)) return
+      end do
+      nodes = 0
+    end function order_of
 
     !> The largest of the last two Legendre coefficients of the pressure on a panel, which counts as
     !> the area does on which it acts.
@@ -94,7 +124,7 @@ contains
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
       type(local_nodes_t) :: local
-      real(wp) :: pressure(nodes), offset(nodes)
+      real(wp) :: pressure(nodes), offset(nodes), left
       integer :: j
 
       tail = 0
@@ -107,7 +137,9 @@ contains
           else
             pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset, d))
           end if
-          tail = max(tail, local%tail(pressure*(1 + (unit*offset)**2)))
+          left = local%tail(pressure*(1 + (unit*offset)**2))
+          if (squared .and. left > 0) left = left*local%tail(pressure)/maxval(abs(pressure))
+          tail = max(tail, left)
         end associate
       end do
     end function tail_on

@@ -31,11 +31,6 @@ module mesh_rule
   real(wp), parameter :: for_others = 1.3_wp
   !> Short panels: their length in z, so many nodes, and more for each digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
-  !> Digits of the pressure's last Legendre coefficients on a panel, over those of load and h0:
-  !> nodes integrate polynomials of twice the degree. About a kink coefficients fall too slowly.
-  !> With fewer than three digits they do not fall yet. Waves of a pressure leave small loads far
-  !> out, which need some more.
-  real(wp), parameter :: of_tail = 0.5_wp, of_waves = 0.7_wp, fewest_of_tail = 3
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
@@ -178,8 +173,6 @@ contains
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0), high)
     fewest = ceiling(short_order + short_orders*digits)
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
-    if (.not. problem%law%has_kink) smoothness = max(fewest_of_tail, smoothness* &
-      merge(of_waves, of_tail, problem%law%period > 0))
     associate (law => problem%law)
       if (law%period > 0 .or. law%has_kink .or. broken .or. &
         law%step_width > 0 .and. .not. present(seen) .or. problem%shape%exponent > 2) then
@@ -193,7 +186,7 @@ contains
       if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
         (present(seen) .or. .not. (about == about_edge .and. side < 0))) then
         call fit_panels(problem, about, side, shape%d, low, high, density, fewest, smoothness, &
-          lengths, orders, seen)
+          .not. (broken .or. law%has_kink), lengths, orders, seen)
       else
         orders = nodes_on(lengths, density, fewest)
       end if

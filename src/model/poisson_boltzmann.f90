@@ -3,8 +3,8 @@
 !> osmotic pressure of the bulk.
 !>
 !> Its first integral, y'^2 = 2 (cosh y - 1 - P), holds the pressure P, and the gap is an integral
-!> of 1/y' over y, an elliptic one. The force is attractive, P < 0, where the electric field vanishes
-!> nowhere.
+!> of 1/y' over y, an elliptic one. The force is attractive, P < 0, where the electric field
+!> vanishes nowhere.
 !>
 !> A surface that regulates its charge, p = 1 constant charge, p = 0 constant potential, keeps
 !> p (s - s0) + (1 - p) cosh(y0/2) (y - y0) = 0, s being the slope of y towards the surface, y0 and
