@@ -36,6 +36,7 @@ module layered_body
   contains
     procedure :: is_homogeneous
     procedure :: beside_half_space
+    procedure :: growth
     procedure :: wave_range
     procedure :: is_alike
     procedure :: take_one
@@ -133,29 +134,41 @@ contains
     end if
   end subroutine take_one
 
-  !> The series of the panels in which the wave numbers lie; nothing beyond.
-  pure subroutine beside_half_space(self, k, more, growth)
+  pure function beside_half_space(self, k) result(value)
     class(layered_body_t), intent(in) :: self
     real(wp), intent(in) :: k(:)
-    real(wp), intent(out) :: more(:), growth(:)
-    real(wp) :: x
+    real(wp) :: value(size(k))
+
+    value = on_panels(self%ends, self%series, k)
+  end function beside_half_space
+
+  pure function growth(self, k) result(value)
+    class(layered_body_t), intent(in) :: self
+    real(wp), intent(in) :: k(:)
+    real(wp) :: value(size(k))
+
+    value = k*on_panels(self%ends, self%slope, k)
+  end function growth
+
+  !> The series of the panels in which the wave numbers lie; nothing beyond.
+  pure function on_panels(ends, series, k) result(value)
+    real(wp), intent(in) :: ends(:), series(:, :), k(:)
+    real(wp) :: value(size(k))
     integer :: panel, i
 
     panel = 1
     do i = 1, size(k)
-      more(i) = 0
-      growth(i) = 0
-      if (k(i) > self%ends(size(self%ends))) cycle
+      value(i) = 0
+      if (k(i) > ends(size(ends))) cycle
       ! Wave numbers mostly come in order.
-      if (k(i) < self%ends(panel)) panel = 1
-      do while (k(i) > self%ends(panel + 1))
+      if (k(i) < ends(panel)) panel = 1
+      do while (k(i) > ends(panel + 1))
         panel = panel + 1
       end do
-      x = 2*(k(i) - self%ends(panel))/(self%ends(panel + 1) - self%ends(panel)) - 1
-      more(i) = series_value(self%series(:, panel), x)
-      growth(i) = k(i)*series_value(self%slope(:, panel), x)
+      value(i) = series_value(series(:, panel), &
+        2*(k(i) - ends(panel))/(ends(panel + 1) - ends(panel)) - 1)
     end do
-  end subroutine beside_half_space
+  end function on_panels
 
   pure function wave_range(self) result(k)
     class(layered_body_t), intent(in) :: self
@@ -169,21 +182,20 @@ contains
     class(layered_body_t), intent(in) :: self
     real(wp), intent(in) :: x(:), y(:)
     real(wp), intent(out) :: sums(:, :)
-    real(wp), allocatable :: k(:), weight(:), more(:), growth(:), left(:, :), right(:, :)
+    real(wp), allocatable :: k(:), weight(:), left(:, :), right(:, :)
     real(wp) :: range(2)
     integer :: j
 
     range = self%wave_range()
     call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], 0.0_wp, range(1), range(2), k, &
       weight)
-    allocate (more, growth, mold=k)
-    call self%beside_half_space(k, more, growth)
+    weight = 2*weight*self%beside_half_space(k)
     allocate (left(size(k), size(x)), right(size(k), size(y)))
     do j = 1, size(x)
       left(:, j) = cos(k*x(j))
     end do
     do j = 1, size(y)
-      right(:, j) = 2*weight*more*cos(k*y(j))
+      right(:, j) = weight*cos(k*y(j))
     end do
     call multiply_transposed(left, right, sums)
   end subroutine cosine_sums

@@ -1,0 +1,186 @@
+!> Waves J0(k x) on a mesh: what each is at the mesh's positions, and what the polynomials that
+!> stand for pressures have of it. With weights v of a rule for wave numbers k,
+!>
+!>     Int (Int p(t) J0(k t) t dt) S(k) J0(k x_i) dk = 
+!>       Sum_q wave(i, q) v_q S(k_q) Sum_j spectrum(j, q) p_j ,
+!>
+!> for any smooth function S of the wave number. Waves that pass between the nodes of a mesh are no
+!> part of pressures that it resolves, but the nodes alone cannot tell them from long ones; so the
+!> polynomials are integrated with as many nodes as the waves need.
+module mesh_waves
+  use kinds, only: wp
+  use quadrature, only: lagrange_basis
+  use bessel, only: bessel_t, new_bessel
+  use wave_quadrature, only: wave_rule
+  use panel_map, only: panel_map_t, algebraic_map
+  use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, &
+    first_node
+  implicit none
+  private
+  public :: mesh_waves_t, new_mesh_waves
+
+  !> Waves are left out smoothly, as exp(-(k/sharpest)^8), which is nothing from 1.6 on: sharpest is
+  !> so much over the mean distance between nodes about x, and on a panel to infinity so much over x.
+  real(wp), parameter :: passing = 5, crossing = 30, left_out = 1.6_wp
+  integer, parameter :: sharpness = 8
+  !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave that turns by some angle
+  !> over it is one of so many times the angle, to this and a few degrees more.
+  real(wp), parameter :: degrees = 0.55_wp, more_degrees = 8
+
+  type :: mesh_waves_t
+    !> Wave numbers in one over the mesh's scale, in order, and weights, (waves).
+    real(wp), allocatable :: k(:), weight(:)
+    !> (first_node - 1 + nodes, waves) in rows as those of the mesh's kernel; (nodes, waves).
+    real(wp), allocatable :: wave(:, :), spectrum(:, :)
+    !> Up to the first wave number functions are of low degree; up to the last there are waves.
+    real(wp) :: range(2) = 0
+    !> The mesh's positions.
+    real(wp), allocatable, private :: x(:)
+    type(bessel_t), private :: bessel
+  contains
+    procedure :: belong_to
+    procedure :: add
+  end type mesh_waves_t
+
+contains
+
+  !> No waves yet.
+  pure type(mesh_waves_t) function new_mesh_waves(grid, first) result(waves)
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: first
+
+    waves%x = grid%x
+    waves%range = [first, 0.0_wp]
+    allocate (waves%k(0), waves%weight(0), waves%wave(first_node - 1 + grid%nodes, 0), &
+      waves%spectrum(grid%nodes, 0))
+    waves%bessel = new_bessel()
+  end function new_mesh_waves
+
+  !> Whether they are those of a mesh.
+  pure logical function belong_to(self, grid)
+    class(mesh_waves_t), intent(in) :: self
+    type(discretisation_t), intent(in) :: grid
+
+    belong_to = allocated(self%x)
+    if (belong_to) belong_to = size(self%x) == grid%nodes
+    if (belong_to) belong_to = all(abs(self%x - grid%x) <= 0)
+  end function belong_to
+
+  !> Adds waves to those there are, up to the wave number `last`.
+  subroutine add(self, grid, last)
+    class(mesh_waves_t), intent(inout) :: self
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: last
+    real(wp) :: x(first_node - 1 + grid%nodes), sharpest(first_node - 1 + grid%nodes)
+    real(wp), allocatable :: k(:), weight(:), wave(:, :), spectrum(:, :)
+    integer :: i, p, before
+
+    x([axis_row, centre_row]) = [0.0_wp, grid%centre]
+    x(first_node:) = grid%x
+    sharpest(:first_node - 1) = huge(1.0_wp)
+    do p = 1, size(grid%panel)
+      associate (first => first_node - 1 + grid%first(p), local => grid%local(grid%which(p)))
+        sharpest(first:first + size(local%node) - 1) = sharpest_on(grid, p, local%node)
+      end associate
+    end do
+    call wave_rule(x, left_out*sharpest, self%range(2), self%range(1), last, k, weight)
+    before = size(self%k)
+    self%range(2) = last
+    self%k = [self%k, k]
+    self%weight = [self%weight, weight]
+    allocate (wave(size(x), size(self%k)), spectrum(grid%nodes, size(self%k)))
+    wave(:, :before) = self%wave
+    spectrum(:, :before) = self%spectrum
+    do i = 1, size(x)
+      wave(i, before + 1:) = wave_at(self%bessel, x(i), sharpest(i), k)
+    end do
+    associate (new => spectrum(:, before + 1:))
+      do p = 1, size(grid%panel)
+        call add_spectrum(self%bessel, grid, p, k, wave(first_node:, before + 1:), new)
+      end do
+    end associate
+    call move_alloc(wave, self%wave)
+    call move_alloc(spectrum, self%spectrum)
+  end subroutine add
+
+  !> What the polynomials of a panel have of the waves; those of its nodes are known.
+  subroutine add_spectrum(bessel, grid, p, k, wave, spectrum)
+    type(bessel_t), intent(in) :: bessel
+    type(discretisation_t), intent(in) :: grid
+    integer, intent(in) :: p
+    real(wp), intent(in) :: k(:), wave(:, :)
+    real(wp), intent(inout) :: spectrum(:, :)
+    type(local_nodes_t) :: fine
+    real(wp), allocatable :: basis(:, :), fine_wave(:, :), x(:), sharpest(:), weight(:)
+    integer :: i, j, first, last, n
+
+    associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
+      first = grid%first(p)
+      last = first + size(local%node) - 1
+      n = nodes_for(grid, p, k(size(k)))
+      if (n <= size(local%node)) then
+        do j = first, last
+          spectrum(j, :) = grid%weight(j)*wave(j, :)
+        end do
+        return
+      end if
+      fine = gauss_nodes(n)
+      x = grid%centre + panel%offset(fine%node)
+      weight = fine%weight*panel%speed(fine%node)*x
+      sharpest = sharpest_on(grid, p, fine%node)
+      allocate (basis(size(local%node), n), fine_wave(n, size(k)))
+      do i = 1, n
+        basis(:, i) = weight(i)*lagrange_basis(local%node, local%barycentric, fine%node(i))
+        fine_wave(i, :) = wave_at(bessel, x(i), sharpest(i), k)
+      end do
+      spectrum(first:last, :) = matmul(basis, fine_wave)
+    end associate
+  end subroutine add_spectrum
+
+  !> Nodes of a panel that integrate its polynomials times waves up to k.
+  pure integer function nodes_for(grid, p, k) result(nodes)
+    type(discretisation_t), intent(in) :: grid
+    integer, intent(in) :: p
+    real(wp), intent(in) :: k
+    real(wp) :: turn
+
+    associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
+      nodes = size(local%node)
+      ! Hat functions, and what goes on to infinity, have their own weights.
+      if (panel%kind == algebraic_map .or. nodes <= 2) return
+      turn = maxval(min(k, left_out*sharpest_on(grid, p, local%node))*panel%speed(local%node))
+      nodes = max(nodes, ceiling(0.5_wp*(nodes + degrees*turn + more_degrees)))
+    end associate
+  end function nodes_for
+
+  !> At places s of a panel.
+  pure function sharpest_on(grid, p, s) result(sharpest)
+    type(discretisation_t), intent(in) :: grid
+    integer, intent(in) :: p
+    real(wp), intent(in) :: s(:)
+    real(wp) :: sharpest(size(s))
+
+    associate (panel => grid%panel(p))
+      if (panel%kind == algebraic_map) then
+        sharpest = crossing/(grid%centre + panel%offset(s))
+      else
+        sharpest = passing*size(grid%local(grid%which(p))%node)/panel%speed(s)
+      end if
+    end associate
+  end function sharpest_on
+
+  !> J0(k x), but for waves that are left out; k ascending.
+  pure function wave_at(bessel, x, sharpest, k) result(wave)
+    type(bessel_t), intent(in) :: bessel
+    real(wp), intent(in) :: x, sharpest, k(:)
+    real(wp) :: wave(size(k))
+    integer :: n
+
+    n = findloc(k > left_out*sharpest, .true., 1) - 1
+    if (n < 0) n = size(k)
+    call bessel%j0(x*k(:n), wave(:n))
+    wave(:n) = wave(:n)*exp(-(k(:n)/sharpest)**sharpness)
+    wave(n + 1:) = 0
+  end function wave_at
+
+end module mesh_waves
