@@ -19,13 +19,15 @@ module mesh_waves
   private
   public :: mesh_waves_t, new_mesh_waves
 
-  !> Waves are left out smoothly, as exp(-(k/sharpest)^8), which is nothing from 1.6 on: sharpest is
-  !> so much over the mean distance between nodes about x, and on a panel to infinity so much over x.
-  real(wp), parameter :: passing = 5, crossing = 30, left_out = 1.6_wp
-  integer, parameter :: sharpness = 8
+  !> Waves are left out smoothly, as exp(-(k/sharpest)^16), which is nothing from 1.25 on: sharpest is
+  !> so much over the mean distance between nodes about x.
+  real(wp), parameter :: passing = 20, left_out = 1.25_wp
+  integer, parameter :: sharpness = 16
   !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave that turns by some angle
   !> over it is one of so many times the angle, to this and a few degrees more.
   real(wp), parameter :: degrees = 0.55_wp, more_degrees = 8
+  !> The nodes at the ends of a hat function.
+  integer, parameter :: hat = 2
 
   type :: mesh_waves_t
     !> Wave numbers in one over the mesh's scale, in order, and weights, (waves).
@@ -88,7 +90,8 @@ contains
     self%range(2) = last
     self%k = [self%k, k]
     self%weight = [self%weight, weight]
-    allocate (wave(size(x), size(self%k)), spectrum(grid%nodes, size(self%k)))
+    allocate (wave(size(x), size(self%k)))
+    allocate (spectrum(grid%nodes, size(self%k)), source=0.0_wp)
     wave(:, :before) = self%wave
     spectrum(:, :before) = self%spectrum
     do i = 1, size(x)
@@ -131,9 +134,12 @@ contains
       allocate (basis(size(local%node), n), fine_wave(n, size(k)))
       do i = 1, n
         basis(:, i) = weight(i)*lagrange_basis(local%node, local%barycentric, fine%node(i))
+        if (panel%kind == algebraic_map) basis(:, i) = basis(:, i)* &
+          ((1 - fine%node(i))/(1 - local%node))**panel%decay
         fine_wave(i, :) = wave_at(bessel, x(i), sharpest(i), k)
       end do
-      spectrum(first:last, :) = matmul(basis, fine_wave)
+      ! Neighbours that are hat functions share a node.
+      spectrum(first:last, :) = spectrum(first:last, :) + matmul(basis, fine_wave)
     end associate
   end subroutine add_spectrum
 
@@ -145,11 +151,10 @@ contains
     real(wp) :: turn
 
     associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
-      nodes = size(local%node)
-      ! Hat functions, and what goes on to infinity, have their own weights.
-      if (panel%kind == algebraic_map .or. nodes <= 2) return
       turn = maxval(min(k, left_out*sharpest_on(grid, p, local%node))*panel%speed(local%node))
-      nodes = max(nodes, ceiling(0.5_wp*(nodes + degrees*turn + more_degrees)))
+      nodes = size(local%node)
+      nodes = max(nodes, merge(hat + 1, 0, nodes == hat), &
+        ceiling(0.5_wp*(nodes + degrees*turn + more_degrees)))
     end associate
   end function nodes_for
 
@@ -160,13 +165,7 @@ contains
     real(wp), intent(in) :: s(:)
     real(wp) :: sharpest(size(s))
 
-    associate (panel => grid%panel(p))
-      if (panel%kind == algebraic_map) then
-        sharpest = crossing/(grid%centre + panel%offset(s))
-      else
-        sharpest = passing*size(grid%local(grid%which(p))%node)/panel%speed(s)
-      end if
-    end associate
+    sharpest = passing*size(grid%local(grid%which(p))%node)/grid%panel(p)%speed(s)
   end function sharpest_on
 
   !> J0(k x), but for waves that are left out; k ascending.
