@@ -5,8 +5,8 @@ module linear_algebra
   use small_lu, only: lu_factorise, lu_solve, most_rows
   implicit none
   private
-  public :: multiply, multiply_transposed, multiply_by_transposed, &
-    factorisation_t, factorise, solve, determinant_sign, &
+  public :: multiply, multiply_left, multiply_transposed, &
+    multiply_by_transposed, factorisation_t, factorise, solve, determinant_sign, &
     log_determinant, claim_buffers, eigenvalues, solve_tridiagonal, singular_values
 
   !> LU factors of a square matrix, from `factorise`.
@@ -42,6 +42,15 @@ contains
       y = 0
     end if
   end subroutine multiply
+
+  !> y = x a(:size(x), :size(y)).
+  subroutine multiply_left(x, a, y)
+    real(wp), intent(in), contiguous :: a(:, :)
+    real(wp), intent(in) :: x(:)
+    real(wp), intent(out) :: y(:)
+
+    call dgemv('t', size(x), size(y), 1.0_wp, a, size(a, 1), x, 1, 0.0_wp, y, 1)
+  end subroutine multiply_left
 
   !> c = matmul(transpose(a), b).
   subroutine multiply_transposed(a, b, c)

@@ -9,7 +9,7 @@
 !> bodies have no second part, and nothing is made for them.
 module elastic_operator
   use kinds, only: wp
-  use linear_algebra, only: multiply, multiply_by_transposed
+  use linear_algebra, only: multiply, multiply_left, multiply_by_transposed
   use mesh_waves, only: mesh_waves_t, new_mesh_waves
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, first_node
@@ -125,10 +125,10 @@ contains
     real(wp), intent(in) :: strength(:), pressure(:)
     real(wp), intent(out) :: rise(:)
 
-    associate (n => size(strength))
-      rise = matmul(waves%wave(:size(rise), :n), &
-        strength*matmul(pressure, waves%spectrum(:size(pressure), :n)))
-    end associate
+    real(wp) :: amplitude(size(strength))
+
+    call multiply_left(pressure, waves%spectrum, amplitude)
+    call multiply(waves%wave, size(strength), strength*amplitude, rise)
   end subroutine through_waves
 
   !> Finds the strengths of the waves at this scale, of this body, on this mesh.

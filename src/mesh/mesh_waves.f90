@@ -10,6 +10,7 @@
 module mesh_waves
   use kinds, only: wp
   use quadrature, only: lagrange_basis
+  use linear_algebra, only: multiply_by_transposed
   use bessel, only: bessel_t, new_bessel
   use wave_quadrature, only: wave_rule
   use panel_map, only: panel_map_t, algebraic_map
@@ -19,10 +20,10 @@ module mesh_waves
   private
   public :: mesh_waves_t, new_mesh_waves
 
-  !> Waves are left out smoothly, as exp(-(k/sharpest)^16), which is nothing from 1.25 on: sharpest is
-  !> so much over the mean distance between nodes about x.
-  real(wp), parameter :: passing = 20, left_out = 1.25_wp
-  integer, parameter :: sharpness = 16
+  !> Waves are left out that turn by more than `passing` from node to node, smoothly from the part
+  !> `from` of that on. Between there and here a product with a pressure is one with a window that
+  !> moves with the wave, which must be wide enough for the product to have none of the wave.
+  real(wp), parameter :: passing = 20, from = 0.6_wp
   !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave that turns by some angle
   !> over it is one of so many times the angle, to this and a few degrees more.
   real(wp), parameter :: degrees = 0.55_wp, more_degrees = 8
@@ -74,7 +75,7 @@ contains
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: last
     real(wp) :: x(first_node - 1 + grid%nodes), sharpest(first_node - 1 + grid%nodes)
-    real(wp), allocatable :: k(:), weight(:), wave(:, :), spectrum(:, :)
+    real(wp), allocatable :: k(:), weight(:), rows(:, :), wave(:, :), spectrum(:, :)
     integer :: i, p, before
 
     x([axis_row, centre_row]) = [0.0_wp, grid%centre]
@@ -85,7 +86,7 @@ contains
         sharpest(first:first + size(local%node) - 1) = sharpest_on(grid, p, local%node)
       end associate
     end do
-    call wave_rule(x, left_out*sharpest, self%range(2), self%range(1), last, k, weight)
+    call wave_rule(x, sharpest, self%range(2), self%range(1), last, k, weight)
     before = size(self%k)
     self%range(2) = last
     self%k = [self%k, k]
@@ -94,8 +95,12 @@ contains
     allocate (spectrum(grid%nodes, size(self%k)), source=0.0_wp)
     wave(:, :before) = self%wave
     spectrum(:, :before) = self%spectrum
+    allocate (rows(size(k), size(x)))
     do i = 1, size(x)
-      wave(i, before + 1:) = wave_at(self%bessel, x(i), sharpest(i), k)
+      call find_wave(self%bessel, x(i), sharpest(i), k, rows(:, i))
+    end do
+    do i = 1, size(k)
+      wave(:, before + i) = rows(i, :)
     end do
     associate (new => spectrum(:, before + 1:))
       do p = 1, size(grid%panel)
@@ -114,7 +119,7 @@ contains
     real(wp), intent(in) :: k(:), wave(:, :)
     real(wp), intent(inout) :: spectrum(:, :)
     type(local_nodes_t) :: fine
-    real(wp), allocatable :: basis(:, :), fine_wave(:, :), x(:), sharpest(:), weight(:)
+    real(wp), allocatable :: basis(:, :), rows(:, :), part(:, :), x(:), sharpest(:), weight(:)
     integer :: i, j, first, last, n
 
     associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
@@ -131,15 +136,16 @@ contains
       x = grid%centre + panel%offset(fine%node)
       weight = fine%weight*panel%speed(fine%node)*x
       sharpest = sharpest_on(grid, p, fine%node)
-      allocate (basis(size(local%node), n), fine_wave(n, size(k)))
+      allocate (basis(size(local%node), n), rows(size(k), n), part(size(local%node), size(k)))
       do i = 1, n
         basis(:, i) = weight(i)*lagrange_basis(local%node, local%barycentric, fine%node(i))
         if (panel%kind == algebraic_map) basis(:, i) = basis(:, i)* &
           ((1 - fine%node(i))/(1 - local%node))**panel%decay
-        fine_wave(i, :) = wave_at(bessel, x(i), sharpest(i), k)
+        call find_wave(bessel, x(i), sharpest(i), k, rows(:, i))
       end do
+      call multiply_by_transposed(basis, rows, part)
       ! Neighbours that are hat functions share a node.
-      spectrum(first:last, :) = spectrum(first:last, :) + matmul(basis, fine_wave)
+      spectrum(first:last, :) = spectrum(first:last, :) + part
     end associate
   end subroutine add_spectrum
 
@@ -151,7 +157,7 @@ contains
     real(wp) :: turn
 
     associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
-      turn = maxval(min(k, left_out*sharpest_on(grid, p, local%node))*panel%speed(local%node))
+      turn = maxval(min(k, sharpest_on(grid, p, local%node))*panel%speed(local%node))
       nodes = size(local%node)
       nodes = max(nodes, merge(hat + 1, 0, nodes == hat), &
         ceiling(0.5_wp*(nodes + degrees*turn + more_degrees)))
@@ -169,17 +175,20 @@ contains
   end function sharpest_on
 
   !> J0(k x), but for waves that are left out; k ascending.
-  pure function wave_at(bessel, x, sharpest, k) result(wave)
+  subroutine find_wave(bessel, x, sharpest, k, wave)
     type(bessel_t), intent(in) :: bessel
     real(wp), intent(in) :: x, sharpest, k(:)
-    real(wp) :: wave(size(k))
-    integer :: n
+    real(wp), intent(out) :: wave(:)
+    real(wp) :: u
+    integer :: i, n
 
-    n = findloc(k > left_out*sharpest, .true., 1) - 1
-    if (n < 0) n = size(k)
+    n = count(k < sharpest)
     call bessel%j0(x*k(:n), wave(:n))
-    wave(:n) = wave(:n)*exp(-(k(:n)/sharpest)**sharpness)
     wave(n + 1:) = 0
-  end function wave_at
+    do i = 1 + count(k < from*sharpest), n
+      u = (1 - k(i)/sharpest)/(1 - from)
+      wave(i) = wave(i)*u**5*(126 - u*(420 - u*(540 - u*(315 - 70*u))))
+    end do
+  end subroutine find_wave
 
 end module mesh_waves
