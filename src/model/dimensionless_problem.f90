@@ -68,16 +68,14 @@ contains
   end function adhesion_strength
 
   !> How much bodies yield under a pressure over a circle of this radius (lateral units): the
-  !> coupling of half-spaces that yield as much to waves of that length.
+  !> coupling of half-spaces that yield as much to waves of that length and longer ones.
   elemental real(wp) function coupling_over(problem, radius) result(coupling)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: radius
-    real(wp) :: more(1)
 
     coupling = problem%coupling
-    if (problem%body%is_homogeneous()) return
-    more = problem%body%beside_half_space([1/max(radius, tiny(radius))])
-    coupling = coupling*(1 + more(1))
+    if (.not. problem%body%is_homogeneous()) &
+      coupling = coupling*(1 + problem%body%mean_beside(1/max(radius, tiny(radius))))
   end function coupling_over
 
   !> Width of the zone outside the contact edge over which the tension decays, lateral units:

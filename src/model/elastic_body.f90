@@ -21,6 +21,7 @@ module elastic_body
     procedure(ask), deferred :: is_homogeneous
     procedure(describe), deferred :: beside_half_space
     procedure(describe), deferred :: growth
+    procedure(average), deferred :: mean_beside
     procedure(bound), deferred :: wave_range
     procedure :: is_alike
     procedure :: take_one
@@ -41,6 +42,13 @@ module elastic_body
       real(wp) :: value(size(k))
     end function describe
 
+    !> The mean of L - 1 up to a wave number.
+    elemental real(wp) function average(self, k)
+      import :: elastic_body_t, wp
+      class(elastic_body_t), intent(in) :: self
+      real(wp), intent(in) :: k
+    end function average
+
     !> Wave numbers up to the first of which L is a polynomial of low degree, as it is between k and
     !> 3 k from there on, and beyond the last of which L - 1 is nothing.
     pure function bound(self) result(k)
@@ -56,6 +64,7 @@ module elastic_body
     procedure :: is_homogeneous
     procedure :: beside_half_space => nothing
     procedure :: growth => nothing
+    procedure :: mean_beside
     procedure :: wave_range
   end type half_space_t
 
@@ -90,6 +99,13 @@ contains
 
     value = 0
   end function nothing
+
+  elemental real(wp) function mean_beside(self, k)
+    class(half_space_t), intent(in) :: self
+    real(wp), intent(in) :: k
+
+    mean_beside = 0
+  end function mean_beside
 
   pure function wave_range(self) result(k)
     class(half_space_t), intent(in) :: self

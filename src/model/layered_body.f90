@@ -5,7 +5,8 @@ module layered_body
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use linear_algebra, only: multiply_transposed
-  use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope
+  use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
+    series_integral
   use wave_quadrature, only: wave_rule
   use elastic_body, only: elastic_body_t, half_space_t
   use layered_surface, only: layered_surface_t
@@ -24,8 +25,8 @@ module layered_body
   !> L - 1 of both bodies together, in lateral units.
   type, extends(elastic_body_t) :: layered_body_t
     private
-    !> Ends of panels of k, and L - 1 and dL/dk on them as series.
-    real(wp), allocatable :: ends(:), series(:, :), slope(:, :)
+    !> Ends of panels of k; on them, as series, L - 1, dL/dk, and the integral of L - 1 from 0.
+    real(wp), allocatable :: ends(:), series(:, :), slope(:, :), whole(:, :)
     !> L(0), of the base; infinite waves.
     real(wp), public :: bottom = 1
     !> The thinnest of the top layers.
@@ -37,6 +38,7 @@ module layered_body
     procedure :: is_homogeneous
     procedure :: beside_half_space
     procedure :: growth
+    procedure :: mean_beside
     procedure :: wave_range
     procedure :: is_alike
     procedure :: take_one
@@ -50,12 +52,14 @@ contains
   type(layered_body_t) function new_layered_body(surface, part) result(body)
     type(layered_surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: part(2)
-    real(wp) :: last, first, series(0:degree)
+    real(wp) :: last, first, before, series(0:degree), whole(0:degree + 1)
     integer :: i, halved
 
     body%surface = surface
     body%part = part
-    allocate (body%ends(1), body%series(0:degree, 0), body%slope(0:degree, 0))
+    allocate (body%ends(1), body%series(0:degree, 0), body%slope(0:degree, 0), &
+      body%whole(0:degree + 1, 0))
+    before = 0
     body%ends = 0
     body%thinnest = huge(last)
     do i = 1, 2
@@ -73,6 +77,10 @@ contains
       body%series = reshape([body%series, series], [degree + 1, size(body%ends) - 1])
       body%slope = reshape([body%slope, series_slope(series)*2/ &
         (body%ends(size(body%ends)) - first)], [degree + 1, size(body%ends) - 1])
+      whole = series_integral(series)*(body%ends(size(body%ends)) - first)/2
+      whole(0) = whole(0) + before
+      before = series_value(whole, 1.0_wp)
+      body%whole = reshape([body%whole, whole], [degree + 2, size(body%ends) - 1])
     end do
     ! Without an end of the series no state may converge.
     if (body%ends(size(body%ends)) < last) body%series = ieee_value(last, ieee_quiet_nan)
@@ -149,6 +157,15 @@ contains
 
     value = k*on_panels(self%ends, self%slope, k)
   end function growth
+
+  elemental real(wp) function mean_beside(self, k)
+    class(layered_body_t), intent(in) :: self
+    real(wp), intent(in) :: k
+    real(wp) :: whole(1)
+
+    whole = on_panels(self%ends, self%whole, [min(k, self%ends(size(self%ends)))])
+    mean_beside = whole(1)/k
+  end function mean_beside
 
   !> The series of the panels in which the wave numbers lie; nothing beyond.
   pure function on_panels(ends, series, k) result(value)

@@ -20,6 +20,7 @@ module ring_image_body
     procedure :: is_homogeneous
     procedure :: beside_half_space
     procedure :: growth
+    procedure :: mean_beside
     procedure :: wave_range
   end type ring_image_t
 
@@ -46,6 +47,13 @@ contains
 
     value = -self%depth*k*self%beside_half_space(k)
   end function growth
+
+  elemental real(wp) function mean_beside(self, k)
+    class(ring_image_t), intent(in) :: self
+    real(wp), intent(in) :: k
+
+    mean_beside = self%strength*(1 - exp(-self%depth*k))/(self%depth*k)
+  end function mean_beside
 
   pure function wave_range(self) result(k)
     class(ring_image_t), intent(in) :: self
