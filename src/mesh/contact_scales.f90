@@ -118,7 +118,8 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
 
-    lost_in_rounding = 8*epsilon(1.0_wp)*adhesion_strength(problem)*c > largest_floor
+    lost_in_rounding = 8*epsilon(1.0_wp)*c*problem%law%adhesion* &
+      max(problem%coupling, coupling_over(problem, c)) > largest_floor
   end function lost_in_rounding
 
 end module contact_scales

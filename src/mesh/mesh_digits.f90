@@ -4,7 +4,7 @@
 !> 1e-4 to 1e4.
 module mesh_digits
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t, adhesion_strength
+  use dimensionless_problem, only: problem_t, adhesion_strength, coupling_over
   implicit none
   private
   public :: digits_for, most_digits
@@ -55,7 +55,8 @@ contains
     digits = digits + at_onset*max(0.0_wp, min(1.0_wp, 1.5_wp*(1 - away)))
     if (away < near_onset) least = max(least, enough_for_folds)
     digits = max(digits, least)
-    left = -log10(epsilon(1.0_wp)*max(1.0_wp, sigma*widest))
+    left = -log10(epsilon(1.0_wp)*max(1.0_wp, sigma*widest, &
+      coupling_over(problem, widest)*problem%law%adhesion*widest))
     digits = max(fewest, min(digits, left, most_digits))
     if (left > fewest) digits = max(digits, min(enough_for_folds, least))
   end function digits_for

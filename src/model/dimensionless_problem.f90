@@ -7,7 +7,7 @@
 !> pressure_unit: sigma (40) for the Lennard-Jones law, Lambda (39) at h0 = 0 for the exponential
 !> one, 0 for rigid bodies. Of other shapes R is only what makes sqrt(R L) their lateral unit.
 module dimensionless_problem
-  use kinds, only: wp
+  use kinds, only: wp, pi
   use force_law, only: force_law_t
   use shape, only: shape_t
   use elastic_body, only: elastic_body_t, half_space_t
@@ -67,15 +67,16 @@ contains
     adhesion_strength = problem%coupling*problem%law%adhesion
   end function adhesion_strength
 
-  !> How much bodies yield under a pressure over a circle of this radius (lateral units): the
-  !> coupling of half-spaces that yield as much to waves of that length and longer ones.
+  !> How much bodies yield under a pressure over a circle of this radius (lateral units): about the
+  !> coupling of half-spaces that yield as much to a flat punch, which makes waves as
+  !> (sin(k radius)/(k radius))^2, taken as those up to a k that leaves as many.
   elemental real(wp) function coupling_over(problem, radius) result(coupling)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: radius
 
     coupling = problem%coupling
     if (.not. problem%body%is_homogeneous()) &
-      coupling = coupling*(1 + problem%body%mean_beside(1/max(radius, tiny(radius))))
+      coupling = coupling*(1 + problem%body%mean_beside(0.5_wp*pi/max(radius, tiny(radius))))
   end function coupling_over
 
   !> Width of the zone outside the contact edge over which the tension decays, lateral units:
