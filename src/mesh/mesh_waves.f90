@@ -164,14 +164,19 @@ contains
     end associate
   end function nodes_for
 
-  !> At places s of a panel.
+  !> At places s of a panel. One that goes on to infinity begins as the one before it ends.
   pure function sharpest_on(grid, p, s) result(sharpest)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: p
     real(wp), intent(in) :: s(:)
     real(wp) :: sharpest(size(s))
 
-    sharpest = passing*size(grid%local(grid%which(p))%node)/grid%panel(p)%speed(s)
+    if (grid%panel(p)%kind == algebraic_map) then
+      sharpest = passing*size(grid%local(grid%which(p - 1))%node)/grid%panel(p - 1)%speed(1.0_wp)* &
+        (1 - s)**2
+    else
+      sharpest = passing*size(grid%local(grid%which(p))%node)/grid%panel(p)%speed(s)
+    end if
   end function sharpest_on
 
   !> J0(k x), but for waves that are left out; k ascending.
