@@ -1,12 +1,12 @@
 !> How much the gap rises under the pressures on a mesh: the product of the bodies' elastic operator
 !> with them, its matrix, and its derivative by the scale c of the mesh. With the matrix W of the
-!> half-space on the mesh, weights w and what the bodies yield beside it, L - 1 (`elastic_body`),
+!> half-space on the mesh and what the bodies yield beside it, L - 1 (`elastic_body`),
 !>
 !>     A(c)_ij = 2 coupling c [W_ij + Sum_q wave_iq 2 v_q (L(k_q/c) - 1) spectrum_jq] ,
 !>
 !> at nodes c x, with weights v of a rule for wave numbers k and what waves J0(k x) are on the mesh
-!> (`mesh_waves`). They are the same for every c and every body. Rows are those of the mesh's kernel: the axis, the centre, the nodes. Homogeneous
-!> bodies have no second part, and nothing is made for them.
+!> (`mesh_waves`). They are the same for every c and every body. Rows are those of the kernel: the
+!> axis, the centre, the nodes. Homogeneous bodies have no second part, and nothing is made for them.
 module elastic_operator
   use kinds, only: wp
   use linear_algebra, only: multiply, multiply_left, multiply_by_transposed

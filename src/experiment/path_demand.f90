@@ -108,7 +108,8 @@ contains
   end function barrier_load
 
   !> A tension that no pull-off exceeds: of parabolas that of rigid bodies; of others the larger one
-  !> of rigid bodies and of JKR theory. Thin films that keep their volume hold on for up to twice that.
+  !> of rigid bodies and of JKR theory. Thin films hold on for up to
+  !> twice that.
   pure real(wp) function largest_pull(problem) result(tension)
     type(problem_t), intent(in) :: problem
     integer :: step

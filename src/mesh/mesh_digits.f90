@@ -22,7 +22,7 @@ module mesh_digits
     for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
   !> For each decade of how much wider contacts are than layers that yield unlike a half-space to
   !> waves of this many or fewer over the radius.
-  real(wp), parameter :: for_layers = 1.2_wp, waves_in_layer = 32
+  real(wp), parameter :: for_layers = 1.5_wp, waves_in_layer = 32
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; what is more
   !> there, the factor in sigma up to which that is felt, and the part of it, logarithmically, in
   !> which the two folds are so near each other that coarse meshes lose them.

@@ -20,10 +20,15 @@ module mesh_waves
   private
   public :: mesh_waves_t, new_mesh_waves
 
-  !> Waves are left out that turn by more than `passing` from node to node, smoothly from the part
-  !> `from` of that on. Between there and here a product with a pressure is one with a window that
-  !> moves with the wave, which must be wide enough for the product to have none of the wave.
+  !> Waves are left out that turn by more than `passing` from node to node, of pressures smoothly
+  !> from the part `from` of that on. Between there and here a product with a pressure is one with a
+  !> window that moves with the wave, which must be wide enough for the product to have none of the
+  !> wave.
   real(wp), parameter :: passing = 20, from = 0.6_wp
+  !> Places are moved by these waves and all that turn less than `crossing` between the axis and
+  !> them, smoothly as exp(-(1.6 k/last)^8).
+  real(wp), parameter :: crossing = 48, left_out = 1.6_wp
+  integer, parameter :: sharpness = 8
   !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave that turns by some angle
   !> over it is one of so many times the angle, to this and a few degrees more.
   real(wp), parameter :: degrees = 0.55_wp, more_degrees = 8
@@ -74,19 +79,20 @@ contains
     class(mesh_waves_t), intent(inout) :: self
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: last
-    real(wp) :: x(first_node - 1 + grid%nodes), sharpest(first_node - 1 + grid%nodes)
+    real(wp) :: x(first_node - 1 + grid%nodes), last_of(first_node - 1 + grid%nodes)
     real(wp), allocatable :: k(:), weight(:), rows(:, :), wave(:, :), spectrum(:, :)
-    integer :: i, p, before
+    integer :: i, p, n, before
 
     x([axis_row, centre_row]) = [0.0_wp, grid%centre]
     x(first_node:) = grid%x
-    sharpest(:first_node - 1) = huge(1.0_wp)
+    last_of(:first_node - 1) = huge(1.0_wp)
     do p = 1, size(grid%panel)
       associate (first => first_node - 1 + grid%first(p), local => grid%local(grid%which(p)))
-        sharpest(first:first + size(local%node) - 1) = sharpest_on(grid, p, local%node)
+        last_of(first:first + size(local%node) - 1) = last_on(grid, p, local%node)
       end associate
     end do
-    call wave_rule(x, sharpest, self%range(2), self%range(1), last, k, weight)
+    where (x > 0) last_of = max(last_of, crossing/x)
+    call wave_rule(x, last_of, self%range(2), self%range(1), last, k, weight)
     before = size(self%k)
     self%range(2) = last
     self%k = [self%k, k]
@@ -97,7 +103,10 @@ contains
     spectrum(:, :before) = self%spectrum
     allocate (rows(size(k), size(x)))
     do i = 1, size(x)
-      call find_wave(self%bessel, x(i), sharpest(i), k, rows(:, i))
+      n = count(k < last_of(i))
+      call self%bessel%j0(x(i)*k(:n), rows(:n, i))
+      rows(:n, i) = rows(:n, i)*exp(-(k(:n)*left_out/last_of(i))**sharpness)
+      rows(n + 1:, i) = 0
     end do
     do i = 1, size(k)
       wave(:, before + i) = rows(i, :)
@@ -119,14 +128,14 @@ contains
     real(wp), intent(in) :: k(:), wave(:, :)
     real(wp), intent(inout) :: spectrum(:, :)
     type(local_nodes_t) :: fine
-    real(wp), allocatable :: basis(:, :), rows(:, :), part(:, :), x(:), sharpest(:), weight(:)
+    real(wp), allocatable :: basis(:, :), rows(:, :), part(:, :), x(:), last_of(:), weight(:)
     integer :: i, j, first, last, n
 
     associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
       first = grid%first(p)
       last = first + size(local%node) - 1
       n = nodes_for(grid, p, k(size(k)))
-      if (n <= size(local%node)) then
+      if (n <= size(local%node) .and. panel%kind /= algebraic_map) then
         do j = first, last
           spectrum(j, :) = grid%weight(j)*wave(j, :)
         end do
@@ -135,13 +144,13 @@ contains
       fine = gauss_nodes(n)
       x = grid%centre + panel%offset(fine%node)
       weight = fine%weight*panel%speed(fine%node)*x
-      sharpest = sharpest_on(grid, p, fine%node)
+      last_of = last_on(grid, p, fine%node)
       allocate (basis(size(local%node), n), rows(size(k), n), part(size(local%node), size(k)))
       do i = 1, n
         basis(:, i) = weight(i)*lagrange_basis(local%node, local%barycentric, fine%node(i))
         if (panel%kind == algebraic_map) basis(:, i) = basis(:, i)* &
           ((1 - fine%node(i))/(1 - local%node))**panel%decay
-        call find_wave(bessel, x(i), sharpest(i), k, rows(:, i))
+        call find_wave(bessel, x(i), last_of(i), k, rows(:, i))
       end do
       call multiply_by_transposed(basis, rows, part)
       ! Neighbours that are hat functions share a node.
@@ -157,41 +166,42 @@ contains
     real(wp) :: turn
 
     associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
-      turn = maxval(min(k, sharpest_on(grid, p, local%node))*panel%speed(local%node))
+      turn = maxval(min(k, last_on(grid, p, local%node))*panel%speed(local%node))
       nodes = size(local%node)
       nodes = max(nodes, merge(hat + 1, 0, nodes == hat), &
         ceiling(0.5_wp*(nodes + degrees*turn + more_degrees)))
     end associate
   end function nodes_for
 
-  !> At places s of a panel. One that goes on to infinity begins as the one before it ends.
-  pure function sharpest_on(grid, p, s) result(sharpest)
+  !> The last wave number that is not left out, at places s of a panel. One that goes on to infinity
+  !> begins as the one before it ends.
+  pure function last_on(grid, p, s) result(last)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: p
     real(wp), intent(in) :: s(:)
-    real(wp) :: sharpest(size(s))
+    real(wp) :: last(size(s))
 
     if (grid%panel(p)%kind == algebraic_map) then
-      sharpest = passing*size(grid%local(grid%which(p - 1))%node)/grid%panel(p - 1)%speed(1.0_wp)* &
+      last = passing*size(grid%local(grid%which(p - 1))%node)/grid%panel(p - 1)%speed(1.0_wp)* &
         (1 - s)**2
     else
-      sharpest = passing*size(grid%local(grid%which(p))%node)/grid%panel(p)%speed(s)
+      last = passing*size(grid%local(grid%which(p))%node)/grid%panel(p)%speed(s)
     end if
-  end function sharpest_on
+  end function last_on
 
-  !> J0(k x), but for waves that are left out; k ascending.
-  subroutine find_wave(bessel, x, sharpest, k, wave)
+  !> J0(k x) for a pressure; k ascending.
+  subroutine find_wave(bessel, x, last, k, wave)
     type(bessel_t), intent(in) :: bessel
-    real(wp), intent(in) :: x, sharpest, k(:)
+    real(wp), intent(in) :: x, last, k(:)
     real(wp), intent(out) :: wave(:)
     real(wp) :: u
     integer :: i, n
 
-    n = count(k < sharpest)
+    n = count(k < last)
     call bessel%j0(x*k(:n), wave(:n))
     wave(n + 1:) = 0
-    do i = 1 + count(k < from*sharpest), n
-      u = (1 - k(i)/sharpest)/(1 - from)
+    do i = 1 + count(k < from*last), n
+      u = (1 - k(i)/last)/(1 - from)
       wave(i) = wave(i)*u**5*(126 - u*(420 - u*(540 - u*(315 - 70*u))))
     end do
   end subroutine find_wave

@@ -14,7 +14,8 @@ module dimensionless_problem
   implicit none
   private
   public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
-    adhesion_strength, coupling_over, surface_energy, largest_tension, calm_gap, yielding_gap, contact_level_of
+    adhesion_strength, coupling_over, surface_energy, largest_tension, calm_gap, &
+    yielding_gap, contact_level_of
 
   type :: problem_t
     class(force_law_t), allocatable :: law

@@ -27,6 +27,8 @@ module layered_body
     private
     !> Ends of panels of k; on them, as series, L - 1, dL/dk, and the integral of L - 1 from 0.
     real(wp), allocatable :: ends(:), series(:, :), slope(:, :), whole(:, :)
+    !> Whether L is 1 throughout: layers and base are of one material.
+    logical :: plain = .false.
     !> L(0), of the base; infinite waves.
     real(wp), public :: bottom = 1
     !> The thinnest of the top layers.
@@ -82,6 +84,7 @@ contains
       before = series_value(whole, 1.0_wp)
       body%whole = reshape([body%whole, whole], [degree + 2, size(body%ends) - 1])
     end do
+    body%plain = maxval(abs(body%series)) <= resolved
     ! Without an end of the series no state may converge.
     if (body%ends(size(body%ends)) < last) body%series = ieee_value(last, ieee_quiet_nan)
     body%bottom = 1 + series_value(body%series(:, 1), -1.0_wp)
@@ -115,7 +118,7 @@ contains
   pure logical function is_homogeneous(self)
     class(layered_body_t), intent(in) :: self
 
-    is_homogeneous = .false.
+    is_homogeneous = self%plain
   end function is_homogeneous
 
   !> Whether both have the same layers on the same base.
@@ -191,7 +194,8 @@ contains
     class(layered_body_t), intent(in) :: self
     real(wp) :: k(2)
 
-    k = [self%ends(2), self%ends(size(self%ends))]
+    k = 0
+    if (.not. self%plain) k = [self%ends(2), self%ends(size(self%ends))]
   end function wave_range
 
   !> sums(i, j) = 2 Int (L - 1) cos(k x(i)) cos(k y(j)) dk.
