@@ -207,6 +207,8 @@ contains
     real(wp) :: range(2)
     integer :: j
 
+    sums = 0
+    if (self%plain) return
     range = self%wave_range()
     call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], 0.0_wp, range(1), range(2), k, &
       weight)
