@@ -6,7 +6,7 @@
 !>
 !> at nodes c x, with weights v of a rule for wave numbers k and what waves J0(k x) are on the mesh
 !> (`mesh_waves`). They are the same for every c and every body. Rows are those of the kernel: the
-!> axis, the centre, the nodes. Homogeneous bodies have no second part, and nothing is made for them.
+!> axis, the centre, the nodes. Homogeneous bodies have no second part; nothing is made for them.
 module elastic_operator
   use kinds, only: wp
   use linear_algebra, only: multiply, multiply_left, multiply_by_transposed

@@ -169,8 +169,8 @@ contains
     a = bracket%middle()
   end function radius_at
 
-  !> Contact radius of the state that is stable under a load; NaN where there is none or it is outside
-  !> the span.
+  !> Contact radius of the state that is stable under a load; NaN where there is none or it is
+  !> outside the span.
   pure real(wp) function radius_at_load(self, theory, load) result(a)
     class(layered_contact_t), intent(in) :: self
     integer, intent(in) :: theory
