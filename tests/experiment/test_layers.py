@@ -200,3 +200,9 @@ def test_what_is_beyond_the_model_is_said(solve):
     assert any("thinner than the range of the force" in text for text in warnings(thin))
     thick = solve(layered((50.0, *COAT[1:]), accuracy=1e-4, equilibrium_path=PATH))
     assert not any("layer" in text for text in warnings(thick))
+    # A thousandth of the load's stress is small for the skin and not for what is below.
+    skin = deck(bodies={"radius": 1e-4, "young": [1e5, 1e12], "poisson": [0.5, 0.3]},
+                layer={"thickness": 2e-6, "young": 1e9, "poisson": 0.3},
+                force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 1e-9},
+                equilibrium_path={"h0_end": -3e-6})
+    assert any("below the top layer is strained" in text for text in warnings(solve(skin)))
