@@ -14,8 +14,9 @@ module layered_body
   private
   public :: layered_body_t, new_layered_body
 
-  !> Largest k times twice the top layer's thickness: exp(-32) (32)^2 = 1e-11 is left of L - 1.
-  real(wp), parameter :: last_wave = 32
+  !> Largest k times twice the top layer's thickness: exp(-28) (28)^2 = 5e-10 is left of L - 1, and
+  !> of what pressures have of so short a wave still less.
+  real(wp), parameter :: last_wave = 28
   !> Degree of L - 1 on a panel of waves, what may be left of its last coefficients, and how often a
   !> panel is halved.
   integer, parameter :: degree = 16, halvings = 60
