@@ -27,8 +27,8 @@ contains
     end select
   end subroutine summarise_layers
 
-  !> Warns of layers that are thinner than the force reaches; of soft ones that are pressed to a part
-  !> of their thickness that is not small; and of what lies deeper and is strained by the load.
+  !> Warns of layers that are thinner than the force reaches; of soft ones that are pressed to a
+  !> part of their thickness that is not small; and of what lies deeper and is strained by the load.
   subroutine judge_layers(problem, extent, summary)
     type(problem_t), intent(in) :: problem
     type(extent_t), intent(in) :: extent

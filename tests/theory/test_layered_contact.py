@@ -42,8 +42,8 @@ def test_a_sphere_on_an_incompressible_film(solve, chi, ratio):
     assert found["effective_modulus"] / found["top_modulus"] == pytest.approx(ratio, rel=2e-5)
 
 
-# F/(2 E* a delta) of a flat punch on a film on something rigid against a/t, for Poisson's ratios 0.5
-# and 0.3, from the same solution (Hayes et al. 1972 print 1.281, 1.683, 2.211, 2.855, 3.609).
+# F/(2 E* a delta) of a flat punch on a film on something rigid against a/t, for Poisson's ratios
+# 0.5 and 0.3, from the same solution (Hayes et al. 1972 print 1.281, 1.683, 2.211, 2.855, 3.609).
 PUNCH = [0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0]
 STIFFER = {0.5: [1.2806, 1.6837, 2.2129, 2.8602, 3.6187, 6.003, 9.150],
            0.3: [1.2066, 1.4726, 1.7848, 2.1260, 2.4835, 3.4090, 4.3532]}
