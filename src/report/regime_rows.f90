@@ -1,7 +1,7 @@
 !> Which theory of contact describes a scene: the parameters that say so, and the errors of the
 !> theories in pull-off, contact radius and indentation, measured against the solved path.
 module regime_rows
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
   use edge_locked, only: approach
@@ -167,7 +167,7 @@ contains
     a = contact%radius_at_load(theory, load/problem%load)
     says%radius = a*problem%lateral
     says%indentation = a
-    if (a > 0) says%indentation = contact%displacement(theory, a)*problem%length
+    if (.not. ieee_is_nan(a)) says%indentation = contact%displacement(theory, a)*problem%length
   end function of_layers
 
   pure type(measured_t) function sum_of(one, other) result(total)
