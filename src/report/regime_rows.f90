@@ -196,14 +196,12 @@ contains
     character(len=16) :: percent
     integer :: i, best, where_worst
 
+    worst = huge(1.0_wp)
     do i = 1, size(worst)
+      if (any(ieee_is_nan(errors(:, i)))) cycle
+      if (maxval(abs(errors(:, i))) >= huge(1.0_wp)) cycle
       worst(i) = maxval(abs(errors(:, i)))
-      ! maxval passes over NaN.
-      if (all(abs(errors(:, i)) < huge(1.0_wp))) then
-        call summary%set('regime_worst_' // trim(theories(i)), worst(i))
-      else
-        worst(i) = huge(1.0_wp)
-      end if
+      call summary%set('regime_worst_' // trim(theories(i)), worst(i))
     end do
     best = minloc(worst, 1)
     call summary%set('regime_theory', merge(real(best, wp), 0.0_wp, worst(best) <= acceptable))
