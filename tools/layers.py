@@ -26,6 +26,7 @@ import snapin  # noqa: E402
 
 TABLE = pages.ROOT / "docs" / "layers_indentation.csv"
 PICTURE = pages.ROOT / "docs" / "layers.png"
+FILMS = pages.ROOT / "docs" / "layers_films.png"
 CHI = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0]
 # Films on something rigid by their Poisson's ratio; incompressible films on bases of Poisson's ratio
 # 0.5 by the ratio of moduli, film over base.
@@ -36,9 +37,9 @@ SIGMA = 25.0
 warnings.simplefilter("ignore", snapin.SnapinWarning)
 
 
-def film(thickness, nu, ratio, sigma, h0_end):
+def film(thickness, nu, ratio, sigma, h0_end, **groups):
     """The summary of theory for a film under something rigid, in units of z0 and of its modulus;
-    ratio: of the shear moduli, film over base, 0 for a rigid base."""
+    ratio: of the shear moduli, film over base, 0 for a rigid base; groups: what else is asked."""
     young = (1 - nu**2) / 2
     bodies = {"radius": 1.0, "rigid": True}
     if ratio:
@@ -47,7 +48,7 @@ def film(thickness, nu, ratio, sigma, h0_end):
         "bodies": bodies,
         "layer": {"thickness": thickness, "young": young, "poisson": nu, "partner": "rigid"},
         "force": {"law": "lennard_jones", "surface_energy": sigma, "z0": 1.0},
-        "classical": {"h0_start": 20.0, "h0_end": h0_end, "count": 2}}).summary
+        "classical": {"h0_start": 20.0, "h0_end": h0_end, "count": 2}, **groups}).summary
 
 
 def over_hertz(chi, nu, ratio):
@@ -99,11 +100,44 @@ def draw(table):
         pull = [film(part * contact, 0.5, ratio, SIGMA, -2.0)["jkr_pull_off"]
                 / (math.pi * SIGMA) for part in parts]
         label = f"film {ratio:g} times its base" if ratio else "rigid base"
-        right.plot(parts, pull, label=label)
+        line, = right.plot(parts, pull, label=label)
+        solved = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0]
+        found = [film(part * contact, 0.5, ratio, SIGMA, -2.0, equilibrium_path={"h0_end": -2.0})
+                 for part in solved]
+        right.plot(solved, [one["max_tension"] / (math.pi * SIGMA) for one in found], "o",
+                   color=line.get_color(), markersize=4)
     right.set(xlabel="t/a₀", ylabel="JKR pull-off over πwR", xscale="log", ylim=(0.9, 2.5))
     right.legend(fontsize=8, title="modulus, ν = 0.5")
     figure.savefig(PICTURE, dpi=90)
 
 
+def draw_films():
+    """Draw load against indentation for rubber films on glass under a sphere of glass: the solved
+    paths, and JKR theory of layers."""
+    figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
+    axes.axhline(0, color="0.8", linewidth=0.8)
+    for micrometres, thickness in ((0.5, 0.5e-6), (1, 1e-6), (2, 2e-6), (5, 5e-6), (None, None)):
+        glass, rubber = {"young": 70e9, "poisson": 0.2}, {"young": 3e6, "poisson": 0.49}
+        bodies = {"radius": 100e-6, **glass}
+        layer = {"layer": {"thickness": thickness, **rubber}}
+        if not thickness:
+            bodies |= {key: [rubber[key], glass[key]] for key in glass}
+            layer = {}
+        run = snapin.run({
+            "bodies": bodies, **layer,
+            "force": {"law": "lennard_jones", "surface_energy": 0.02, "z0": 20e-9},
+            "equilibrium_path": {"h0_end": -200e-9}, "classical": {"h0_start": 400e-9}})
+        label = f"film of {micrometres:g} µm" if thickness else "rubber half-space"
+        path = run.curve[run.curve["branch"] == "path"]
+        line, = axes.plot(-path["h0"] * 1e9, path["load"] * 1e6, label=label)
+        theory = run.classical[run.classical["theory"] == ("jkr_layered" if thickness else "jkr")]
+        axes.plot(-theory["h0"] * 1e9, theory["load"] * 1e6, "--", color=line.get_color(),
+                  linewidth=1)
+    axes.set(xlabel="indentation, −h0 [nm]", ylabel="load [µN]", xlim=(-310, 205), ylim=(-16, 40))
+    axes.legend(fontsize=8, title="dashed: JKR theory of layers")
+    figure.savefig(FILMS, dpi=90)
+
+
 if __name__ == "__main__":
     draw(write_table())
+    draw_films()

@@ -3,7 +3,8 @@ module chebyshev
   use kinds, only: wp, pi
   implicit none
   private
-  public :: chebyshev_points, chebyshev_series, series_value, series_slope, series_integral
+  public :: chebyshev_points, chebyshev_series, series_value, series_slope, series_integral, &
+    power_series
 
 contains
 
@@ -81,5 +82,26 @@ contains
       integral(0) = integral(0) - (-1)**k*integral(k)
     end do
   end function series_integral
+
+  !> The coefficients of the powers of x in a series.
+  pure function power_series(coefficient) result(power)
+    real(wp), intent(in) :: coefficient(0:)
+    real(wp), dimension(0:ubound(coefficient, 1)) :: power, before, now, next
+    integer :: n, k
+
+    n = ubound(coefficient, 1)
+    before = 0
+    now = 0
+    now(0) = 1
+    power = coefficient(0)*now
+    do k = 1, n
+      ! T_1 = x, T_k = 2 x T_(k-1) - T_(k-2).
+      next = -before
+      next(1:) = next(1:) + merge(1, 2, k == 1)*now(:n - 1)
+      before = now
+      now = next
+      power = power + coefficient(k)*now
+    end do
+  end function power_series
 
 end module chebyshev

@@ -5,7 +5,8 @@ module linear_algebra
   use small_lu, only: lu_factorise, lu_solve, most_rows
   implicit none
   private
-  public :: multiply, multiply_transposed, factorisation_t, factorise, solve, determinant_sign, &
+  public :: multiply, multiply_left, multiply_transposed, &
+    multiply_by_transposed, factorisation_t, factorise, solve, determinant_sign, &
     log_determinant, claim_buffers, eigenvalues, solve_tridiagonal, singular_values
 
   !> LU factors of a square matrix, from `factorise`.
@@ -42,6 +43,15 @@ contains
     end if
   end subroutine multiply
 
+  !> y = x a(:size(x), :size(y)).
+  subroutine multiply_left(x, a, y)
+    real(wp), intent(in), contiguous :: a(:, :)
+    real(wp), intent(in) :: x(:)
+    real(wp), intent(out) :: y(:)
+
+    call dgemv('t', size(x), size(y), 1.0_wp, a, size(a, 1), x, 1, 0.0_wp, y, 1)
+  end subroutine multiply_left
+
   !> c = matmul(transpose(a), b).
   subroutine multiply_transposed(a, b, c)
     real(wp), intent(in), contiguous :: a(:, :), b(:, :)
@@ -68,6 +78,15 @@ contains
       factors%valid = info == 0
     end if
   end subroutine factorise
+
+  !> c = matmul(a, transpose(b)).
+  subroutine multiply_by_transposed(a, b, c)
+    real(wp), intent(in), contiguous :: a(:, :), b(:, :)
+    real(wp), intent(out) :: c(:, :)
+
+    call dgemm('n', 't', size(a, 1), size(b, 1), size(a, 2), 1.0_wp, a, size(a, 1), b, size(b, 1), &
+      0.0_wp, c, size(c, 1))
+  end subroutine multiply_by_transposed
 
   !> Overwrites b with the solution; factors must be valid.
   subroutine solve(factors, b)

@@ -8,9 +8,9 @@ module wave_quadrature
   public :: wave_rule
 
   !> Nodes of a panel, and the length of k x over it that they resolve in a product of two waves:
-  !> some (8/2)^(2 nodes)/(2 nodes)! = 1e-24 is left, and with it room for the function.
+  !> some (16/2)^(2 nodes)/(2 nodes)! = 2e-12 is left, and with it room for the function.
   integer, parameter :: nodes = 20
-  real(wp), parameter :: swing = 8
+  real(wp), parameter :: swing = 16
   !> Ratio of the ends of panels where waves are longer than that.
   real(wp), parameter :: ratio = 3
 

@@ -8,7 +8,7 @@
 !> edge) join.
 module equilibrium
   use kinds, only: wp, pi, long
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: problem_t, coupling_over
   use beyond_mesh, only: load_beyond
   use discretisation, only: axis_row, centre_row, first_node
   use contact_scales, only: largest_floor
@@ -239,7 +239,8 @@ contains
     type(state_t), intent(in) :: state
 
     residual_floor = 3*epsilon(1.0_wp)*(abs(state%h0) + min(maxval(abs(state%gap)), far_gap) + &
-      4*problem%coupling*state%scale*maxval(abs(state%pressure)))
+      4*max(problem%coupling, coupling_over(problem, state%scale))*state%scale* &
+      maxval(abs(state%pressure)))
     residual_floor = min(residual_floor, largest_floor)
   end function residual_floor
 

@@ -2,9 +2,9 @@
 !> apart, and pulls them far into contact.
 module path_demand
   use kinds, only: wp, pi
-  use dimensionless_problem, only: problem_t, yielding_gap
+  use dimensionless_problem, only: problem_t, coupling_over, yielding_gap
   use contact_scales, only: beyond_contact
-  use convex_contact, only: hertz_like_load, jkr_like_pull_off
+  use convex_contact, only: jkr_like_pull_off
   use undeformed, only: load_undeformed
   use experiment_request, only: request_t
   implicit none
@@ -108,13 +108,14 @@ contains
   end function barrier_load
 
   !> A tension that no pull-off exceeds: of parabolas that of rigid bodies; of others the larger one
-  !> of rigid bodies and of JKR theory.
+  !> of rigid bodies and of JKR theory. Thin films hold on for up to
+  !> twice that.
   pure real(wp) function largest_pull(problem) result(tension)
     type(problem_t), intent(in) :: problem
     integer :: step
 
     if (problem%shape%parabolic) then
-      tension = 2*pi*problem%law%adhesion
+      tension = merge(2, 4, problem%body%is_homogeneous())*pi*problem%law%adhesion
       return
     end if
     tension = 0
@@ -147,14 +148,16 @@ contains
       real(wp), intent(in) :: radius
 
       h0_at = 1 - problem%shape%indentation(radius) + &
-        sqrt(4*pi*problem%coupling*problem%law%adhesion*radius)
+        sqrt(4*pi*coupling_over(problem, radius)*problem%law%adhesion*radius)
     end function h0_at
 
     pure real(wp) function position(radius)
       real(wp), intent(in) :: radius
 
-      position = a*h0_at(radius) - b*(hertz_like_load(problem, radius) - &
-        sqrt(4*pi*problem%law%adhesion*radius**3/problem%coupling))
+      associate (coupling => coupling_over(problem, radius))
+        position = a*h0_at(radius) - b*(problem%shape%indentation_load(radius)/coupling - &
+          sqrt(4*pi*problem%law%adhesion*radius**3/coupling))
+      end associate
     end function position
 
   end function h0_in_contact

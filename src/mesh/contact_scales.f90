@@ -4,7 +4,8 @@ module contact_scales
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
   use shape, only: shape_t
-  use dimensionless_problem, only: problem_t, neck_width, adhesion_strength
+  use dimensionless_problem, only: problem_t, neck_width, adhesion_strength, &
+    coupling_over
   use convex_contact, only: jkr_like_detachment
   implicit none
   private
@@ -25,7 +26,8 @@ module contact_scales
 contains
 
   !> Contact radius that JKR theory, (11), gives at H0, with a margin of a fifth; for a law without
-  !> adhesion that of Hertz, beginning at its level.
+  !> adhesion that of Hertz, beginning at its level. Of bodies that yield less to long waves than to
+  !> short ones it is larger for its depth, up to twice for a thin film that keeps its volume.
   pure real(wp) function largest_radius(problem, h0, level) result(c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0, level
@@ -34,25 +36,31 @@ contains
 
     if (problem%law%adhesion <= 0) then
       c = hertz_scale(problem%shape, level, h0)
-      return
+    else
+      c = 1
+      do step = 1, 200
+        before = c
+        c = problem%shape%contact_radius(max(1 - h0, 0.0_wp) + &
+          sqrt(4*pi*coupling_over(problem, c)*problem%law%adhesion*c))
+        if (.not. abs(c - before) > 0) exit
+      end do
+      c = max(1.0_wp, 1.2_wp*c)
     end if
-    c = 1
-    do step = 1, 200
-      before = c
-      c = problem%shape%contact_radius(max(1 - h0, 0.0_wp) + &
-        sqrt(4*pi*adhesion_strength(problem)*c))
-      if (.not. abs(c - before) > 0) exit
-    end do
-    c = max(1.0_wp, 1.2_wp*c)
+    if (.not. problem%body%is_homogeneous()) &
+      c = c*(2 - min(1.0_wp, coupling_over(problem, c)/problem%coupling))
   end function largest_radius
 
   !> An H0 beyond which no contact reaches: the jump out of contact at fixed displacement of JKR
-  !> theory, with a margin of a fifth.
+  !> theory, with a margin of a fifth, of half-spaces that yield as bodies do under the contact that
+  !> they have without displacement.
   pure real(wp) function beyond_contact(problem)
     type(problem_t), intent(in) :: problem
+    real(wp) :: strength
 
-    beyond_contact = 1.2_wp*(1 + jkr_like_detachment(problem%shape, &
-      adhesion_strength(problem)))
+    strength = adhesion_strength(problem)
+    if (.not. problem%body%is_homogeneous()) strength = problem%law%adhesion* &
+      max(problem%coupling, coupling_over(problem, largest_radius(problem, 1.0_wp, 1.0_wp)))
+    beyond_contact = 1.2_wp*(1 + jkr_like_detachment(problem%shape, strength))
   end function beyond_contact
 
   !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins
@@ -110,7 +118,8 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
 
-    lost_in_rounding = 8*epsilon(1.0_wp)*adhesion_strength(problem)*c > largest_floor
+    lost_in_rounding = 8*epsilon(1.0_wp)*c*problem%law%adhesion* &
+      max(problem%coupling, coupling_over(problem, c)) > largest_floor
   end function lost_in_rounding
 
 end module contact_scales

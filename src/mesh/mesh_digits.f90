@@ -4,7 +4,7 @@
 !> 1e-4 to 1e4.
 module mesh_digits
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t, adhesion_strength
+  use dimensionless_problem, only: problem_t, adhesion_strength, coupling_over
   implicit none
   private
   public :: digits_for, most_digits
@@ -20,6 +20,9 @@ module mesh_digits
   !> narrower the neck, for each decade of sigma; bodies with a kink, where the edge passes it.
   real(wp), parameter :: without_jumps = -0.5_wp, for_lengths = 0.6_wp, for_profiles = 2, &
     for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
+  !> For each decade of how much wider contacts are than layers that yield unlike a half-space to
+  !> waves of this many or fewer over the radius.
+  real(wp), parameter :: for_layers = 1.5_wp, waves_in_layer = 32
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; what is more
   !> there, the factor in sigma up to which that is felt, and the part of it, logarithmically, in
   !> which the two folds are so near each other that coarse meshes lose them.
@@ -46,11 +49,14 @@ contains
     end if
     if (profiles) digits = digits + for_profiles + for_narrow_necks*decades
     if (problem%shape%smooth_from() > 0) digits = digits + for_kinks
+    digits = digits + for_layers*log10(hypot(1.0_wp, &
+      widest*maxval(problem%body%wave_range())/waves_in_layer))
     away = abs(log(max(sigma, tiny(1.0_wp))/onset))/log(about_onset)
     digits = digits + at_onset*max(0.0_wp, min(1.0_wp, 1.5_wp*(1 - away)))
     if (away < near_onset) least = max(least, enough_for_folds)
     digits = max(digits, least)
-    left = -log10(epsilon(1.0_wp)*max(1.0_wp, sigma*widest))
+    left = -log10(epsilon(1.0_wp)*max(1.0_wp, sigma*widest, &
+      coupling_over(problem, widest)*problem%law%adhesion*widest))
     digits = max(fewest, min(digits, left, most_digits))
     if (left > fewest) digits = max(digits, min(enough_for_folds, least))
   end function digits_for

@@ -7,14 +7,15 @@
 !> pressure_unit: sigma (40) for the Lennard-Jones law, Lambda (39) at h0 = 0 for the exponential
 !> one, 0 for rigid bodies. Of other shapes R is only what makes sqrt(R L) their lateral unit.
 module dimensionless_problem
-  use kinds, only: wp
+  use kinds, only: wp, pi
   use force_law, only: force_law_t
   use shape, only: shape_t
   use elastic_body, only: elastic_body_t, half_space_t
   implicit none
   private
   public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
-    adhesion_strength, surface_energy, largest_tension, calm_gap, yielding_gap, contact_level_of
+    adhesion_strength, coupling_over, surface_energy, largest_tension, calm_gap, &
+    yielding_gap, contact_level_of
 
   type :: problem_t
     class(force_law_t), allocatable :: law
@@ -67,6 +68,18 @@ contains
     adhesion_strength = problem%coupling*problem%law%adhesion
   end function adhesion_strength
 
+  !> How much bodies yield under a pressure over a circle of this radius (lateral units): about the
+  !> coupling of half-spaces that yield as much to a flat punch, which makes waves as
+  !> (sin(k radius)/(k radius))^2, taken as those up to a k that leaves as many.
+  elemental real(wp) function coupling_over(problem, radius) result(coupling)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: radius
+
+    coupling = problem%coupling
+    if (.not. problem%body%is_homogeneous()) &
+      coupling = coupling*(1 + problem%body%mean_beside(0.5_wp*pi/max(radius, tiny(radius))))
+  end function coupling_over
+
   !> Width of the zone outside the contact edge over which the tension decays, lateral units:
   !> 0.75 E* L^2/gamma = 0.375/sigma; huge where bodies are rigid or nothing attracts.
   pure real(wp) function neck_width(problem)
@@ -110,7 +123,8 @@ contains
     if (problem%law%step_width > 0) &
       gap = max(gap, problem%law%step_at + outside*problem%law%step_width)
     if (problem%shape%parabolic) &
-      gap = max(gap, 2*(27*adhesion_strength(problem))**(2.0_wp/7))
+      gap = max(gap, 2*(27*coupling_over(problem, problem%shape%position_of(0.5_wp*gap))* &
+      problem%law%adhesion)**(2.0_wp/7))
   end function calm_gap
 
   !> The largest gap at which bodies yield by more than the part `left` of what makes them jump into
@@ -124,14 +138,15 @@ contains
     !> Ratio of gaps that are tried, and their number: to 1e6 lengths.
     real(wp), parameter :: ratio = 1.05_wp
     integer, parameter :: tried = 284
-    real(wp) :: at(tried)
+    real(wp) :: at(tried), width(tried)
     integer :: i, last
 
     gap = 0
     if (.not. problem%law%adhesion > 0) return
     at = [(ratio**i, i=1, tried)]
-    last = findloc(at_jump*problem%coupling*abs(problem%law%slope(at))* &
-      problem%shape%position_of(0.5_wp*at) > left, .true., 1, back=.true.)
+    width = problem%shape%position_of(0.5_wp*at)
+    last = findloc(at_jump*coupling_over(problem, width)*abs(problem%law%slope(at))*width > left, &
+      .true., 1, back=.true.)
     if (last > 0) gap = at(last)
   end function yielding_gap
 

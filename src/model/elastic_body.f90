@@ -20,6 +20,8 @@ module elastic_body
   contains
     procedure(ask), deferred :: is_homogeneous
     procedure(describe), deferred :: beside_half_space
+    procedure(describe), deferred :: growth
+    procedure(average), deferred :: mean_beside
     procedure(bound), deferred :: wave_range
     procedure :: is_alike
     procedure :: take_one
@@ -32,13 +34,20 @@ module elastic_body
       class(elastic_body_t), intent(in) :: self
     end function ask
 
-    !> L - 1 and k dL/dk at wave numbers in one over the lateral unit.
-    pure subroutine describe(self, k, more, growth)
+    !> L - 1, or k dL/dk, at wave numbers in one over the lateral unit.
+    pure function describe(self, k) result(value)
       import :: elastic_body_t, wp
       class(elastic_body_t), intent(in) :: self
       real(wp), intent(in) :: k(:)
-      real(wp), intent(out) :: more(:), growth(:)
-    end subroutine describe
+      real(wp) :: value(size(k))
+    end function describe
+
+    !> The mean of L - 1 up to a wave number.
+    elemental real(wp) function average(self, k)
+      import :: elastic_body_t, wp
+      class(elastic_body_t), intent(in) :: self
+      real(wp), intent(in) :: k
+    end function average
 
     !> Wave numbers up to the first of which L is a polynomial of low degree, as it is between k and
     !> 3 k from there on, and beyond the last of which L - 1 is nothing.
@@ -53,7 +62,9 @@ module elastic_body
   type, extends(elastic_body_t) :: half_space_t
   contains
     procedure :: is_homogeneous
-    procedure :: beside_half_space
+    procedure :: beside_half_space => nothing
+    procedure :: growth => nothing
+    procedure :: mean_beside
     procedure :: wave_range
   end type half_space_t
 
@@ -81,14 +92,20 @@ contains
     is_homogeneous = .true.
   end function is_homogeneous
 
-  pure subroutine beside_half_space(self, k, more, growth)
+  pure function nothing(self, k) result(value)
     class(half_space_t), intent(in) :: self
     real(wp), intent(in) :: k(:)
-    real(wp), intent(out) :: more(:), growth(:)
+    real(wp) :: value(size(k))
 
-    more = 0
-    growth = 0
-  end subroutine beside_half_space
+    value = 0
+  end function nothing
+
+  elemental real(wp) function mean_beside(self, k)
+    class(half_space_t), intent(in) :: self
+    real(wp), intent(in) :: k
+
+    mean_beside = 0
+  end function mean_beside
 
   pure function wave_range(self) result(k)
     class(half_space_t), intent(in) :: self

@@ -5,7 +5,8 @@ module layered_body
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use linear_algebra, only: multiply_transposed
-  use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope
+  use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
+    series_integral
   use wave_quadrature, only: wave_rule
   use elastic_body, only: elastic_body_t, half_space_t
   use layered_surface, only: layered_surface_t
@@ -13,8 +14,9 @@ module layered_body
   private
   public :: layered_body_t, new_layered_body
 
-  !> Largest k times twice the top layer's thickness: exp(-32) (32)^2 = 1e-11 is left of L - 1.
-  real(wp), parameter :: last_wave = 32
+  !> Largest k times twice the top layer's thickness: exp(-28) (28)^2 = 5e-10 is left of L - 1, and
+  !> of what pressures have of so short a wave still less.
+  real(wp), parameter :: last_wave = 28
   !> Degree of L - 1 on a panel of waves, what may be left of its last coefficients, and how often a
   !> panel is halved.
   integer, parameter :: degree = 16, halvings = 60
@@ -24,8 +26,10 @@ module layered_body
   !> L - 1 of both bodies together, in lateral units.
   type, extends(elastic_body_t) :: layered_body_t
     private
-    !> Ends of panels of k, and L - 1 and dL/dk on them as series.
-    real(wp), allocatable :: ends(:), series(:, :), slope(:, :)
+    !> Ends of panels of k; on them, as series, L - 1, dL/dk, and the integral of L - 1 from 0.
+    real(wp), allocatable :: ends(:), series(:, :), slope(:, :), whole(:, :)
+    !> Whether L is 1 throughout: layers and base are of one material.
+    logical :: plain = .false.
     !> L(0), of the base; infinite waves.
     real(wp), public :: bottom = 1
     !> The thinnest of the top layers.
@@ -36,6 +40,8 @@ module layered_body
   contains
     procedure :: is_homogeneous
     procedure :: beside_half_space
+    procedure :: growth
+    procedure :: mean_beside
     procedure :: wave_range
     procedure :: is_alike
     procedure :: take_one
@@ -49,12 +55,14 @@ contains
   type(layered_body_t) function new_layered_body(surface, part) result(body)
     type(layered_surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: part(2)
-    real(wp) :: last, first, series(0:degree)
+    real(wp) :: last, first, before, series(0:degree), whole(0:degree + 1)
     integer :: i, halved
 
     body%surface = surface
     body%part = part
-    allocate (body%ends(1), body%series(0:degree, 0), body%slope(0:degree, 0))
+    allocate (body%ends(1), body%series(0:degree, 0), body%slope(0:degree, 0), &
+      body%whole(0:degree + 1, 0))
+    before = 0
     body%ends = 0
     body%thinnest = huge(last)
     do i = 1, 2
@@ -72,7 +80,12 @@ contains
       body%series = reshape([body%series, series], [degree + 1, size(body%ends) - 1])
       body%slope = reshape([body%slope, series_slope(series)*2/ &
         (body%ends(size(body%ends)) - first)], [degree + 1, size(body%ends) - 1])
+      whole = series_integral(series)*(body%ends(size(body%ends)) - first)/2
+      whole(0) = whole(0) + before
+      before = series_value(whole, 1.0_wp)
+      body%whole = reshape([body%whole, whole], [degree + 2, size(body%ends) - 1])
     end do
+    body%plain = maxval(abs(body%series)) <= resolved
     ! Without an end of the series no state may converge.
     if (body%ends(size(body%ends)) < last) body%series = ieee_value(last, ieee_quiet_nan)
     body%bottom = 1 + series_value(body%series(:, 1), -1.0_wp)
@@ -106,7 +119,7 @@ contains
   pure logical function is_homogeneous(self)
     class(layered_body_t), intent(in) :: self
 
-    is_homogeneous = .false.
+    is_homogeneous = self%plain
   end function is_homogeneous
 
   !> Whether both have the same layers on the same base.
@@ -133,35 +146,57 @@ contains
     end if
   end subroutine take_one
 
-  !> The series of the panels in which the wave numbers lie; nothing beyond.
-  pure subroutine beside_half_space(self, k, more, growth)
+  pure function beside_half_space(self, k) result(value)
     class(layered_body_t), intent(in) :: self
     real(wp), intent(in) :: k(:)
-    real(wp), intent(out) :: more(:), growth(:)
-    real(wp) :: x
+    real(wp) :: value(size(k))
+
+    value = on_panels(self%ends, self%series, k)
+  end function beside_half_space
+
+  pure function growth(self, k) result(value)
+    class(layered_body_t), intent(in) :: self
+    real(wp), intent(in) :: k(:)
+    real(wp) :: value(size(k))
+
+    value = k*on_panels(self%ends, self%slope, k)
+  end function growth
+
+  elemental real(wp) function mean_beside(self, k)
+    class(layered_body_t), intent(in) :: self
+    real(wp), intent(in) :: k
+    real(wp) :: whole(1)
+
+    whole = on_panels(self%ends, self%whole, [min(k, self%ends(size(self%ends)))])
+    mean_beside = whole(1)/k
+  end function mean_beside
+
+  !> The series of the panels in which the wave numbers lie; nothing beyond.
+  pure function on_panels(ends, series, k) result(value)
+    real(wp), intent(in) :: ends(:), series(:, :), k(:)
+    real(wp) :: value(size(k))
     integer :: panel, i
 
     panel = 1
     do i = 1, size(k)
-      more(i) = 0
-      growth(i) = 0
-      if (k(i) > self%ends(size(self%ends))) cycle
+      value(i) = 0
+      if (k(i) > ends(size(ends))) cycle
       ! Wave numbers mostly come in order.
-      if (k(i) < self%ends(panel)) panel = 1
-      do while (k(i) > self%ends(panel + 1))
+      if (k(i) < ends(panel)) panel = 1
+      do while (k(i) > ends(panel + 1))
         panel = panel + 1
       end do
-      x = 2*(k(i) - self%ends(panel))/(self%ends(panel + 1) - self%ends(panel)) - 1
-      more(i) = series_value(self%series(:, panel), x)
-      growth(i) = k(i)*series_value(self%slope(:, panel), x)
+      value(i) = series_value(series(:, panel), &
+        2*(k(i) - ends(panel))/(ends(panel + 1) - ends(panel)) - 1)
     end do
-  end subroutine beside_half_space
+  end function on_panels
 
   pure function wave_range(self) result(k)
     class(layered_body_t), intent(in) :: self
     real(wp) :: k(2)
 
-    k = [self%ends(2), self%ends(size(self%ends))]
+    k = 0
+    if (.not. self%plain) k = [self%ends(2), self%ends(size(self%ends))]
   end function wave_range
 
   !> sums(i, j) = 2 Int (L - 1) cos(k x(i)) cos(k y(j)) dk.
@@ -169,21 +204,22 @@ contains
     class(layered_body_t), intent(in) :: self
     real(wp), intent(in) :: x(:), y(:)
     real(wp), intent(out) :: sums(:, :)
-    real(wp), allocatable :: k(:), weight(:), more(:), growth(:), left(:, :), right(:, :)
+    real(wp), allocatable :: k(:), weight(:), left(:, :), right(:, :)
     real(wp) :: range(2)
     integer :: j
 
+    sums = 0
+    if (self%plain) return
     range = self%wave_range()
     call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], 0.0_wp, range(1), range(2), k, &
       weight)
-    allocate (more, growth, mold=k)
-    call self%beside_half_space(k, more, growth)
+    weight = 2*weight*self%beside_half_space(k)
     allocate (left(size(k), size(x)), right(size(k), size(y)))
     do j = 1, size(x)
       left(:, j) = cos(k*x(j))
     end do
     do j = 1, size(y)
-      right(:, j) = 2*weight*more*cos(k*y(j))
+      right(:, j) = weight*cos(k*y(j))
     end do
     call multiply_transposed(left, right, sums)
   end subroutine cosine_sums

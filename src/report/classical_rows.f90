@@ -35,7 +35,7 @@ contains
     integer :: i
 
     if (problem%rigid) return
-    if (.not. problem%body%is_homogeneous()) then
+    if (is_layered(problem)) then
       call write_layered(problem, range, from, results)
       return
     end if
@@ -130,6 +130,18 @@ contains
 
   end subroutine write_layered
 
+  !> Whether bodies have layers, of whatever material.
+  pure logical function is_layered(problem)
+    type(problem_t), intent(in) :: problem
+
+    select type (body => problem%body)
+    type is (layered_body_t)
+      is_layered = .true.
+    class default
+      is_layered = .false.
+    end select
+  end function is_layered
+
   !> The contacts of layered bodies down to an h0 [m].
   function layered_contact_of(problem, h0) result(contact)
     type(problem_t), intent(in) :: problem
@@ -171,7 +183,7 @@ contains
     type(summary_t), intent(inout) :: summary
     real(wp) :: gamma, strength
 
-    if (.not. problem%body%is_homogeneous()) then
+    if (is_layered(problem)) then
       call summarise_layered(problem, range, summary)
       return
     end if

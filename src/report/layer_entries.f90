@@ -1,16 +1,16 @@
 !> What the summary says of layered bodies, and of a scene that is not on the ground of their model.
 module layer_entries
-  use kinds, only: wp
+  use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, largest_tension
   use layered_body, only: layered_body_t
+  use layered_surface, only: layered_surface_t
+  use records, only: extent_t
   use summary, only: summary_t
+  use validity, only: strained
   use quality_warnings, only: short_number
   implicit none
   private
   public :: summarise_layers, judge_layers
-
-  !> Indentation as a part of the layers' thickness that is worth a warning, of soft layers.
-  real(wp), parameter :: strained = 0.1_wp
 
 contains
 
@@ -27,12 +27,13 @@ contains
     end select
   end subroutine summarise_layers
 
-  !> Warns of layers that are thinner than the force reaches, and of soft ones that are pressed to a
-  !> part of their thickness that is not small.
-  subroutine judge_layers(problem, summary)
+  !> Warns of layers that are thinner than the force reaches; of soft ones that are pressed to a
+  !> part of their thickness that is not small; and of what lies deeper and is strained by the load.
+  subroutine judge_layers(problem, extent, summary)
     type(problem_t), intent(in) :: problem
+    type(extent_t), intent(in) :: extent
     type(summary_t), intent(inout) :: summary
-    real(wp) :: reach, deepest
+    real(wp) :: reach, deepest, force, strain
     integer :: i
 
     select type (body => problem%body)
@@ -42,6 +43,9 @@ contains
         problem%law%adhesion*problem%pressure*problem%length/largest_tension(problem)
       deepest = 0
       if (summary%has('end_displacement')) deepest = -summary%number('end_h0')
+      force = 0
+      if (summary%has('max_tension')) force = summary%number('max_tension')
+      if (summary%has('end_load')) force = max(force, abs(summary%number('end_load')))
       do i = 1, 2
         if (size(body%surface(i)%thickness) == 0) cycle
         associate (thickness => body%surface(i)%thickness*problem%lateral)
@@ -52,10 +56,30 @@ contains
             'beyond the model: the bodies are pressed together by ' // &
             short_number(deepest/sum(thickness)) // ' of the thickness of the layers; ' // &
             'strains are no longer small')
+          strain = strain_below(body%surface(i), thickness, force, extent%contact_radius)
+          if (strain > strained) call summary%warn('beyond the model: what is below the top ' // &
+            'layer is strained by about ' // short_number(strain) // ', which is not small')
           exit
         end associate
       end do
     end select
   end subroutine judge_layers
+
+  !> About the largest strain below the top layer under a load [N] on a contact of some radius [m]:
+  !> stress over Young's modulus, as if the load spread at half a right angle.
+  pure real(wp) function strain_below(surface, thickness, load, radius) result(strain)
+    type(layered_surface_t), intent(in) :: surface
+    real(wp), intent(in) :: thickness(:), load, radius
+    real(wp), allocatable :: young(:)
+    integer :: i
+
+    young = 2*surface%shear*(1 + surface%poisson)
+    if (.not. surface%on_rigid) young = [young, 2*surface%base_shear*(1 + surface%base_poisson)]
+    strain = 0
+    if (.not. radius > 0) return
+    do i = 2, size(young)
+      strain = max(strain, load/(pi*(radius + sum(thickness(:i - 1)))**2*young(i)))
+    end do
+  end function strain_below
 
 end module layer_entries

@@ -1,10 +1,12 @@
 !> Which theory of contact describes a scene: the parameters that say so, and the errors of the
 !> theories in pull-off, contact radius and indentation, measured against the solved path.
 module regime_rows
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
   use edge_locked, only: approach
+  use layered_body, only: layered_body_t
+  use layered_contact, only: layered_contact_t, new_layered_contact, hertz, jkr
   use classical, only: hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
   use maugis, only: maugis_lambda, maugis_pull_off, maugis_radius_at_load, maugis_displacement
@@ -14,7 +16,10 @@ module regime_rows
   private
   public :: summarise_regime
 
-  character(len=*), parameter :: theories(*) = [character(len=6) :: 'hertz', 'jkr', 'dmt', 'maugis']
+  !> Those of half-spaces, for layers of half-spaces of the top ones; and two that are of layers.
+  character(len=*), parameter :: theories(*) = [character(len=13) :: 'hertz', 'jkr', 'dmt', &
+    'maugis', 'hertz_layered', 'jkr_layered']
+  integer, parameter :: of_half_spaces = 4
   character(len=*), parameter :: numbers(3) = [character(len=14) :: 'pull-off', 'contact radius', &
     'indentation']
   !> A theory that misses more than this is not recommended.
@@ -36,9 +41,10 @@ contains
     type(summary_t), intent(inout) :: summary
     type(measured_t) :: solved
     type(measured_t) :: uncertain
-    real(wp), dimension(3, size(theories)) :: errors, spread
+    type(layered_contact_t) :: layered
+    real(wp), allocatable :: errors(:, :), spread(:, :)
     real(wp) :: load, load_error, gamma, strength
-    integer :: i
+    integer :: i, known
     logical :: there
 
     gamma = surface_energy(problem)
@@ -50,6 +56,13 @@ contains
         'compared with')
       return
     end if
+    known = of_half_spaces
+    select type (body => problem%body)
+    type is (layered_body_t)
+      known = size(theories)
+      ! Contacts deep enough for theories that have less load there than the path.
+      layered = new_layered_contact(problem, body, 2*solved%indentation/problem%length)
+    end select
     associate (r => problem%radius, y => problem%stiffness)
       ! With E* = y/2 and the range gamma/strength.
       call summary%set('regime_tabor_range', (4*r*strength**3/(y**2*gamma))**(1.0_wp/3))
@@ -61,7 +74,7 @@ contains
       spread = abs(all_errors(load + load_error, solved) - errors) + &
         abs(all_errors(load, sum_of(solved, measured_t(pull_off=uncertain%pull_off))) - errors) + &
         abs(all_errors(load, sum_of(solved, measured_t(radius=uncertain%radius))) - errors)
-      do i = 1, size(theories)
+      do i = 1, known
         call summary%set('regime_error_' // trim(theories(i)), errors(:, i))
         call summary%set('regime_error_' // trim(theories(i)) // '_error', spread(:, i))
       end do
@@ -73,12 +86,16 @@ contains
     function all_errors(at_load, numbers) result(errors)
       real(wp), intent(in) :: at_load
       type(measured_t), intent(in) :: numbers
-      real(wp) :: errors(3, size(theories))
+      real(wp) :: errors(3, known)
       integer :: k
 
-      do k = 1, size(theories)
+      do k = 1, of_half_spaces
         errors(:, k) = errors_of(of_theory(trim(theories(k)), at_load, problem%radius, &
           problem%stiffness, gamma, strength), numbers, problem%radius)
+      end do
+      do k = of_half_spaces + 1, known
+        errors(:, k) = errors_of(of_layers(problem, layered, trim(theories(k)), at_load), numbers, &
+          problem%radius)
       end do
     end function all_errors
   end subroutine summarise_regime
@@ -136,6 +153,23 @@ contains
     end select
   end function of_theory
 
+  !> The same for theories of layers.
+  type(measured_t) function of_layers(problem, contact, name, load) result(says)
+    type(problem_t), intent(in) :: problem
+    type(layered_contact_t), intent(in) :: contact
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: load
+    real(wp) :: a
+    integer :: theory
+
+    theory = merge(jkr, hertz, name == 'jkr_layered')
+    if (theory == jkr) says%pull_off = contact%pull_off()*problem%load
+    a = contact%radius_at_load(theory, load/problem%load)
+    says%radius = a*problem%lateral
+    says%indentation = a
+    if (.not. ieee_is_nan(a)) says%indentation = contact%displacement(theory, a)*problem%length
+  end function of_layers
+
   pure type(measured_t) function sum_of(one, other) result(total)
     type(measured_t), intent(in) :: one, other
 
@@ -156,20 +190,18 @@ contains
   subroutine recommend(errors, summary)
     real(wp), intent(in) :: errors(:, :)
     type(summary_t), intent(inout) :: summary
-    real(wp) :: worst(size(theories))
+    real(wp) :: worst(size(errors, 2))
     character(len=*), parameter :: none_is_near = 'no theory is within 10 %; '
     character(len=160) :: nearest
     character(len=16) :: percent
     integer :: i, best, where_worst
 
-    do i = 1, size(theories)
+    worst = huge(1.0_wp)
+    do i = 1, size(worst)
+      if (any(ieee_is_nan(errors(:, i)))) cycle
+      if (maxval(abs(errors(:, i))) >= huge(1.0_wp)) cycle
       worst(i) = maxval(abs(errors(:, i)))
-      ! maxval passes over NaN.
-      if (all(abs(errors(:, i)) < huge(1.0_wp))) then
-        call summary%set('regime_worst_' // trim(theories(i)), worst(i))
-      else
-        worst(i) = huge(1.0_wp)
-      end if
+      call summary%set('regime_worst_' // trim(theories(i)), worst(i))
     end do
     best = minloc(worst, 1)
     call summary%set('regime_theory', merge(real(best, wp), 0.0_wp, worst(best) <= acceptable))

@@ -151,12 +151,18 @@ module result_rows
     row_t('regime_error_dmt_error', '', 'by how much these are uncertain', list=.true.), &
     row_t('regime_error_maugis', '', 'the same of Maugis-Dugdale theory', list=.true.), &
     row_t('regime_error_maugis_error', '', 'by how much these are uncertain', list=.true.), &
+    row_t('regime_error_hertz_layered', '', 'the same of Hertz theory of layers', list=.true.), &
+    row_t('regime_error_hertz_layered_error', '', 'by how much these are uncertain', list=.true.), &
+    row_t('regime_error_jkr_layered', '', 'the same of JKR theory of layers', list=.true.), &
+    row_t('regime_error_jkr_layered_error', '', 'by how much these are uncertain', list=.true.), &
     row_t('regime_worst_hertz', '', 'the largest of the three for Hertz theory', regime), &
     row_t('regime_worst_jkr', '', 'the same for JKR theory', regime), &
     row_t('regime_worst_dmt', '', 'the same for DMT theory', regime), &
     row_t('regime_worst_maugis', '', 'the same for Maugis-Dugdale theory', regime), &
-    row_t('regime_theory', '', 'the one recommended: 1 Hertz, 2 JKR, 3 DMT, 4 Maugis, 0 none', &
-      regime), &
+    row_t('regime_worst_hertz_layered', '', 'the same for Hertz theory of layers'), &
+    row_t('regime_worst_jkr_layered', '', 'the same for JKR theory of layers'), &
+    row_t('regime_theory', '', 'the one recommended: 1 Hertz, 2 JKR, 3 DMT, 4 Maugis, 5 and 6 ' // &
+      'Hertz and JKR of layers, 0 none', regime), &
     row_t('regime_recommended', '', 'theory with the smallest largest error, or none'), &
     row_t('regime_reason', '', 'why, in words'), &
     row_t('end_h0', 'm', &

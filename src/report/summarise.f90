@@ -20,7 +20,7 @@ module summarise
   use device_rows, only: summarise_device
   use fixed_load_rows, only: summarise_fixed_loads
   use regime_rows, only: summarise_regime
-  use validity, only: judge_law, judge_extent
+  use validity, only: judge_law, judge_extent, extent_of
   use layer_entries, only: summarise_layers, judge_layers
   use quality_warnings, only: judge_resolution, judge_accuracy, judge_stopping
   implicit none
@@ -52,7 +52,7 @@ contains
     call take_energy(problem, outcome, summary)
     call take_end(problem, outcome, summary)
     call judge_extent(problem, outcome, summary)
-    call judge_layers(problem, summary)
+    call judge_layers(problem, extent_of(outcome), summary)
     if (.not. outcome%differentiated) &
       call summary%fail_with('sensitivity: not all derivatives were found')
     call judge_resolution(outcome%chosen%grid == 'edge_locked', summary)

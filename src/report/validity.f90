@@ -9,7 +9,7 @@ module validity
   use quality_warnings, only: short_number
   implicit none
   private
-  public :: judge_law, judge_extent
+  public :: judge_law, judge_extent, extent_of, strained
 
   !> Part of the radius that is worth a note, and a warning: a parabola is off from a circle by a
   !> quarter of its square. Pressure over stiffness, about the strain, that is worth a warning.

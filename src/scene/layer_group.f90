@@ -78,6 +78,7 @@ contains
       call deck%get('layer', 'thickness', coat%thickness)
       call deck%get('layer', 'young', young)
       call deck%get('layer', 'poisson', coat%poisson)
+      call join_alike(coat%thickness, young, coat%poisson)
       coat%shear = young/(2*(1 + coat%poisson))
       coat%on_rigid = word_is(scene, 'base', 'rigid')
       has_coat = [body /= '2', body /= '1']
@@ -101,6 +102,19 @@ contains
       bodies%rigid = .false.
     end associate
   end subroutine take_layer
+
+  !> Makes one layer of neighbours of one material.
+  pure subroutine join_alike(thickness, young, poisson)
+    real(wp), allocatable, intent(inout) :: thickness(:), young(:), poisson(:)
+    integer :: i
+
+    do i = size(thickness) - 1, 1, -1
+      if (abs(young(i + 1) - young(i)) > 0 .or. abs(poisson(i + 1) - poisson(i)) > 0) cycle
+      thickness = [thickness(:i - 1), thickness(i) + thickness(i + 1), thickness(i + 2:)]
+      young = [young(:i), young(i + 2:)]
+      poisson = [poisson(:i), poisson(i + 2:)]
+    end do
+  end subroutine join_alike
 
   !> (1-nu^2)/E of a body of &bodies.
   pure real(wp) function compliance_of(bodies, i)

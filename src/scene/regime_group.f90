@@ -27,8 +27,6 @@ contains
     if (.not. scene%deck%has_group('regime')) return
     if (.not. scene%shape%parabolic) call scene%deck%mistake('regime', '', &
       'the theories are those of the parabola; leave out this group or &shape', error)
-    if (scene%deck%has_group('layer')) call scene%deck%mistake('regime', '', &
-      'the theories are those of half-spaces; leave out this group or &layer', error)
     call check_path(scene, 'regime', error)
     allocate (scene%regime)
   end subroutine take_regime

@@ -42,6 +42,7 @@ module layered_contact
     procedure :: displacement
     procedure :: load
     procedure :: radius_at
+    procedure :: radius_at_load
     procedure :: pull_off
   end type layered_contact_t
 
@@ -167,6 +168,26 @@ contains
     end do
     a = bracket%middle()
   end function radius_at
+
+  !> Contact radius of the state that is stable under a load; NaN where there is none or it is
+  !> outside the span.
+  pure real(wp) function radius_at_load(self, theory, load) result(a)
+    class(layered_contact_t), intent(in) :: self
+    integer, intent(in) :: theory
+    real(wp), intent(in) :: load
+    type(bracket_t) :: bracket
+
+    bracket = bracket_t(self%first, self%last)
+    if (theory == jkr) bracket%low = least(self, .false.)
+    if (self%load(theory, bracket%low) > load .or. self%load(theory, bracket%high) < load) then
+      a = ieee_value(a, ieee_quiet_nan)
+      return
+    end if
+    do while (bracket%is_open())
+      call bracket%narrow(self%load(theory, bracket%middle()) < load)
+    end do
+    a = bracket%middle()
+  end function radius_at_load
 
   !> The least load of JKR theory, negative; NaN where it lies beyond the span.
   pure real(wp) function pull_off(self)

@@ -48,6 +48,18 @@ SCENES = {
          "force": LENNARD_JONES["force"]},
         {STRENGTH: 1.0e-19, "shape.radius": 50e-9},
     ),
+    "film on something rigid": (
+        {"bodies": {"radius": 50e-9, "rigid": True},
+         "layer": {"thickness": 6e-9, "young": 1e10, "poisson": 0.45, "partner": "rigid"},
+         "force": LENNARD_JONES["force"]},
+        {"layer.thickness": 6e-9, "layer.young": 1e10},
+    ),
+    "hard skin": (
+        {"bodies": {"radius": 50e-9, "young": 5e9, "poisson": 0.5},
+         "layer": {"thickness": [3e-9, 4e-9], "young": [4e10, 1e10], "poisson": [0.2, 0.3]},
+         "force": LENNARD_JONES["force"]},
+        {"layer.thickness(1)": 3e-9, "bodies.young": 5e9},
+    ),
 }
 
 
@@ -56,7 +68,12 @@ def with_values(groups, values):
     changed = {name: dict(keys) for name, keys in groups.items()}
     for key, value in values.items():
         group, name = key.split(".")
-        changed[group][name] = value
+        name, _, item = name.rstrip(")").partition("(")
+        if item:
+            changed[group][name] = [*changed[group][name]]
+            changed[group][name][int(item) - 1] = value
+        else:
+            changed[group][name] = value
     return changed
 
 

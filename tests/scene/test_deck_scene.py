@@ -105,8 +105,6 @@ REFUSED = {
         "both bodies have layers"),
     "approximations of layers": (LAYERED + "&approximations /", 5, "approximations", "",
                                  "half-spaces"),
-    "regime of layers": (LAYERED + "&equilibrium_path /\n&regime /", 6, "regime", "",
-                         "half-spaces"),
     "no stiffness": (with_bodies("radius = 1 /"), 1, "bodies", "stiffness", "give one of"),
     "rigid false alone": (with_bodies("radius = 1, rigid = .false. /"), 1, "bodies", "stiffness",
                           "give one of"),

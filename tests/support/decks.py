@@ -75,6 +75,7 @@ ACCEPTED = {
     "layers": LAYERED,
     "a word of digits in quotes": LAYERED.replace("body = 1", "body = '1'"),
     "layers on both": LAYERED.replace("body = 1", "body = 'both'"),
+    "regime of layers": LAYERED + "&equilibrium_path /\n&regime /\n",
     "layers under a rigid body": LAYERED.replace("body = 1", "body = 2, partner = 'rigid'"),
     "layers alone yield": LAYERED.replace(", young = 70e9, poisson = 0.2", "").replace(
         "body = 1", "body = 'both', base = 'rigid'"),

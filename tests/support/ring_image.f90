@@ -19,6 +19,8 @@ module ring_image_body
   contains
     procedure :: is_homogeneous
     procedure :: beside_half_space
+    procedure :: growth
+    procedure :: mean_beside
     procedure :: wave_range
   end type ring_image_t
 
@@ -30,14 +32,28 @@ contains
     is_homogeneous = .false.
   end function is_homogeneous
 
-  pure subroutine beside_half_space(self, k, more, growth)
+  pure function beside_half_space(self, k) result(value)
     class(ring_image_t), intent(in) :: self
     real(wp), intent(in) :: k(:)
-    real(wp), intent(out) :: more(:), growth(:)
+    real(wp) :: value(size(k))
 
-    more = self%strength*exp(-self%depth*k)
-    growth = -self%depth*k*more
-  end subroutine beside_half_space
+    value = self%strength*exp(-self%depth*k)
+  end function beside_half_space
+
+  pure function growth(self, k) result(value)
+    class(ring_image_t), intent(in) :: self
+    real(wp), intent(in) :: k(:)
+    real(wp) :: value(size(k))
+
+    value = -self%depth*k*self%beside_half_space(k)
+  end function growth
+
+  elemental real(wp) function mean_beside(self, k)
+    class(ring_image_t), intent(in) :: self
+    real(wp), intent(in) :: k
+
+    mean_beside = self%strength*(1 - exp(-self%depth*k))/(self%depth*k)
+  end function mean_beside
 
   pure function wave_range(self) result(k)
     class(ring_image_t), intent(in) :: self

@@ -179,10 +179,14 @@ def examine(scene):
     groups = {"bodies": {"radius": RADIUS, "stiffness": stiffness}, **law.groups}
     groups.update(driven(rng, scene, law))
     found = run(scene, "asked", {**groups, "numerics": {"accuracy": scene.accuracy}})
-    numerics = {"accuracy": max(FINER * scene.accuracy, FINEST), "residual_tolerance": 1e-12}
-    truth = run(scene, "truth", {**groups, "numerics": numerics})
+    truth = run(scene, "truth", {**groups, "numerics": truth_of(scene)})
     shutil.rmtree(scene.folder)
     return [judged(scene, law, found, truth)]
+
+
+def truth_of(scene):
+    """The numerics of a scene's truth."""
+    return {"accuracy": max(FINER * scene.accuracy, FINEST), "residual_tolerance": 1e-12}
 
 
 def driven(rng, scene, law):

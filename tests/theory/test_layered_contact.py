@@ -16,7 +16,7 @@ def solve(snapin, tmp_path_factory):
     return runner(snapin, tmp_path_factory.mktemp("layered"))
 
 
-def theory(thickness, nu, base=None, sigma=SIGMA, h0_end=-20.0, **groups):
+def theory(thickness, nu, base=None, sigma=SIGMA, h0_end=-20.0, count=40, **groups):
     """Theories of a film whose half-space would have sigma, under something rigid; base: ratio of
     the shear moduli, film over base, and the base's Poisson's ratio."""
     young = (1 - nu**2) / 2
@@ -27,7 +27,7 @@ def theory(thickness, nu, base=None, sigma=SIGMA, h0_end=-20.0, **groups):
     return deck(bodies=bodies,
                 layer={"thickness": thickness, "young": young, "poisson": nu, "partner": "rigid"},
                 force={"law": "lennard_jones", "hamaker": 16 * math.pi * sigma, "z0": 1.0},
-                classical={"h0_start": 20.0, "h0_end": h0_end, "count": 40}, **groups)
+                classical={"h0_start": 20.0, "h0_end": h0_end, "count": count}, **groups)
 
 
 # F/F_Hertz against sqrt(R delta)/t of an incompressible film on something rigid, from a solution of
@@ -40,6 +40,29 @@ SPHERE = [(0.18507, 1.26977), (0.41721, 1.85712), (0.62011, 2.68406), (0.74794, 
 def test_a_sphere_on_an_incompressible_film(solve, chi, ratio):
     found = solve(theory(1 / chi, 0.5, sigma=1.0, h0_end=-1.0)).summary
     assert found["effective_modulus"] / found["top_modulus"] == pytest.approx(ratio, rel=2e-5)
+
+
+# F/(2 E* a delta) of a flat punch on a film on something rigid against a/t, for Poisson's ratios
+# 0.5 and 0.3, from the same solution (Hayes et al. 1972 print 1.281, 1.683, 2.211, 2.855, 3.609).
+PUNCH = [0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0]
+STIFFER = {0.5: [1.2806, 1.6837, 2.2129, 2.8602, 3.6187, 6.003, 9.150],
+           0.3: [1.2066, 1.4726, 1.7848, 2.1260, 2.4835, 3.4090, 4.3532]}
+
+
+@pytest.mark.parametrize("nu", STIFFER)
+def test_a_flat_punch_on_a_film(solve, nu):
+    """Bodies that do not adhere move on by a flat punch of the radius that they have."""
+    rows = solve(theory(1.0, nu, h0_end=-3.0, sigma=1.0, count=1000)).table("classical.csv")
+    rows = rows.rows("hertz_layered")
+    a = rows["contact_radius"]
+    # Both are smooth in the radius, beside the power that they begin with.
+    depth, load = (np.polynomial.Chebyshev.fit(a, rows[name] / a**power, 16)
+                   for name, power in (("displacement", 2), ("load", 3)))
+    at = np.array(PUNCH)
+    slope = ((3 * at**2 * load(at) + at**3 * load.deriv()(at))
+             / (2 * at * depth(at) + at**2 * depth.deriv()(at)))
+    # E* is one half in these units; four digits are printed.
+    assert slope / at == pytest.approx(STIFFER[nu], rel=7e-5)
 
 
 # Pull-off over pi R w, from the same solution: incompressible films on something rigid, and films
@@ -55,7 +78,8 @@ def test_pull_off_of_jkr_theory(solve, part, nu, base, pull_off):
     assert found["jkr_pull_off"] / (math.pi * SIGMA) == pytest.approx(pull_off, abs=6e-6)
 
 
-@pytest.mark.parametrize("part, nu, base", [(1, 0.5, None), (0.5, 0.3, (5, 0.3))])
+@pytest.mark.parametrize("part", [3, 1, 0.5])
+@pytest.mark.parametrize("nu, base", [(0.5, None), (0.3, (5, 0.3)), (0.45, (0.2, 0.2))])
 def test_lennard_jones_forces_pull_as_much_over_jkr_as_on_a_half_space(solve, part, nu, base):
     found = solve(theory(part * RADIUS, nu, base, equilibrium_path={"h0_end": -2.0})).summary
     half = solve(deck(bodies={"radius": 1.0, "stiffness": 1.0}, force={

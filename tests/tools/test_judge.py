@@ -3,7 +3,9 @@
 import math
 
 import pytest
-from support import study_cycles, study_energy, study_estimates, study_folds, study_laws
+from support import (
+    study_cycles, study_energy, study_estimates, study_folds, study_laws, study_layers,
+)  # fmt: skip
 from support.comparison import deviations
 from support.decks_in_units import Report
 from support.reference import Path
@@ -87,6 +89,13 @@ def test_each_number_is_as_good_as_its_estimate_says(tmp_path, sigma):
 @pytest.mark.parametrize("number", [0, 1, 3, 17, 107])
 def test_estimates_hold_under_other_laws(tmp_path, number):
     [finding] = study_laws.examine(study_laws.jobs(number + 1, tmp_path)[number])
+    assert finding.deviations
+    assert not study_laws.is_bad(finding), finding
+
+
+@pytest.mark.parametrize("number", [0, 1, 2, 9, 14])
+def test_estimates_hold_for_bodies_with_layers(tmp_path, number):
+    [finding] = study_layers.examine(study_layers.jobs(number + 1, tmp_path)[number])
     assert finding.deviations
     assert not study_laws.is_bad(finding), finding
 

@@ -9,6 +9,7 @@
     energy      the energy lost and its uncertainty
     laws        true error over estimated error under every law, the truth being the program's own
                 at a higher accuracy
+    layers      the same for bodies with layers
 
 The program is $SNAPIN, else build/snapin. Ends with status 1 where a study finds something wrong.
 """
@@ -25,7 +26,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
 from support import study_cycles, study_energy, study_estimates, study_folds  # noqa: E402
-from support import study_laws  # noqa: E402
+from support import study_laws, study_layers  # noqa: E402
 from support.decks_in_units import program_path  # noqa: E402
 from support.spread import spread  # noqa: E402
 
@@ -48,9 +49,10 @@ STUDIES = {
     "cusp": (study_cycles, cusp_jobs, 1000, lambda finding: finding.wrong),
     "folds": (study_folds, study_folds.jobs, 10, lambda finding: finding.wrong),
     "laws": (study_laws, study_laws.jobs, 1000, study_laws.is_bad),
+    "layers": (study_layers, study_layers.jobs, 200, study_layers.is_bad),
     "energy": (study_energy, study_energy.jobs, 40, lambda f: f.wrong or f.ratio > 1),
 }
-SEEDED = ("cycles", "cusp", "laws")
+SEEDED = ("cycles", "cusp", "laws", "layers")
 
 
 def study(name, arguments, folder):

@@ -1,0 +1,72 @@
+"""True errors beside estimated ones for bodies with layers: random scenes, paths and cycles.
+
+The truth is the same scene at a much higher accuracy, as in `study_laws`, whose tables these are.
+Scene k of a seed is always the same scene.
+"""
+
+import math
+import random
+import shutil
+
+from support.study_laws import (
+    ACCURACIES, RADIUS, STIFFNESS, Law, Scene, driven, is_bad, judged, lennard_jones, logarithmic,
+    run, strength, table, truth_of,
+)
+
+__all__ = ["examine", "is_bad", "jobs", "table"]
+
+STRENGTHS = (1e-2, 1e2)
+# Thickness over the contact radius of JKR theory without load; ratios of moduli of neighbours.
+THICKNESSES, RATIOS = (0.1, 10), (1e-2, 1e2)
+Z0 = 0.5e-9
+
+
+def jobs(count, folder, *, seed=1):
+    """Scenes one by one, of one layer and of several in turn."""
+    made = []
+    for number in range(count):
+        rng = random.Random(f"layers {seed} {number}")
+        made.append(Scene(
+            number, seed, ("layer", "film", "layers")[number % 3],
+            float(f"{logarithmic(rng, *STRENGTHS):.4g}"),
+            rng.choice(("path", "cycle")), float(f"{logarithmic(rng, *ACCURACIES):.1g}"),
+            folder / f"scene{number}"))  # fmt: skip
+    return made
+
+
+def examine(scene):
+    """The findings of a job: one."""
+    rng = random.Random(f"layer {scene.seed} {scene.number}")
+    law = Law(lennard_jones(rng), Z0, Z0)
+    scene.folder.mkdir(parents=True, exist_ok=True)
+    stiffness = STIFFNESS * strength(scene, law) / scene.sigma
+    groups = {**bodies(rng, scene, stiffness), **law.groups}
+    groups.update(driven(rng, scene, law))
+    found = run(scene, "asked", {**groups, "numerics": {"accuracy": scene.accuracy}})
+    truth = run(scene, "truth", {**groups, "numerics": truth_of(scene)})
+    shutil.rmtree(scene.folder)
+    return [judged(scene, law, found, truth)]
+
+
+def bodies(rng, scene, stiffness):
+    """Bodies that have this stiffness by their top layers: a film on something rigid, a layer or
+    several on an elastic base, one body of the same modulus beside it or both alike."""
+    count = rng.randint(2, 4) if scene.law == "layers" else 1
+    body = rng.choice(("1", "2", "both"))
+    radius = math.sqrt(RADIUS * Z0) * (9 * math.pi * scene.sigma) ** (1 / 3)
+    total = radius * logarithmic(rng, *THICKNESSES)
+    parts = [rng.uniform(0.2, 1) for _ in range(count)]
+    poisson = [rng.choice((0.5, rng.uniform(0, 0.5))) for _ in range(count + 1)]
+    young = [stiffness * (1 - poisson[0] ** 2)]
+    for _ in range(count):
+        young.append(young[-1] * logarithmic(rng, *RATIOS) ** (1 / count))
+    layer = {"thickness": [total * part / sum(parts) for part in parts], "young": young[:-1],
+             "poisson": poisson[:-1], "body": body}
+    # What is beside the layers yields as their top does.
+    base = {"young": [young[-1]] * 2, "poisson": [poisson[-1]] * 2}
+    if body != "both":
+        other = 1 if body == "1" else 0
+        base["young"][other], base["poisson"][other] = stiffness, 0.0
+    if scene.law == "film":
+        layer["base"] = "rigid"
+    return {"bodies": {"radius": RADIUS, **base}, "layer": layer}
