@@ -8,13 +8,19 @@ module regime_rows
   use classical, only: hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
   use maugis, only: maugis_lambda, maugis_pull_off, maugis_radius_at_load, maugis_displacement
+  use transition_fits, only: carpick_pull_off, carpick_radius_at_load, pietrement_pull_off, &
+    pietrement_radius_at_load, pietrement_displacement_at_load
   use experiment_result, only: experiment_result_t
   use summary, only: summary_t
   implicit none
   private
   public :: summarise_regime
 
-  character(len=*), parameter :: theories(*) = [character(len=6) :: 'hertz', 'jkr', 'dmt', 'maugis']
+  character(len=*), parameter :: theories(*) = [character(len=10) :: 'hertz', 'jkr', 'dmt', &
+    'maugis', 'carpick', 'pietrement']
+  !> The first so many are theories; those that are closed forms of the load.
+  integer, parameter :: fits_from = 5
+  integer, parameter :: closed(*) = [2, 3, 5, 6]
   character(len=*), parameter :: numbers(3) = [character(len=14) :: 'pull-off', 'contact radius', &
     'indentation']
   !> A theory that misses more than this is not recommended.
@@ -67,6 +73,7 @@ contains
       end do
     end associate
     call recommend(errors, summary)
+    call recommend_formula(errors, summary)
 
   contains
 
@@ -133,6 +140,15 @@ contains
       says%indentation = ieee_value(1.0_wp, ieee_quiet_nan)
       if (says%radius > 0) &
         says%indentation = maugis_displacement(says%radius, r, y, gamma, strength)
+    case ('carpick')
+      says%pull_off = carpick_pull_off(r, y, gamma, strength)
+      says%radius = carpick_radius_at_load(load, r, y, gamma, strength)
+      ! The formula says nothing of it.
+      says%indentation = ieee_value(1.0_wp, ieee_quiet_nan)
+    case ('pietrement')
+      says%pull_off = pietrement_pull_off(r, y, gamma, strength)
+      says%radius = pietrement_radius_at_load(load, r, y, gamma, strength)
+      says%indentation = pietrement_displacement_at_load(load, r, y, gamma, strength)
     end select
   end function of_theory
 
@@ -152,7 +168,8 @@ contains
       1 + (theory%indentation - solved%indentation)*radius/solved%radius**2] - 1
   end function errors_of
 
-  !> Recommends the theory whose largest error is the smallest, and says why.
+  !> Recommends the theory whose largest error is the smallest, and says why. What was fitted to a
+  !> theory is nearer than the theory by chance alone and is not recommended here.
   subroutine recommend(errors, summary)
     real(wp), intent(in) :: errors(:, :)
     type(summary_t), intent(inout) :: summary
@@ -171,7 +188,7 @@ contains
         worst(i) = huge(1.0_wp)
       end if
     end do
-    best = minloc(worst, 1)
+    best = minloc(worst(:fits_from - 1), 1)
     call summary%set('regime_theory', merge(real(best, wp), 0.0_wp, worst(best) <= acceptable))
     where_worst = maxloc(abs(errors(:, best)), 1)
     write (percent, '(f16.1)') 100*min(worst(best), 1.0e6_wp)
@@ -185,5 +202,23 @@ contains
       call summary%set('regime_reason', none_is_near//trim(nearest))
     end if
   end subroutine recommend
+
+  !> Recommends the closed form whose pull-off and contact radius are nearest.
+  subroutine recommend_formula(errors, summary)
+    real(wp), intent(in) :: errors(:, :)
+    type(summary_t), intent(inout) :: summary
+    real(wp) :: worst(size(closed))
+    integer :: i, best
+
+    worst = huge(1.0_wp)
+    do i = 1, size(closed)
+      if (all(abs(errors(:2, closed(i))) < huge(1.0_wp))) &
+        worst(i) = maxval(abs(errors(:2, closed(i))))
+    end do
+    best = minloc(worst, 1)
+    if (.not. worst(best) < huge(1.0_wp)) return
+    call summary%set('regime_formula', trim(theories(closed(best))))
+    call summary%set('regime_formula_error', worst(best))
+  end subroutine recommend_formula
 
 end module regime_rows
