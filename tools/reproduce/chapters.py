@@ -31,7 +31,7 @@ REPORTS = {
         published.Row, report.of_paper),
     "others": Report(
         "others", "others", "others",
-        ("greenwood_1997",),
+        ("greenwood_1997", "maugis_1992", "carpick_1999", "pietrement_troyon_2000"),
         published.Comparison, report.of_others),
 }
 

@@ -90,16 +90,29 @@ def curve(tabor):
     return path["h0"], path["load"] / (math.pi * sigma(tabor))
 
 
+class Contact(NamedTuple):
+    """A contact under a load, in Maugis' units: its radius, its displacement if bodies touch at z0, and
+    by how much theories miss pull-off, radius and indentation, as the program's &regime has it."""
+
+    radius: float
+    displacement: float
+    errors: dict
+
+
+THEORIES = ("hertz", "jkr", "dmt", "maugis", "carpick", "pietrement")
+
+
 @functools.lru_cache(maxsize=None)
 def contact(tabor, load):
-    """Return radius and displacement in Maugis' units under a load [pi w R]; bodies touch at z0."""
+    """Return the Contact of a Tabor parameter under a load [pi w R]."""
     newtons = load * math.pi * sigma(tabor)
     h0 = run(tabor, _deep(tabor, load), fixed_load={"load": [newtons]}).fixed_load["h0"][-1]
     summary = run(tabor, float(h0), regime={}).summary
-    material = {"radius": 1.0, "stiffness": 1.0, "surface_energy": sigma(tabor)}
-    (jkr,) = snapin.contact_radius("jkr", "load", [summary["end_load"]], **material)
-    radius = jkr / (1 + summary["regime_error_jkr"][1])
-    return radius / unit(tabor), (1 - float(h0)) / unit(tabor) ** 2
+    errors = {name: np.asarray(summary[f"regime_error_{name}"]) for name in THEORIES}
+    (jkr,) = snapin.contact_radius("jkr", "load", [summary["end_load"]], radius=1.0, stiffness=1.0,
+                                   surface_energy=sigma(tabor))
+    return Contact(jkr / (1 + errors["jkr"][1]) / unit(tabor), (1 - float(h0)) / unit(tabor) ** 2,
+                   errors)
 
 
 def _deep(tabor, load):
