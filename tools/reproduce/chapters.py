@@ -31,7 +31,8 @@ REPORTS = {
         published.Row, report.of_paper),
     "others": Report(
         "others", "others", "others",
-        ("greenwood_1997", "maugis_1992", "carpick_1999", "pietrement_troyon_2000"),
+        ("greenwood_1997", "maugis_1992", "carpick_1999", "pietrement_troyon_2000",
+         "johnson_greenwood_1997", "law_independence", "wu_2010", "ciavarella_2017"),
         published.Comparison, report.of_others),
 }
 

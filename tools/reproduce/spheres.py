@@ -100,24 +100,35 @@ class Contact(NamedTuple):
 
 
 THEORIES = ("hertz", "jkr", "dmt", "maugis", "carpick", "pietrement")
+# Loads [pi w R] under which contacts are compared.
+LOADS = (0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)
+
+
+@functools.lru_cache(maxsize=None)
+def _places(tabor, loads):
+    """Return h0 under each of some loads [pi w R], pressed together, of one path."""
+    newtons = [load * math.pi * sigma(tabor) for load in loads]
+    table = run(tabor, _deep(tabor, max(loads)), fixed_load={"load": newtons}).fixed_load
+    return {load: float(table["h0"][table["load"] == each].min())
+            for load, each in zip(loads, newtons)}
 
 
 @functools.lru_cache(maxsize=None)
 def contact(tabor, load):
-    """Return the Contact of a Tabor parameter under a load [pi w R]."""
-    newtons = load * math.pi * sigma(tabor)
-    h0 = run(tabor, _deep(tabor, load), fixed_load={"load": [newtons]}).fixed_load["h0"][-1]
-    summary = run(tabor, float(h0), regime={}).summary
+    """Return the Contact of a Tabor parameter under a load [pi w R], one of LOADS."""
+    h0 = _places(tabor, LOADS if load else (0.0,))[load]
+    summary = run(tabor, h0, regime={}).summary
     errors = {name: np.asarray(summary[f"regime_error_{name}"]) for name in THEORIES}
     (jkr,) = snapin.contact_radius("jkr", "load", [summary["end_load"]], radius=1.0, stiffness=1.0,
                                    surface_energy=sigma(tabor))
-    return Contact(jkr / (1 + errors["jkr"][1]) / unit(tabor), (1 - float(h0)) / unit(tabor) ** 2,
+    return Contact(jkr / (1 + errors["jkr"][1]) / unit(tabor), (1 - h0) / unit(tabor) ** 2,
                    errors)
 
 
 def _deep(tabor, load):
-    """Return an h0 at which the load is surely larger; DMT theory has the deepest."""
-    return 0.6 - (max(load, 0.0) + 2.5) ** (2 / 3) * 1.3 * unit(tabor) ** 2
+    """Return an h0 at which the load is surely larger; DMT theory has the deepest, and the gap on the
+    axis is between 0 and 1."""
+    return (0.6 if load == 0 else -0.4) - (max(load, 0.0) + 2.5) ** (2 / 3) * 1.3 * unit(tabor) ** 2
 
 
 def where(found, low, high, accuracy):
