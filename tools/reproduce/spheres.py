@@ -109,7 +109,7 @@ def _places(tabor, loads):
     """Return h0 under each of some loads [pi w R], pressed together, of one path."""
     newtons = [load * math.pi * sigma(tabor) for load in loads]
     table = run(tabor, _deep(tabor, max(loads)), fixed_load={"load": newtons}).fixed_load
-    return {load: float(table["h0"][table["load"] == each].min())
+    return {load: float(table["h0"][np.isclose(table["load"], each, rtol=1e-12, atol=0)].min())
             for load, each in zip(loads, newtons)}
 
 
