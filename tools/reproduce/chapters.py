@@ -32,7 +32,8 @@ REPORTS = {
     "others": Report(
         "others", "others", "others",
         ("greenwood_1997", "maugis_1992", "carpick_1999", "pietrement_troyon_2000",
-         "johnson_greenwood_1997", "law_independence", "wu_2010", "ciavarella_2017"),
+         "johnson_greenwood_1997", "law_independence", "wu_2010", "ciavarella_2017",
+         "zheng_yu_2007", "hayes_1972", "indentation_of_layers", "not_read"),
         published.Comparison, report.of_others),
 }
 
