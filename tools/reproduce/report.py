@@ -68,7 +68,6 @@ def write(path, csv_name, chapters, runs, version, introduction):
     lines.append("")
     for chapter in chapters:
         lines += _chapter(chapter)
-    lines += ["## All rows", "", *table([row for chapter in chapters for row in chapter["rows"]])]
     lines += _ending(chapters, runs, version)
     published.write_whole(path, "\n".join(lines) + "\n")
 

@@ -17,9 +17,8 @@ equation (37), and the h0 that follows from it. Right: errors.
 (37) is a closed form of slow deformation, which does not know the jump itself: h0 is too large by {h0:.1f} %
 at μ = {top:g} and by at most {h0_worst:.1f} % (at μ = {h0_at:.2g}); the gap is too large by {gap:.1f} % at μ = {top:g}.
 Both go as μ^(3/7) for large μ, as they must under an attraction that falls off as h⁻³: the slope of the
-solved h0 is {slope:.4f} from μ = {slope_from:g} to {top:g}. So h0 at the jump is **{factor:.4f}** times that of
-(37), good to {fixed:.2f} % for all μ above {fixed_from:g}; and {constant:.4f} μ^(3/7) z0, good to 1 % from μ =
-{power_from:.0f} on."""
+solved h0 is {slope:.4f} from μ = {slope_from:g} to {top:g}. So h0 at the jump is {factor:.4f} times that of
+(37), or **{constant:.4f}** μ^(3/7) z0, good to 1 % from μ = {power_from:.1f} on and to {fixed:.2f} % from {fixed_from:g} on."""
 
 _SOURCE = "Attard and Parker (1992), equation (37), printed"
 TABORS = (0.8, 1.0, 2.0, 5.0, 10.0, 100.0)
