@@ -27,7 +27,7 @@ class Report(NamedTuple):
 REPORTS = {
     "paper": Report(
         "report", "published_vs_computed", "",
-        (*(f"fig{number:02}" for number in range(1, 12)), "history", "verdict", "misprints"),
+        (*(f"fig{number:02}" for number in range(1, 12)), "readings", "history", "verdict", "misprints"),
         published.Row, report.of_paper),
     "others": Report(
         "others", "others", "others",

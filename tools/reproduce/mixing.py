@@ -44,13 +44,15 @@ class Reading:
 
 
 class Branch(typing.NamedTuple):
-    """States at h0 [z0]: loads [gamma R], displacements [z0], largest residuals [z0], iterations."""
+    """States at h0 [z0]: loads [gamma R], displacements [z0], largest residuals [z0], iterations, and
+    the mixing ratio at the end."""
 
     h0: np.ndarray
     load: np.ndarray
     displacement: np.ndarray
     residual: np.ndarray
     iterations: np.ndarray
+    ratio: np.ndarray
 
 
 class Scene:
@@ -106,7 +108,7 @@ def _branch(rows):
 
 def _settle(scene, reading, gap, h0, memory, z0):
     """Iterate at an h0 as the reading says; return the gap and (h0, load, displacement, residual,
-    iterations). `memory` holds the mixing ratio."""
+    iterations, ratio). `memory` holds the mixing ratio."""
     ratio = memory[0] if reading.carried else reading.limit
     tolerance, before = reading.tolerance / z0, 0.0
     most = reading.passes or reading.most
@@ -131,7 +133,8 @@ def _settle(scene, reading, gap, h0, memory, z0):
     memory[0] = ratio
     now = pressure(gap)
     left = h0 + scene.shape + scene.deformed(now) - gap
-    return gap, (h0, float(scene.weights @ now), gap[0] - h0, float(abs(left).max()), iteration)
+    return gap, (h0, float(scene.weights @ now), gap[0] - h0, float(abs(left).max()), iteration,
+                 ratio)
 
 
 def _kernel(r, interpolated):
