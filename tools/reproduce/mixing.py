@@ -77,9 +77,9 @@ def pressure(gap):
     return 8 / 3 * inverse * (inverse * inverse - 1)
 
 
-def cycle(scene, reading, turns, start, z0):
-    """Return the loading and one unloading a turning point, as Branches; `turns` and `start` in z0,
-    the former falling, `z0` in nm."""
+def cycle(scene, reading, turns, start, end, z0):
+    """Return the loading from `start` and one unloading a turning point, to `end` or where the bodies
+    are apart, as Branches; h0 in z0, `turns` falling, `z0` in nm."""
     step = reading.step / z0
     places = np.arange(start, turns[-1] - step / 2, -step)
     gap, memory, loading, kept = places[0] + scene.shape, [reading.limit], [], {}
@@ -93,10 +93,10 @@ def cycle(scene, reading, turns, start, z0):
     for turn in turns:
         gap, memory = kept[turn]
         rows = []
-        for h0 in np.arange(turn, start, step):
+        for h0 in np.arange(turn, end + step / 2, step):
             gap, row = _settle(scene, reading, gap, h0, memory, z0)
             rows.append(row)
-            if row[2] > -0.05 * abs(row[0]) - 0.3 and row[0] > 4:
+            if row[0] > 4 and gap[0] > 0.8 * row[0]:
                 break
         branches.append(_branch(rows))
     return branches

@@ -98,7 +98,8 @@ def _cycle(job):
     reading, letter, turns, draw = job
     scene = mixing.Scene(_sigma(letter, draw), reading.spacing / _LATERAL, _EXTENT / _LATERAL,
                          reading.interpolated)
-    return mixing.cycle(scene, reading, [turn / _Z0 for turn in turns], 6.0 / _Z0, _Z0)
+    return mixing.cycle(scene, reading, [turn / _Z0 for turn in turns], 6.0 / _Z0, 16.0 / _Z0,
+                        _Z0)
 
 
 @functools.lru_cache(maxsize=None)
@@ -224,8 +225,8 @@ def draw(_):
             panel.plot(branch.load * unit, branch.displacement * _Z0, color=color, marker=marker,
                        markersize=2.4, linewidth=0.6, markeredgewidth=0)
         pull = 1.5 * math.pi * unit
-        panel.set_xlim(-2.3 * pull, 2.6 * pull)
-        panel.set_ylim({"a": -3, "b": -5, "c": -7}[letter], {"a": 6, "b": 6.5, "c": 11}[letter])
+        panel.set_xlim({"a": -2, "b": -2.3, "c": -3}[letter] * pull, 2 * pull)
+        panel.set_ylim({"a": -3, "b": -7, "c": -13}[letter], {"a": 6, "b": 6.5, "c": 11}[letter])
         style.letter(panel, "d" if reading is _BASE else letter)
         panel.set_title(f"$\\sigma$ = {_NAMED[letter]}, "
                         + ("as read for Fig. 10" if reading is _BASE else "ratio kept"), fontsize=9.5)
