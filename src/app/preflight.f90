@@ -133,7 +133,7 @@ contains
       bytes = bytes + size(scene%profiles%h0)*of_mesh*row(of_profile)
     end if
     if (allocated(scene%classical)) bytes = bytes + &
-      count(scene%classical%theories)*real(scene%classical%count, wp)*row(of_theory)
+      count(scene%classical%shown)*real(scene%classical%count, wp)*row(of_theory)
     if (allocated(scene%approximations)) &
       bytes = bytes + 4.0_wp*scene%approximations%count*row(of_theory)
 

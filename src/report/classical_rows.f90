@@ -75,7 +75,7 @@ contains
         call add(dmt, dmt_load_at_displacement(delta, r, y, gamma), &
           hertz_radius_at_displacement(delta, r))
         if (.not. strength > 0) return
-        if (any(range%theories([maugis_dugdale, carpick]))) then
+        if (any(range%shown([maugis_dugdale, carpick]))) then
           a = maugis_radius_at_displacement(delta, r, y, gamma, strength)
           if (.not. ieee_is_nan(a)) then
             load = maugis_load(a, r, y, gamma, strength)
@@ -85,7 +85,7 @@ contains
               call add(carpick, load, carpick_radius_at_load(load, r, y, gamma, strength))
           end if
         end if
-        if (.not. range%theories(pietrement_troyon)) return
+        if (.not. range%shown(pietrement_troyon)) return
         load = pietrement_load_at_displacement(delta, r, y, gamma, strength)
         call add(pietrement_troyon, load, pietrement_radius_at_load(load, r, y, gamma, strength))
       end associate
@@ -108,7 +108,7 @@ contains
 
       ! A theory without a state here says NaN.
       if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
-      if (range%theories(theory)) &
+      if (range%shown(theory)) &
         call results%row(trim(theories(theory)), [h0, delta, load, contact_radius])
     end subroutine add
 
@@ -140,7 +140,7 @@ contains
       integer, intent(in) :: theory
       real(wp) :: a
 
-      if (.not. range%theories(theory)) return
+      if (.not. range%shown(theory)) return
       a = contact%radius_at(theory, delta/problem%length)
       if (ieee_is_nan(a)) return
       call results%row(trim(theories(theory))//'_layered', &
@@ -214,13 +214,13 @@ contains
     real(wp), parameter :: no_load = 0
 
     associate (r => problem%radius, y => problem%stiffness)
-      if (any(range%theories([carpick, pietrement_troyon]))) call summary%set('transition_alpha', &
+      if (any(range%shown([carpick, pietrement_troyon]))) call summary%set('transition_alpha', &
         transition_alpha(maugis_lambda(r, y, gamma, strength)))
-      if (range%theories(carpick)) then
+      if (range%shown(carpick)) then
         call summary%set('carpick_pull_off', -carpick_pull_off(r, y, gamma, strength))
         call summary%set('carpick_radius', carpick_radius_at_load(no_load, r, y, gamma, strength))
       end if
-      if (range%theories(pietrement_troyon)) then
+      if (range%shown(pietrement_troyon)) then
         call summary%set('pietrement_troyon_pull_off', -pietrement_pull_off(r, y, gamma, strength))
         call summary%set('pietrement_troyon_radius', &
           pietrement_radius_at_load(no_load, r, y, gamma, strength))

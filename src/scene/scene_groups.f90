@@ -34,7 +34,7 @@ module scene_groups
     real(wp) :: h0_end = 0
     integer :: count = 0
     !> Of &classical: which of `theories`.
-    logical :: theories(size(theories)) = usual
+    logical :: shown(size(theories)) = usual
   end type range_t
 
   !> &stability has no keys.

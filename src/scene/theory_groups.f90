@@ -64,7 +64,7 @@ contains
 
     if (allocated(error)) return
     call scene%deck%get('classical', 'theories', names)
-    scene%classical%theories = .false.
+    scene%classical%shown = .false.
     do i = 1, word_count(names)
       name = lower(word_of(names, i))
       which = findloc(theories == name, .true., dim=1)
@@ -80,7 +80,7 @@ contains
           'the parabola on half-spaces; leave it out, or &shape and &layer', error)
         return
       end if
-      scene%classical%theories(which) = .true.
+      scene%classical%shown(which) = .true.
     end do
   end subroutine take_names
 
