@@ -23,7 +23,9 @@ contains
       jkr_radius_at_displacement, jkr_radius_at_load
     use failure, only: bad_input
     use maugis, only: maugis_displacement, maugis_load, maugis_pull_off, &
-      maugis_radius_at_edge_ratio
+      maugis_radius_at_displacement, maugis_radius_at_edge_ratio, maugis_radius_at_load
+    use transition_fits, only: carpick_pull_off, carpick_radius_at_load, &
+      pietrement_displacement_at_load, pietrement_pull_off, pietrement_radius_at_load
     character(len=*), intent(in) :: theory, quantity
     integer(c_int), intent(in) :: n
     real(c_double), intent(in) :: x(n), a, radius, stiffness, surface_energy, strength
@@ -39,6 +41,14 @@ contains
       case ('hertz radius at displacement', 'dmt radius at displacement')
         y = hertz_radius_at_displacement(x, r)
       case ('jkr radius at displacement'); y = jkr_radius_at_displacement(x, r, k, gamma)
+      case ('maugis radius at load'); y = maugis_radius_at_load(x, r, k, gamma, strength)
+      case ('carpick radius at load'); y = carpick_radius_at_load(x, r, k, gamma, strength)
+      case ('pietrement_troyon radius at load')
+        y = pietrement_radius_at_load(x, r, k, gamma, strength)
+      case ('pietrement_troyon displacement at load')
+        y = pietrement_displacement_at_load(x, r, k, gamma, strength)
+      case ('maugis radius at displacement')
+        y = maugis_radius_at_displacement(x, r, k, gamma, strength)
       case ('maugis radius at edge_ratio')
         y = maugis_radius_at_edge_ratio(x, r, k, gamma, strength)
       case ('hertz load'); y = hertz_load(x, r, k)
@@ -59,6 +69,8 @@ contains
       case ('jkr pull_off at displacement'); y = jkr_pull_off_fixed_displacement(r, gamma)
       case ('dmt pull_off at load'); y = dmt_pull_off(r, gamma)
       case ('maugis pull_off at load'); y = maugis_pull_off(r, k, gamma, strength)
+      case ('carpick pull_off at load'); y = carpick_pull_off(r, k, gamma, strength)
+      case ('pietrement_troyon pull_off at load'); y = pietrement_pull_off(r, k, gamma, strength)
       case default
         y = 0
         stat = bad_input

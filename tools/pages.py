@@ -24,10 +24,12 @@ PAGES = {
     "docs/asymptotics.md": "tools/asymptotics.py",
     "docs/fitting.md": "inputs/examples/fit.nml, pywrap/plots/fit.py and tools/bench/coverage.py, "
     "by hand; then tools/pages.py --mark docs/fitting.md",
+    "docs/formulas.md": "tools/formulas.py",
     "docs/forces.md": "tools/law_independence.py; tools/forces.py for its pictures",
     "docs/methods.md": "inputs/first.nml with &equilibrium_path, compared by hand; then "
     "tools/pages.py --mark docs/methods.md",
-    "docs/reproduction/report.md": "./reproduce --publish",
+    "docs/reproduction/others.md": "./reproduce others --publish",
+    "docs/reproduction/report.md": "./reproduce paper --publish",
     "docs/testing.md": "tools/verify/verify.sh, its tables by hand; then tools/pages.py --mark "
     "docs/testing.md",
 }

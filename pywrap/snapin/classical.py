@@ -1,6 +1,8 @@
-"""Hertz, JKR, DMT and Maugis-Dugdale: src/theory/classical.f90 and src/theory/maugis.f90.
+"""Hertz, JKR, DMT and Maugis-Dugdale, and what was fitted to the last: src/theory/classical.f90,
+maugis.f90 and transition_fits.f90.
 
-`theory` is "hertz", "jkr", "dmt" or "maugis". `radius` is R [m], `stiffness` E/(1-nu^2) of two
+`theory` is "hertz", "jkr", "dmt" or "maugis"; radii under a load and pull-off also of "carpick" and
+"pietrement_troyon". `radius` is R [m], `stiffness` E/(1-nu^2) of two
 identical bodies [Pa], `surface_energy` gamma [J/m^2], `strength` the cohesive tension of
 Maugis-Dugdale [Pa]; those a theory does not use need not be given. NaN marks values for which
 the theory has no equilibrium.
@@ -19,6 +21,8 @@ _NEEDS = {
     "jkr": ("surface_energy",),
     "dmt": ("surface_energy",),
     "maugis": ("surface_energy", "strength"),
+    "carpick": ("surface_energy", "strength"),
+    "pietrement_troyon": ("surface_energy", "strength"),
 }
 _CONTROLS = ("load", "displacement", "edge_ratio")
 

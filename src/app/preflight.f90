@@ -132,7 +132,8 @@ contains
     if (allocated(scene%profiles)) then
       bytes = bytes + size(scene%profiles%h0)*of_mesh*row(of_profile)
     end if
-    if (allocated(scene%classical)) bytes = bytes + 4.0_wp*scene%classical%count*row(of_theory)
+    if (allocated(scene%classical)) bytes = bytes + &
+      count(scene%classical%shown)*real(scene%classical%count, wp)*row(of_theory)
     if (allocated(scene%approximations)) &
       bytes = bytes + 4.0_wp*scene%approximations%count*row(of_theory)
 

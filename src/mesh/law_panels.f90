@@ -40,9 +40,9 @@ contains
 
   !> Lengths in z and nodes of panels at positions centre + side*d sinh(z): those given, with
   !> `nodes_on` them or more, or halves of them. Radii go from low to high; `about`:
-  !> what is at the centre. digits: of load and h0, which go with the square of what a panel lacks of
-  !> the pressure, since nodes integrate polynomials of twice the degree; or with that itself, where
-  !> coefficients fall slowly. seen: gaps to try instead of those foreseen.
+  !> what is at the centre. digits: of load and h0, which go with the square of what a panel lacks
+  !> of the pressure, since nodes integrate polynomials of twice the degree; or with that itself,
+  !> where coefficients fall slowly. seen: gaps to try instead of those foreseen.
   subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, squared, &
     length, order, seen)
     type(problem_t), intent(in) :: problem

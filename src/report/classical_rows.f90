@@ -7,9 +7,13 @@ module classical_rows
     jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
   use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius, &
     detachment_radius
-  use maugis, only: maugis_load, maugis_radius_at_displacement, maugis_lambda, maugis_pull_off
+  use maugis, only: maugis_load, maugis_radius_at_displacement, maugis_radius_at_load, &
+    maugis_lambda, maugis_pull_off
+  use transition_fits, only: transition_alpha, carpick_pull_off, carpick_radius_at_load, &
+    pietrement_pull_off, pietrement_radius_at_load, pietrement_load_at_displacement
+  use theory_names, only: theories, hertz, jkr, dmt, maugis_dugdale, carpick, pietrement_troyon
   use layered_body, only: layered_body_t
-  use layered_contact, only: layered_contact_t, new_layered_contact, hertz, jkr
+  use layered_contact, only: layered_contact_t, new_layered_contact
   use scene_groups, only: range_t
   use results, only: results_t
   use summary, only: summary_t
@@ -17,15 +21,20 @@ module classical_rows
   private
   public :: write_classical, summarise_classical
 
+  !> Relative difference of two radii that are one.
+  real(wp), parameter :: small = 1e-6_wp
+
 contains
 
-  !> Writes Hertz and, for a law that attracts, JKR and DMT, at range%count values of h0 [m]; for
-  !> one whose tension has a largest value, Maugis-Dugdale with that value as its strength and with
-  !> the law's surface energy. The theories put touching bodies at no separation, so the
-  !> displacement is -h0; the state is the one that is stable there, and where a theory has none
-  !> there is no row. `from` [m] stands in for a range without a start. None for rigid bodies, which
-  !> have no displacement. Of other shapes than the parabola Hertz and JKR in the form for any
-  !> convex body; of layered bodies in the form for these.
+  !> Writes the wanted theories at range%count values of h0 [m]: Hertz; for a law that attracts, JKR
+  !> and DMT; for one whose tension has a largest value, Maugis-Dugdale with that value as its
+  !> strength and with the law's surface energy, and what was fitted to it. The theories put
+  !> touching bodies at no separation, so the displacement is -h0; the state is the one that is
+  !> stable there, and where a theory has none there is no row. Carpick's formula says nothing of
+  !> displacements: its contact radius is that under the load of Maugis-Dugdale theory. `from` [m]
+  !> stands in for a range without a start. None for rigid bodies, which have no displacement. Of
+  !> other shapes than the parabola Hertz and JKR in the form for any convex body; of layered
+  !> bodies in the form for these.
   subroutine write_classical(problem, range, from, results)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -58,40 +67,53 @@ contains
   contains
 
     subroutine add_parabola()
+      real(wp) :: load
+
       associate (r => problem%radius, y => problem%stiffness)
-        call add('hertz', hertz_load_at_displacement(delta, r, y), &
+        call add(hertz, hertz_load_at_displacement(delta, r, y), &
           hertz_radius_at_displacement(delta, r))
         if (.not. gamma > 0) return
-        call add('jkr', jkr_load_at_displacement(delta, r, y, gamma), &
+        call add(jkr, jkr_load_at_displacement(delta, r, y, gamma), &
           jkr_radius_at_displacement(delta, r, y, gamma))
-        call add('dmt', dmt_load_at_displacement(delta, r, y, gamma), &
+        call add(dmt, dmt_load_at_displacement(delta, r, y, gamma), &
           hertz_radius_at_displacement(delta, r))
         if (.not. strength > 0) return
-        a = maugis_radius_at_displacement(delta, r, y, gamma, strength)
-        if (.not. ieee_is_nan(a)) &
-          call add('maugis_dugdale', maugis_load(a, r, y, gamma, strength), a)
+        if (any(range%shown([maugis_dugdale, carpick]))) then
+          a = maugis_radius_at_displacement(delta, r, y, gamma, strength)
+          if (.not. ieee_is_nan(a)) then
+            load = maugis_load(a, r, y, gamma, strength)
+            call add(maugis_dugdale, load, a)
+            ! Below the pull-off under a load Maugis' state is stable at its displacement alone.
+            if (a >= maugis_radius_at_load(load, r, y, gamma, strength)*(1 - small)) &
+              call add(carpick, load, carpick_radius_at_load(load, r, y, gamma, strength))
+          end if
+        end if
+        if (.not. range%shown(pietrement_troyon)) return
+        load = pietrement_load_at_displacement(delta, r, y, gamma, strength)
+        call add(pietrement_troyon, load, pietrement_radius_at_load(load, r, y, gamma, strength))
       end associate
     end subroutine add_parabola
 
     subroutine add_convex()
       if (.not. delta < 0) then
         a = problem%shape%contact_radius(delta/problem%length)
-        call add('hertz', hertz_like_load(problem, a)*problem%load, a*problem%lateral)
+        call add(hertz, hertz_like_load(problem, a)*problem%load, a*problem%lateral)
       end if
       if (.not. gamma > 0) return
       a = jkr_like_radius(problem%shape, problem%coupling*problem%law%work, narrowest, &
         delta/problem%length)
       if (.not. ieee_is_nan(a)) &
-        call add('jkr', jkr_like_load(problem, a)*problem%load, a*problem%lateral)
+        call add(jkr, jkr_like_load(problem, a)*problem%load, a*problem%lateral)
     end subroutine add_convex
 
     subroutine add(theory, load, contact_radius)
-      character(len=*), intent(in) :: theory
+      integer, intent(in) :: theory
       real(wp), intent(in) :: load, contact_radius
 
       ! A theory without a state here says NaN.
       if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
-      call results%row(theory, [h0, delta, load, contact_radius])
+      if (range%shown(theory)) &
+        call results%row(trim(theories(theory)), [h0, delta, load, contact_radius])
     end subroutine add
 
   end subroutine write_classical
@@ -112,20 +134,21 @@ contains
     do i = 1, range%count
       h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
       delta = problem%law%origin - h0
-      call add('hertz_layered', hertz)
-      if (problem%law%work > 0) call add('jkr_layered', jkr)
+      call add(hertz)
+      if (problem%law%work > 0) call add(jkr)
     end do
 
   contains
 
-    subroutine add(name, theory)
-      character(len=*), intent(in) :: name
+    subroutine add(theory)
       integer, intent(in) :: theory
       real(wp) :: a
 
+      if (.not. range%shown(theory)) return
       a = contact%radius_at(theory, delta/problem%length)
       if (ieee_is_nan(a)) return
-      call results%row(name, [h0, delta, contact%load(theory, a)*problem%load, a*problem%lateral])
+      call results%row(trim(theories(theory))//'_layered', &
+        [h0, delta, contact%load(theory, a)*problem%load, a*problem%lateral])
     end subroutine add
 
   end subroutine write_layered
@@ -195,6 +218,30 @@ contains
       maugis_lambda(problem%radius, problem%stiffness, gamma, strength))
     call summary%set('maugis_pull_off', &
       -maugis_pull_off(problem%radius, problem%stiffness, gamma, strength))
+    call summarise_fits(problem, range, gamma, strength, summary)
   end subroutine summarise_classical
+
+  !> What the closed forms fitted to it say, where they are wanted.
+  subroutine summarise_fits(problem, range, gamma, strength, summary)
+    type(problem_t), intent(in) :: problem
+    type(range_t), intent(in) :: range
+    real(wp), intent(in) :: gamma, strength
+    type(summary_t), intent(inout) :: summary
+    real(wp), parameter :: no_load = 0
+
+    associate (r => problem%radius, y => problem%stiffness)
+      if (any(range%shown([carpick, pietrement_troyon]))) call summary%set('transition_alpha', &
+        transition_alpha(maugis_lambda(r, y, gamma, strength)))
+      if (range%shown(carpick)) then
+        call summary%set('carpick_pull_off', -carpick_pull_off(r, y, gamma, strength))
+        call summary%set('carpick_radius', carpick_radius_at_load(no_load, r, y, gamma, strength))
+      end if
+      if (range%shown(pietrement_troyon)) then
+        call summary%set('pietrement_troyon_pull_off', -pietrement_pull_off(r, y, gamma, strength))
+        call summary%set('pietrement_troyon_radius', &
+          pietrement_radius_at_load(no_load, r, y, gamma, strength))
+      end if
+    end associate
+  end subroutine summarise_fits
 
 end module classical_rows

@@ -6,20 +6,25 @@ module regime_rows
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
   use edge_locked, only: approach
   use layered_body, only: layered_body_t
-  use layered_contact, only: layered_contact_t, new_layered_contact, hertz, jkr
+  use layered_contact, only: layered_contact_t, new_layered_contact
+  use theory_names, only: hertz, jkr
   use classical, only: hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
   use maugis, only: maugis_lambda, maugis_pull_off, maugis_radius_at_load, maugis_displacement
+  use transition_fits, only: carpick_pull_off, carpick_radius_at_load, pietrement_pull_off, &
+    pietrement_radius_at_load, pietrement_displacement_at_load
   use experiment_result, only: experiment_result_t
   use summary, only: summary_t
   implicit none
   private
   public :: summarise_regime
 
-  !> Those of half-spaces, for layers of half-spaces of the top ones; and two that are of layers.
+  !> Theories, of half-spaces (for layers of half-spaces of the top ones) and of layers; then fits
+  !> to one of them, and which of all are closed forms of the load.
   character(len=*), parameter :: theories(*) = [character(len=13) :: 'hertz', 'jkr', 'dmt', &
-    'maugis', 'hertz_layered', 'jkr_layered']
-  integer, parameter :: of_half_spaces = 4
+    'maugis', 'hertz_layered', 'jkr_layered', 'carpick', 'pietrement']
+  integer, parameter :: of_layers_from = 5, fits_from = 7
+  integer, parameter :: closed(*) = [2, 3, 7, 8]
   character(len=*), parameter :: numbers(3) = [character(len=14) :: 'pull-off', 'contact radius', &
     'indentation']
   !> A theory that misses more than this is not recommended.
@@ -44,8 +49,8 @@ contains
     type(layered_contact_t) :: layered
     real(wp), allocatable :: errors(:, :), spread(:, :)
     real(wp) :: load, load_error, gamma, strength
-    integer :: i, known
-    logical :: there
+    integer :: i
+    logical :: there, has_layers
 
     gamma = surface_energy(problem)
     strength = largest_tension(problem)
@@ -56,10 +61,10 @@ contains
         'compared with')
       return
     end if
-    known = of_half_spaces
+    has_layers = .false.
     select type (body => problem%body)
     type is (layered_body_t)
-      known = size(theories)
+      has_layers = .true.
       ! Contacts deep enough for theories that have less load there than the path.
       layered = new_layered_contact(problem, body, 2*solved%indentation/problem%length)
     end select
@@ -74,31 +79,44 @@ contains
       spread = abs(all_errors(load + load_error, solved) - errors) + &
         abs(all_errors(load, sum_of(solved, measured_t(pull_off=uncertain%pull_off))) - errors) + &
         abs(all_errors(load, sum_of(solved, measured_t(radius=uncertain%radius))) - errors)
-      do i = 1, known
+      do i = 1, size(theories)
+        if (is_of_layers(i) .and. .not. has_layers) cycle
         call summary%set('regime_error_' // trim(theories(i)), errors(:, i))
         call summary%set('regime_error_' // trim(theories(i)) // '_error', spread(:, i))
       end do
     end associate
     call recommend(errors, summary)
+    call recommend_formula(errors, summary)
 
   contains
 
     function all_errors(at_load, numbers) result(errors)
       real(wp), intent(in) :: at_load
       type(measured_t), intent(in) :: numbers
-      real(wp) :: errors(3, known)
+      real(wp) :: errors(3, size(theories))
+      type(measured_t) :: says
       integer :: k
 
-      do k = 1, of_half_spaces
-        errors(:, k) = errors_of(of_theory(trim(theories(k)), at_load, problem%radius, &
-          problem%stiffness, gamma, strength), numbers, problem%radius)
-      end do
-      do k = of_half_spaces + 1, known
-        errors(:, k) = errors_of(of_layers(problem, layered, trim(theories(k)), at_load), numbers, &
-          problem%radius)
+      errors = ieee_value(1.0_wp, ieee_quiet_nan)
+      do k = 1, size(theories)
+        if (.not. is_of_layers(k)) then
+          says = of_theory(trim(theories(k)), at_load, problem%radius, problem%stiffness, gamma, &
+            strength)
+        else if (has_layers) then
+          says = of_layers(problem, layered, trim(theories(k)), at_load)
+        else
+          cycle
+        end if
+        errors(:, k) = errors_of(says, numbers, problem%radius)
       end do
     end function all_errors
   end subroutine summarise_regime
+
+  pure logical function is_of_layers(theory)
+    integer, intent(in) :: theory
+
+    is_of_layers = theory >= of_layers_from .and. theory < fits_from
+  end function is_of_layers
 
   !> What the path says, with errors; there = .false.: it has no pull-off, or no contact at its end.
   subroutine measure(problem, outcome, load, solved, load_error, uncertain, there)
@@ -150,6 +168,15 @@ contains
       says%indentation = ieee_value(1.0_wp, ieee_quiet_nan)
       if (says%radius > 0) &
         says%indentation = maugis_displacement(says%radius, r, y, gamma, strength)
+    case ('carpick')
+      says%pull_off = carpick_pull_off(r, y, gamma, strength)
+      says%radius = carpick_radius_at_load(load, r, y, gamma, strength)
+      ! The formula says nothing of it.
+      says%indentation = ieee_value(1.0_wp, ieee_quiet_nan)
+    case ('pietrement')
+      says%pull_off = pietrement_pull_off(r, y, gamma, strength)
+      says%radius = pietrement_radius_at_load(load, r, y, gamma, strength)
+      says%indentation = pietrement_displacement_at_load(load, r, y, gamma, strength)
     end select
   end function of_theory
 
@@ -186,7 +213,8 @@ contains
       1 + (theory%indentation - solved%indentation)*radius/solved%radius**2] - 1
   end function errors_of
 
-  !> Recommends the theory whose largest error is the smallest, and says why.
+  !> Recommends the theory whose largest error is the smallest, and says why. What was fitted to a
+  !> theory is nearer than the theory by chance alone and is not recommended here.
   subroutine recommend(errors, summary)
     real(wp), intent(in) :: errors(:, :)
     type(summary_t), intent(inout) :: summary
@@ -203,7 +231,7 @@ contains
       worst(i) = maxval(abs(errors(:, i)))
       call summary%set('regime_worst_' // trim(theories(i)), worst(i))
     end do
-    best = minloc(worst, 1)
+    best = minloc(worst(:fits_from - 1), 1)
     call summary%set('regime_theory', merge(real(best, wp), 0.0_wp, worst(best) <= acceptable))
     where_worst = maxloc(abs(errors(:, best)), 1)
     write (percent, '(f16.1)') 100*min(worst(best), 1.0e6_wp)
@@ -217,5 +245,23 @@ contains
       call summary%set('regime_reason', none_is_near//trim(nearest))
     end if
   end subroutine recommend
+
+  !> Recommends the closed form whose pull-off and contact radius are nearest.
+  subroutine recommend_formula(errors, summary)
+    real(wp), intent(in) :: errors(:, :)
+    type(summary_t), intent(inout) :: summary
+    real(wp) :: worst(size(closed))
+    integer :: i, best
+
+    worst = huge(1.0_wp)
+    do i = 1, size(closed)
+      if (all(abs(errors(:2, closed(i))) < huge(1.0_wp))) &
+        worst(i) = maxval(abs(errors(:2, closed(i))))
+    end do
+    best = minloc(worst, 1)
+    if (.not. worst(best) < huge(1.0_wp)) return
+    call summary%set('regime_formula', trim(theories(closed(best))))
+    call summary%set('regime_formula_error', worst(best))
+  end subroutine recommend_formula
 
 end module regime_rows

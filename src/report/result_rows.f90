@@ -58,6 +58,13 @@ module result_rows
     row_t('dmt_pull_off', 'N', 'pull-off of DMT theory, positive', always), &
     row_t('maugis_lambda', '', 'Maugis'' parameter, 1.157 times Tabor''s', classical), &
     row_t('maugis_pull_off', 'N', 'pull-off of Maugis-Dugdale theory, positive', classical), &
+    row_t('transition_alpha', '', &
+      'with carpick or pietrement_troyon: their alpha, 0 of DMT theory, 0.98 of JKR theory'), &
+    row_t('carpick_pull_off', 'N', 'with theories = ''carpick'': pull-off, positive'), &
+    row_t('carpick_radius', 'm', 'contact radius under no load'), &
+    row_t('pietrement_troyon_pull_off', 'N', &
+      'with theories = ''pietrement_troyon'': pull-off, positive'), &
+    row_t('pietrement_troyon_radius', 'm', 'contact radius under no load'), &
     row_t('max_tension', 'N', 'largest tension of all branches, positive', always), &
     row_t('max_tension_h0', 'm', 'h0 at the largest tension', always), &
     row_t('max_tension_error', 'N', 'estimated error of max_tension'), &
@@ -155,16 +162,28 @@ module result_rows
     row_t('regime_error_hertz_layered_error', '', 'by how much these are uncertain', list=.true.), &
     row_t('regime_error_jkr_layered', '', 'the same of JKR theory of layers', list=.true.), &
     row_t('regime_error_jkr_layered_error', '', 'by how much these are uncertain', list=.true.), &
+    row_t('regime_error_carpick', '', 'the same of Carpick''s formula, which has no indentation', &
+      list=.true.), &
+    row_t('regime_error_carpick_error', '', 'by how much these are uncertain', list=.true.), &
+    row_t('regime_error_pietrement', '', 'the same of Pietrement and Troyon''s formula', &
+      list=.true.), &
+    row_t('regime_error_pietrement_error', '', 'by how much these are uncertain', &
+      list=.true.), &
     row_t('regime_worst_hertz', '', 'the largest of the three for Hertz theory', regime), &
     row_t('regime_worst_jkr', '', 'the same for JKR theory', regime), &
     row_t('regime_worst_dmt', '', 'the same for DMT theory', regime), &
     row_t('regime_worst_maugis', '', 'the same for Maugis-Dugdale theory', regime), &
     row_t('regime_worst_hertz_layered', '', 'the same for Hertz theory of layers'), &
     row_t('regime_worst_jkr_layered', '', 'the same for JKR theory of layers'), &
+    row_t('regime_worst_pietrement', '', 'the same for Pietrement and Troyon''s formula', &
+      regime), &
     row_t('regime_theory', '', 'the one recommended: 1 Hertz, 2 JKR, 3 DMT, 4 Maugis, 5 and 6 ' // &
       'Hertz and JKR of layers, 0 none', regime), &
     row_t('regime_recommended', '', 'theory with the smallest largest error, or none'), &
     row_t('regime_reason', '', 'why, in words'), &
+    row_t('regime_formula', '', 'of jkr, dmt, carpick and pietrement the nearest in pull-off ' // &
+      'and contact radius'), &
+    row_t('regime_formula_error', '', 'the larger error of these two', regime), &
     row_t('end_h0', 'm', &
       'h0 of the last equilibrium of the loading; without a loading, of the path', always), &
     row_t('end_displacement', 'm', 'displacement of the last equilibrium', always), &

@@ -9,6 +9,7 @@ module scene_groups
   use layered_surface, only: layered_surface_t
   use fit_request, only: measurement_t, fit_t
   use measured_curve, only: measured_t
+  use theory_names, only: theories, usual
   implicit none
   private
   public :: scene_t, bodies_t, range_t, stability_t, regime_t, sweep_t, axis_t
@@ -32,6 +33,8 @@ module scene_groups
     real(wp), allocatable :: h0_start
     real(wp) :: h0_end = 0
     integer :: count = 0
+    !> Of &classical: which of `theories`.
+    logical :: shown(size(theories)) = usual
   end type range_t
 
   !> &stability has no keys.

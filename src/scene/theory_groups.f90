@@ -1,8 +1,9 @@
 !> &approximations and &classical: closed forms beside the curve, over a range of h0.
 module theory_groups
   use failure, only: failure_t
-  use text, only: brief
-  use deck_keys, only: key_spec, group, real_key, integer_key
+  use text, only: brief, clip, guess, listing, lower, quoted, word_count, word_of
+  use deck_keys, only: key_spec, group, names_key, real_key, integer_key
+  use theory_names, only: convex, theories
   use scene_groups, only: scene_t, range_t
   implicit none
   private
@@ -19,7 +20,9 @@ contains
 
     specs = [range_keys('approximations', 'Closed-form approximations for slow deformation.'), &
       range_keys('classical', 'Hertz, JKR, DMT and Maugis-Dugdale beside the curve; ' // &
-      'Hertz and JKR for the shape that &shape gives.')]
+      'Hertz and JKR for the shape that &shape gives.'), &
+      names_key('classical', 'theories', size(theories), 'Those to show, of ' // all_names() // &
+      '.', otherwise='hertz, jkr, dmt and maugis_dugdale')]
   end function theory_keys
 
   !> The rows of one of them.
@@ -49,7 +52,48 @@ contains
                               'half-spaces; leave out this group or &layer', error)
     call take_range(scene, 'approximations', scene%approximations, error)
     call take_range(scene, 'classical', scene%classical, error)
+    if (scene%deck%is_set('classical', 'theories')) call take_names(scene, error)
   end subroutine take_theories
+
+  !> Which theories are wanted.
+  subroutine take_names(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: names, name
+    integer :: i, which
+
+    if (allocated(error)) return
+    call scene%deck%get('classical', 'theories', names)
+    scene%classical%shown = .false.
+    do i = 1, word_count(names)
+      name = lower(word_of(names, i))
+      which = findloc(theories == name, .true., dim=1)
+      if (which == 0) then
+        call scene%deck%mistake('classical', 'theories', quoted(clip(name)) // &
+          ' is no theory' // guess(name, all_names(), '') // '; allowed: ' // &
+          listing(all_names(), '', ''), error)
+        return
+      end if
+      if (.not. (convex(which) .or. scene%shape%parabolic .and. &
+        .not. scene%deck%has_group('layer'))) then
+        call scene%deck%mistake('classical', 'theories', name // ' is a theory of ' // &
+          'the parabola on half-spaces; leave it out, or &shape and &layer', error)
+        return
+      end if
+      scene%classical%shown(which) = .true.
+    end do
+  end subroutine take_names
+
+  !> The names of all theories, blank-separated.
+  pure function all_names() result(names)
+    character(len=:), allocatable :: names
+    integer :: i
+
+    names = trim(theories(1))
+    do i = 2, size(theories)
+      names = names // ' ' // trim(theories(i))
+    end do
+  end function all_names
 
   !> One of them, which takes its range from what is computed anyway.
   subroutine take_range(scene, group, range, error)

@@ -17,12 +17,11 @@ module layered_contact
   use root_finding, only: bracket_t
   use dimensionless_problem, only: problem_t
   use layered_body, only: layered_body_t
+  use theory_names, only: hertz, jkr
   implicit none
   private
-  public :: layered_contact_t, new_layered_contact, contact_at, hertz, jkr
+  public :: layered_contact_t, new_layered_contact, contact_at
 
-  !> The theories, and what is known of a contact.
-  integer, parameter :: hertz = 1, jkr = 2
   !> Degree of the series, and the ratio of the radii that they span below that of no displacement.
   integer, parameter :: degree = 80
   real(wp), parameter :: span = 100

@@ -72,3 +72,17 @@ def test_parameters_are_those_of_lennard_jones(run):
     assert summary["regime_tabor"] == summary["tabor"]
     assert summary["regime_tabor_range"] == pytest.approx(summary["tabor"] / longer, rel=1e-12)
     assert summary["regime_maugis_lambda"] == pytest.approx(1.157 * summary["tabor"], rel=1e-3)
+
+
+def test_the_closed_form_recommended_is_the_nearest_in_pull_off_and_radius(run):
+    """Among JKR, DMT and the two that were fitted to Maugis-Dugdale theory."""
+    found = set()
+    for sigma, h0_end in ((0.01, -60.0), (0.3, -5.0), (0.87, -2.0), (1000.0, -300.0)):
+        summary = run(regime(sigma, h0_end)).summary
+        worst = {name: max(map(abs, summary[f"regime_error_{name}"][:2]))
+                 for name in ("jkr", "dmt", "carpick", "pietrement")}
+        assert summary["regime_formula"] == min(worst, key=worst.get)
+        assert summary["regime_formula_error"] == pytest.approx(min(worst.values()), rel=1e-12)
+        assert summary["regime_recommended"] in ("hertz", "jkr", "dmt", "maugis")
+        found.add(summary["regime_formula"])
+    assert found & {"carpick", "pietrement"} and len(found) > 1

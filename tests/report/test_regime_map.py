@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.scenes import lennard_jones, runner, several
 
-THEORIES = ("hertz", "jkr", "dmt", "maugis")
+THEORIES = ("hertz", "jkr", "dmt", "maugis", "carpick", "pietrement")
 EDGE, REST = 3 ** (1 / 6), 1.0
 # Largest tension of the Lennard-Jones law over gamma/z0.
 STRENGTH = 16 / (9 * math.sqrt(3))
@@ -66,7 +66,7 @@ def maugis_load(a, strength):
 
 
 def maugis(load, w):
-    strength = 2 * STRENGTH * w * (1 / (math.pi * w * K**2)) ** (1 / 3)
+    strength = lambda_of(w)
     unit = (math.pi * w / K) ** (1 / 3)
     radii = np.geomspace(1e-3, 3, 400)
     loads = [maugis_load(a, strength) for a in radii]
@@ -82,6 +82,37 @@ def maugis(load, w):
     m = edge_ratio(a, strength)
     indentation = a**2 - 4 / 3 * strength * a * math.sqrt(m * m - 1)
     return math.pi * w * pull, a * unit, indentation * unit**2
+
+
+def fitted(load, w, pull, a0, s=math.nan, beta=math.nan):
+    """Carpick's and Pietrement and Troyon's forms; `pull` > 0 and `a0` in Maugis' units."""
+    alpha, unit = alpha_of(w), (math.pi * w / K) ** (1 / 3)
+    z = (alpha + math.sqrt(1 + load / (math.pi * w * pull))) / (1 + alpha)
+    indentation = (a0 * unit) ** 2 * (z ** (4 / 3) - s * z ** (2 * beta / 3))
+    return -math.pi * w * pull, a0 * unit * z ** (2 / 3), indentation
+
+
+def lambda_of(w):
+    return 2 * STRENGTH * w * (1 / (math.pi * w * K**2)) ** (1 / 3)
+
+
+def alpha_of(w):
+    return (1 - math.exp(-lambda_of(w) / 0.924)) / 1.02
+
+
+def carpick(load, w):
+    power, other = 4.04 * lambda_of(w) ** 1.4, 2.28 * lambda_of(w) ** 1.3
+    return fitted(load, w, 7 / 4 - (power - 1) / (power + 1) / 4,
+                  1.54 + 0.279 * (other - 1) / (other + 1))
+
+
+def pietrement(load, w):
+    alpha = alpha_of(w)
+    return fitted(
+        load, w, 0.267 * alpha**2 - 0.767 * alpha + 2,
+        -0.451 * alpha**4 + 1.417 * alpha**3 - 1.365 * alpha**2 + 0.950 * alpha + 1.264,
+        -2.160 * alpha**0.019 + 2.7531 * alpha**0.064 + 0.073 * alpha**1.919,
+        0.516 * alpha**4 - 0.683 * alpha**3 + 0.235 * alpha**2 + 0.429 * alpha)
 
 
 # --- What the path says
@@ -125,7 +156,7 @@ def test_errors_are_those_of_the_theories_against_the_tables(run, sigma, accurac
         says = globals()[name](load, sigma)
         expected = (says[0] / pull - 1, says[1] / radius - 1, (says[2] - indentation) / radius**2)
         errors = several(found.summary[f"regime_error_{name}"])
-        assert errors == pytest.approx(expected, abs=2e-4), name
+        assert errors == pytest.approx(expected, abs=2e-4, nan_ok=True), name
 
 
 def test_theories_are_recommended_where_they_hold(run):

@@ -152,6 +152,14 @@ REFUSED = {
                                   "&equilibrium_path to take the range from"),
     "approximations without an end": (BODIES + FORCE + "&approximations h0_start = 1 /", 3,
                                       "approximations", "h0_end", "take the range from"),
+    "a theory that there is not": (with_extra("&classical theories = 'carpik' /"), 4, "classical",
+                                   "theories", 'did you mean "carpick"'),
+    "a theory of half-spaces beside layers": (
+        LAYERED + "&classical theories = 'jkr', 'carpick' /", 5, "classical",
+        "theories", "half-spaces"),
+    "a theory of the parabola beside a shape": (
+        with_extra("&shape kind = 'sphere' /\n&classical theories = 'dmt' /"), 5, "classical",
+        "theories", "parabola"),
     "classical upwards": (with_extra("&classical h0_end = 8e-9 /"), 4, "classical", "h0_end",
                           "not below h0_start"),
     "stability of nothing": (BODIES + FORCE + "&classical h0_start = 1, h0_end = 0 /\n"

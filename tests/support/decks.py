@@ -24,7 +24,7 @@ FULL = """! every group at once
 &regime /
 &profiles  h0 = 4.3e-9, 3.6e-9 /
 &approximations count = 50 /
-&classical /
+&classical theories = 'hertz', 'jkr', 'carpick' /
 &stability /
 &sweep     key = 'force.hamaker', from = 1e-21, to = 1e-19, count = 20, scale = 'log' /
 &numerics  method = 'anderson', accuracy = 1e-6, nodes = 400, r_max = 1e-6 /

@@ -29,12 +29,10 @@ def tools():
 
 @pytest.fixture(scope="module")
 def modules(tools):
-    """The chapters of the report, by name."""
-    import importlib
+    """The chapters of the reports, by name."""
+    import chapters
 
-    import reproduce
-
-    return {name: importlib.import_module(name) for name in reproduce.chapter_names()}
+    return {name: chapters.module(name) for name in chapters.names()}
 
 
 @pytest.fixture(scope="module")
@@ -208,16 +206,16 @@ def test_figure_6_neck_and_tension_are_those_between_the_nodes(tools, runs):
 
 
 def test_rows_are_written_as_csv_that_reads_back(tools, tmp_path):
-    from published import COLUMNS, Row, write_csv
+    from published import Row, write_csv
 
     rows = [Row("a, b", -59, None, 60.71785243, "µN", 'a "note", with commas'),
             Row("words", "10-20", 0, 1e-19)]
     write_csv(tmp_path / "rows.csv", rows)
     with (tmp_path / "rows.csv").open(encoding="utf-8", newline="") as file:
         read = list(csv.DictReader(file))
-    assert tuple(read[0]) == COLUMNS
+    assert tuple(read[0]) == Row.COLUMNS
     assert read[0]["item"] == "a, b" and read[0]["note"] == 'a "note", with commas'
-    values = [[row[column] for column in COLUMNS[1:4]] for row in read]
+    values = [[row[column] for column in Row.COLUMNS[1:4]] for row in read]
     assert values == [["-59", "", "60.7179"], ["10-20", "0", "1e-19"]]
     assert not list(tmp_path.glob("*.partial"))
 

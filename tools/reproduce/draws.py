@@ -10,7 +10,7 @@ import numpy as np
 
 # Runs of a deck; of one that takes minutes, fewer.
 COUNT = 9
-_FEWER = {"history_c_paper": 4}
+_FEWER = {"history_c_paper": 3}
 # Relative change of the Hamaker constant from one run to the next.
 _CHANGE = 1e-12
 _KEY = "_draw"

@@ -41,7 +41,8 @@ largest; above the shallowest turning point, where all retreats pass, it is {c_c
 words suggest. How its mixing ratio changes the paper says in words only (here it is halved when the
 change of the central displacement turns round or doubles, else it grows by 5 %); how large its
 steps of h0 are it does not say, nor how its kernel was integrated, on which the strength of the
-pinning depends."""
+pinning depends. A ratio that is kept from one h0 to the next gives smooth loops, and all that the paper says
+of them: [readings of the mixing rule](#fig-10s-smooth-loops-readings-of-the-mixing-rule)."""
 
 _PANELS = (
     # Letter, sigma as the paper gives it, limits of load [uN] and displacement [nm].

@@ -12,12 +12,10 @@ _CASES = (("a", "1.7", (0.0, -2e-9, -5e-9)),
           ("b", "4.4", (0.0, -2e-9, -5e-9)),
           ("c", "8.7", (1e-9, -2e-9, -4e-9, -10e-9)))
 _RULES = ("paper", "residual")
-# The decks of each case, those that take longest first. The finest grid for sigma = 8.7 takes as
-# long as all others: it has a deck of its own.
-_SWEEPS = {(letter, rule): (f"history_{letter}_{rule}",)
+# The deck of each case, those that take longest first.
+_SWEEPS = {(letter, rule): f"history_{letter}_{rule}"
            for letter, *_ in reversed(_CASES) for rule in _RULES}
-_SWEEPS["c", "residual"] = ("history_c_residual_finest", "history_c_residual")
-DECKS = (*(deck for decks in _SWEEPS.values() for deck in decks),
+DECKS = (*_SWEEPS.values(),
          *(f"fig10{letter}_converged" for letter, *_ in _CASES))
 TITLE = "The memory of the penetration: the grid, or the stopping rule?"
 CAPTION = """Largest tension of the cycles of Fig. 10 against the spacing of a uniform grid, in
@@ -29,7 +27,7 @@ largest; dashed, the converged value; left of the thin line the grid resolves th
 **The grid** inflates the pull-off. With the equations solved, and for σ = 1.7, 4.4 and 8.7, it is
 {coarse_a:.2f}, {coarse_b:.2f} and {coarse_c:.2f} of JKR's where nodes are 4 neck widths apart
 (deepest penetration), {one_a:.2f}, {one_b:.2f} and {one_c:.2f} at 1 width, and {fine_a:.4f},
-{fine_b:.4f} and {fine_c:.4f} at {finest:.2g}; converged it is {true_a:.4f}, {true_b:.4f} and
+{fine_b:.4f} and {fine_c:.4f} at {finest_a:.2g}, {finest_b:.2g} and {finest_c:.2g}; converged it is {true_a:.4f}, {true_b:.4f} and
 **{true_c:.4f}**. Pinning makes a memory too, but only on grids much coarser than the neck: pull-off
 from different penetrations differs by up to {spread_coarse:.0f} % at 4 widths, {spread_two} %
 at 2, {spread_one} % at 1 and {spread_fine} % on grids that resolve the neck.
@@ -47,9 +45,10 @@ most. Refining the grid does not help; solving the equations does.
 **Shown:** a pull-off that is too large comes out of this model by pinning the contact edge and by
 stopping early, and one that differs with the penetration by pinning on grids much coarser than the
 neck and, as scatter, by stopping early. All are gone when both are: the model has one contact
-branch and no memory of the penetration. **Not shown:** which of the two the authors'
-own program suffered from. That depends on how its mixing ratio adapted, on its steps of h0 (here
-0.25 nm) and on how its kernel was integrated, which the paper does not say."""
+branch and no memory of the penetration. **Not shown:** what the authors' own program did. That depends on
+how its mixing ratio adapted, on its steps of h0 (here 0.25 nm) and on how its kernel was integrated, which the
+paper does not say. A ratio kept from one h0 to the next, instead of started anew as here, stops early without
+scatter and gives the paper's loops: [readings of the mixing rule](#fig-10s-smooth-loops-readings-of-the-mixing-rule)."""
 
 _COLORS = (style.ORANGE, style.GREEN, style.PURPLE, style.BLUE)
 _MARKERS = ("s", "^", "D", "o")
@@ -58,18 +57,16 @@ _RESOLVED = 0.2
 
 
 def joined(runs, letter, rule):
-    """Return the columns of a case's sweeps, finest grid first."""
-    return _sorted([runs[deck].sweep for deck in _SWEEPS[letter, rule]])
+    """Return the columns of a case's sweep, finest grid first."""
+    return _sorted(runs[_SWEEPS[letter, rule]].sweep)
 
 
 def stopped(runs, letter):
     """Return the same of all runs of the sweep by the paper's rule."""
-    (deck,) = _SWEEPS[letter, "paper"]
-    return [_sorted([results.sweep]) for results in runs.draws(deck)]
+    return [_sorted(results.sweep) for results in runs.draws(_SWEEPS[letter, "paper"])]
 
 
-def _sorted(parts):
-    columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+def _sorted(columns):
     order = np.argsort(columns["spacing_over_neck"])
     return {name: values[order] for name, values in columns.items()}
 
@@ -128,7 +125,7 @@ def numbers(runs):
         found.update({
             f"coarse_{letter}": pulls[-1, _at(spacing, 4)],
             f"one_{letter}": pulls[-1, _at(spacing, 1)],
-            f"fine_{letter}": pulls[-1, 0], "finest": spacing[0],
+            f"fine_{letter}": pulls[-1, 0], f"finest_{letter}": spacing[0],
             f"true_{letter}": _true(runs, letter),
             f"rule_finest_{letter}": stopped_spacing[0],
             f"left_{letter}": draws.ranged([columns["worst_residual"][0]

@@ -1,10 +1,12 @@
-"""Puts pictures, captions and tables together: report.md."""
+"""Puts pictures, captions and tables together: report.md and others.md."""
 
 import draws
 import published
 from runs import path_name
 
-_INTRODUCTION = """P. Attard and J. L. Parker, *Deformation and adhesion of elastic bodies in
+_PAPER = """# The figures and numbers of Attard and Parker (1992), computed again
+
+P. Attard and J. L. Parker, *Deformation and adhesion of elastic bodies in
 contact*, Phys. Rev. A **46**, 7959 (1992): every figure drawn again from runs of snapin, and
 every number of the text beside the one computed.
 
@@ -20,28 +22,53 @@ that another processor or library gives other numbers. Decks on that rule are th
 numbers that differ are given as ranges: from the least to the largest of these runs.
 """
 
-_RUNNING = """./reproduce            # all of it
+_OTHERS = """# What others have published, beside the converged answer
+
+Formulas, theories and tables that are used in place of a solved contact, each against the solution
+of the same equations by snapin, whose errors are below 1e-6 unless a row says otherwise. The rows,
+all together, are in [{table}]({table}); [formulas](../formulas.md) says which formula may be used
+where.
+
+A row says what its published number is: **printed**, read in a print that was at hand; **formula**,
+computed from a formula whose coefficients and where they are from stand in the row's source;
+**theory**, exact in a limit; **not read**, where the print was not at hand and nothing is
+published here on its behalf. Errors say by how much what was published is too large.
+
+Spheres are parabolas of radius R. w is the work of adhesion, E\\* the composite modulus, z0 the
+separation at rest of the Lennard-Jones law, μ = (R w²/(E\\*² z0³))^(1/3) Tabor's parameter and
+λ = 1.157 μ Maugis', with the largest tension of that law. The converged radius of the contact is
+where the tension is largest.
+"""
+
+_RUNNING = """./reproduce            # all of it, both reports
 ./reproduce {example}  # some of it
 ./reproduce --publish  # and copy it to docs/reproduction/"""
 
 
-def write(path, csv_name, chapters, runs, version, seconds):
-    """Write the report to `path`, beside the file `csv_name` with its rows.
+def of_paper(csv_name):
+    """Return the beginning of the report on the source paper; `csv_name` is its table."""
+    return _PAPER.format(table=csv_name, count=draws.COUNT,
+                         fewer=len(draws.names("history_c_paper")))
+
+
+def of_others(csv_name):
+    """Return the beginning of the report on what others published."""
+    return _OTHERS.format(table=csv_name)
+
+
+def write(path, csv_name, chapters, runs, version, introduction):
+    """Write a report to `path`, beside the file `csv_name` with its rows.
 
     `chapters` are dicts with name, title, picture, caption, rows and problem (None if all went
-    well).
+    well); `introduction` is a function of `csv_name`.
     """
-    lines = ["# The figures and numbers of Attard and Parker (1992), computed again", "",
-             _INTRODUCTION.format(
-                 table=csv_name, count=draws.COUNT,
-                 fewer=len(draws.names("history_c_paper")))]
+    lines = [introduction(csv_name)]
     for chapter in chapters:
         lines.append(f"- [{chapter['title']}](#{_anchor(chapter['title'])})")
     lines.append("")
     for chapter in chapters:
         lines += _chapter(chapter)
-    lines += ["## All rows", "", *table([row for chapter in chapters for row in chapter["rows"]])]
-    lines += _ending(chapters, runs, version, seconds)
+    lines += _ending(chapters, runs, version)
     published.write_whole(path, "\n".join(lines) + "\n")
 
 
@@ -58,7 +85,8 @@ def table(rows):
     """Return rows as the lines of a Markdown table, with an empty line after it."""
     if not rows:
         return []
-    lines = ["| " + " | ".join(published.COLUMNS) + " |", "|" + "---|" * len(published.COLUMNS)]
+    columns = rows[0].COLUMNS
+    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
     lines += ["| " + " | ".join(_cell(cell) for cell in row.cells()) + " |" for row in rows]
     return [*lines, ""]
 
@@ -76,13 +104,17 @@ def _anchor(title):
     return "".join(kept).replace(" ", "-")
 
 
-def _ending(chapters, runs, version, seconds):
+def _ending(chapters, runs, version):
     """Return how this was run: commands, versions, and the time of each deck."""
-    decks = dict.fromkeys(deck for chapter in chapters for deck in chapter["decks"])
+    decks = list(dict.fromkeys(deck for chapter in chapters for deck in chapter["decks"]))
+    seconds = sum(runs.record(deck).get("seconds", 0) for deck in runs.with_draws(decks))
     lines = ["## How to run it", "", *(f"    {line}" for line in _RUNNING.format(
         example=" ".join(chapter["name"] for chapter in chapters[:2])).split("\n")), "",
         "Decks that have not changed are not run again.", "", "    " + version.replace(
-            "\n", "\n    "), "",
+            "\n", "\n    "), ""]
+    if not decks:
+        return lines
+    lines += [
         f"{len(decks)} decks, {seconds:.0f} s of one core together:", "",
         "| deck | runs | seconds, the first | exit status |", "|---|---|---|---|"]
     for deck in decks:

@@ -1,25 +1,27 @@
 #!/usr/bin/env python3
-"""Run the paper's decks, draw its figures, and set its numbers beside those computed.
+"""Run the paper's decks, draw its figures, and set its numbers, and those of others, beside those
+computed.
 
-    ./reproduce                 everything, into reproduction/
-    ./reproduce fig03 fig07     these figures alone, into report_part.md
-    ./reproduce --publish       and copy report, table and pictures to docs/reproduction/
+    ./reproduce                 everything, into reproduction/: report.md and others.md
+    ./reproduce paper           the paper alone
+    ./reproduce others          what others published alone
+    ./reproduce fig03 fig07     these chapters alone, into report_part.md
+    ./reproduce --publish       and copy reports, tables and pictures to docs/reproduction/
 
-A figure is a module here with
+The chapters are those of the table in chapters.py. A figure is a module with
 
     DECKS           stems of its decks in inputs/
     TITLE           of its chapter
     CAPTION         Markdown: what is drawn, what the paper reports, what is found; {fields} in it
     numbers(runs)   what these fields stand for, a dict
     draw(runs)      the picture, a matplotlib Figure
-    rows(runs)      published.Row beside published.Row
+    rows(runs)      published.Row beside published.Row; of others published.Comparison
 
 and so is any other chapter; one without draw has no picture. Decks on the paper's stopping rule are
 run several times, with rounding changed: draws.py.
 """
 
 import argparse
-import importlib
 import os
 import pathlib
 import shutil
@@ -28,6 +30,7 @@ import sys
 import time
 import traceback
 
+import chapters
 import published
 import report
 import style
@@ -41,45 +44,45 @@ import pages  # noqa: E402 (found through the line above)
 
 def main():
     """Run, draw, write; exit status 1 if anything failed."""
-    names = chapter_names()
-    options = _options(names)
+    options = _options()
     folder = options.out.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
     runs = Runs(folder / "runs", options.program)
-    modules = {name: importlib.import_module(name) for name in options.only or names}
+    modules = {name: chapters.module(name) for name in options.only}
 
     decks = runs.with_draws(deck for module in modules.values() for deck in module.DECKS)
     problems = runs.run_all(decks, options.jobs, _say)
-    chapters = []
-    for name, module in modules.items():
-        chapters.append(_chapter(name, module, runs, folder))
-        if chapters[-1]["problem"]:
-            problems[name] = chapters[-1]["problem"]
-    rows = [row for chapter in chapters for row in chapter["rows"]]
-    # Some chapters do not take the place of the whole report.
-    part = "_part" if options.only else ""
-    csv_name, text = f"published_vs_computed{part}.csv", folder / f"report{part}.md"
-    published.write_csv(folder / csv_name, rows)
-    version = subprocess.run([str(runs.program), "--version"], check=False, capture_output=True,
-                             text=True).stdout.strip()
-    report.write(text, csv_name, chapters, runs, version,
-                 sum(runs.record(deck).get("seconds", 0) for deck in dict.fromkeys(decks)))
-    _say(f"{text}: {len(chapters)} chapters, {len(rows)} numbers, "
-         f"{time.perf_counter() - began:.0f} s")
+    pages_written = []
+    for book in chapters.REPORTS.values():
+        chosen = [name for name in book.chapters if name in modules]
+        if not chosen:
+            continue
+        made = [_chapter(name, modules[name], runs, folder) for name in chosen]
+        problems |= {one["name"]: one["problem"] for one in made if one["problem"]}
+        # Some chapters do not take the place of the whole report.
+        part = "" if len(chosen) == len(book.chapters) else "_part"
+        rows = _write(book, part, made, runs, folder)
+        pages_written += [book] if not part else []
+        _say(f"{folder / book.page}{part}.md: {len(made)} chapters, {rows} numbers, "
+             f"{time.perf_counter() - began:.0f} s")
     if options.publish and not problems:
-        _publish(folder, ROOT / "docs" / "reproduction")
-        pages.mark(ROOT / "docs" / "reproduction" / "report.md")
+        for book in pages_written:
+            _publish(folder, ROOT / "docs" / "reproduction", book)
     for name, problem in problems.items():
         _say(f"failed: {name}: {problem}")
     sys.exit(1 if problems else 0)
 
 
-def chapter_names():
-    """Return the modules of the report, in its order."""
-    figures = [path.stem for path in sorted(HERE.glob("fig[0-9][0-9].py"))]
-    others = ("history", "verdict", "misprints")
-    return figures + [name for name in others if (HERE / f"{name}.py").is_file()]
+def _write(book, part, made, runs, folder):
+    """Write page and table of a report; return how many rows there are."""
+    rows = [row for chapter in made for row in chapter["rows"]]
+    csv_name = f"{book.table}{part}.csv"
+    published.write_csv(folder / csv_name, rows, book.row)
+    version = subprocess.run([str(runs.program), "--version"], check=False, capture_output=True,
+                             text=True).stdout.strip()
+    report.write(folder / f"{book.page}{part}.md", csv_name, made, runs, version, book.introduction)
+    return len(rows)
 
 
 def _chapter(name, module, runs, folder):
@@ -99,19 +102,22 @@ def _chapter(name, module, runs, folder):
     return chapter
 
 
-def _publish(folder, to):
+def _publish(folder, to, book):
     to.mkdir(parents=True, exist_ok=True)
-    for path in [folder / "report.md", folder / "published_vs_computed.csv",
-                 *sorted(folder.glob("*.png"))]:
+    pictures = [folder / f"{name}.png" for name in book.chapters]
+    for path in [folder / f"{book.page}.md", folder / f"{book.table}.csv",
+                 *filter(pathlib.Path.is_file, pictures)]:
         shutil.copyfile(path, to / path.name)
-    _say(f"published in {to}")
+    pages.mark(to / f"{book.page}.md")
+    _say(f"published in {to}: {book.page}.md")
 
 
-def _options(names):
+def _options():
+    names = [*chapters.REPORTS, *chapters.names()]
     parser = argparse.ArgumentParser(
         prog="./reproduce", description="Run the decks of Attard and Parker (1992), draw the "
-        "figures, and set the published numbers beside those computed.")
-    parser.add_argument("only", nargs="*", metavar="FIGURE",
+        "figures, and set the published numbers, and those of others, beside those computed.")
+    parser.add_argument("only", nargs="*", metavar="CHAPTER",
                         help=f"what to reproduce: {', '.join(names)}; default: all")
     parser.add_argument("-j", "--jobs", type=int, default=len(os.sched_getaffinity(0)),
                         help="decks that run at a time; default: one a core")
@@ -127,9 +133,12 @@ def _options(names):
         parser.error(f"no program {options.program}")
     unknown = [name for name in options.only if name not in names]
     if unknown:
-        parser.error(f"no such figure: {', '.join(unknown)}; there are {', '.join(names)}")
-    if options.publish and options.only:
-        parser.error("--publish takes the whole report, not some of its chapters")
+        parser.error(f"no such chapter: {', '.join(unknown)}; there are {', '.join(names)}")
+    if options.publish and not set(options.only) <= set(chapters.REPORTS):
+        parser.error("--publish takes whole reports, not some of their chapters")
+    wanted = {name for each in options.only or chapters.REPORTS
+              for name in (chapters.names([each]) if each in chapters.REPORTS else [each])}
+    options.only = [name for name in chapters.names() if name in wanted]
     return options
 
 

@@ -28,9 +28,11 @@ longer the retreat. Stopped on a small change of the displacement, Fig. 10(c)'s 
 h0 = 1, −2, −4 and −10 nm pull off at {paper} of JKR's in {count} runs that differ in A's twelfth
 digit, {residual} z0 from equilibrium at worst; converged they
 agree to {converged_spread}: one contact branch, one pull-off. The hysteresis between the jump
-in and the jump out is real, the memory of the penetration is not. Which of the two shaped the
+in and the jump out is real, the memory of the penetration is not. What shaped the
 paper's own curves its text does not tell: how far the iteration stops depends on how the mixing
-ratio is adapted, and how strongly a grid pins on how the kernel is integrated. The numbers under
+ratio is adapted, and how strongly a grid pins on how the kernel is integrated. Of the readings tried,
+one that keeps the ratio from one h0 to the next, so that states lag behind h0, has all that the paper says of
+its loops. The numbers under
 "computed" are therefore those of this reading of it, not the paper's own."""
 
 

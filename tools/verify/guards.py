@@ -74,8 +74,8 @@ GUARDS = {
     "lost_in_rounding": Guard(
         "adhesion beyond rounding is refused",
         "mesh/contact_scales.f90",
-        "c > largest_floor",
-        "c > huge(1.0_wp)",
+        "coupling_over(problem, c)) > largest_floor",
+        "coupling_over(problem, c)) > huge(1.0_wp)",
         (
             "app/test_ranges.py"
             "::test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding",

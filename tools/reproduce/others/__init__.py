@@ -1,0 +1,1 @@
+"""What others published, a module a chapter."""

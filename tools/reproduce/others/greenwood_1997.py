@@ -1,0 +1,118 @@
+"""Greenwood (1997), Feng (2000), Muller, Yushchenko and Derjaguin (1980): spheres between Bradley's
+theory and JKR's, and their S-shaped curves."""
+
+import math
+
+import numpy as np
+import spheres
+import style
+from published import Comparison
+
+DECKS = ()
+TITLE = "Greenwood 1997, Feng 2000: pull-off, jumps and S-shaped curves of spheres"
+CAPTION = """J. A. Greenwood, Proc. R. Soc. Lond. A **453**, 1277 (1997), and J. Q. Feng, Colloids
+Surf. A **172**, 175 (2000), solved the Lennard-Jones sphere for many Tabor parameters; V. M. Muller,
+V. S. Yushchenko and B. V. Derjaguin did so first (J. Colloid Interface Sci. **77**, 91 (1980)). Left:
+load against approach, −h0; dotted is what no experiment at fixed h0 sees. Right: the pull-off, and h0
+at the jumps.
+
+Curves fold, so that bodies jump at fixed h0, from μ = **{cusp:.4f}** on (σ = {sigma:.5f}), where the two
+folds meet at h0 = {cusp_h0:.3f} z0; the round number 1, often given for it, is where the loop is already
+{lost:.2f} w R z0 in area. The pull-off leaves Bradley's 2 πwR by 1 % at μ = {bradley:.3f} and comes within
+1 % of JKR's 1.5 πwR at μ = {jkr:.1f}: {range:.0f} times as large. μ of Muller, Yushchenko and Derjaguin,
+(32/3π)(2Rw²/πE\\*²z0³)^(1/3), is {muller:.4f} times Tabor's.
+
+Their tables could not be read here; rows with nothing published are for who has them at hand."""
+
+TABORS = (0.01, 0.1, 0.5, 0.8, 1.0, 2.0, 5.0)
+_SHOWN = (0.1, 0.5, 1.0, 2.0, 5.0)
+_COLORS = (style.BLACK, style.BLUE, style.GREEN, style.ORANGE, style.VERMILION)
+# Loss in a cycle of JKR theory at fixed displacement, in (R^4 w^5/E*^2)^(1/3): effects of both jumps.
+_MULLER = 32 / (3 * math.pi) * (2 / math.pi) ** (1 / 3)
+
+
+def cusp():
+    """Return the Tabor parameter from which on there are jumps."""
+    return spheres.where(lambda tabor: spheres.sphere(tabor).jump_in is not None, 0.6, 0.8, 2e-5)
+
+
+def numbers(_):
+    """Return what the caption quotes."""
+    first = cusp()
+    above = spheres.sphere(first * 1.0001)
+    bradley = spheres.where(lambda tabor: spheres.sphere(tabor).tension < 1.98, 0.01, 0.5, 1e-3)
+    jkr = spheres.where(lambda tabor: spheres.sphere(tabor).tension < 1.515, 2, 20, 1e-3)
+    return {"cusp": first, "sigma": spheres.sigma(first), "cusp_h0": above.jump_in[0],
+            "lost": spheres.sphere(1.0).lost, "bradley": bradley, "jkr": jkr,
+            "range": jkr / bradley, "muller": _MULLER}
+
+
+def draw(_):
+    """Return the picture."""
+    page, (left, right) = style.figure(1, 2, height=3.9)
+    for tabor, color in zip(_SHOWN, _COLORS):
+        h0, load = spheres.curve(tabor)
+        found = spheres.sphere(tabor)
+        left.plot(-h0, load, color=color, linestyle=":" if found.jump_in else "-", linewidth=1)
+        for part in _stable(h0, load, found):
+            left.plot(*part, color=color, linewidth=1.8)
+        left.plot([], [], color=color, label=f"$\\mu$ = {tabor:g}")
+    left.set_xlim(-10, 4)
+    left.set_ylim(-2.1, 1.5)
+    style.label(left, "approach $-h_0/z_0$", "load $F/\\pi wR$", "xy")
+    left.legend(loc="upper left")
+    tabors = np.geomspace(0.01, 100, 81)
+    right.semilogx(tabors, [spheres.sphere(float(each)).tension for each in tabors],
+                   color=style.BLACK)
+    right.axhline(1.5, color=style.GREY, linewidth=0.8, dashes=(5, 2))
+    right.text(0.012, 1.51, "JKR", va="bottom", fontsize=8.5, color="#555555")
+    style.label(right, "Tabor's parameter $\\mu$", "pull-off $/\\pi wR$")
+    right.set_ylim(1.45, 2.05)
+    other = right.twinx()
+    folded = [each for each in tabors if each > cusp()]
+    for way, color in (("jump_in", style.BLUE), ("jump_out", style.VERMILION)):
+        other.loglog(folded, [getattr(spheres.sphere(float(each)), way)[0] for each in folded],
+                     color=color, dashes=(5, 1.5))
+    other.set_ylabel("$h_0/z_0$ at jumps: in (blue), out (red)")
+    other.spines["right"].set_visible(True)
+    right.axvline(cusp(), color=style.GREY, linewidth=0.6)
+    return page
+
+
+def _stable(h0, load, found):
+    """Return the pieces of a path that an approach and a retreat see."""
+    if found.jump_in is None:
+        return [(-h0, load)]
+    first = int(np.argmin(abs(h0 - found.jump_in[0]) + abs(load + found.jump_in[1])))
+    last = int(np.argmin(abs(h0 - found.jump_out[0]) + abs(load + found.jump_out[1])))
+    return [(-h0[: first + 1], load[: first + 1]), (-h0[last:], load[last:])]
+
+
+def rows(_):
+    """Return theory beside the converged numbers."""
+    bradley = "Bradley (1932), DMT (1975): rigid spheres"
+    jkr = "Johnson, Kendall and Roberts (1971): mu to infinity"
+    found = [
+        Comparison("mu of Muller et al. over Tabor's", "formula", _MULLER, _MULLER, "",
+                   "(32/3 pi)(2/pi)^(1/3); an identity"),
+        Comparison("mu from which on load-approach curves are S-shaped", "not read", None, cusp(),
+                   "", "often quoted as 1"),
+    ]
+    for tabor in TABORS:
+        one, name = spheres.sphere(tabor), f"mu = {tabor:g}"
+        limit, why = (2.0, bradley) if tabor < 0.5 else (1.5, jkr)
+        found.append(Comparison(f"{name}, pull-off", "theory", limit, one.tension, "pi w R", why))
+        found.append(Comparison(f"{name}, h0 at the pull-off", "not read", None, one.tension_h0,
+                                "z0", "tables of Greenwood, Feng"))
+        if one.jump_in is None:
+            continue
+        for way, (h0, tension) in (("in", one.jump_in), ("out", one.jump_out)):
+            found.append(Comparison(f"{name}, h0 at the jump {way}", "not read", None, h0, "z0",
+                                    "tables of Greenwood, Feng"))
+            if way == "in":
+                found.append(Comparison(f"{name}, tension before it", "not read", None, tension,
+                                        "pi w R", "tables of Greenwood, Feng"))
+            else:
+                found.append(Comparison(f"{name}, tension before it", "theory", 5 / 6, tension,
+                                        "pi w R", f"{jkr}, at fixed displacement"))
+    return found

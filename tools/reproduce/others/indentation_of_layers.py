@@ -1,0 +1,80 @@
+"""Dimitriadis et al. (2002), Garcia and Garcia (2018): a sphere on a thin layer."""
+
+import functools
+
+import layers
+import numpy as np
+import style
+from published import Comparison
+
+DECKS = ()
+TITLE = "Dimitriadis 2002, García 2018: a sphere on a thin layer"
+CAPTION = """E. K. Dimitriadis et al., Biophys. J. **82**, 2798 (2002), and P. D. Garcia and R. Garcia, Biophys. J.
+**114**, 2923 (2018), gave the load of a rigid sphere on a bonded incompressible layer over that on a half-space as
+
+    1 + 1.133 χ + 1.283 χ² + 0.769 χ³ + 0.0975 χ⁴      (Dimitriadis)
+    1 + 1.133 χ + 1.497 χ² + 1.469 χ³ + 0.755 χ⁴       (García),   χ = √(Rδ)/t
+
+Against the integral equation, solved ([docs/layers.md](../layers.md) says how): Dimitriadis' is within 1 % up to
+χ = {one_d:.2f}, off by {d06:.1f} % at 0.62, {d1:.0f} % at 1 and {d2:.0f} % at 2; García's is within 1 % up to χ =
+{one_g:.2f}, off by {g06:.1f} % at 0.62, {g1:.0f} % at 1 and {g2:.0f} % at 2. A modulus read with a formula is off
+by as much the other way. Dimitriadis' coefficients also stand in public programs that use them; the prints were
+not read."""
+
+CHI = (0.1, 0.2, 0.41721, 0.62011, 0.74794, 1.05444, 1.34893, 2.0)
+_SOURCES = {"dimitriadis": "coefficients of the caption, as they are quoted and as public programs "
+                           "have them; the print was not read",
+            "garcia": "coefficients of the caption, as they are quoted; the print was not read"}
+
+
+@functools.lru_cache(maxsize=None)
+def solved(chi):
+    """Return load over that on a half-space for an incompressible bonded layer."""
+    return layers.over_hertz(chi, 0.5, 0)
+
+
+def error(name, chi):
+    """Return the error [%] of a formula."""
+    return 100 * (getattr(layers, name)(chi) / solved(chi) - 1)
+
+
+def good_to(name, percent):
+    """Return the chi up to which a formula is within so many per cent."""
+    chis = [float(each) for each in np.arange(0.02, 1.5, 0.01)]
+    return next(chi for chi in chis if abs(error(name, chi)) > percent) - 0.01
+
+
+def numbers(_):
+    """Return what the caption quotes."""
+    found = {}
+    for name in _SOURCES:
+        letter = name[0]
+        found |= {f"one_{letter}": good_to(name, 1), f"{letter}06": error(name, 0.62011),
+                  f"{letter}1": error(name, 1.0), f"{letter}2": error(name, 2.0)}
+    return found
+
+
+def draw(_):
+    """Return the picture."""
+    page, (left, right) = style.figure(1, 2, height=3.6)
+    chis = [float(each) for each in np.arange(0.05, 2.001, 0.05)]
+    left.semilogy(chis, [solved(chi) for chi in chis], color=style.BLACK, label="solved")
+    right.axhspan(-1, 1, color=style.GREY, alpha=0.2, linewidth=0)
+    for name, label, color in (("dimitriadis", "Dimitriadis et al.", style.BLUE),
+                               ("garcia", "García and García", style.VERMILION)):
+        left.semilogy(chis, [getattr(layers, name)(chi) for chi in chis], color=color,
+                      dashes=(5, 1.5), label=label)
+        right.plot(chis, [error(name, chi) for chi in chis], color=color)
+    left.set_yticks([1, 2, 5, 10, 20], ["1", "2", "5", "10", "20"])
+    style.label(left, "$\\chi = \\sqrt{R\\delta}/t$", "load / load on a half-space")
+    style.label(right, "$\\chi = \\sqrt{R\\delta}/t$", "error [%]", "y")
+    right.set_ylim(-45, 45)
+    style.legend(page, 3)
+    return page
+
+
+def rows(_):
+    """Return the formulas beside the solution."""
+    return [Comparison(f"chi = {chi:g}, load over that on a half-space, nu = 0.5", "formula",
+                       getattr(layers, name)(chi), solved(chi), "", source)
+            for name, source in _SOURCES.items() for chi in CHI]

@@ -1,0 +1,114 @@
+"""Johnson and Greenwood (1997): the map of theories, with errors that were measured."""
+
+import numpy as np
+import spheres
+import style
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.patches import Patch
+from published import Comparison
+
+DECKS = ()
+TITLE = "Johnson and Greenwood 1997: the map of theories, with measured errors"
+CAPTION = """K. L. Johnson and J. A. Greenwood, J. Colloid Interface Sci. **192**, 326 (1997), divided the
+plane of λ and load among the theories by estimates. Here each of {count} Lennard-Jones contacts is
+solved and has the simplest theory that holds within 5 %, in the order Bradley, Hertz, DMT, JKR,
+Maugis-Dugdale. Bradley's, of rigid bodies, holds where its h0 under the load is within 5 % of z0, the
+others where contact radius and indentation are; the indentation counts from the gap at rest, its error in
+parts of a²/R. The line is where JKR theory is within 1 %.
+
+Hertz theory takes over where the load is large: from {hertz:.0f} πwR on at λ = {hertz_at:.2g}. Without load
+JKR theory is within 5 % from λ = {jkr:.2f} on, Maugis-Dugdale from {maugis:.2f}. Without load Bradley's holds up to λ =
+{bradley:.3f}; in between no theory does, since the bodies yield, but touch over the range of the force and not
+over a contact; DMT theory has hardly a place of its own. The pull-off is another matter: DMT's is within 5 % up to λ = {dmt_pull:.2f}, JKR's from {jkr_pull:.1f} on,
+Maugis-Dugdale's but for λ from {maugis_pull_low:.2f} to {maugis_pull_high:.2f}.
+
+The limits of the original map were not read and are not drawn."""
+
+LAMBDAS = tuple(float(each) for each in np.geomspace(1e-3, 100, 31))
+# Within so much a theory is said to hold.
+_GOOD = 0.05
+_THEORIES = ("bradley", "hertz", "dmt", "jkr", "maugis")
+_NAMES = ("none", "Bradley", "Hertz", "DMT", "JKR", "Maugis-Dugdale")
+_COLORS = ("#FFFFFF", style.GREY, style.SKY, style.ORANGE, style.GREEN, style.PURPLE)
+
+
+def _tabor(lam):
+    return lam / spheres.maugis_lambda(1.0)
+
+
+def worst(theory, lam, load):
+    """Return the larger error of contact radius and indentation; of Hertz's 1 where it has none; of
+    Bradley's theory the error of h0 over z0."""
+    if theory == "bradley":
+        h0 = 1 - spheres.contact(_tabor(lam), load).displacement * spheres.unit(_tabor(lam)) ** 2
+        return abs(_rigid(load) - h0)
+    errors = abs(spheres.contact(_tabor(lam), load).errors[theory][1:])
+    return float(np.max(errors)) if np.isfinite(errors).all() else 1.0
+
+
+def _rigid(load):
+    """Return h0 [z0] of rigid bodies under a load: F = 2 pi R e(h0), by Derjaguin."""
+    return spheres.where(lambda h: 2 / 3 * (h**-8 - 4 * h**-2) < load, 0.1, 1.0, 1e-12)
+
+
+def simplest(lam, load):
+    """Return the number of the simplest theory that holds, 0 for none."""
+    held = [worst(theory, lam, load) <= _GOOD for theory in _THEORIES]
+    return held.index(True) + 1 if any(held) else 0
+
+
+def _pull(theory, lam):
+    return abs(spheres.contact(_tabor(lam), 0.0).errors[theory][0])
+
+
+def numbers(_):
+    """Return what the caption quotes."""
+    at = min(LAMBDAS, key=lambda lam: abs(lam - 1))
+    hertz = next(load for load in spheres.LOADS if worst("hertz", at, load) <= _GOOD)
+    peak = max(LAMBDAS, key=lambda lam: _pull("maugis", lam))
+
+    def turn(theory, low, high, found=worst):
+        def holds(lam):
+            return (found(theory, lam, 0.0) if found is worst else found(theory, lam)) <= _GOOD
+        rising = not holds(low)
+        return spheres.where(lambda lam: holds(lam) == rising, low, high, 1e-3)
+
+    return {"count": len(LAMBDAS) * len(spheres.LOADS), "hertz": hertz, "hertz_at": at,
+            "bradley": turn("bradley", 1e-3, 1.0), "jkr": turn("jkr", 0.1, 20), "maugis": turn("maugis", 0.1, 20),
+            "dmt_pull": turn("dmt", 0.01, 3, _pull), "jkr_pull": turn("jkr", 0.3, 30, _pull),
+            "maugis_pull_low": turn("maugis", 0.01, peak, _pull),
+            "maugis_pull_high": turn("maugis", peak, 30, _pull)}
+
+
+def draw(_):
+    """Return the picture."""
+    page, panel = style.figure(height=4.4)
+    loads = spheres.LOADS[1:]
+    held = np.array([[simplest(lam, load) for lam in LAMBDAS] for load in loads])
+    panel.pcolormesh(LAMBDAS, loads, held, cmap=ListedColormap(_COLORS), shading="nearest",
+                     norm=BoundaryNorm(np.arange(-0.5, 6), 6), alpha=0.75)
+    error = np.array([[worst("jkr", lam, load) for lam in LAMBDAS] for load in loads])
+    panel.contour(LAMBDAS, loads, error, levels=[0.01], colors=["black"], linewidths=1)
+    panel.set_xscale("log")
+    panel.set_yscale("log")
+    panel.set_ylim(0.07, 1500)
+    style.label(panel, "Maugis' parameter $\\lambda$", "load $F/\\pi wR$")
+    page.legend(handles=[Patch(facecolor=color, edgecolor="#888888", alpha=0.75, label=name)
+                         for name, color in zip(_NAMES, _COLORS)],
+                loc="outside lower center", ncols=6, columnspacing=1, handlelength=1.4)
+    return page
+
+
+def rows(_):
+    """Return where theories hold."""
+    found = numbers(_)
+    lines = [("Hertz, radius and indentation within 5 %, least load at lambda = 1", found["hertz"],
+              "pi w R"),
+             ("Bradley, h0 without load within 5 % of z0, largest lambda", found["bradley"], ""),
+             ("JKR, radius and indentation without load within 5 %, least lambda", found["jkr"], ""),
+             ("Maugis-Dugdale, the same", found["maugis"], ""),
+             ("DMT, pull-off within 5 %, largest lambda", found["dmt_pull"], ""),
+             ("JKR, pull-off within 5 %, least lambda", found["jkr_pull"], "")]
+    return [Comparison(item, "not read", None, value, unit, "the map; DMT below 0.1 and JKR above 5 "
+                       "are often quoted" if "lambda" in item else "the map")
+            for item, value, unit in lines]

@@ -1,0 +1,93 @@
+"""Wu (2010) and Attard and Parker (1992): where the bodies jump into contact."""
+
+import functools
+
+import numpy as np
+import spheres
+import style
+from published import Comparison
+
+DECKS = ()
+TITLE = "Wu 2010: from how far bodies jump into contact"
+CAPTION = """J.-J. Wu, J. Adhesion **86**, 1071 (2010), fitted the distance from which Lennard-Jones spheres
+jump into contact to powers of Tabor's parameter; his coefficients could not be read here. Left: h0 and the
+gap on the axis at the jump, solved, beside what Attard and Parker (1992) print: the separation of
+equation (37), and the h0 that follows from it. Right: errors.
+
+(37) is a closed form of slow deformation, which does not know the jump itself: h0 is too large by {h0:.1f} %
+at μ = {top:g} and by at most {h0_worst:.1f} % (at μ = {h0_at:.2g}); the gap is too large by {gap:.1f} % at μ = {top:g}.
+Both go as μ^(3/7) for large μ, as they must under an attraction that falls off as h⁻³: the slope of the
+solved h0 is {slope:.4f} from μ = {slope_from:g} to {top:g}. So h0 at the jump is {factor:.4f} times that of
+(37), or **{constant:.4f}** μ^(3/7) z0, good to 1 % from μ = {power_from:.1f} on and to {fixed:.2f} % from {fixed_from:g} on."""
+
+_SOURCE = "Attard and Parker (1992), equation (37), printed"
+TABORS = (0.8, 1.0, 2.0, 5.0, 10.0, 100.0)
+_MANY = tuple(float(each) for each in np.geomspace(0.7, 1000, 40))
+_FROM = 3.0
+
+
+@functools.lru_cache(maxsize=None)
+def jump(tabor):
+    """Return h0, gap on the axis and tension [pi w R] at the jump, solved and by equation (37)."""
+    found = spheres.run(tabor, -3.0 - 1.5 * spheres.unit(tabor) ** 2, approximations={})
+    summary, curve = found.summary, found.curve
+    at = int(np.argmin(abs(curve["h0"] - summary["jump_in_h0"])
+                       + abs(curve["load"] - summary["jump_in_load"]) / spheres.sigma(tabor)))
+    loads = np.pi * spheres.sigma(tabor)
+    return ((summary["jump_in_h0"], curve["h_centre"][at], -summary["jump_in_load"] / loads),
+            (summary["jump_equation_37_h0"], summary["jump_equation_37_gap"],
+             -summary["jump_equation_37_load"] / loads))
+
+
+def _errors():
+    """Return errors [%] of h0 and gap by (37) over _MANY."""
+    solved, printed = (np.array(each) for each in zip(*map(jump, _MANY)))
+    return 100 * (printed / solved - 1)
+
+
+def numbers(_):
+    """Return what the caption quotes."""
+    errors = _errors()
+    worst = int(np.argmax(abs(errors[:, 0])))
+    top = _MANY[-1]
+    above = np.array([each >= _FROM for each in _MANY])
+    ratio = 1 / (1 + errors[above, 0] / 100)
+    factor = (ratio.max() + ratio.min()) / 2
+    constant = jump(top)[0][0] / top ** (3 / 7)
+    return {"constant": constant, "power_from": spheres.where(
+                lambda tabor: abs(constant * tabor ** (3 / 7) / jump(tabor)[0][0] - 1) < 0.01, 0.8,
+                100, 1e-2),
+            "h0": errors[-1, 0], "gap": errors[-1, 1], "top": top, "h0_worst": errors[worst, 0],
+            "h0_at": _MANY[worst], "factor": factor, "fixed_from": _FROM,
+            "fixed": 100 * max(abs(factor / ratio - 1)), "slope_from": 100.0,
+            "slope": np.log(jump(top)[0][0] / jump(100.0)[0][0]) / np.log(top / 100.0)}
+
+
+def draw(_):
+    """Return the picture."""
+    page, (left, right) = style.figure(1, 2, height=3.6)
+    solved, printed = (np.array(each) for each in zip(*map(jump, _MANY)))
+    errors = _errors()
+    for i, (name, color) in enumerate((("$h_0$", style.BLACK), ("gap $h(0)$", style.BLUE))):
+        left.loglog(_MANY, solved[:, i], color=color, label=f"{name}, solved")
+        left.loglog(_MANY, printed[:, i], color=color, dashes=(4, 2), linewidth=1,
+                    label=f"{name}, (37)")
+        right.semilogx(_MANY, errors[:, i], color=color)
+    style.label(left, "Tabor's parameter $\\mu$", "at the jump into contact $[z_0]$")
+    style.label(right, "Tabor's parameter $\\mu$", "error of (37) [%]", "y")
+    style.legend(page, 4)
+    return page
+
+
+def rows(_):
+    """Return (37) beside the solution."""
+    found = []
+    for tabor in TABORS:
+        solved, printed = jump(tabor)
+        for what, unit, one, other in zip(("h0", "gap on the axis", "tension"),
+                                          ("z0", "z0", "pi w R"), printed, solved):
+            found.append(Comparison(f"mu = {tabor:g}, {what} at the jump into contact", "formula",
+                                    one, other, unit, _SOURCE))
+    found.append(Comparison("fitted distance of the jump", "not read", None, "see above", "",
+                            "Wu (2010)"))
+    return found

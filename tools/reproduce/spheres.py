@@ -1,0 +1,140 @@
+"""Spheres under a Lennard-Jones law at any Tabor parameter, solved: what the chapters on others share.
+
+Units are z0 of the law, R and E/(1-nu^2) of two identical bodies, twice E*. Loads come out in pi w R,
+radii and displacements in Maugis' units, (pi w R^2/K)^(1/3) with K = 4 E*/3 and its square over R;
+h0 in z0.
+"""
+
+import functools
+import math
+import os
+import sys
+import warnings
+from typing import NamedTuple
+
+import numpy as np
+from runs import ROOT
+
+# Before anything loads OpenMP.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+sys.path.append(str(ROOT / "build" / "pywrap"))
+
+import snapin  # noqa: E402
+
+ACCURACY = 1e-8
+# Largest tension of the law over w/z0, at h = 3^(1/6) z0.
+PEAK = 16 / (9 * math.sqrt(3))
+
+
+def sigma(tabor):
+    """Return the work of adhesion in these units, the paper's sigma."""
+    return tabor**1.5 / 2
+
+
+def unit(tabor):
+    """Return Maugis' unit of the contact radius."""
+    return (1.5 * math.pi * sigma(tabor)) ** (1 / 3)
+
+
+def maugis_lambda(tabor):
+    """Return Maugis' parameter, with the law's largest tension as the strength: 1.157 mu."""
+    return 2 * PEAK * tabor * (9 / (16 * math.pi)) ** (1 / 3)
+
+
+class Sphere(NamedTuple):
+    """What is found at one Tabor parameter; a jump is None where there is none.
+
+    Loads in pi w R, tension positive; h0 in z0; `lost` in w R z0. `rest_h0` is h0 without load.
+    """
+
+    tension: float
+    tension_h0: float
+    jump_in: tuple
+    jump_out: tuple
+    lost: float
+    rest_h0: float
+
+
+def run(tabor, h0_end, **groups):
+    """Return the results of the whole path down to an h0."""
+    with warnings.catch_warnings():
+        # In these units R is as short as the range of the force.
+        warnings.simplefilter("ignore", snapin.SnapinWarning)
+        return snapin.run({
+            "bodies": {"radius": 1.0, "stiffness": 1.0},
+            "force": {"law": "lennard_jones", "surface_energy": sigma(tabor), "z0": 1.0},
+            "equilibrium_path": {"h0_end": h0_end}, "numerics": {"accuracy": ACCURACY}, **groups})
+
+
+@functools.lru_cache(maxsize=None)
+def sphere(tabor):
+    """Return the Sphere of a Tabor parameter."""
+    loads = math.pi * sigma(tabor)
+    found = run(tabor, _deep(tabor, 0), fixed_load={"load": [0.0]})
+    summary = found.summary
+
+    def jump(way):
+        if f"jump_{way}_h0" not in summary:
+            return None
+        return summary[f"jump_{way}_h0"], -summary[f"jump_{way}_load"] / loads
+
+    return Sphere(summary["max_tension"] / loads, summary["max_tension_h0"], jump("in"),
+                  jump("out"), summary.get("energy_lost", 0.0) / sigma(tabor),
+                  float(found.fixed_load["h0"][-1]))
+
+
+@functools.lru_cache(maxsize=None)
+def curve(tabor):
+    """Return h0 [z0] and load [pi w R] along the path."""
+    path = run(tabor, _deep(tabor, 0)).curve
+    return path["h0"], path["load"] / (math.pi * sigma(tabor))
+
+
+class Contact(NamedTuple):
+    """A contact under a load, in Maugis' units: its radius, its displacement if bodies touch at z0, and
+    by how much theories miss pull-off, radius and indentation, as the program's &regime has it."""
+
+    radius: float
+    displacement: float
+    errors: dict
+
+
+THEORIES = ("hertz", "jkr", "dmt", "maugis", "carpick", "pietrement")
+# Loads [pi w R] under which contacts are compared.
+LOADS = (0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)
+
+
+@functools.lru_cache(maxsize=None)
+def _places(tabor, loads):
+    """Return h0 under each of some loads [pi w R], pressed together, of one path."""
+    newtons = [load * math.pi * sigma(tabor) for load in loads]
+    table = run(tabor, _deep(tabor, max(loads)), fixed_load={"load": newtons}).fixed_load
+    return {load: float(table["h0"][np.isclose(table["load"], each, rtol=1e-12, atol=0)].min())
+            for load, each in zip(loads, newtons)}
+
+
+@functools.lru_cache(maxsize=None)
+def contact(tabor, load):
+    """Return the Contact of a Tabor parameter under a load [pi w R], one of LOADS."""
+    h0 = _places(tabor, LOADS if load else (0.0,))[load]
+    summary = run(tabor, h0, regime={}).summary
+    errors = {name: np.asarray(summary[f"regime_error_{name}"]) for name in THEORIES}
+    (jkr,) = snapin.contact_radius("jkr", "load", [summary["end_load"]], radius=1.0, stiffness=1.0,
+                                   surface_energy=sigma(tabor))
+    return Contact(jkr / (1 + errors["jkr"][1]) / unit(tabor), (1 - h0) / unit(tabor) ** 2,
+                   errors)
+
+
+def _deep(tabor, load):
+    """Return an h0 at which the load is surely larger; DMT theory has the deepest, and the gap on the
+    axis is between 0 and 1."""
+    return (0.6 if load == 0 else -0.4) - (max(load, 0.0) + 2.5) ** (2 / 3) * 1.3 * unit(tabor) ** 2
+
+
+def where(found, low, high, accuracy):
+    """Return where `found(x)` turns from false to true, between two numbers, in the logarithm."""
+    low, high = np.log([low, high])
+    while high - low > accuracy:
+        middle = (low + high) / 2
+        low, high = (low, middle) if found(float(np.exp(middle))) else (middle, high)
+    return float(np.exp((low + high) / 2))
