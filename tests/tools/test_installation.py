@@ -82,3 +82,12 @@ def offered(root, word):
     code = ('compopt() { :; }; . "$1"; COMP_WORDS=(snapin "$2"); COMP_CWORD=1; _snapin; '
             'printf "%s\\n" "${COMPREPLY[@]}"')
     return set(run("bash", "-c", code, "bash", script, word).split())
+
+
+@pytest.mark.long
+def test_pages_of_all_public_procedures_are_made_without_warnings():
+    done = subprocess.run([TOP / "tools/api.sh"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert "arning" not in done.stdout + done.stderr
+    made = {page.stem for page in (TOP / "build/api/module").glob("*.html")}
+    assert made >= {source.stem for source in (TOP / "src").glob("*/*.f90")} - {"snapin"}
