@@ -121,9 +121,10 @@ def _shown(program, text):
 def _program():
     """Return the path of the program that this package was built with, or else of any."""
     # In a build folder, and where pip puts commands.
-    places = pathlib.Path(_snapin.__file__).parent.parent, pathlib.Path(sysconfig.get_path("scripts"))
-    beside = [place / "snapin" for place in places if (place / "snapin").is_file()]
-    found = str(beside[0]) if beside else shutil.which("snapin")
+    places = pathlib.Path(_snapin.__file__).parent.parent, sysconfig.get_path("scripts")
+    beside = [str(path) for path in (pathlib.Path(place, "snapin") for place in places)
+              if path.is_file()]
+    found = beside[0] if beside else shutil.which("snapin")
     if not found:
         raise SnapinError("the program snapin is not installed: it is neither beside the package "
                           "nor on PATH")

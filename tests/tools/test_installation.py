@@ -13,7 +13,7 @@ TOP = Path(__file__).resolve().parents[2]
 MESON = [sys.executable, "-m", "mesonbuild.mesonmain"]
 DECK = """&bodies radius = 1e-6, stiffness = 1e10 /
 &force law = 'lennard_jones', hamaker = 1e-19, z0 = 3e-10 /
-&equilibrium_path /
+&equilibrium_path h0_end = -1e-9 /
 """
 
 
