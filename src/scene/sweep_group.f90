@@ -107,9 +107,10 @@ contains
     character(len=:), allocatable :: words, what
     integer :: i
 
-    call refuse(deck, ['values', of_range//' '], 'words', error)
-    if (allocated(error)) return
     call deck%get('sweep', 'words', words)
+    if (any(sweep%words /= '')) call refuse(deck, ['values', of_range//' '], &
+      'a key that holds a word; give words', error)
+    if (allocated(error)) return
     if (size(sweep%axis) > 1) then
       call deck%mistake('sweep', 'key', 'a key that holds a word is swept alone; for several ' // &
         'give a file', error)

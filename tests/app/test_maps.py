@@ -183,7 +183,7 @@ WRONG_WORDS = {
     "unknown": ({"key": "force.law", "words": ["lennard_jones", "exponentail"]},
                 'did you mean "exponential"'),
     "none": ({"key": "force.law"}, "missing"),
-    "values": ({"key": "force.law", "values": [1.0]}, "not together with words"),
+    "values": ({"key": "force.law", "values": [1.0]}, "holds a word; give words"),
     "number": ({"key": "force.hamaker", "words": ["linear"]}, "does not hold a word"),
     "several": ({"key": ["force.law", "force.hamaker"], "words": ["lennard_jones"]},
                 "swept alone"),
