@@ -30,12 +30,12 @@ def draw_map(folder, value="max_tension", per=None, over=None):
     columns = read_table(folder, "sweep.csv")
     units = _units(folder)
     keys = [name for name in columns if "." in name]
-    over = over or keys
+    over = list(over or keys)
     for name in [value, *([per] if per else []), *over]:
         if name not in columns:
             raise ResultsError(f"{folder}/sweep.csv has no column {name!r}; it has "
                                + ", ".join(columns))
-        if columns[name].dtype.kind == "U":
+        if columns[name].dtype.kind == "U" and over[1:] != [name]:
             raise ResultsError(f"{name} has words, which cannot be drawn")
     shown = columns[value] / (columns[per] if per else 1)
     label = _label(value, units) if not per else f"{_words(value)} over {_words(per)}"
@@ -48,7 +48,7 @@ def draw_map(folder, value="max_tension", per=None, over=None):
         _draw_curves(axes, columns[over[0]], shown, good, [])
     elif len(over) == 2:
         x, y = (columns[name] for name in over)
-        if len(np.unique(y)) <= _MOST_CURVES:
+        if y.dtype.kind == "U" or len(np.unique(y)) <= _MOST_CURVES:
             _draw_curves(axes, x, shown, good, y)
             axes.legend(title=_label(over[1], units), frameon=False, fontsize="small")
         else:
@@ -101,7 +101,7 @@ def _draw_curves(axes, x, values, good, parameter):
         mine = good & (np.asarray(parameter) == one) if one is not None else good
         order = np.argsort(x[mine])
         axes.plot(x[mine][order], values[mine][order], ".-", color=colour,
-                  label=None if one is None else f"{one:.3g}")
+                  label=None if one is None else one if isinstance(one, str) else f"{one:.3g}")
     for place in x[~good]:
         axes.axvline(place, color=GREY, linewidth=0.5, linestyle=":")
     axes.set(xscale="log" if _wide(x) else "linear",

@@ -10,6 +10,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import sysconfig
 import threading
 import warnings
 from typing import NamedTuple
@@ -119,8 +120,11 @@ def _shown(program, text):
 
 def _program():
     """Return the path of the program that this package was built with, or else of any."""
-    beside = pathlib.Path(_snapin.__file__).parent.parent / "snapin"
-    found = str(beside) if beside.is_file() else shutil.which("snapin")
+    # In a build folder, and where pip puts commands.
+    places = pathlib.Path(_snapin.__file__).parent.parent, sysconfig.get_path("scripts")
+    beside = [str(path) for path in (pathlib.Path(place, "snapin") for place in places)
+              if path.is_file()]
+    found = beside[0] if beside else shutil.which("snapin")
     if not found:
         raise SnapinError("the program snapin is not installed: it is neither beside the package "
                           "nor on PATH")

@@ -147,11 +147,16 @@ def _columns(text, place):
     cells = list(zip(*rows)) or [()] * len(header)
     try:
         return {
-            column: np.array(cells[i], str if column in _TEXT_COLUMNS else float)
+            column: np.array(cells[i], str if _has_text(column, cells[i]) else float)
             for i, column in enumerate(header)
         }
     except ValueError as problem:
         raise ResultsError(f"{place}: {problem}") from problem
+
+
+def _has_text(column, cells):
+    """Return whether a column has text: always, or as a key of a sweep that holds words."""
+    return column in _TEXT_COLUMNS or ("." in column and any(cell[:1].isalpha() for cell in cells))
 
 
 def read_summary(folder):

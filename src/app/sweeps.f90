@@ -183,8 +183,8 @@ contains
     do
       associate (next => self%waiting(mod(self%written + 1, size(self%waiting))))
         if (next%number /= self%written + 1) exit
-        call results%take_case(scene%sweep%names, scene%sweep%values(next%number), columns, &
-          next%numbers, next%failure)
+        call results%take_case(scene%sweep%names, scene%sweep%words, &
+          scene%sweep%values(next%number), columns, next%numbers, next%failure)
         next%number = 0
         deallocate (next%numbers)
       end associate

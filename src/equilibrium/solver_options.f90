@@ -21,8 +21,8 @@ module solver_options
     !> Errors that are left of the place of an extremum on the path, in its coordinate, and of
     !> slopes, relative.
     real(wp) :: place_error = 1.0e-12_wp, slope_error = 1.0e-13_wp
-    !> Mixing: largest ratio; whether it stops on a small change of the central displacement, as in
-    !> the paper, instead of on the residual, and on which change (in the law's lengths).
+    !> Of mixing the largest ratio; whether it stops on a small change of the central displacement,
+    !> as in the paper, instead of on the residual, and on which change (in the law's lengths).
     real(wp) :: mixing_limit = 0.2_wp
     logical :: stop_on_change = .false.
     real(wp) :: displacement_tolerance = 0

@@ -60,8 +60,8 @@ module fit_run
 
 contains
 
-  !> measured: the curve of `measurement`; family: the problems, whose parameters are the unknowns
-  !> of the model; problem: with their values in the deck.
+  !> Fits what the deck asks for. measured: the curve of `measurement`; family: the problems, whose
+  !> parameters are the unknowns of the model; problem: with their values in the deck.
   subroutine run_fit(measured, measurement, fit, numerics, family, problem, listener, outcome)
     type(measured_t), intent(in) :: measured
     type(measurement_t), intent(in) :: measurement

@@ -7,8 +7,8 @@ module lack_of_fit
   private
   public :: lack_t, lack_in
 
-  !> excess: by how many standard deviations blocks of `width` samples leave more than noise would,
-  !> where that is most; times: how many times what noise leaves of them.
+  !> How a fit is wrong. excess: by how many standard deviations blocks of `width` samples leave
+  !> more than noise would, where that is most; times: how many times what noise leaves of them.
   type :: lack_t
     integer :: width = 1
     real(wp) :: excess = 0, times = 1
@@ -30,8 +30,9 @@ contains
     is_noise = self%excess <= hardly_ever
   end function is_noise
 
-  !> white: what is left in standard deviations; run: samples of different runs are no neighbours;
-  !> freedom: how many of them are independent; noise: by which they were made so.
+  !> Where and how a fit is wrong most. white: what is left in standard deviations; run: samples
+  !> of different runs are no neighbours; freedom: how many of them are independent; noise: by
+  !> which they were made so.
   pure type(lack_t) function lack_in(white, run, freedom, noise) result(worst)
     real(wp), intent(in) :: white(:)
     type(noise_t), intent(in) :: noise

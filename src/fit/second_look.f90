@@ -20,8 +20,8 @@ module second_look
 
 contains
 
-  !> value: what fits best so far. keep_noise: it is given. settled: nothing has changed that
-  !> counts.
+  !> Finds noise, outliers and jumps again. value: what fits best so far. keep_noise: it
+  !> is given. settled: nothing has changed that counts.
   subroutine look_again(curve, value, keep_noise, settled)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: value(:)

@@ -1,15 +1,15 @@
 !> The numbers of a deck by their names, "group.key" or "group.key(2)": what sweeps, sensitivities
-!> and fits vary.
+!> and fits vary. A sweep may vary words too: their numbers, from 1, among those of the key.
 module deck_numbers
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, brief, guess, listing, clip, word_count, word_of
-  use deck_keys, only: real_value, real_list, integer_value, allowed
+  use deck_keys, only: real_value, real_list, integer_value, word_value, allowed
   use deck_values, only: value_t, given, outside
   use deck_store, only: deck_t
   implicit none
   private
-  public :: find_number, set_number, guess_number
+  public :: find_number, set_number, guess_number, words_of, number_of_word
 
   !> Kinds of keys that hold numbers.
   integer, parameter :: numeric(3) = [real_value, real_list, integer_value]
@@ -19,13 +19,15 @@ contains
   !> Row of the key `path` ("force.hamaker"), and the term that it names of a list
   !> ("hydration.pressure(2)"); 0: none. Fails where the table has no such key, the key does not
   !> hold numbers or so many, or the deck lacks its group; `error` then says so without a place in
-  !> the file, which is the caller's to add.
-  subroutine find_number(deck, path, row, term, error)
+  !> the file, which is the caller's to add. words: also a key that holds one of its words.
+  subroutine find_number(deck, path, row, term, error, words)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: path
     integer, intent(out) :: row, term
     type(failure_t), allocatable, intent(out) :: error
+    logical, intent(in), optional :: words
     character(len=:), allocatable :: name, group
+    logical :: fits
     integer :: dot
 
     name = trim(lower(path))
@@ -35,7 +37,9 @@ contains
     row = 0
     if (dot < len(name)) row = deck%row_of(group, name(dot + 1:))
     if (row > 0) then
-      if (all(deck%specs(row)%kind /= numeric)) row = 0
+      fits = any(deck%specs(row)%kind == numeric)
+      if (present(words)) fits = fits .or. (words .and. deck%specs(row)%kind == word_value)
+      if (.not. fits) row = 0
     end if
     if (row == 0) then
       call fail(error, bad_input, quoted(clip(path)) // ' is not a key that holds a number' // &
@@ -78,6 +82,36 @@ contains
     name = name(:opens - 1)
   end subroutine take_off_term
 
+  !> The words that the key `path` may hold, blank-separated; '' where it holds none or is no key.
+  pure function words_of(deck, path) result(words)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: path
+    character(len=len(deck%specs%choices)) :: words
+    integer :: i
+
+    words = ''
+    do i = 1, size(deck%specs)
+      if (deck%specs(i)%kind /= word_value) cycle
+      if (trim(deck%specs(i)%group) // '.' // trim(deck%specs(i)%key) /= lower(path)) cycle
+      words = deck%specs(i)%choices
+    end do
+  end function words_of
+
+  !> The number of a word among the blank-separated `words`. what: what is wrong with it.
+  subroutine number_of_word(word, words, number, what)
+    character(len=*), intent(in) :: word, words
+    real(wp), intent(out) :: number
+    character(len=:), allocatable, intent(out) :: what
+    integer :: i
+
+    number = 0
+    do i = 1, word_count(words)
+      if (lower(trim(word)) == word_of(words, i)) number = i
+    end do
+    if (number <= 0) what = quoted(clip(word)) // ' is not known' // guess(lower(word), words, '') &
+      // '; allowed: ' // listing(trim(words), "'", "'")
+  end subroutine number_of_word
+
   !> How many numbers a key holds.
   pure integer function terms_in(value)
     type(value_t), intent(in) :: value
@@ -100,8 +134,9 @@ contains
     end do
   end function numbers_of
 
-  !> Gives the key `path` another value (a list: this one value, or one of its terms), as if the
-  !> deck said so. Fails as `find_number` does and where the value is out of range.
+  !> Gives the key `path` another value (a word: its number; a list: this one value, or one of its
+  !> terms), as if the deck said so. Fails as `find_number` does and where the value is out of
+  !> range.
   subroutine set_number(deck, path, value, error)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: path
@@ -110,8 +145,13 @@ contains
     integer :: row, term
     logical :: refused
 
-    call find_number(deck, path, row, term, error)
+    call find_number(deck, path, row, term, error, words=.true.)
     if (allocated(error)) return
+    if (deck%specs(row)%kind == word_value) then
+      deck%values(row)%text = word_of(trim(deck%specs(row)%choices), nint(value))
+      deck%values(row)%status = given
+      return
+    end if
     associate (spec => deck%specs(row), stored => deck%values(row))
       refused = outside(spec, value)
       ! Steps of a range make whole numbers only up to rounding.

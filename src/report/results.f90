@@ -182,24 +182,35 @@ contains
   end subroutine take
 
   !> Adds a case of a sweep to `sweep.csv`: the values of its keys, its numbers, and why it failed,
-  !> blank if it did not. `keys` are blank-separated names, `columns` are those of the numbers.
-  subroutine take_case(self, keys, values, columns, numbers, failure)
+  !> blank if it did not. `keys` are blank-separated names, `words` those of which a value is the
+  !> number, `columns` are those of the numbers.
+  subroutine take_case(self, keys, words, values, columns, numbers, failure)
     class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: keys, columns(:), failure
+    character(len=*), intent(in) :: keys, words(:), columns(:), failure
     real(wp), intent(in) :: values(:), numbers(:)
     character(len=max(len(columns), len(keys) + 24)) :: header(size(values) + size(columns) + 1)
+    character(len=:), allocatable :: line
     integer :: k
 
     if (allocated(self%trouble)) return
     if (.not. self%cases%is_open()) then
       do k = 1, size(values)
         header(k) = word_of(keys, k) // ' in the unit of the key'
+        if (words(k) /= '') header(k) = word_of(keys, k) // ' a word'
       end do
       header(k:size(header) - 1) = columns
       header(size(header)) = failure_column
       call self%begin(self%cases, 'sweep.csv', header, self%trouble)
     end if
-    if (.not. allocated(self%trouble)) call self%cases%line(cells([values, numbers]) // ',' // &
+    line = ''
+    do k = 1, size(values)
+      if (words(k) == '') then
+        line = line // cells(values(k:k)) // ','
+      else
+        line = line // word_of(words(k), nint(values(k))) // ','
+      end if
+    end do
+    if (.not. allocated(self%trouble)) call self%cases%line(line // cells(numbers) // ',' // &
       trim(without_commas(failure)), self%trouble)
     if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
   end subroutine take_case

@@ -116,7 +116,7 @@ contains
     trial = scene%deck
     call trial%drop_group('sweep')
     do k = 1, word_count(scene%sweep%names)
-      call find_number(trial, word_of(scene%sweep%names, k), row, term, trouble)
+      call find_number(trial, word_of(scene%sweep%names, k), row, term, trouble, words=.true.)
       if (allocated(trouble)) then
         call scene%deck%mistake('sweep', trim(merge('file', 'key ', &
           allocated(scene%sweep%table))), trouble%message, error)
@@ -167,6 +167,7 @@ contains
     associate (sweep => scene%sweep)
       key = 'from'
       if (scene%deck%is_set('sweep', 'values')) key = 'values'
+      if (scene%deck%is_set('sweep', 'words')) key = 'words'
       if (allocated(sweep%table)) key = 'file'
       do i = 1, 2
         if (allocated(sweep%table)) then
@@ -180,7 +181,7 @@ contains
         said = 'with '
         do k = 1, size(values)
           if (k > 1) said = said // ', '
-          said = said // word_of(sweep%names, k) // ' = ' // brief(values(k))
+          said = said // word_of(sweep%names, k) // ' = ' // sweep%shown(k, values(k))
         end do
         call scene%deck%mistake('sweep', key, said // ' the deck is wrong: ' // &
           first_line(trouble%message), error)

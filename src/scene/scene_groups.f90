@@ -2,6 +2,7 @@
 !> `experiment_request`. What is optional is allocatable there and here.
 module scene_groups
   use kinds, only: wp
+  use text, only: brief, word_of
   use deck, only: deck_t
   use experiment_request, only: request_t
   use force_law, only: force_law_t
@@ -51,14 +52,17 @@ module scene_groups
   end type axis_t
 
   !> &sweep: blank-separated keys as 'group.key', and either the values of each, of which every
-  !> combination is a case, the last key varying fastest; or a table, row by row.
+  !> combination is a case, the last key varying fastest; or a table, row by row. words: those
+  !> that a key may hold, whose numbers are its values; blank of keys that hold numbers.
   type :: sweep_t
     character(len=:), allocatable :: names
+    character(len=80), allocatable :: words(:)
     type(axis_t), allocatable :: axis(:)
     real(wp), allocatable :: table(:, :)
   contains
     procedure :: cases
     procedure :: values
+    procedure :: shown
   end type sweep_t
 
   !> All that a deck asks for: of the experiments, and beside them.
@@ -117,6 +121,20 @@ contains
       end associate
     end do
   end function values
+
+  !> A value of key k as text for a message.
+  pure function shown(self, k, value) result(text)
+    class(sweep_t), intent(in) :: self
+    integer, intent(in) :: k
+    real(wp), intent(in) :: value
+    character(len=:), allocatable :: text
+
+    if (self%words(k) == '') then
+      text = brief(value)
+    else
+      text = word_of(self%words(k), nint(value))
+    end if
+  end function shown
 
   !> Whether equilibria are shown one by one. The cases of a sweep leave numbers, not their curves.
   pure logical function has_curve(self)

@@ -5,6 +5,7 @@ module sweep_group
   use failure, only: failure_t
   use text, only: brief, quoted, word_count, word_of
   use deck, only: deck_t
+  use deck_numbers, only: words_of, number_of_word
   use deck_source, only: source_t, load_source
   use data_table, only: data_table_t, read_named_table, largest_table
   use deck_keys, only: key_spec, group, list_key, text_key, names_key
@@ -14,7 +15,7 @@ module sweep_group
   public :: sweep_keys, take_sweep
 
   !> Keys of one sweep; values of one key; cases.
-  integer, parameter :: most_keys = 8, most_values = 10000
+  integer, parameter :: most_keys = 8, most_values = 10000, most_words = 100
   real(wp), parameter :: most_cases = 1.0e7_wp
   character(len=*), parameter :: of_range(4) = ['from ', 'to   ', 'count', 'scale']
 
@@ -37,6 +38,8 @@ contains
       names_key('sweep', 'scale', most_keys, 'Spacing of the values, linear or log: one for ' // &
                 'each, or one for all.', otherwise='linear'), &
       list_key('sweep', 'values', '', 'The values of one key, one by one.', most_values), &
+      names_key('sweep', 'words', most_words, 'The words of one key that holds a word.', &
+                otherwise='none'), &
       text_key('sweep', 'file', 1000, 'A table of cases: a line of names as ''group.key'', ' // &
                'then a row a case; in the folder of the deck unless a path.')]
   end function sweep_keys
@@ -52,8 +55,10 @@ contains
     allocate (scene%sweep)
     associate (deck => scene%deck, sweep => scene%sweep)
       if (deck%is_set('sweep', 'file')) then
-        call refuse(deck, ['key   ', 'values', of_range//' '], 'file, whose columns say all', error)
+        call refuse(deck, ['key   ', 'values', 'words ', of_range//' '], &
+          'file, whose columns say all', error)
         if (.not. allocated(error)) call take_table(deck, sweep, error)
+        if (.not. allocated(error)) call find_words(deck, sweep)
         return
       end if
       if (.not. deck%is_set('sweep', 'key')) then
@@ -62,8 +67,11 @@ contains
       end if
       call deck%get('sweep', 'key', sweep%names)
       allocate (sweep%axis(word_count(sweep%names)))
+      call find_words(deck, sweep)
       call deck%get('sweep', 'values', values)
-      if (size(values) == 0) then
+      if (any(sweep%words /= '') .or. deck%is_set('sweep', 'words')) then
+        call take_words(deck, sweep, error)
+      else if (size(values) == 0) then
         call take_ranges(deck, sweep, error)
       else if (size(sweep%axis) > 1) then
         call deck%mistake('sweep', 'values', 'values are those of one key; for several give ' // &
@@ -78,6 +86,48 @@ contains
         ' cases', error)
     end associate
   end subroutine take_sweep
+
+  !> The words that the keys may hold.
+  subroutine find_words(deck, sweep)
+    type(deck_t), intent(in) :: deck
+    type(sweep_t), intent(inout) :: sweep
+    integer :: i
+
+    allocate (sweep%words(word_count(sweep%names)))
+    do i = 1, size(sweep%words)
+      sweep%words(i) = words_of(deck, word_of(sweep%names, i))
+    end do
+  end subroutine find_words
+
+  !> The words of the only key.
+  subroutine take_words(deck, sweep, error)
+    type(deck_t), intent(inout) :: deck
+    type(sweep_t), intent(inout) :: sweep
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: words, what
+    integer :: i
+
+    call deck%get('sweep', 'words', words)
+    if (any(sweep%words /= '')) call refuse(deck, ['values', of_range//' '], &
+      'a key that holds a word; give words', error)
+    if (allocated(error)) return
+    if (size(sweep%axis) > 1) then
+      call deck%mistake('sweep', 'key', 'a key that holds a word is swept alone; for several ' // &
+        'give a file', error)
+    else if (sweep%words(1) == '') then
+      call deck%mistake('sweep', 'words', quoted(sweep%names) // ' does not hold a word', error)
+    else if (word_count(words) == 0) then
+      call deck%mistake('sweep', 'words', 'missing; ' // quoted(sweep%names) // ' holds a word', &
+        error)
+    else
+      allocate (sweep%axis(1)%values(word_count(words)))
+      do i = 1, word_count(words)
+        call number_of_word(word_of(words, i), sweep%words(1), sweep%axis(1)%values(i), what)
+        if (allocated(what)) call deck%mistake('sweep', 'words', what, error)
+        if (allocated(error)) return
+      end do
+    end if
+  end subroutine take_words
 
   !> Refuses keys that make no sense together with `other`.
   subroutine refuse(deck, keys, other, error)
@@ -106,7 +156,7 @@ contains
     call load_source(file, source, trouble, largest_table)
     if (.not. allocated(trouble)) then
       call deck%note_file('sweep', 'file', source%text)
-      call read_named_table(file, table, sweep%names, trouble)
+      call read_named_table(file, deck, table, sweep%names, trouble)
     end if
     if (allocated(trouble)) then
       call deck%mistake('sweep', 'file', trouble%message, error)

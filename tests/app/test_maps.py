@@ -146,3 +146,58 @@ def test_memory_does_not_grow_with_the_number_of_cases(snapin, snapin_path, tmp_
         assert status == 0
         used.append(memory)
     assert used[1] - used[0] < most * (400 - 50) * 20
+
+
+MODELS = ["linear", "superposition", "nonlinear"]
+COLLOID = {"bodies": BODIES, "force": None, "equilibrium_path": {"h0_end": -1e-9},
+           "van_der_waals": {"hamaker": 1e-20}, "born": {"z0": 3e-10}}
+LAYER = {"potential": -0.03, "salt": 1.0}
+
+
+@pytest.fixture(scope="module")
+def models(run):
+    sweep = {"key": "double_layer.model", "words": MODELS}
+    return run(scene(sweep, **COLLOID, double_layer=LAYER))
+
+
+def test_words_are_swept(run, models):
+    table = models.table("sweep.csv")
+    assert list(table["double_layer.model"]) == MODELS
+    for i, model in enumerate(MODELS):
+        alone = run(scene(**COLLOID, double_layer={**LAYER, "model": model})).summary
+        assert table["end_load"][i] == pytest.approx(alone["end_load"], rel=1e-8)
+    assert len(set(table["end_load"])) == 3
+
+
+def test_a_table_has_words_in_columns_of_words(run, folder, models):
+    salts = {"Nonlinear": 10, "linear": 1, "superposition": 1}
+    (folder / "models.csv").write_text("double_layer.salt, double_layer.model\n" + "".join(
+        f"{salt}, {model}\n" for model, salt in salts.items()))
+    table = run(scene({"file": "models.csv"}, **COLLOID, double_layer=LAYER)).table("sweep.csv")
+    assert list(table["double_layer.model"]) == ["nonlinear", "linear", "superposition"]
+    np.testing.assert_array_equal(table["double_layer.salt"], [10, 1, 1])
+    np.testing.assert_array_equal(table["end_load"][1:], models.table("sweep.csv")["end_load"][:2])
+
+
+WRONG_WORDS = {
+    "unknown": ({"key": "force.law", "words": ["lennard_jones", "exponentail"]},
+                'did you mean "exponential"'),
+    "none": ({"key": "force.law"}, "missing"),
+    "values": ({"key": "force.law", "values": [1.0]}, "holds a word; give words"),
+    "number": ({"key": "force.hamaker", "words": ["linear"]}, "does not hold a word"),
+    "several": ({"key": ["force.law", "force.hamaker"], "words": ["lennard_jones"]},
+                "swept alone"),
+    "cell": ({"file": "laws.csv"}, "laws.csv:3"),
+    "with file": ({"file": "laws.csv", "words": ["exponential"]}, "not together with file"),
+    "deck": ({"key": "force.law", "words": ["exponential"]}, "with force.law = exponential"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG_WORDS)
+def test_wrong_words_are_refused(snapin, tmp_path, case):
+    sweep, said = WRONG_WORDS[case]
+    (tmp_path / "laws.csv").write_text("force.law\nlennard_jones\nnewton\n")
+    (tmp_path / "d.nml").write_text(scene(sweep))
+    result = snapin("d.nml", cwd=tmp_path)
+    assert result.returncode == 2
+    assert said in result.stderr

@@ -1,0 +1,93 @@
+"""What pip and Meson install works where nothing of the checkout is in reach."""
+
+import os
+import shutil
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+import pytest
+
+TOP = Path(__file__).resolve().parents[2]
+MESON = [sys.executable, "-m", "mesonbuild.mesonmain"]
+DECK = """&bodies radius = 1e-6, stiffness = 1e10 /
+&force law = 'lennard_jones', hamaker = 1e-19, z0 = 3e-10 /
+&equilibrium_path h0_end = -1e-9 /
+"""
+
+
+def run(*command, cwd=None, **variables):
+    """Without what the suite's own environment leads Python to."""
+    clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, cwd=cwd,
+                          env=clean | variables, check=False)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory):
+    """The tracked files, as someone has them who clones the project."""
+    copy = tmp_path_factory.mktemp("clone") / "snapin"
+    tracked = run("git", "ls-files", "-z", cwd=TOP).split("\0")
+    for name in filter(None, tracked):
+        if (TOP / name).is_file():
+            (copy / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(TOP / name, copy / name)
+    return copy
+
+
+@pytest.mark.long
+def test_pip_installs_package_and_command(checkout, tmp_path):
+    venv.create(tmp_path / "new", with_pip=True)
+    binaries = tmp_path / "new/bin"
+    run(binaries / "python", "-m", "pip", "install", "--disable-pip-version-check", checkout)
+    (tmp_path / "deck.nml").write_text(DECK)
+    code = "import snapin; print(repr(snapin.run(open('deck.nml').read()).summary['max_tension']))"
+    from_python = float(run(binaries / "python", "-c", code, cwd=tmp_path))
+    run(binaries / "snapin", "deck.nml", cwd=tmp_path)
+    code = "import snapin; print(repr(snapin.read_results('results/deck').summary['max_tension']))"
+    from_program = float(run(binaries / "python", "-c", code, cwd=tmp_path))
+    assert from_python == pytest.approx(from_program, rel=1e-9)
+    assert from_program > 0
+    about = run(binaries / "python", "-m", "pip", "show", "snapin")
+    version = run(binaries / "snapin", "--version").split()[1]
+    assert f"Version: {version}\n" in about
+
+
+@pytest.mark.long
+def test_meson_installs_pages_and_completions_beside_the_program(checkout, tmp_path):
+    build, root = tmp_path / "build", tmp_path / "root"
+    run(*MESON, "setup", build, checkout, "--prefix=/usr", "-Dpython=disabled")
+    run(*MESON, "compile", "-C", build)
+    run(*MESON, "install", "-C", build, DESTDIR=str(root))
+    program = root / "usr/bin/snapin"
+    for name in ("share/man/man1/snapin.1", "share/zsh/site-functions/_snapin",
+                 "share/bash-completion/completions/snapin.bash", "share/licenses/snapin/LICENSE"):
+        assert (root / "usr" / name).stat().st_size > 0
+    options = {word.strip("[]") for word in run(program, "--help").splitlines()[0].split()
+               if "--" in word}
+    assert offered(root, "--") == options
+    assert offered(root, "--re") == {"--resume", "--results"}
+    page = (root / "usr/share/man/man1/snapin.1").read_text()
+    for group in ("&bodies", "&sweep", "&double_layer"):
+        assert group in page
+
+
+def offered(root, word):
+    """What bash's completion offers for the first word after the program's name."""
+    script = root / "usr/share/bash-completion/completions/snapin.bash"
+    # compopt works only while a line is completed.
+    code = ('compopt() { :; }; . "$1"; COMP_WORDS=(snapin "$2"); COMP_CWORD=1; _snapin; '
+            'printf "%s\\n" "${COMPREPLY[@]}"')
+    return set(run("bash", "-c", code, "bash", script, word).split())
+
+
+@pytest.mark.long
+def test_pages_of_all_public_procedures_are_made_without_warnings():
+    done = subprocess.run([TOP / "tools/api.sh"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert "arning" not in done.stdout + done.stderr
+    made = {page.stem for page in (TOP / "build/api/module").glob("*.html")}
+    assert made >= {source.stem for source in (TOP / "src").glob("*/*.f90")} - {"snapin"}
