@@ -29,7 +29,7 @@ module simulation
   use files, only: write_stderr, file_exists
   use clock, only: seconds
   use namelist_writer, only: line_t
-  use deck_family, only: deck_family_t
+  use deck_family, only: deck_family_t, widened
   use fit_group, only: family_of_fit
   use fit_run, only: run_fit, fit_outcome_t
   use fit_doubts, only: doubts_of
@@ -222,8 +222,8 @@ contains
     integer :: i
 
     call family_of_fit(scene%deck, family, error)
-    call run_fit(scene%measured, scene%measurement, scene%fit, scene%numerics, family, problem, &
-      results, outcome)
+    call run_fit(scene%measured, scene%measurement, scene%fit, scene%numerics, family, &
+      widened(family), problem, results, outcome)
     call results%progress%finish()
     if (allocated(outcome%trouble)) then
       call summary%fail_with('no fit: ' // outcome%trouble)

@@ -7,6 +7,7 @@ module fit_doubts
   use fit_request, only: unknown_t
   use lack_of_fit, only: lack_t
   use curve_fit, only: fitted_t
+  use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
   implicit none
   private
@@ -16,6 +17,8 @@ module fit_doubts
   !> combination of several is not told; error of a logarithm that is no knowledge; standard
   !> deviations by which jumps may differ.
   real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, far = 4
+  character(len=*), parameter :: not_described = ': the model does not describe these data, ' // &
+    'and the true errors are larger than the standard errors'
 
 contains
 
@@ -33,8 +36,8 @@ contains
         'and the model is not exact; smoother forces are resolved')
       if (.not. fitted%lack%is_noise()) call add(lines, what_is_left(fitted%lack) // &
         ' times what noise leaves (' // rounded(fitted%lack%excess) // ' standard ' // &
-        'deviations more): the model does not describe these data, and the true errors are ' // &
-        'larger than the standard errors')
+        'deviations more)' // not_described)
+      call doubt_held(outcome%held, lines)
       do i = 1, size(fitted%value)
         call doubt_unknown(fitted, unknown(i), i, lines)
         call doubt_pairs(fitted, unknown, i, lines)
@@ -44,6 +47,20 @@ contains
     end associate
     call doubt_jumps(outcome, lines)
   end function doubts_of
+
+  !> Of what the deck holds fixed: the number of which the data ask most surely for another value.
+  subroutine doubt_held(held, lines)
+    type(held_t), intent(in) :: held(:)
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    integer :: i
+
+    if (size(held) == 0) return
+    i = maxloc(abs(held%asked), 1)
+    if (held(i)%is_right()) return
+    call add(lines, 'the data ask for a ' // trim(merge('larger ', 'smaller', &
+      held(i)%asked > 0)) // ' ' // held(i)%name // ' than the deck has (' // &
+      rounded(abs(held(i)%asked)) // ' standard deviations)' // not_described)
+  end subroutine doubt_held
 
   !> What is compared with noise: samples or means over some.
   function what_is_left(lack) result(words)
@@ -107,10 +124,12 @@ contains
         if (jump%before == 0) cycle
         off = abs(outcome%fitted%jump_z(i) - jump%z)
         if (.not. off < huge(1.0_wp)) then
-          call add(lines, 'on the ' // trim(ways(i)) // ' the data jump and the model does not')
+          call add(lines, 'on the ' // trim(ways(i)) // ' the data jump and the model does ' // &
+            'not' // not_described)
         else if (off > far*jump%uncertainty) then
           call add(lines, 'on the ' // trim(ways(i)) // ' the data jump at z = ' // &
-            rounded(jump%z) // ' m and the model ' // rounded(off) // ' m from there')
+            rounded(jump%z) // ' m and the model ' // rounded(off) // ' m from there (' // &
+            rounded(off/jump%uncertainty) // ' standard deviations)' // not_described)
         end if
       end associate
     end do

@@ -19,6 +19,7 @@ module fit_run
   use classical_model, only: classical_model_t, theories
   use modelled_curve, only: modelled_curve_t
   use curve_fit, only: fitted_t, fit_curve
+  use held_numbers, only: held_t, test_held
   implicit none
   private
   public :: fit_outcome_t, run_fit
@@ -38,6 +39,8 @@ module fit_run
     !> Whether the meshes of the model resolve the force law.
     logical :: resolved = .true.
     type(theory_fit_t), allocatable :: theory(:)
+    !> What the data say of numbers that were no unknowns.
+    type(held_t), allocatable :: held(:)
     !> The problem with the values found, where there is one.
     type(problem_t), allocatable :: problem
   end type fit_outcome_t
@@ -61,13 +64,15 @@ module fit_run
 contains
 
   !> Fits what the deck asks for. measured: the curve of `measurement`; family: the problems, whose
-  !> parameters are the unknowns of the model; problem: with their values in the deck.
-  subroutine run_fit(measured, measurement, fit, numerics, family, problem, listener, outcome)
+  !> parameters are the unknowns of the model; wider: with other numbers behind them, which are held;
+  !> problem: with their values in the deck.
+  subroutine run_fit(measured, measurement, fit, numerics, family, wider, problem, listener, &
+    outcome)
     type(measured_t), intent(in) :: measured
     type(measurement_t), intent(in) :: measurement
     type(fit_t), intent(in) :: fit
     type(numerics_t), intent(in) :: numerics
-    class(problem_family_t), intent(in) :: family
+    class(problem_family_t), intent(in) :: family, wider
     type(problem_t), intent(in) :: problem
     class(listener_t), intent(inout) :: listener
     type(fit_outcome_t), intent(out) :: outcome
@@ -103,6 +108,7 @@ contains
         'take it out of parameters'
       return
     end do
+    call test_held(outcome%curve, outcome%fitted%value, measurement, numerics, wider, outcome%held)
     call listener%hear('fitting classical theories')
     call fit_theories(outcome, problem, family)
   end subroutine run_fit

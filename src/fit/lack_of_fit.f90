@@ -5,7 +5,7 @@ module lack_of_fit
   use noise, only: noise_t
   implicit none
   private
-  public :: lack_t, lack_in
+  public :: lack_t, lack_in, hardly_ever
 
   !> How a fit is wrong. excess: by how many standard deviations blocks of `width` samples leave
   !> more than noise would, where that is most; times: how many times what noise leaves of them.

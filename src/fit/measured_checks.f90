@@ -9,11 +9,11 @@ module measured_checks
   private
   public :: check_measured
 
-  !> What stands out of the noise; the part of the samples that is nearest to the other body; how
-  !> steep, over the spring, the wrong end of a curve must be to be called so; how much larger the
-  !> pull-off of the approach. Fewer far samples say nothing of a slope.
-  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, &
-    larger = 1.3_wp
+  !> What stands out of the noise; the part of the travel that is an end of it; how steep, over the
+  !> spring, the wrong end of a curve must be to be called so; standard errors of what is sure.
+  !> Fewer far samples say nothing of a slope.
+  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5
+  integer, parameter :: parts = nint(1/nearest_part)
   integer, parameter :: fewest_far = 12
 
 contains
@@ -49,52 +49,88 @@ contains
       'minus before the name of a column turns its sign'
   end subroutine check_measured
 
-  !> trouble where approach and retreat are exchanged: contact then is at the end that should be
-  !> far, or the bodies hold together better on the way in than on the way out.
+  !> trouble where approach and retreat are exchanged. Bodies that are driven together and apart
+  !> take energy and give none, wherever the baselines are and however they tilt: between their
+  !> ends, where the ways meet, the approach lies above the retreat. Where the two do not differ by
+  !> more than noise, contact at the end that should be far tells.
   subroutine check_ways(measured, noise, stiffness, trouble)
     type(measured_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
     real(wp), intent(in) :: stiffness
     character(len=:), allocatable, intent(inout) :: trouble
-    real(wp) :: deepest(2), slope(2), position(size(measured%z))
-    real(wp), allocatable :: mine(:)
-    logical :: own(size(measured%z))
-    integer :: way
+    real(wp) :: position(size(measured%z)), above(parts), error(parts), slope(2), slope_error(2)
+    real(wp) :: taken(2), sure
+    integer :: i
 
     if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
     position = measured%facing*measured%z
-    slope = [slope_at(position), slope_at(-position)]/stiffness
-    if (slope(2) > steep .and. abs(slope(1)) < 0.25_wp*steep) then
+    do i = 1, parts
+      call compare(i, above(i), error(i))
+    end do
+    call slope_at(position, slope(1), slope_error(1))
+    call slope_at(-position, slope(2), slope_error(2))
+    ! A signal of the other sign takes energy where the bodies give it: its ends bend down.
+    if (sum(slope) < 0) return
+    taken = sum(above)/parts - above([1, parts])
+    sure = surely*maxval(error([1, parts]))
+    if (all(taken < -sure)) then
+      trouble = 'the bodies would give energy in a cycle, as they hold together better on the ' // &
+        'way in than on the way out: the rows of the file go backwards, or approach and ' // &
+        'retreat are exchanged in the third column'
+    else if (sum(taken) < 0.2_wp*sure .and. &
+      slope(2) > steep*stiffness + surely*slope_error(2) .and. &
+      abs(slope(1)) + surely*slope_error(1) < slope(2)/4) then
       trouble = 'the bodies press on each other where the base is farthest: approach and ' // &
         'retreat are exchanged in the third column, or its rows are'
-      return
     end if
-    do way = 1, 2
-      own = measured%usable .and. (measured%inward .eqv. way == 1)
-      mine = pack(measured%signal, own)
-      ! Three neighbours lie below it: outliers seldom do.
-      deepest(way) = sum(measured%signal, own .and. measured%far)/ &
-        max(1, count(own .and. measured%far)) - &
-        minval(max(mine(3:), mine(2:size(mine) - 1), mine(:size(mine) - 2)))
-    end do
-    if (deepest(1) > larger*deepest(2) + stands_out*noise%deviation) trouble = &
-      'the approach has the larger pull-off: the rows of the file go backwards, or approach ' // &
-      'and retreat are exchanged'
 
   contains
 
+    !> By how much the approach is above the retreat in a part of the travel, along the slope that
+    !> both have there.
+    pure subroutine compare(part, above, error)
+      integer, intent(in) :: part
+      real(wp), intent(out) :: above, error
+      logical :: mask(size(position)), mine(size(position))
+      real(wp) :: least, width, x(size(position)), y(size(position)), middle(2, 2), slope
+      integer :: way
+
+      least = minval(position)
+      width = (maxval(position) - least)/parts
+      mask = measured%usable .and. min(parts, 1 + int((position - least)/width)) == part
+      above = 0
+      error = 0
+      x = 0
+      y = 0
+      do way = 1, 2
+        mine = mask .and. (measured%inward .eqv. way == 1)
+        if (.not. any(mine)) return
+        middle(:, way) = [sum(position, mine), sum(measured%signal, mine)]/count(mine)
+        where (mine)
+          x = position - middle(1, way)
+          y = measured%signal - middle(2, way)
+        end where
+        error = error + noise%long_deviation()**2/count(mine)
+      end do
+      slope = sum(x*y)/max(sum(x**2), tiny(1.0_wp))
+      above = middle(2, 1) - middle(2, 2) - slope*(middle(1, 1) - middle(1, 2))
+      error = sqrt(error)
+    end subroutine compare
+
     !> Slope of the signal at the samples of smallest `place`, against it.
-    pure real(wp) function slope_at(place)
+    pure subroutine slope_at(place, slope, error)
       real(wp), intent(in) :: place(:)
+      real(wp), intent(out) :: slope, error
       logical :: mask(size(place))
-      real(wp) :: middle(2)
+      real(wp) :: middle(2), squares
 
       mask = measured%usable .and. place <= minval(place) + nearest_part*(maxval(place) - &
         minval(place))
       middle = [sum(place, mask), sum(measured%signal, mask)]/max(1, count(mask))
-      slope_at = -sum((place - middle(1))*(measured%signal - middle(2)), mask)/ &
-        max(sum((place - middle(1))**2, mask), tiny(1.0_wp))
-    end function slope_at
+      squares = max(sum((place - middle(1))**2, mask), tiny(1.0_wp))
+      slope = -sum((place - middle(1))*(measured%signal - middle(2)), mask)/squares
+      error = noise%long_deviation()/sqrt(squares)
+    end subroutine slope_at
 
   end subroutine check_ways
 

@@ -8,6 +8,7 @@ module fit_rows
   use fit_request, only: unknown_t
   use measured_jumps, only: measured_jump_t
   use curve_fit, only: fitted_t
+  use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
   use fit_doubts, only: doubts_of
   implicit none
@@ -82,6 +83,7 @@ contains
       text = text // of_jump('jump_in', curve%data%jump(1), outcome%fitted%jump_z(1)) // &
         of_jump('jump_out', curve%data%jump(2), outcome%fitted%jump_z(2))
     end associate
+    text = text // of_held(outcome%held)
     doubts = doubts_of(outcome)
     text = text // assignment_of('warnings', doubts) // '/' // nl
     do i = 1, size(outcome%theory)
@@ -132,6 +134,22 @@ contains
     numbers = [real(fitted%lack%width, wp)]
     text = text // assignment_of('excess_width', numbers)
   end function of_fitted
+
+  !> What the data say of numbers that were held.
+  function of_held(held) result(text)
+    type(held_t), intent(in) :: held(:)
+    character(len=:), allocatable :: text
+    type(line_t), allocatable :: names(:)
+    real(wp), allocatable :: asked(:)
+    integer :: i
+
+    allocate (names(size(held)))
+    do i = 1, size(held)
+      names(i)%text = held(i)%name
+    end do
+    asked = held%asked
+    text = assignment_of('held', names) // assignment_of('held_asked', asked)
+  end function of_held
 
   !> Where the base was at a jump, as measured and by the model; nothing where none was seen.
   function of_jump(name, jump, model) result(text)

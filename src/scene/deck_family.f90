@@ -13,7 +13,7 @@ module deck_family
   use scene_problem, only: keys_of_model, take_model, problem_of
   implicit none
   private
-  public :: deck_family_t, new_deck_family
+  public :: deck_family_t, new_deck_family, widened
 
   type, extends(problem_family_t) :: deck_family_t
     type(deck_t) :: deck
@@ -41,6 +41,25 @@ contains
       if (allocated(error)) return
     end do
   end subroutine new_deck_family
+
+  !> The family with the other positive numbers of its deck behind its parameters.
+  function widened(family) result(wider)
+    type(deck_family_t), intent(in) :: family
+    type(deck_family_t) :: wider
+    type(parameter_t) :: new
+    type(failure_t), allocatable :: error
+    character(len=:), allocatable :: names
+    integer :: i, k
+
+    wider = family
+    names = parameters_of(family%deck)
+    do i = 1, word_count(names)
+      new = parameter_t(name=word_of(names, i))
+      if (any([(family%parameter(k)%name == new%name, k=1, size(family%parameter))])) cycle
+      call take_value(family%deck, new, error)
+      if (.not. allocated(error) .and. new%value > 0) wider%parameter = [wider%parameter, new]
+    end do
+  end function widened
 
   !> The problem of the deck with these values.
   subroutine pose(self, value, problem, error)

@@ -149,6 +149,18 @@ def test_mistakes_in_files_are_named(branches, tmp_path, mistake):
         fitted(tmp_path, change(*branches.measure(300, 2e-11, seed=1)), started())
 
 
+def test_a_baseline_as_steep_as_the_contact_is_no_exchange(branches, tmp_path):
+    """The near end then is flat, and the far one as steep as a contact."""
+    z, force, segment = branches.measure(SAMPLES, NOISE, seed=4)
+    near = z < z.min() + 0.05 * np.ptp(z)
+    tilted = force - np.polyfit(z[near], force[near], 1)[0] * z
+    assert np.polyfit(z[near], tilted[near], 1)[0] == pytest.approx(0, abs=1e-3)
+    result = fitted(tmp_path, (z, tilted, segment), started())
+    assert np.abs(errors_off(result)).max() < 4
+    with pytest.raises(snapin.SnapinError, match="approach and retreat are exchanged"):
+        fitted(tmp_path, (z, tilted, 1 - segment), started())
+
+
 def test_units_and_skip_are_checked(tmp_path):
     file = write(tmp_path / "a.csv", [0.0], [0.0], [0])
     wrong = ({"units": ["N", "nN"]}, "no unit of position"), ({"skip": [1e-9]}, "pairs")

@@ -1,0 +1,153 @@
+!> Whether the data would have another value of a number that a fit holds fixed. A step in it from
+!> the best fit changes the residuals r along a direction, of which the unknowns make up for a part.
+!> With the rest of it, g, as a unit vector, g.r is a normal number if the value held is right (the
+!> score test; Rao, 1948). It needs no other fit, and sees what bends all samples a little.
+module held_numbers
+  use kinds, only: wp
+  use fit_request, only: measurement_t, unknown_t, of_model, &
+    of_contact_point, of_sensitivity, of_spring
+  use failure, only: failure_t
+  use problem_family, only: problem_family_t
+  use variation, only: variation_t, vary, to_search
+  use experiment_request, only: numerics_t
+  use modelled_curve, only: modelled_curve_t
+  use curve_residuals, only: curve_residuals_t
+  use path_model, only: path_model_t
+  use unknowns, only: value_by_fitted
+  use lack_of_fit, only: hardly_ever
+  implicit none
+  private
+  public :: held_t, test_held
+
+  !> A number that is held; by how many standard deviations the data ask for another, larger one if
+  !> positive.
+  type :: held_t
+    character(len=:), allocatable :: name
+    real(wp) :: asked = 0
+  contains
+    procedure :: is_right
+  end type held_t
+
+  !> What of a direction is left must be more than rounding of the derivatives makes.
+  real(wp), parameter :: rounding = 1.0e-4_wp
+
+contains
+
+  !> Whether noise may ask as much.
+  pure logical function is_right(self)
+    class(held_t), intent(in) :: self
+
+    is_right = abs(self%asked) <= hardly_ever
+  end function is_right
+
+  !> curve and value: what was fitted; wider: the family of the fit with the deck's other positive
+  !> numbers behind its parameters. What the unknowns make up for wholly, or
+  !> cannot be varied, is left out.
+  subroutine test_held(curve, value, measurement, numerics, wider, held)
+    type(modelled_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: value(:)
+    type(measurement_t), intent(in) :: measurement
+    type(numerics_t), intent(in) :: numerics
+    class(problem_family_t), intent(in) :: wider
+    type(held_t), allocatable, intent(out) :: held(:)
+    type(path_model_t), target :: model
+    type(curve_residuals_t) :: residuals
+    type(held_t) :: new
+    real(wp), allocatable :: jacobian(:, :), residual(:), all_values(:)
+    real(wp) :: whole
+    logical :: found
+    integer :: i, n
+
+    allocate (held(0))
+    n = size(value)
+    allocate (model%family, source=wider)
+    call keep_variable(pack(value, curve%unknown%role == of_model), model%family)
+    model%numerics = numerics
+    residuals%curve = curve
+    call add_held(model%family, curve, allocated(measurement%sensitivity), residuals%curve%unknown)
+    all_values = [value, residuals%curve%unknown(n + 1:)%value]
+    call residuals%curve%use_model(model)
+    allocate (residual(residuals%rows()), jacobian(residuals%rows(), size(all_values)))
+    call residuals%residuals_of(all_values, residual, found)
+    if (found) call residuals%jacobian_of(all_values, jacobian, found)
+    if (.not. found) return
+    do i = 1, size(all_values)
+      whole = norm2(jacobian(:, i))
+      call take_off(jacobian(:, :min(i - 1, n)), jacobian(:, i))
+      if (.not. norm2(jacobian(:, i)) > rounding*whole) then
+        jacobian(:, i) = 0
+        cycle
+      end if
+      jacobian(:, i) = jacobian(:, i)/norm2(jacobian(:, i))
+      if (i <= n) cycle
+      new%name = residuals%curve%unknown(i)%name
+      new%asked = -dot_product(jacobian(:, i), residual)
+      held = [held, new]
+    end do
+  end subroutine test_held
+
+  !> Takes what a vector has of orthonormal ones off it, twice, so that rounding does not count.
+  pure subroutine take_off(basis, vector)
+    real(wp), intent(in) :: basis(:, :)
+    real(wp), intent(inout) :: vector(:)
+    integer :: pass
+
+    do pass = 1, 2
+      vector = vector - matmul(basis, matmul(vector, basis))
+    end do
+  end subroutine take_off
+
+  !> Leaves out the parameters behind those of the fit, whose values are given, that cannot be
+  !> varied.
+  subroutine keep_variable(value, family)
+    real(wp), intent(in) :: value(:)
+    class(problem_family_t), intent(inout) :: family
+    type(variation_t) :: varied
+    type(failure_t), allocatable :: error
+    logical :: keep(size(family%parameter))
+    integer :: i
+
+    family%parameter(:size(value))%value = value
+    keep = .true.
+    do i = size(value) + 1, size(keep)
+      call vary(family, i, to_search, varied, error)
+      keep(i) = .not. allocated(error)
+    end do
+    family%parameter = pack(family%parameter, keep)
+  end subroutine keep_variable
+
+  !> Puts what is held behind the unknowns: numbers of the model, of the measurement.
+  subroutine add_held(family, curve, has_detector, unknown)
+    class(problem_family_t), intent(in) :: family
+    type(modelled_curve_t), intent(in) :: curve
+    logical, intent(in) :: has_detector
+    type(unknown_t), allocatable, intent(inout) :: unknown(:)
+    integer :: i
+
+    do i = count(unknown%role == of_model) + 1, size(family%parameter)
+      call add(family%parameter(i)%name, of_model, family%parameter(i)%value)
+    end do
+    call add('measurement.spring_constant', of_spring, curve%spring)
+    if (has_detector) call add('measurement.sensitivity', of_sensitivity, curve%sensitivity)
+    call add('measurement.contact_point', of_contact_point, curve%contact_point)
+
+  contains
+
+    subroutine add(name, role, value)
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: role
+      real(wp), intent(in) :: value
+      type(unknown_t) :: new
+
+      if (role /= of_model .and. any(unknown%role == role)) return
+      new%name = name
+      new%role = role
+      new%in_log = role /= of_contact_point
+      new%value = value
+      if (new%in_log) new%scale = value
+      unknown = [unknown, new]
+    end subroutine add
+
+  end subroutine add_held
+
+end module held_numbers
