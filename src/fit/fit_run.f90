@@ -64,7 +64,7 @@ module fit_run
 contains
 
   !> Fits what the deck asks for. measured: the curve of `measurement`; family: the problems, whose
-  !> parameters are the unknowns of the model; wider: with other numbers behind them, which are held;
+  !> parameters are the unknowns of the model; wider: with other numbers behind these, held;
   !> problem: with their values in the deck.
   subroutine run_fit(measured, measurement, fit, numerics, family, wider, problem, listener, &
     outcome)

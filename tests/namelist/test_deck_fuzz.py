@@ -111,7 +111,8 @@ def checked(snapin, folder, texts):
             refused.add(match[1])
             ends = decks[match[1]].count(b"\n") + decks[match[1]].count(b"\r") + 1
             assert 1 <= int(match[2]) <= ends
-        elif match := re.match(r"snapin: (d\d{4}\.nml): .*(may take|its results take|not computed: )", line):
+        elif match := re.match(
+                r"snapin: (d\d{4}\.nml): .*(may take|its results take|not computed: )", line):
             # What is accepted may be long or too large.
             assert match[1] in accepted
         else:
