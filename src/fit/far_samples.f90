@@ -7,11 +7,11 @@ module far_samples
   use outliers, only: stand_apart
   implicit none
   private
-  public :: find_far
+  public :: find_far, off_baseline
 
-  !> Fewer samples show no noise but by their differences. The part of the travel that may be
-  !> far from contact; it is halved where the half that is farther varies by less than this part of
-  !> the whole.
+  !> Fewer samples show no noise but by their differences, and no slope. The part of the travel that
+  !> may be far from contact; it is halved where the half that is farther varies by less than this
+  !> part of the whole.
   integer, parameter :: fewest_far = 12
   real(wp), parameter :: far_part = 1.0_wp/3, less = 0.6_wp
   !> What a spike is more than the noise, and than a curve makes of the distance of samples, in
@@ -85,5 +85,26 @@ contains
     end do
   end function typical_steps
 
+  !> The signal less the straight line through the baseline of its way.
+  pure function off_baseline(measured) result(left)
+    type(measured_t), intent(in) :: measured
+    real(wp) :: left(size(measured%z))
+    logical :: far(size(measured%z))
+    real(wp) :: middle(2), slope
+    integer :: way
+
+    left = 0
+    do way = 1, 2
+      far = measured%far .and. measured%usable .and. (measured%inward .eqv. way == 1)
+      if (.not. any(far)) cycle
+      associate (z => measured%z, s => measured%signal)
+        middle = [sum(z, far), sum(s, far)]/count(far)
+        slope = sum((z - middle(1))*(s - middle(2)), far)/ &
+          max(sum((z - middle(1))**2, far), tiny(1.0_wp))
+        if (count(far) < fewest_far) slope = 0
+        where (measured%inward .eqv. way == 1) left = s - middle(2) - slope*(z - middle(1))
+      end associate
+    end do
+  end function off_baseline
 
 end module far_samples

@@ -12,7 +12,7 @@ module fit_run
   use measured_jumps, only: find_jump
   use measured_checks, only: check_measured
   use noise, only: white_noise
-  use far_samples, only: find_far
+  use far_samples, only: find_far, off_baseline
   use fit_starts, only: character_t, character_of, starts_like
   use refinement, only: unresolved_from
   use path_model, only: path_model_t
@@ -142,7 +142,8 @@ contains
       if (allocated(trouble)) return
       curve%data%jump = [find_jump(data, curve%data%noise%deviation, slope, .true.), &
         find_jump(data, curve%data%noise%deviation, slope, .false.)]
-      curve%largest = beyond*(maxval(data%signal, data%usable) - level_of(data))
+      curve%largest = beyond*max(maxval(data%signal, data%usable) - level_of(data), &
+        maxval(off_baseline(data), data%usable))
     end associate
     call curve%data%take(1)
     if (size(curve%data%sample) < 2*size(curve%unknown) + 4) &
@@ -158,8 +159,9 @@ contains
     end associate
   end function level_of
 
-  !> Work of adhesion, stiffness and range of force that the curve may have: by its pull-off, by JKR
-  !> and DMT, each with the range of the deck's force and with others.
+  !> Work of adhesion, stiffness and range of force that the curve may have: by its pull-off, below
+  !> the mean of the baseline and below its slope, by JKR and DMT, each with the range of the deck's
+  !> force and with others.
   function likely_characters(curve, problem) result(likely)
     type(modelled_curve_t), intent(in) :: curve
     type(problem_t), intent(in) :: problem
@@ -168,18 +170,22 @@ contains
     type(classical_model_t), target :: model
     type(modelled_curve_t) :: few
     type(fitted_t) :: fitted
-    real(wp) :: start(2 + size(curve%unknown), size(factors))
+    real(wp) :: start(2 + size(curve%unknown), size(factors)), pull_off(2)
     integer :: i, k
 
     allocate (likely(0))
     own = character_of(problem)
     if (.not. own%work > 0) return
     associate (data => curve%data%measured)
-      own%work = (level_of(data) - minval(data%signal, data%usable))*curve%spring* &
-        curve%sensitivity/(1.5_wp*pi*problem%radius)
+      pull_off = -[minval(data%signal, data%usable) - level_of(data), &
+        minval(off_baseline(data), data%usable)]
     end associate
-    if (.not. own%work > 0) return
-    likely = [own]
+    do i = size(pull_off), 1, -1
+      own%work = pull_off(i)*curve%spring*curve%sensitivity/(1.5_wp*pi*problem%radius)
+      if (own%work > 0) likely = [likely, own]
+    end do
+    if (size(likely) == 0) return
+    own = likely(size(likely))
     model%radius = problem%radius
     few = curve
     few%data%noise = white_noise(curve%data%noise%deviation)

@@ -5,16 +5,15 @@ module measured_checks
   use measured_curve, only: measured_t
   use measured_jumps, only: measured_jump_t, find_jump
   use noise, only: noise_t
+  use far_samples, only: off_baseline
   implicit none
   private
   public :: check_measured
 
   !> What stands out of the noise; the part of the travel that is an end of it; how steep, over the
   !> spring, the wrong end of a curve must be to be called so; standard errors of what is sure.
-  !> Fewer far samples say nothing of a slope.
   real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5
   integer, parameter :: parts = nint(1/nearest_part)
-  integer, parameter :: fewest_far = 12
 
 contains
 
@@ -133,28 +132,6 @@ contains
     end subroutine slope_at
 
   end subroutine check_ways
-
-  !> The signal less the straight line through the baseline of its way.
-  pure function off_baseline(measured) result(left)
-    type(measured_t), intent(in) :: measured
-    real(wp) :: left(size(measured%z))
-    logical :: far(size(measured%z))
-    real(wp) :: middle(2), slope
-    integer :: way
-
-    left = 0
-    do way = 1, 2
-      far = measured%far .and. measured%usable .and. (measured%inward .eqv. way == 1)
-      if (.not. any(far)) cycle
-      associate (z => measured%z, s => measured%signal)
-        middle = [sum(z, far), sum(s, far)]/count(far)
-        slope = sum((z - middle(1))*(s - middle(2)), far)/ &
-          max(sum((z - middle(1))**2, far), tiny(1.0_wp))
-        if (count(far) < fewest_far) slope = 0
-        where (measured%inward .eqv. way == 1) left = s - middle(2) - slope*(z - middle(1))
-      end associate
-    end do
-  end function off_baseline
 
   !> Means of what is left over the samples nearest to the other body and the as many before them,
   !> and how far apart these are.

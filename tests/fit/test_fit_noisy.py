@@ -167,3 +167,11 @@ def test_units_and_skip_are_checked(tmp_path):
     for keys, said in wrong:
         with pytest.raises(snapin.DeckError, match=said):
             run(fit_deck(started(), file, list(TRUTH), measurement=keys))
+
+
+@pytest.mark.parametrize("rise", [-5e-8, 5e-8])
+def test_a_steep_baseline_does_not_hide_the_pull_off(branches, tmp_path, rise):
+    z, force, segment = branches.measure(SAMPLES, NOISE, seed=8)
+    tilted = force + rise * (z - z.min()) / np.ptp(z)
+    result = fitted(tmp_path, (z, tilted, segment), started(4.0, 0.3))
+    assert np.abs(errors_off(result)).max() < 4
