@@ -4,7 +4,8 @@ program snapin
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use failure, only: failure_t, fail, bad_input
-  use deck_keys, only: write_keys
+  use text, only: lower, quoted, clip, guess
+  use deck_keys, only: key_spec, write_keys, is_of, names_of
   use scene, only: scene_t, read_scene
   use scene_keys, only: keys_of_scene
   use c_library, only: c_prepare, c_end_with_parent
@@ -51,7 +52,7 @@ program snapin
     call print_line(output_unit, 'blas: ' // blas)
     call print_line(output_unit, 'options: ' // options_of_build)
   else if (options%keys) then
-    call write_keys(keys_of_scene(), output_unit)
+    call leave(show_keys())
   else if (options%results) then
     call write_result_listing(output_unit)
   else
@@ -60,6 +61,29 @@ program snapin
   call leave(0)
 
 contains
+
+  !> Prints the keys of the groups that are named, or these keys, or all; returns the exit status.
+  function show_keys() result(status)
+    integer :: status
+    type(key_spec), allocatable :: specs(:)
+    character(len=:), allocatable :: name
+    logical, allocatable :: shown(:)
+    integer :: i
+
+    status = 0
+    specs = keys_of_scene()
+    allocate (shown(size(specs)), source=size(options%decks) == 0)
+    do i = 1, size(options%decks)
+      name = lower(options%decks(i)%name)
+      if (.not. any(is_of(specs, name))) then
+        call print_line(error_unit, 'snapin: no group or key ' // quoted(clip(name)) // &
+          guess(name, names_of(specs, ''), ''))
+        status = 2
+      end if
+      shown = shown .or. is_of(specs, name)
+    end do
+    if (status == 0) call write_keys(pack(specs, shown), output_unit)
+  end function show_keys
 
   !> Validates all decks, then computes them one by one; returns the exit status. Every deck is
   !> read before anything is written, so that a wrong one leaves nothing behind.

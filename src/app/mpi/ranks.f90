@@ -27,9 +27,9 @@ module ranks
 
   !> There is one sort of message.
   integer, parameter :: tag = 1
-  !> Microseconds between two looks for a message: MPI's own waiting takes a whole core, which on a
-  !> full machine is another process's.
-  integer(c_int), parameter :: interval = 50
+  !> Microseconds between looks for a message, the first two and the last ones: MPI's own waiting
+  !> takes a whole core, which on a full machine is another process's.
+  integer(c_int), parameter :: shortest = 10, longest = 200
 
 contains
 
@@ -91,13 +91,16 @@ contains
     integer(long), allocatable :: words(:)
     type(mpi_status) :: status
     logical :: there
+    integer(c_int) :: pause
     integer :: length
 
     from = self%rank
+    pause = shortest
     do
       call mpi_iprobe(mpi_any_source, tag, mpi_comm_world, there, status)
       if (there) exit
-      call c_pause(interval)
+      call c_pause(pause)
+      pause = min(2*pause, longest)
     end do
     from = status%mpi_source
     call mpi_get_count(status, mpi_integer8, length)
