@@ -1,5 +1,5 @@
-"""Claims about sweeps on many processes. `tools/verify/verify.sh mpi` makes the builds; without them
-these tests are skipped."""
+"""Claims about sweeps on many processes. `tools/verify/verify.sh mpi` makes the builds; without
+them these tests are skipped."""
 
 import os
 import random

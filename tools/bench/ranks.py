@@ -85,9 +85,10 @@ def computed(bench):
 
 def limits(bench):
     """Empty cases of one dispatcher: (what, cases, seconds, messages) of each way."""
-    ways = (("no rows, long batches", 10**6, 0), ("no rows, one case a message", 10**5, -1000),
-            ("rows and journal, long batches", 10**6, 0, "rows"))
-    return {what: min((bench.dispatch(2, *way) for _ in range(3)), key=lambda found: found[1])
+    ways = (("no rows, long batches", 2, 10**6, 0),
+            ("no rows, one case a message", 8, 10**5, -1000),
+            ("rows and journal, long batches", 2, 10**6, 0, "rows"))
+    return {what: min((bench.dispatch(*way) for _ in range(3)), key=lambda found: found[1])
             for what, *way in ways}
 
 
@@ -120,28 +121,37 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, default=ROOT / "build-openmpi")
     parser.add_argument("--mpirun", default="mpirun.openmpi --oversubscribe --bind-to none")
+    parser.add_argument("--only", nargs="+", choices=("computed", "dispatcher", "slept"),
+                        default=("computed", "dispatcher", "slept"))
     options = parser.parse_args()
     if not (options.build / "build.ninja").exists():
         sys.exit(f"no build in {options.build}: tools/verify/verify.sh mpi")
     with tempfile.TemporaryDirectory() as scratch:
         bench = Bench(options.build, options.mpirun, scratch)
-        tables.insert(PAGE, "computed", tables.markdown(
-            ("", "seconds", "cases a second", "over one thread"), computed(bench)))
-        found = limits(bench)
-        tables.insert(PAGE, "dispatcher", tables.markdown(
-            ("", "cases", "seconds", "messages a second", "rows a second"),
-            [(what, f"{cases:,}", f"{seconds:.2f}",
-              f"{messages / seconds:,.0f}" if messages else "", f"{cases / seconds:,.0f}")
-             for what, (cases, seconds, messages) in found.items()]))
-        shares = slept(bench)
-        tables.insert(PAGE, "slept", tables.markdown(
-            ("a case takes", *(f"{n} processes" for n in SLEEPERS)),
-            [(f"{ms} ms", *(f"{100 * shares[ms, n]:.1f} %" for n in SLEEPERS))
-             for ms in DURATIONS]))
+        if "computed" in options.only:
+            tables.insert(PAGE, "computed", tables.markdown(
+                ("", "seconds", "cases a second", "over one thread"), computed(bench)))
+        if "dispatcher" in options.only:
+            show_limits(limits(bench))
+        if "slept" in options.only:
+            shares = slept(bench)
+            tables.insert(PAGE, "slept", tables.markdown(
+                ("a case takes", *(f"{n} processes" for n in SLEEPERS)),
+                [(f"{ms} ms", *(f"{100 * shares[ms, n]:.1f} %" for n in SLEEPERS))
+                 for ms in DURATIONS]))
+
+
+def show_limits(found):
+    """Write the dispatcher's limits and the plan that follows from them."""
+    tables.insert(PAGE, "dispatcher", tables.markdown(
+        ("", "cases", "seconds", "messages a second", "rows a second"),
+        [(what, f"{cases:,}", f"{seconds:.2f}",
+          f"{messages / seconds:,.0f}" if messages else "", f"{cases / seconds:,.0f}")
+         for what, (cases, seconds, messages) in found.items()]))
     _, messages_took, messages = found["no rows, one case a message"]
     cases, rows_took, _ = found["rows and journal, long batches"]
     tables.insert(PAGE, "planned", tables.markdown(
-        ("a case takes", "saturated at", *(f"{n}" for n in PLANNED)),
+        ("a case takes", "saturated at", *(f"{n:,}" for n in PLANNED)),
         [(f"{ms} ms", f"{most:,.0f} processes", *(f"{100 * share:.0f} %" for share in row.values()))
          for ms, most, row in planned(cases / rows_took, messages / messages_took)]))
 
