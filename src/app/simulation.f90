@@ -173,8 +173,8 @@ contains
     if (large_results(scene) /= '') call destination%say(large_results(scene))
     if (allocated(scene%sweep)) then
       call results%progress%start(scene%sweep%cases(), name, destination%quiet)
-      if (crew%workers > 0) call destination%say('cases go to '//brief(real(crew%workers, wp))// &
-        ' processes')
+      if (crew%workers > 0) call destination%say('processes that compute: '// &
+        brief(real(crew%workers, wp)))
       call run_sweep(scene, crew, job, results, failed, cost)
       summary = summary_of(scene, problem, outcome)
       if (failed > 0) call summary%fail_with(brief(real(failed, wp))//' of '// &
