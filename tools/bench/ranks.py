@@ -57,11 +57,13 @@ class Bench:
         return done.stdout, time.monotonic() - began
 
     def sweep(self, workers, threads):
-        """Seconds of the program's sweep by its own summary."""
+        """Seconds of the program's sweep by its own summary, and those of processors."""
+        before = sum(os.times()[2:4])
         self.run(workers, [self.build / "snapin", "--quiet", "map.nml"], threads)
         summary = (self.scratch / "results/map/summary.nml").read_text()
-        return float(next(line.split("=")[1].split("!")[0] for line in summary.splitlines()
-                          if "wall_seconds" in line))
+        seconds = next(line.split("=")[1].split("!")[0] for line in summary.splitlines()
+                       if "wall_seconds" in line)
+        return float(seconds), sum(os.times()[2:4]) - before
 
     def dispatch(self, workers, cases, milliseconds, *folder):
         """(cases, seconds, messages) of the dispatcher."""
@@ -78,9 +80,10 @@ def computed(bench):
     for _ in range(ROUNDS):
         for name, way in ways.items():
             took[name].append(bench.sweep(*way))
-    least = {name: min(times) for name, times in took.items()}
+    least = {name: [min(column) for column in zip(*times)] for name, times in took.items()}
     return [(name, f"{seconds:.2f}", f"{CASES / seconds:.0f}",
-             f"{least['1 thread'] / seconds:.2f}") for name, seconds in least.items()]
+             f"{least['1 thread'][0] / seconds:.2f}", f"{of_processors:.2f}")
+            for name, (seconds, of_processors) in least.items()]
 
 
 def limits(bench):
@@ -130,7 +133,8 @@ def main():
         bench = Bench(options.build, options.mpirun, scratch)
         if "computed" in options.only:
             tables.insert(PAGE, "computed", tables.markdown(
-                ("", "seconds", "cases a second", "over one thread"), computed(bench)))
+                ("", "seconds", "cases a second", "over one thread",
+                 "seconds of processors"), computed(bench)))
         if "dispatcher" in options.only:
             show_limits(limits(bench))
         if "slept" in options.only:
