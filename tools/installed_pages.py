@@ -62,7 +62,17 @@ def manual(help_text, keys, version):
     return "\n".join(parts) + "\n"
 
 
-def bash(options):
+def names_of(keys):
+    """Every group, and every key as group.key, in the text of --keys."""
+    for line in keys.splitlines():
+        if match := re.match(r"&(\w+)(?! \(skipped\))", line):
+            group = match[1]
+            yield group
+        elif match := re.match(r"  (\w+) ", line):
+            yield f"{group}.{match[1]}"
+
+
+def bash(options, names_of_keys):
     folders, names = (
         "|".join(word for option, argument, short, _ in options if argument == kind
                  for word in (option, short) if word) for kind in ("DIR", "NAME"))
@@ -74,6 +84,7 @@ _snapin() {{
     case ${{COMP_WORDS[COMP_CWORD - 1]}} in
         {folders}) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
         {names}) COMPREPLY=() ;;
+        --keys) mapfile -t COMPREPLY < <(compgen -W '{" ".join(names_of_keys)}' -- "$word") ;;
         *) case $word in
             -*) compopt +o filenames
                 mapfile -t COMPREPLY < <(compgen -W '{words}' -- "$word") ;;
@@ -85,10 +96,12 @@ complete -F _snapin snapin
 """
 
 
-def zsh(options):
+def zsh(options, names_of_keys):
     def spec(option, argument, short, meaning):
         meaning = re.sub(r"([\[\]:\\])", r"\\\1", meaning).replace("'", "'\\''")
         action = {"DIR": ":folder:_files -/", "NAME": ":name:", None: ""}[argument]
+        if option == "--keys":
+            action = f"::group or key:({' '.join(names_of_keys)})"
         forms = [option] + ([short] if short else [])
         return [f"    '({' '.join(forms)}){form}[{meaning}]{action}' \\" for form in forms]
 
@@ -102,9 +115,11 @@ def main():
     help_text = says(program, "--help")
     options = list(options_of(help_text))
     version = says(program, "--version").split()[1]
-    (folder / "snapin.1").write_text(manual(help_text, says(program, "--keys"), version))
-    (folder / "snapin.bash").write_text(bash(options))
-    (folder / "_snapin").write_text(zsh(options))
+    keys = says(program, "--keys")
+    names = list(names_of(keys))
+    (folder / "snapin.1").write_text(manual(help_text, keys, version))
+    (folder / "snapin.bash").write_text(bash(options, names))
+    (folder / "_snapin").write_text(zsh(options, names))
 
 
 if __name__ == "__main__":

@@ -39,7 +39,7 @@ _NO_NUMBERS = (
     "deck_number", "deck_numbers", "deck_scan", "deck_source", "deck_store", "text", "deck_token",
     "deck_values",
     "failure", "checksums", "files", "finished_run", "folder_lock", "journal", "memory",
-    "preflight", "result_listing", "result_rows", "state_records", "byte_record", "progress",
+    "case_rows", "dispatch", "launch", "preflight", "ranks", "result_listing", "result_rows", "state_records", "byte_record", "progress",
     "publication", "replacement", "result_names", "run_identity", "snapin", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")

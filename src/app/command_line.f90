@@ -172,7 +172,7 @@ contains
   subroutine write_help(unit)
     integer, intent(in) :: unit
     integer :: status, i
-    character(len=*), parameter :: lines(*) = [character(len=88) :: &
+    character(len=*), parameter :: lines(*) = [character(len=90) :: &
       '', &
       'Elastic deformation and adhesion of two bodies near and in contact. Each DECK, a', &
       'namelist file or - for standard input, is computed into results/<name of the deck>/.', &
@@ -184,7 +184,8 @@ contains
       '  --check     validate the decks, compute nothing', &
       '  --resume    go on where an interrupted run stopped; leave finished results as they are', &
       '  --quiet     no progress on the terminal (-q)', &
-      '  --keys      print every group and key a deck may hold: unit, default, meaning', &
+      '  --keys      print every group and key a deck may hold: unit, default, meaning; or those', &
+      '              that are named, as GROUP or GROUP.KEY', &
       '  --results   print every file, column and entry of results: unit, meaning', &
       '  --version   print version, compiler and libraries', &
       '  --help      print this (-h)', &

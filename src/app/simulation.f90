@@ -12,6 +12,7 @@ module simulation
   use scene_problem, only: problem_of
   use h0_schedule, only: states_planned
   use sweeps, only: run_sweep
+  use ranks, only: crew_t
   use preflight, only: check_room, large_results
   use blas_threads, only: thread_count
   use linear_algebra, only: claim_buffers
@@ -52,11 +53,14 @@ contains
   !> there is not the room that it needs. converged: false where a
   !> calculation failed; what was computed is kept and the summary says what failed. error: there
   !> are no results, or they could not be written. resume: what an interrupted run has left in the
-  !> folder is continued, and finished results are left as they are.
-  subroutine run_scene(scene, out_dir, quiet, resume, converged, error)
+  !> folder is continued, and finished results are left as they are. crew: who computes a sweep, to
+  !> whom the scene is known by its number `job`.
+  subroutine run_scene(scene, out_dir, quiet, resume, crew, job, converged, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: out_dir
     logical, intent(in) :: quiet, resume
+    type(crew_t), intent(in) :: crew
+    integer, intent(in) :: job
     logical, intent(out) :: converged
     type(failure_t), allocatable, intent(out) :: error
     type(destination_t) :: destination
@@ -81,7 +85,7 @@ contains
     problem = problem_of(scene)
     call open_folder(scene, problem, out_dir, destination, resume, results, error)
     if (allocated(error)) return
-    call compute(scene, problem, destination, results, summary, cost)
+    call compute(scene, problem, destination, crew, job, results, summary, cost)
     call write_derived_tables(scene, problem, results)
     if (allocated(scene%fit)) call fit_measured(scene, problem, destination, results, summary)
     call describe_program(summary)
@@ -151,10 +155,12 @@ contains
   end subroutine open_folder
 
   !> Runs the experiments or the sweep, whose records go into the results.
-  subroutine compute(scene, problem, destination, results, summary, cost)
+  subroutine compute(scene, problem, destination, crew, job, results, summary, cost)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
     type(destination_t), intent(in) :: destination
+    type(crew_t), intent(in) :: crew
+    integer, intent(in) :: job
     type(results_t), intent(inout), target :: results
     type(summary_t), intent(out) :: summary
     type(cost_t), intent(out) :: cost
@@ -167,7 +173,9 @@ contains
     if (large_results(scene) /= '') call destination%say(large_results(scene))
     if (allocated(scene%sweep)) then
       call results%progress%start(scene%sweep%cases(), name, destination%quiet)
-      call run_sweep(scene, results, failed, cost)
+      if (crew%workers > 0) call destination%say('processes that compute: '// &
+        brief(real(crew%workers, wp)))
+      call run_sweep(scene, crew, job, results, failed, cost)
       summary = summary_of(scene, problem, outcome)
       if (failed > 0) call summary%fail_with(brief(real(failed, wp))//' of '// &
         brief(real(scene%sweep%cases(), wp))// &

@@ -3,8 +3,9 @@
 program snapin
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
-  use failure, only: failure_t
-  use deck_keys, only: write_keys
+  use failure, only: failure_t, fail, bad_input
+  use text, only: lower, quoted, clip, guess
+  use deck_keys, only: key_spec, write_keys, is_of, names_of
   use scene, only: scene_t, read_scene
   use scene_keys, only: keys_of_scene
   use c_library, only: c_prepare, c_end_with_parent
@@ -14,6 +15,9 @@ program snapin
   use result_listing, only: write_result_listing
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
   use simulation, only: run_scene
+  use sweeps, only: work_on_sweeps
+  use dispatch, only: dismiss
+  use ranks, only: crew_t
   use preflight, only: check_room, large_results
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
@@ -28,6 +32,7 @@ program snapin
   end interface
 
   type(options_t) :: options
+  type(crew_t) :: crew
   type(failure_t), allocatable :: error
 
   call c_prepare()
@@ -47,7 +52,7 @@ program snapin
     call print_line(output_unit, 'blas: ' // blas)
     call print_line(output_unit, 'options: ' // options_of_build)
   else if (options%keys) then
-    call write_keys(keys_of_scene(), output_unit)
+    call leave(show_keys())
   else if (options%results) then
     call write_result_listing(output_unit)
   else
@@ -57,20 +62,28 @@ program snapin
 
 contains
 
-  !> How many processes mpirun has started, by what OpenMPI and MPICH leave in the environment.
-  integer function started_together() result(processes)
-    character(len=*), parameter :: names(*) = [character(len=20) :: 'OMPI_COMM_WORLD_SIZE', &
-      'PMI_SIZE']
-    character(len=12) :: value
-    integer :: i, failed
+  !> Prints the keys of the groups that are named, or these keys, or all; returns the exit status.
+  function show_keys() result(status)
+    integer :: status
+    type(key_spec), allocatable :: specs(:)
+    character(len=:), allocatable :: name
+    logical, allocatable :: shown(:)
+    integer :: i
 
-    do i = 1, size(names)
-      call get_environment_variable(trim(names(i)), value)
-      read (value, '(i12)', iostat=failed) processes
-      if (failed == 0 .and. processes > 1) return
+    status = 0
+    specs = keys_of_scene()
+    allocate (shown(size(specs)), source=size(options%decks) == 0)
+    do i = 1, size(options%decks)
+      name = lower(options%decks(i)%name)
+      if (.not. any(is_of(specs, name))) then
+        call print_line(error_unit, 'snapin: no group or key ' // quoted(clip(name)) // &
+          guess(name, names_of(specs, ''), ''))
+        status = 2
+      end if
+      shown = shown .or. is_of(specs, name)
     end do
-    processes = 1
-  end function started_together
+    if (status == 0) call write_keys(pack(specs, shown), output_unit)
+  end function show_keys
 
   !> Validates all decks, then computes them one by one; returns the exit status. Every deck is
   !> read before anything is written, so that a wrong one leaves nothing behind.
@@ -78,14 +91,17 @@ contains
     integer :: status
     type(scene_t), allocatable :: scenes(:)
     type(failure_t), allocatable :: trouble
-    character(len=:), allocatable :: folder
+    character(len=:), allocatable :: folder, said
     logical :: converged
-    integer :: i
+    integer :: first, i
 
     status = 0
-    if (started_together() > 1) then
-      call print_line(error_unit, 'snapin: mpirun has started several of these, and this build ' &
-        // 'has no MPI; start one: it uses all cores of the machine')
+    call crew%begin(trouble)
+    if (.not. allocated(trouble) .and. crew%workers > 0 .and. &
+      any([(options%decks(i)%name == '-', i=1, size(options%decks))])) &
+      call fail(trouble, bad_input, 'several processes cannot read one standard input; give files')
+    if (allocated(trouble)) then
+      if (crew%rank == 0) call print_line(error_unit, 'snapin: ' // trouble%message)
       status = 2
       return
     end if
@@ -99,9 +115,10 @@ contains
         call read_scene(options%decks(i)%name, scenes(i), trouble)
       end if
       if (allocated(trouble)) then
-        call print_line(error_unit, trouble%message)
         status = 2
-      else if (options%check) then
+        if (crew%rank == 0) call print_line(error_unit, trouble%message)
+        said = trouble%message
+      else if (options%check .and. crew%rank == 0) then
         call print_line(output_unit, options%decks(i)%name // ': ok')
         folder = options%out // '/' // stem_of(options%decks(i)%name)
         call check_room(scenes(i), folder, trouble)
@@ -111,15 +128,24 @@ contains
           options%decks(i)%name // ': ' // large_results(scenes(i)))
       end if
     end do
+    ! A deck that one process cannot read stops all.
+    first = crew%first_of(status /= 0)
+    if (first > 0 .and. first == crew%rank) call print_line(error_unit, said)
+    if (first >= 0) status = 2
     if (options%check .or. status /= 0) return
+    if (crew%rank > 0) then
+      call work_on_sweeps(crew, scenes)
+      return
+    end if
     do i = 1, size(scenes)
       folder = options%out // '/' // stem_of(options%decks(i)%name)
       if (allocated(options%into)) folder = options%into
       if (options%out == to_stream) folder = to_stream
-      call run_scene(scenes(i), folder, options%quiet, options%resume, converged, trouble)
+      call run_scene(scenes(i), folder, options%quiet, options%resume, crew, i, converged, trouble)
       if (allocated(trouble)) call print_line(error_unit, folder // ': ' // trouble%message)
       if (allocated(trouble) .or. .not. converged) status = 1
     end do
+    call dismiss(crew)
   end function run_decks
 
   !> Prints without minding whether anyone reads: a full disk behind a redirection must not end the
@@ -137,6 +163,7 @@ contains
     integer, intent(in) :: status
     integer :: trouble
 
+    call crew%end()
     flush (output_unit, iostat=trouble)
     flush (error_unit, iostat=trouble)
     call c_exit(int(status, c_int))

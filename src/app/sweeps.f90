@@ -1,12 +1,15 @@
-!> The cases of a sweep, spread over the cores: each is one row, its keys' values and its numbers.
+!> The cases of a sweep, spread over the cores, or over the processes of a crew: each is one row,
+!> its keys' values and its numbers.
 module sweeps
-  use, intrinsic :: iso_c_binding, only: c_bool
   use kinds, only: wp
   use text, only: first_line
   use failure, only: failure_t
+  use clock, only: clock_now => seconds
+  use linear_algebra, only: claim_buffers
   use dimensionless_problem, only: problem_t
   use scene_groups, only: scene_t
   use scene, only: swept_scene
+  use sweep_cases, only: sweep_cases_t
   use experiment_result, only: experiment_result_t
   use experiment, only: run_experiment
   use scene_problem, only: problem_of
@@ -16,14 +19,16 @@ module sweeps
   use summarise, only: summary_of
   use summary, only: summary_t
   use case_columns, only: columns_of, numbers_of, column_width
-  use journal, only: journal_t
   use mesh_store, only: mesh_store_t
   use byte_record, only: byte_record_t
   use state_records, only: put_cost, take_cost
   use results, only: results_t
+  use blas_threads, only: thread_count
+  use ranks, only: crew_t
+  use dispatch, only: foreman_t, worker_t, hand_out, work_through
   implicit none
   private
-  public :: run_sweep
+  public :: run_sweep, work_on_sweeps, case_t, take_case, put_case, run_case
 
   !> Characters of what is said of a case that failed.
   integer, parameter :: failure_width = 160
@@ -32,6 +37,8 @@ module sweeps
   type :: case_t
     !> Its number; 0: none.
     integer :: number = 0
+    !> Of the sweep's keys.
+    real(wp), allocatable :: values(:)
     logical :: converged = .false.
     !> See `numbers_of`.
     real(wp), allocatable :: numbers(:)
@@ -40,16 +47,35 @@ module sweeps
     type(cost_t) :: cost
   end type case_t
 
-  !> The cases that have ended before others whose rows come first; how many rows are written, how
-  !> many cases have ended and failed, and what all took. A case is in `waiting` at its number, all
-  !> numbers modulo the size.
-  type :: queue_t
+  !> The cases still to come, and those that have ended before others whose rows come first; how
+  !> many rows are written, how many cases have ended and failed, and what all took. A case is in
+  !> `waiting` at its number, all numbers modulo the size.
+  type, extends(foreman_t) :: queue_t
+    type(scene_t), pointer :: scene => null()
+    type(results_t), pointer :: results => null()
+    character(len=column_width), allocatable :: columns(:)
+    type(sweep_cases_t) :: to_come
     type(case_t), allocatable :: waiting(:)
     integer :: written = 0, ended = 0, failed = 0
     type(cost_t) :: cost
   contains
+    procedure :: next
+    procedure :: put_next
+    procedure :: take_answer
+    procedure :: enter
     procedure :: add
+    procedure :: has
   end type queue_t
+
+  !> Computes cases of the sweeps of several scenes, of which a job's number is the index.
+  type, extends(worker_t) :: sweep_worker_t
+    type(scene_t), pointer :: scenes(:) => null()
+    integer :: job = 0
+    !> Of the present job.
+    type(mesh_store_t), allocatable :: store
+  contains
+    procedure :: work
+  end type sweep_worker_t
 
   !> Says what a case is at, beside the others; takes no records.
   type, extends(silent_observer_t) :: case_observer_t
@@ -61,60 +87,151 @@ module sweeps
 
 contains
 
-  !> Computes every case of scene%sweep and hands its row to `results`, in the order of the cases.
-  !> Cases that results%journal has are complete, whatever their order; the others join them as they
-  !> end. A case that fails is a row that says why. Once results cannot be written no case begins.
+  !> Computes every case of scene%sweep and hands its row to `results`, in the order of the cases;
+  !> the workers of a crew do it where there are any, for whom this is job number `job`. Cases that
+  !> results%journal has are complete, whatever their order; the others join them as they end. A
+  !> case that fails is a row that says why. Once results cannot be written no case begins.
   !> failed: how many; cost: of all together.
-  subroutine run_sweep(scene, results, failed, cost)
-    type(scene_t), intent(in) :: scene
+  subroutine run_sweep(scene, crew, job, results, failed, cost)
+    type(scene_t), intent(in), target :: scene
+    type(crew_t), intent(in) :: crew
+    integer, intent(in) :: job
     type(results_t), intent(inout), target :: results
     integer, intent(out) :: failed
     type(cost_t), intent(out) :: cost
     type(queue_t) :: queue
     type(mesh_store_t) :: store
-    character(len=column_width), allocatable :: columns(:)
-    logical(c_bool), allocatable :: done(:)
-    integer :: i
+    type(failure_t), allocatable :: error
 
-    allocate (done(scene%sweep%cases()))
-    columns = columns_of(scene)
-    done = .false.
-    call recall_cases(scene, columns, done, queue, results)
-    ! Each case has a thread of its own: its kernels and its linear algebra use no more.
-    !$omp parallel do schedule(dynamic, 1)
-    do i = 1, size(done)
-      if (.not. done(i)) call complete(scene, i, columns, queue, results, store)
-    end do
-    !$omp end parallel do
+    queue%scene => scene
+    queue%results => results
+    queue%columns = columns_of(scene)
+    call recall_cases(queue)
+    call queue%to_come%begin(scene, error)
+    if (allocated(error)) then
+      call move_alloc(error, results%trouble)
+    else if (crew%workers > 0) then
+      call hand_out(crew, job, queue, thread_count())
+    else
+      ! Each case has a thread of its own: its kernels and its linear algebra use no more.
+      !$omp parallel
+      call complete_cases(queue, store)
+      !$omp end parallel
+    end if
     failed = queue%failed
     cost = queue%cost
   end subroutine run_sweep
 
-  !> Computes case i and enters it, unless results can no longer be written.
-  subroutine complete(scene, i, columns, queue, results, store)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: i
-    character(len=*), intent(in) :: columns(:)
+  !> Computes cases, as long as there are any, beside other threads that do the same.
+  subroutine complete_cases(queue, store)
     type(queue_t), intent(inout) :: queue
-    type(results_t), intent(inout), target :: results
     type(mesh_store_t), intent(inout) :: store
-    type(case_t) :: fresh
-    type(case_observer_t) :: observer
-    logical :: stopped
+    type(case_t) :: case
+    logical :: found
 
-    !$omp critical (one_at_a_time)
-    stopped = allocated(results%trouble) .or. allocated(results%journal%trouble)
-    !$omp end critical (one_at_a_time)
-    if (stopped) return
-    observer%case = i
-    observer%progress => results%progress
-    call run_case(scene, i, observer, store, fresh)
-    !$omp critical (one_at_a_time)
-    call keep_case(results%journal, fresh)
-    call queue%add(scene, columns, fresh, results)
-    call results%progress%step(counted(queue%failed))
-    !$omp end critical (one_at_a_time)
-  end subroutine complete
+    do
+      !$omp critical (one_at_a_time)
+      call queue%next(case, found)
+      !$omp end critical (one_at_a_time)
+      if (.not. found) exit
+      call run_case(queue%scene, queue%results%progress, store, case)
+      !$omp critical (one_at_a_time)
+      call queue%enter(case)
+      !$omp end critical (one_at_a_time)
+    end do
+  end subroutine complete_cases
+
+  !> Computes what a crew's first process hands out of the sweeps of `scenes`.
+  subroutine work_on_sweeps(crew, scenes)
+    type(crew_t), intent(in) :: crew
+    type(scene_t), intent(in), target :: scenes(:)
+    type(sweep_worker_t) :: worker
+
+    call claim_buffers()
+    worker%scenes => scenes
+    call work_through(crew, worker)
+  end subroutine work_on_sweeps
+
+  !> A batch, on all threads.
+  subroutine work(self, job, cases, batch, answers, seconds)
+    class(sweep_worker_t), intent(inout) :: self
+    integer, intent(in) :: job, cases
+    type(byte_record_t), intent(inout) :: batch, answers
+    real(wp), intent(out) :: seconds
+    type(case_t), allocatable :: of_batch(:)
+    type(progress_t) :: unseen
+    integer :: i
+
+    if (job /= self%job .and. allocated(self%store)) deallocate (self%store)
+    if (.not. allocated(self%store)) allocate (self%store)
+    self%job = job
+    allocate (of_batch(cases))
+    do i = 1, cases
+      call batch%take(of_batch(i)%number)
+      call batch%take(of_batch(i)%values)
+    end do
+    seconds = clock_now()
+    !$omp parallel do schedule(dynamic, 1)
+    do i = 1, cases
+      call run_case(self%scenes(job), unseen, self%store, of_batch(i))
+    end do
+    !$omp end parallel do
+    seconds = clock_now() - seconds
+    do i = 1, cases
+      call put_case(of_batch(i), answers)
+    end do
+  end subroutine work
+
+  !> The next case that is not complete; not found: there is none, or results cannot be written.
+  subroutine next(self, case, found)
+    class(queue_t), intent(inout) :: self
+    type(case_t), intent(inout) :: case
+    logical, intent(out) :: found
+    type(failure_t), allocatable :: error
+
+    found = .false.
+    if (allocated(self%results%trouble) .or. allocated(self%results%journal%trouble)) return
+    do
+      call self%to_come%next(self%scene, case%values, found, error)
+      if (allocated(error)) call move_alloc(error, self%results%trouble)
+      if (.not. found) return
+      case%number = self%to_come%number
+      if (.not. self%has(case%number)) return
+    end do
+  end subroutine next
+
+  subroutine put_next(self, batch, found)
+    class(queue_t), intent(inout) :: self
+    type(byte_record_t), intent(inout) :: batch
+    logical, intent(out) :: found
+    type(case_t) :: case
+
+    call self%next(case, found)
+    if (.not. found) return
+    call batch%put(case%number)
+    call batch%put(case%values)
+  end subroutine put_next
+
+  subroutine take_answer(self, answers)
+    class(queue_t), intent(inout) :: self
+    type(byte_record_t), intent(inout) :: answers
+    type(case_t) :: case
+
+    call take_case(case, answers)
+    call self%enter(case)
+  end subroutine take_answer
+
+  !> Takes a case that has been computed.
+  subroutine enter(self, case)
+    class(queue_t), intent(inout) :: self
+    type(case_t), intent(in) :: case
+    type(byte_record_t) :: record
+
+    call put_case(case, record)
+    call self%results%journal%append(record)
+    call self%add(case)
+    call self%results%progress%step(counted(self%failed))
+  end subroutine enter
 
   !> 'case', with how many have failed so far.
   function counted(failed) result(label)
@@ -126,53 +243,62 @@ contains
   end function counted
 
   !> Takes the cases that an interrupted run has completed.
-  subroutine recall_cases(scene, columns, done, queue, results)
-    type(scene_t), intent(in) :: scene
-    character(len=*), intent(in) :: columns(:)
-    logical(c_bool), intent(inout) :: done(:)
+  subroutine recall_cases(queue)
     type(queue_t), intent(inout) :: queue
-    type(results_t), intent(inout) :: results
     type(byte_record_t) :: record
     type(case_t) :: case
-    character(len=:), allocatable :: failure
     logical :: found
 
     do
-      call results%journal%next(record, found)
+      call queue%results%journal%next(record, found)
       if (.not. found) exit
-      call record%take(case%number)
-      call record%take(case%converged)
-      call record%take(case%numbers)
-      call record%take(failure)
-      call take_cost(record, case%cost)
-      case%failure = failure
-      done(case%number) = .true.
-      call queue%add(scene, columns, case, results)
-      call results%progress%skip(counted(queue%failed))
+      call take_case(case, record)
+      call queue%add(case)
+      call queue%results%progress%skip(counted(queue%failed))
     end do
   end subroutine recall_cases
 
-  !> Adds a case to the journal, as `recall_cases` finds it there.
-  subroutine keep_case(journal, case)
-    type(journal_t), intent(inout) :: journal
+  !> Adds a case to a record, as `take_case` finds it there.
+  subroutine put_case(case, record)
     type(case_t), intent(in) :: case
-    type(byte_record_t) :: record
+    type(byte_record_t), intent(inout) :: record
 
     call record%put(case%number)
     call record%put(case%converged)
     call record%put(case%numbers)
     call record%put(trim(case%failure))
     call put_cost(record, case%cost)
-    call journal%append(record)
-  end subroutine keep_case
+    call record%put(case%values)
+  end subroutine put_case
+
+  subroutine take_case(case, record)
+    type(case_t), intent(out) :: case
+    type(byte_record_t), intent(inout) :: record
+    character(len=:), allocatable :: failure
+
+    call record%take(case%number)
+    call record%take(case%converged)
+    call record%take(case%numbers)
+    call record%take(failure)
+    call take_cost(record, case%cost)
+    call record%take(case%values)
+    case%failure = failure
+  end subroutine take_case
+
+  !> Whether a case has ended, in this run or the one before.
+  pure logical function has(self, number)
+    class(queue_t), intent(in) :: self
+    integer, intent(in) :: number
+
+    has = number <= self%written
+    if (.not. has .and. allocated(self%waiting)) &
+      has = self%waiting(mod(number, size(self%waiting)))%number == number
+  end function has
 
   !> Adds a case that has ended, and writes the rows whose turn it is.
-  subroutine add(self, scene, columns, case, results)
+  subroutine add(self, case)
     class(queue_t), intent(inout) :: self
-    type(scene_t), intent(in) :: scene
-    character(len=*), intent(in) :: columns(:)
     type(case_t), intent(in) :: case
-    type(results_t), intent(inout) :: results
 
     self%ended = self%ended + 1
     if (.not. case%converged) self%failed = self%failed + 1
@@ -181,12 +307,12 @@ contains
     call make_room(self%waiting, case%number - self%written)
     self%waiting(mod(case%number, size(self%waiting))) = case
     do
-      associate (next => self%waiting(mod(self%written + 1, size(self%waiting))))
-        if (next%number /= self%written + 1) exit
-        call results%take_case(scene%sweep%names, scene%sweep%words, &
-          scene%sweep%values(next%number), columns, next%numbers, next%failure)
-        next%number = 0
-        deallocate (next%numbers)
+      associate (first => self%waiting(mod(self%written + 1, size(self%waiting))))
+        if (first%number /= self%written + 1) exit
+        call self%results%take_case(self%scene%sweep%names, self%scene%sweep%words, first%values, &
+          self%columns, first%numbers, first%failure)
+        first%number = 0
+        deallocate (first%numbers, first%values)
       end associate
       self%written = self%written + 1
     end do
@@ -211,22 +337,26 @@ contains
     call move_alloc(larger, waiting)
   end subroutine make_room
 
-  !> Case i of the scene's sweep, on meshes that the cases share.
-  subroutine run_case(scene, i, observer, store, case)
+  !> Computes a case of the scene's sweep, which has its number and values, on meshes that the cases
+  !> share.
+  subroutine run_case(scene, progress, store, case)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: i
-    type(case_observer_t), intent(inout) :: observer
+    type(progress_t), intent(in), target :: progress
     type(mesh_store_t), intent(inout) :: store
-    type(case_t), intent(out) :: case
+    type(case_t), intent(inout) :: case
+    type(case_observer_t) :: observer
     type(scene_t) :: variant
     type(problem_t) :: problem
     type(experiment_result_t) :: outcome
     type(summary_t) :: summary
     type(failure_t), allocatable :: error
 
+    observer%case = case%number
+    observer%progress => progress
+    case%failure = ''
     ! What makes strings is done by one thread at a time: compiler note 4.
     !$omp critical (one_at_a_time)
-    call swept_scene(scene, scene%sweep%values(i), variant, error)
+    call swept_scene(scene, case%values, variant, error)
     !$omp end critical (one_at_a_time)
     call summary%set('converged', .false.)
     if (.not. allocated(error)) then
@@ -235,7 +365,6 @@ contains
     end if
     !$omp critical (one_at_a_time)
     if (.not. allocated(error)) summary = summary_of(variant, problem, outcome)
-    case%number = i
     case%numbers = numbers_of(summary, scene)
     case%converged = summary%is_true('converged')
     if (allocated(error)) then

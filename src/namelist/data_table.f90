@@ -5,15 +5,14 @@
 module data_table
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: lower, quoted, clip, guess, word_of
+  use text, only: lower, quoted, clip, guess
   use deck_number, only: parse_real, parse_integer
-  use deck_numbers, only: words_of, number_of_word
-  use deck_store, only: deck_t
   use deck_source, only: source_t, load_source
   use number_columns, only: uncommented, between
   implicit none
   private
-  public :: data_table_t, read_data_table, read_named_table, largest_table
+  public :: data_table_t, read_data_table, largest_table
+  public :: cell_t, split, is_header, after_mark, point_decimals, counted
 
   !> The columns asked for, value(row, column), and where in the file's text each row stands.
   type :: data_table_t
@@ -40,37 +39,10 @@ contains
     character(len=*), intent(in) :: file, wanted(:)
     type(data_table_t), intent(out) :: table
     type(failure_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: names
-
-    call read_table(file, wanted, .false., table, names, error)
-  end subroutine read_data_table
-
-  !> Reads all columns of a file that has a line of names; names: blank-separated, in lower case.
-  !> Where a column is a key of `deck` that holds a word, the table has the words' numbers.
-  subroutine read_named_table(file, deck, table, names, error)
-    character(len=*), intent(in) :: file
-    type(deck_t), intent(in) :: deck
-    type(data_table_t), intent(out) :: table
-    character(len=:), allocatable, intent(out) :: names
-    type(failure_t), allocatable, intent(out) :: error
-    character(len=1) :: none(0)
-
-    call read_table(file, none, .true., table, names, error, deck)
-  end subroutine read_named_table
-
-  !> Reads the columns `wanted`, or all of a file that names them.
-  subroutine read_table(file, wanted, all_of_them, table, found, error, deck)
-    character(len=*), intent(in) :: file, wanted(:)
-    logical, intent(in) :: all_of_them
-    type(data_table_t), intent(out) :: table
-    character(len=:), allocatable, intent(out) :: found
-    type(failure_t), allocatable, intent(out) :: error
-    type(deck_t), intent(in), optional :: deck
     type(cell_t), allocatable :: cells(:), names(:)
-    character(len=80), allocatable :: words(:)
     integer, allocatable :: at(:)
     logical, allocatable :: turned(:)
-    integer :: first, next, n, columns, named, k
+    integer :: first, next, n, columns, named
 
     call load_source(file, table%source, error, largest_table)
     if (allocated(error)) return
@@ -103,23 +75,11 @@ contains
         end if
         if (named == 0) then
           names = cells
-          if (is_header(table%source, first, cells) .or. .not. all_of_them) named = first
+          named = first
         end if
-        if (all_of_them .and. named > 0) then
-          call take_all(table%source, named, names, found, at)
-          turned = spread(.false., 1, columns)
-        else if (all_of_them) then
-          call table%source%complain(first, '', '', 'no line of names before the numbers', error)
-        else
-          call find_columns(table%source, named, names, wanted, at, error)
-        end if
+        call find_columns(table%source, named, names, wanted, at, error)
         if (allocated(error)) return
-        allocate (table%value(size(table%place), size(at)), words(size(at)))
-        words = ''
-        ! One by one: compiler note 2.
-        do k = 1, merge(size(at), 0, present(deck))
-          words(k) = words_of(deck, word_of(found, k))
-        end do
+        allocate (table%value(size(table%place), size(at)))
         if (is_header(table%source, first, cells)) cycle
       end if
       if (size(cells) /= columns) then
@@ -128,32 +88,14 @@ contains
         return
       end if
       n = n + 1
-      call read_row(table%source, first, cells(at), turned, words, table%value(n, :), error)
+      call read_row(table%source, first, cells(at), turned, table%value(n, :), error)
       if (allocated(error)) return
       table%place(n) = first
     end do
     if (.not. allocated(table%value)) allocate (table%value(0, size(at)))
     table%value = table%value(:n, :)
     table%place = table%place(:n)
-  end subroutine read_table
-
-  !> The names in a line of them.
-  subroutine take_all(source, start, cells, names, at)
-    type(source_t), intent(in) :: source
-    integer, intent(in) :: start
-    type(cell_t), intent(in) :: cells(:)
-    character(len=:), allocatable, intent(out) :: names
-    integer, allocatable, intent(out) :: at(:)
-    integer :: k
-
-    names = ''
-    do k = 1, size(cells)
-      names = names // ' ' // lower(source%part(start + cells(k)%first - 1, &
-        start + cells(k)%last - 1))
-    end do
-    names = names(2:)
-    at = [(k, k=1, size(cells))]
-  end subroutine take_all
+  end subroutine read_data_table
 
   !> The first line of some, with its comment mark a blank.
   pure function after_mark(lines) result(line)
@@ -273,14 +215,12 @@ contains
     if (index(unsigned, '-') == 1) unsigned = trim(adjustl(unsigned(2:)))
   end function unsigned
 
-  !> The numbers in these cells of a line; turned: with the other sign; words: those of a column of
-  !> words, of which the number is meant.
-  subroutine read_row(source, start, cells, turned, words, row, error)
+  !> The numbers in these cells of a line; turned: with the other sign.
+  subroutine read_row(source, start, cells, turned, row, error)
     type(source_t), intent(in) :: source
     integer, intent(in) :: start
     type(cell_t), intent(in) :: cells(:)
     logical, intent(in) :: turned(:)
-    character(len=*), intent(in) :: words(:)
     real(wp), intent(out) :: row(:)
     type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: what
@@ -288,11 +228,7 @@ contains
 
     do i = 1, size(cells)
       associate (first => start + cells(i)%first - 1, last => start + cells(i)%last - 1)
-        if (words(i) == '') then
-          call parse_real(source%part(first, last), row(i), what)
-        else
-          call number_of_word(source%part(first, last), words(i), row(i), what)
-        end if
+        call parse_real(source%part(first, last), row(i), what)
       end associate
       if (allocated(what)) then
         call source%complain(start + cells(i)%first - 1, '', '', what, error)

@@ -8,7 +8,7 @@ module deck_keys
   public :: real_value, real_list, integer_value, logical_value, word_value, text_value
   public :: names_value
   public :: group, real_key, list_key, integer_key, logical_key, word_key, text_key, names_key
-  public :: allowed, names_of, write_keys
+  public :: allowed, names_of, is_of, write_keys
 
   !> Kinds of row: a group, a group that is skipped when met, and seven kinds of key.
   integer, parameter :: group_row = 0, ignored_group = 1
@@ -265,6 +265,19 @@ contains
       end associate
     end do
   end subroutine write_keys
+
+  !> Which rows are of the group or key `name`, 'group' or 'group.key'.
+  pure function is_of(specs, name) result(rows)
+    type(key_spec), intent(in) :: specs(:)
+    character(len=*), intent(in) :: name
+    logical :: rows(size(specs))
+    integer :: dot
+
+    dot = index(name // '.', '.')
+    rows = specs%group == name(:dot - 1)
+    if (dot < len(name)) rows = rows .and. (specs%key == name(dot + 1:) .or. &
+      specs%kind == group_row .and. any(rows .and. specs%key == name(dot + 1:)))
+  end function is_of
 
   !> Blank-separated names of the keys of `group`, of all groups for an empty `group`.
   pure function names_of(specs, group) result(names)

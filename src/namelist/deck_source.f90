@@ -20,6 +20,8 @@ module deck_source
     !> Name of the file, fit for a message.
     character(len=:), allocatable :: file
     character(len=:), allocatable :: text
+    !> Lines of the file before the text, where that is a piece of it.
+    integer :: lines_before = 0
     !> The folder that the file is in, up to the last slash: what a deck names is looked for there.
     character(len=:), allocatable :: folder
   contains
@@ -136,7 +138,7 @@ contains
     integer, intent(in) :: at
     integer :: i
 
-    line_at = 1
+    line_at = self%lines_before + 1
     do i = 1, min(at - 1, len(self%text))
       if (self%text(i:i) == newline) line_at = line_at + 1
     end do

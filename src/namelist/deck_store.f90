@@ -1,6 +1,6 @@
 !> A deck in memory: what each key holds, where it stands in the file, and the deck written out.
 module deck_store
-  use kinds, only: wp
+  use kinds, only: wp, long
   use failure, only: failure_t
   use checksums, only: checksum
   use files, only: whole_path
@@ -208,9 +208,10 @@ contains
 
   !> Notes what was in the file that a key names: `resolved` then gives the whole path, since it may
   !> be read in another folder, and a checksum: a deck whose file has changed is another one.
-  subroutine note_file(self, group, key, content)
+  subroutine note_file(self, group, key, digest)
     class(deck_t), intent(inout) :: self
-    character(len=*), intent(in) :: group, key, content
+    character(len=*), intent(in) :: group, key
+    integer(long), intent(in) :: digest
     character(len=:), allocatable :: path
     character(len=8) :: number
     integer :: row
@@ -219,7 +220,7 @@ contains
     path = whole_path(self%path_of(group, key))
     ! What no deck could say stays as it is.
     if (len(path) <= self%specs(row)%most .and. plain(path) == path) self%values(row)%text = path
-    write (number, '(z8.8)') checksum(content)
+    write (number, '(z8.8)') digest
     self%values(row)%remark = 'checksum ' // number
   end subroutine note_file
 

@@ -2,6 +2,7 @@
 !> what follows a # is a comment.
 module number_columns
   use kinds, only: wp
+  use checksums, only: checksum
   use failure, only: failure_t
   use deck_number, only: parse_real
   use deck_source, only: source_t, load_source
@@ -34,7 +35,7 @@ contains
 
     call load_source(deck%path_of(group, key), columns%source, error)
     if (allocated(error)) return
-    call deck%note_file(group, key, columns%source%text)
+    call deck%note_file(group, key, checksum(columns%source%text))
     n = count([(columns%source%text(first:first) == newline, first=1, &
       len(columns%source%text))]) + 1
     allocate (columns%first(n), columns%second(n), columns%place(n))

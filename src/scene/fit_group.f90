@@ -1,6 +1,7 @@
 !> &measurement and &fit: a measured force curve, and the keys of the deck that are fitted to it.
 module fit_group
   use kinds, only: wp
+  use checksums, only: checksum
   use failure, only: failure_t
   use text, only: lower, quoted, word_count, word_of
   use deck, only: deck_t
@@ -108,7 +109,7 @@ contains
         call deck%mistake('measurement', 'file', trouble%message, error)
         return
       end if
-      call deck%note_file('measurement', 'file', source%text)
+      call deck%note_file('measurement', 'file', checksum(source%text))
       call deck%assume('measurement', 'columns', '1 2')
       call deck%get('measurement', 'columns', names)
       allocate (measurement%columns(word_count(names)))

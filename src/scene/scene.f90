@@ -105,7 +105,7 @@ contains
 
   !> Tries the sweep, so that a mistake shows before hours of work and not after: every value
   !> against the bounds of its key, and in the whole scene the least and the largest of all keys
-  !> together, of a table its first and its last case.
+  !> together, of a file its first and its last case.
   subroutine check_sweep(scene, error)
     type(scene_t), intent(in) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -118,12 +118,12 @@ contains
     do k = 1, word_count(scene%sweep%names)
       call find_number(trial, word_of(scene%sweep%names, k), row, term, trouble, words=.true.)
       if (allocated(trouble)) then
-        call scene%deck%mistake('sweep', trim(merge('file', 'key ', &
-          allocated(scene%sweep%table))), trouble%message, error)
+        call scene%deck%mistake('sweep', trim(merge('file', 'key ', allocated(scene%sweep%file))), &
+          trouble%message, error)
         return
       end if
-      if (allocated(scene%sweep%table)) then
-        call try_values(scene, trial, k, scene%sweep%table(:, k), 'file', error)
+      if (allocated(scene%sweep%file)) then
+        call try_values(scene, trial, k, scene%sweep%file%telling(:, k), 'file', error)
       else if (scene%deck%is_set('sweep', 'values')) then
         call try_values(scene, trial, k, scene%sweep%axis(k)%values, 'values', error)
       else
@@ -148,7 +148,8 @@ contains
     do i = 1, size(values)
       call set_number(trial, word_of(scene%sweep%names, k), values(i), trouble)
       if (.not. allocated(trouble)) cycle
-      if (key == 'file') trouble%message = 'case ' // brief(real(i, wp)) // ': ' // trouble%message
+      if (key == 'file') trouble%message = 'case ' // &
+        brief(real(scene%sweep%file%of_case(i, k), wp)) // ': ' // trouble%message
       call scene%deck%mistake('sweep', key, trouble%message, error)
       return
     end do
@@ -168,10 +169,11 @@ contains
       key = 'from'
       if (scene%deck%is_set('sweep', 'values')) key = 'values'
       if (scene%deck%is_set('sweep', 'words')) key = 'words'
-      if (allocated(sweep%table)) key = 'file'
+      if (allocated(sweep%file)) key = 'file'
       do i = 1, 2
-        if (allocated(sweep%table)) then
-          values = sweep%values(merge(1, sweep%cases(), i == 1))
+        if (allocated(sweep%file)) then
+          values = sweep%file%first
+          if (i == 2) values = sweep%file%last
         else
           values = [(merge(minval(sweep%axis(k)%values), maxval(sweep%axis(k)%values), i == 1), &
             k=1, size(sweep%axis))]

@@ -13,7 +13,7 @@ module scene_groups
   use theory_names, only: theories, usual
   implicit none
   private
-  public :: scene_t, bodies_t, range_t, stability_t, regime_t, sweep_t, axis_t
+  public :: scene_t, bodies_t, range_t, stability_t, regime_t, sweep_t, axis_t, case_file_t
 
   !> &bodies
   type :: bodies_t
@@ -51,17 +51,27 @@ module scene_groups
     real(wp), allocatable :: values(:)
   end type axis_t
 
+  !> The cases of a file, which stay there: how many, the first and the last, and those values of
+  !> each key (value, key) that show whether all are allowed, with their cases.
+  type :: case_file_t
+    character(len=:), allocatable :: path
+    integer :: cases = 0
+    real(wp), allocatable :: first(:), last(:), telling(:, :)
+    integer, allocatable :: of_case(:, :)
+  end type case_file_t
+
   !> &sweep: blank-separated keys as 'group.key', and either the values of each, of which every
-  !> combination is a case, the last key varying fastest; or a table, row by row. words: those
+  !> combination is a case, the last key varying fastest; or a file, row by row. words: those
   !> that a key may hold, whose numbers are its values; blank of keys that hold numbers.
   type :: sweep_t
     character(len=:), allocatable :: names
     character(len=80), allocatable :: words(:)
     type(axis_t), allocatable :: axis(:)
-    real(wp), allocatable :: table(:, :)
+    type(case_file_t), allocatable :: file
   contains
     procedure :: cases
     procedure :: values
+    procedure :: last
     procedure :: shown
   end type sweep_t
 
@@ -94,24 +104,20 @@ contains
     class(sweep_t), intent(in) :: self
     integer :: i
 
-    if (allocated(self%table)) then
-      cases = size(self%table, 1)
+    if (allocated(self%file)) then
+      cases = self%file%cases
     else
       cases = product([(size(self%axis(i)%values), i=1, size(self%axis))])
     end if
   end function cases
 
-  !> The values of the keys in case i.
+  !> The values of the keys in case i of ranges and lists.
   pure function values(self, i)
     class(sweep_t), intent(in) :: self
     integer, intent(in) :: i
     real(wp), allocatable :: values(:)
     integer :: k, left
 
-    if (allocated(self%table)) then
-      values = self%table(i, :)
-      return
-    end if
     allocate (values(size(self%axis)))
     left = i - 1
     do k = size(self%axis), 1, -1
@@ -121,6 +127,18 @@ contains
       end associate
     end do
   end function values
+
+  !> The values of the keys in the last case.
+  pure function last(self) result(values)
+    class(sweep_t), intent(in) :: self
+    real(wp), allocatable :: values(:)
+
+    if (allocated(self%file)) then
+      values = self%file%last
+    else
+      values = self%values(self%cases())
+    end if
+  end function last
 
   !> A value of key k as text for a message.
   pure function shown(self, k, value) result(text)

@@ -6,10 +6,9 @@ module sweep_group
   use text, only: brief, quoted, word_count, word_of
   use deck, only: deck_t
   use deck_numbers, only: words_of, number_of_word
-  use deck_source, only: source_t, load_source
-  use data_table, only: data_table_t, read_named_table, largest_table
+  use case_rows, only: case_rows_t
   use deck_keys, only: key_spec, group, list_key, text_key, names_key
-  use scene_groups, only: scene_t, sweep_t
+  use scene_groups, only: scene_t, sweep_t, case_file_t
   implicit none
   private
   public :: sweep_keys, take_sweep
@@ -57,7 +56,7 @@ contains
       if (deck%is_set('sweep', 'file')) then
         call refuse(deck, ['key   ', 'values', 'words ', of_range//' '], &
           'file, whose columns say all', error)
-        if (.not. allocated(error)) call take_table(deck, sweep, error)
+        if (.not. allocated(error)) call take_file(deck, sweep, error)
         if (.not. allocated(error)) call find_words(deck, sweep)
         return
       end if
@@ -142,30 +141,72 @@ contains
     end do
   end subroutine refuse
 
-  !> The cases of a file.
-  subroutine take_table(deck, sweep, error)
+  !> The cases of a file, which is read through once to see that it has nothing but cases.
+  subroutine take_file(deck, sweep, error)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
     type(failure_t), allocatable, intent(inout) :: error
     type(failure_t), allocatable :: trouble
-    type(data_table_t) :: table
-    type(source_t) :: source
-    character(len=:), allocatable :: file
+    type(case_rows_t) :: rows
+    type(case_file_t) :: file
+    real(wp), allocatable :: values(:)
+    logical :: found
 
-    file = deck%path_of('sweep', 'file')
-    call load_source(file, source, trouble, largest_table)
-    if (.not. allocated(trouble)) then
-      call deck%note_file('sweep', 'file', source%text)
-      call read_named_table(file, deck, table, sweep%names, trouble)
-    end if
+    file%path = deck%path_of('sweep', 'file')
+    call rows%open(file%path, deck, trouble)
+    do while (.not. allocated(trouble))
+      call rows%next(values, found, trouble)
+      if (allocated(trouble) .or. .not. found) exit
+      if (file%cases == nint(most_cases)) then
+        call deck%mistake('sweep', 'file', quoted(file%path) // ' has more than ' // &
+          brief(most_cases) // ' cases', error)
+        exit
+      end if
+      call note_case(file, values)
+    end do
+    call rows%close()
+    call deck%note_file('sweep', 'file', rows%digest)
     if (allocated(trouble)) then
       call deck%mistake('sweep', 'file', trouble%message, error)
-    else if (size(table%value, 1) == 0) then
-      call deck%mistake('sweep', 'file', quoted(file) // ' has no cases', error)
+    else if (file%cases == 0) then
+      call deck%mistake('sweep', 'file', quoted(file%path) // ' has no cases', error)
     else
-      call move_alloc(table%value, sweep%table)
+      sweep%names = rows%names
+      sweep%file = file
     end if
-  end subroutine take_table
+  end subroutine take_file
+
+  !> Counts a case of a file. If the least and the largest value of a key are allowed and the first
+  !> that is not whole, all are.
+  subroutine note_case(file, values)
+    type(case_file_t), intent(inout) :: file
+    real(wp), intent(in) :: values(:)
+    logical :: telling(3)
+    integer :: k
+
+    file%cases = file%cases + 1
+    file%last = values
+    if (file%cases == 1) then
+      file%first = values
+      file%telling = spread(values, 1, size(telling))
+      allocate (file%of_case(size(telling), size(values)), source=1)
+      return
+    end if
+    do k = 1, size(values)
+      associate (known => file%telling(:, k))
+        telling = [values(k) < known(1), values(k) > known(2), &
+          is_whole(known(3)) .and. .not. is_whole(values(k))]
+        where (telling) known = values(k)
+        where (telling) file%of_case(:, k) = file%cases
+      end associate
+    end do
+  end subroutine note_case
+
+  elemental logical function is_whole(value)
+    real(wp), intent(in) :: value
+
+    is_whole = .not. abs(value - anint(value)) > 0
+  end function is_whole
 
   !> The values of every key from its range; none where these are wrong.
   subroutine take_ranges(deck, sweep, error)

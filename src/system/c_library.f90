@@ -8,7 +8,7 @@ module c_library
   private
   public :: c_open, c_read, c_write, c_sync, c_sync_above, c_close, c_size, c_cut, &
     c_make_folder, c_current_folder, c_lock, c_kind, c_rename, c_remove, c_free_disk, &
-    c_is_terminal, c_prepare, c_end_with_parent, &
+    c_is_terminal, c_prepare, c_end_with_parent, c_pause, &
     c_openblas_threads, c_openblas_end_threads, c_openblas_config, c_build_id
   public :: explain, system_failure, nul
   public :: as_input, as_output, as_kept_output, as_folder
@@ -133,6 +133,12 @@ module c_library
     !> Ends this process when that which began it ends, where the system can.
     subroutine c_end_with_parent() bind(c, name='snapin_end_with_parent')
     end subroutine c_end_with_parent
+
+    !> Waits for so many microseconds, or somewhat longer.
+    subroutine c_pause(microseconds) bind(c, name='snapin_pause')
+      import :: c_int
+      integer(c_int), value :: microseconds
+    end subroutine c_pause
 
     !> 1 where the linear algebra is OpenBLAS's, which gets `count` threads; 0: as many as it has.
     integer(c_int) function c_openblas_threads(count) bind(c, name='snapin_openblas_threads')

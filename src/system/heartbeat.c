@@ -62,8 +62,10 @@ static void show(struct heartbeat *self, double time) {
     int percent = (int)(100.0 * self->done / self->total);
     n += snprintf(text + n, size - n, ", %d %%", percent < 99 ? percent : 99);
     if (self->done > self->given && self->done <= self->total && time - self->origin >= too_early) {
-      snapin_duration((time - self->origin) * (self->total - self->done) /
-                          (self->done - self->given), duration, sizeof duration);
+      double each = (time - self->origin) / (self->done - self->given);
+      snapin_duration(each * (self->total - self->done), duration, sizeof duration);
+      if (each < 1)
+        n += snprintf(text + n, size - n, ", %.0f a second", 1 / each);
       n += snprintf(text + n, size - n, ", %s left", duration);
     }
   } else if (self->done > 0)
@@ -132,6 +134,11 @@ void *snapin_begin_progress(const char *name, long total, int live) {
 void snapin_progress(void *of, const char *label, int counted, int given) {
   struct heartbeat *self = of;
   pthread_mutex_lock(&self->lock);
+  /* Nobody can read what a step of less than a second is at. */
+  if (given < 0 && self->done - self->given > now() - self->origin) {
+    pthread_mutex_unlock(&self->lock);
+    return;
+  }
   self->done += counted;
   if (given > 0)
     self->given = self->done;

@@ -17,6 +17,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <time.h>
 #include <unistd.h>
 
 /* Beyond every errno. */
@@ -220,6 +221,13 @@ void snapin_end_with_parent(void) {
 #endif
   if (poll(&out, 1, 0) == 1 && (out.revents & POLLERR))
     raise(SIGTERM);
+}
+
+/* Leaves the core to others. */
+void snapin_pause(int microseconds) {
+  struct timespec time = {.tv_sec = microseconds / 1000000};
+  time.tv_nsec = microseconds % 1000000 * 1000L;
+  nanosleep(&time, NULL);
 }
 
 /* The library that does the linear algebra may or may not be OpenBLAS: it is asked at run time, so

@@ -75,7 +75,7 @@ contains
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
 
-    if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, label // nul, 1, 0)
+    if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, trim(label) // nul, 1, 0)
   end subroutine step
 
   !> Counts one step that an earlier run has done; the estimate of the time begins after it.
@@ -83,7 +83,7 @@ contains
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
 
-    if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, label // nul, 1, 1)
+    if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, trim(label) // nul, 1, 1)
   end subroutine skip
 
   !> Says what is being done without counting it.

@@ -40,6 +40,20 @@ def test_information_goes_to_stdout_with_status_0(snapin, decks, option):
     assert files_in(decks) == before
 
 
+def test_keys_that_are_named_are_those_of_the_list(snapin):
+    every = snapin("--keys").stdout
+    group = snapin("--keys", "Sweep").stdout
+    assert group in every and group.startswith("\n&sweep\n") and group.count("\n&") == 1
+    key = snapin("--keys", "sweep.file").stdout
+    assert [line.split()[0] for line in key.splitlines() if line[:3] > "   "] == ["&sweep", "file"]
+    both = snapin("--keys", "sweep", "force.law").stdout
+    assert both.count("\n&") == 2 and group in both
+    for wrong in ("swep", "sweep.fil"):
+        done = snapin("--keys", wrong)
+        assert done.returncode == 2 and done.stdout == ""
+        assert f"no group or key '{wrong}'" in done.stderr
+
+
 def test_help_names_every_option(snapin):
     text = snapin("--help").stdout
     for option in ["--out", "--check", "--resume", "--quiet", "--keys", "--results", "--version",

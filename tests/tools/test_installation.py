@@ -1,6 +1,7 @@
 """What pip and Meson install works where nothing of the checkout is in reach."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -70,18 +71,23 @@ def test_meson_installs_pages_and_completions_beside_the_program(checkout, tmp_p
                if "--" in word}
     assert offered(root, "--") == options
     assert offered(root, "--re") == {"--resume", "--results"}
+    keys = set(re.findall(r"^  (\w+) ", run(program, "--keys", "sweep"), re.MULTILINE))
+    assert offered(root, "sweep", after="--keys") == {"sweep"} | {f"sweep.{key}" for key in keys}
+    assert {"bodies", "bodies.radius"} <= offered(root, "b", after="--keys")
+    zsh = (root / "usr/share/zsh/site-functions/_snapin").read_text()
+    assert " double_layer.salt " in zsh
     page = (root / "usr/share/man/man1/snapin.1").read_text()
     for group in ("&bodies", "&sweep", "&double_layer"):
         assert group in page
 
 
-def offered(root, word):
-    """What bash's completion offers for the first word after the program's name."""
+def offered(root, word, *, after="snapin"):
+    """What bash's completion offers for a word after another."""
     script = root / "usr/share/bash-completion/completions/snapin.bash"
     # compopt works only while a line is completed.
-    code = ('compopt() { :; }; . "$1"; COMP_WORDS=(snapin "$2"); COMP_CWORD=1; _snapin; '
+    code = ('compopt() { :; }; . "$1"; COMP_WORDS=(snapin "$3" "$2"); COMP_CWORD=2; _snapin; '
             'printf "%s\\n" "${COMPREPLY[@]}"')
-    return set(run("bash", "-c", code, "bash", script, word).split())
+    return set(run("bash", "-c", code, "bash", script, word, after).split())
 
 
 @pytest.mark.long

@@ -14,6 +14,8 @@
 #              every reported number, of cycles, folds and the energy lost (tools/verify/judge.py)
 #   faults     every system call on results fails, kills the run, or is the last before a power cut
 #   guards     guards are taken out one at a time, and a test has to fail
+#   mpi        builds with OpenMPI and with MPICH, which are installed where Debian offers them, and the
+#              tests of sweeps on many processes on each
 #   fuzz       a coverage-led search for decks that the reader misreads (needs AFL++)
 #   pages      no page has figures of older numerics than src/ (tools/pages.py says what renews it)
 #
@@ -110,6 +112,17 @@ faults() { OMP_NUM_THREADS=1 PYTHONPATH=tests "$python" -m support.faults; }
 
 guards() { "$python" "$here/guards.py"; }
 
+mpi() {
+  dpkg -s libopenmpi-dev openmpi-bin mpich libmpich-dev > /dev/null 2>&1 ||
+    { logged 'updating the package lists' apt-get update
+      logged 'installing OpenMPI and MPICH' env DEBIAN_FRONTEND=noninteractive apt-get install -y \
+        --no-install-recommends libopenmpi-dev openmpi-bin mpich libmpich-dev; } || return
+  for kind in openmpi mpich; do
+    FC=mpifort.$kind CC=cc builds build-$kind -Dmpi=enabled -Dpython=disabled || return
+  done
+  "$python" -m pytest -q --long tests/app/test_ranks.py
+}
+
 fuzz() {
   has afl-fuzz || { say 'AFL++ is missing: apt-get install afl++'; return 1; }
   "$top/tools/fuzz/campaign.sh" "${FUZZ:-240}" "$top/build-fuzz" || return
@@ -120,7 +133,7 @@ fuzz() {
 pages() { "$python" "$top/tools/pages.py"; }
 
 failed=
-stages='long traps memory coverage levels extremes faults judge guards fuzz pages'
+stages='long traps memory coverage levels extremes faults judge guards mpi fuzz pages'
 for stage in ${*:-$stages}; do
   case " $stages " in
     *" $stage "*) ;;

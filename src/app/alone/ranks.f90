@@ -1,0 +1,69 @@
+!> The crew of a build without MPI: one process. Its twin in `mpi/` says what each procedure is for.
+module ranks
+  use failure, only: failure_t, fail, bad_input
+  use byte_record, only: byte_record_t
+  use launch, only: started_together
+  implicit none
+  private
+  public :: crew_t
+
+  !> Processes that work together, each with its number: 0 hands out what there is to do, and
+  !> 1 to `workers` do it. Alone there is only 0.
+  type :: crew_t
+    integer :: rank = 0, workers = 0
+  contains
+    procedure :: begin
+    procedure :: end => end_crew
+    procedure :: first_of
+    procedure :: send
+    procedure :: receive
+  end type crew_t
+
+contains
+
+  !> Fails where there are others: every one of them would do the whole work.
+  subroutine begin(self, error)
+    class(crew_t), intent(inout) :: self
+    type(failure_t), allocatable, intent(out) :: error
+
+    self%workers = 0
+    if (started_together() > 1) call fail(error, bad_input, 'mpirun has started several of ' // &
+      'these, and this build has no MPI; start one, which uses all cores of the machine, or ' // &
+      'build with -Dmpi=enabled')
+  end subroutine begin
+
+  !> Nobody is waited for.
+  subroutine end_crew(self)
+    class(crew_t), intent(inout) :: self
+
+    self%workers = 0
+  end subroutine end_crew
+
+  !> 0 if anything is true, else -1.
+  integer function first_of(self, true)
+    class(crew_t), intent(in) :: self
+    logical, intent(in) :: true
+
+    first_of = merge(self%rank, -1, true)
+  end function first_of
+
+  !> There is nobody to send to.
+  subroutine send(self, record, to)
+    class(crew_t), intent(in) :: self
+    type(byte_record_t), intent(in) :: record
+    integer, intent(in) :: to
+
+    if (to > self%workers .or. record%held < 0) error stop 'nobody is there'
+  end subroutine send
+
+  !> Nobody sends: an empty record.
+  subroutine receive(self, record, from)
+    class(crew_t), intent(in) :: self
+    type(byte_record_t), intent(inout) :: record
+    integer, intent(out) :: from
+
+    call record%clear()
+    from = self%rank
+  end subroutine receive
+
+end module ranks

@@ -1,0 +1,212 @@
+!> The rows of a file with a line of names, one after the other: of the file only a piece is held,
+!> however many rows it has. Lines are as in `data_table`.
+module case_rows
+  use, intrinsic :: iso_c_binding, only: c_int, c_long
+  use kinds, only: wp, long
+  use failure, only: failure_t, fail, file_trouble
+  use c_library, only: c_open, c_read, c_close, explain, as_input, not_there, nul
+  use checksums, only: checksum
+  use text, only: lower, printable, word_of
+  use deck_number, only: parse_real
+  use deck_numbers, only: words_of, number_of_word
+  use deck_source, only: source_t, take_source
+  use deck_store, only: deck_t
+  use data_table, only: cell_t, split, is_header, after_mark, point_decimals, counted
+  use number_columns, only: uncommented
+  implicit none
+  private
+  public :: case_rows_t
+
+  !> Bytes of the piece that is held.
+  integer, parameter :: piece = 65536
+
+  !> A file that is being read. Not to be copied meanwhile.
+  type :: case_rows_t
+    !> Blank-separated, in lower case.
+    character(len=:), allocatable :: names
+    !> The words that each column may hold, as `words_of`.
+    character(len=80), allocatable :: words(:)
+    !> Checksum of what was read so far.
+    integer(long) :: digest = 0
+    character(len=:), allocatable, private :: file
+    integer(c_int), private :: descriptor = -1
+    character(len=piece), private :: buffer
+    !> Bytes in the buffer, and those of them that lines were made of.
+    integer, private :: held = 0, used = 0
+    !> The present line and its cells.
+    type(source_t), private :: line
+    type(cell_t), allocatable, private :: cells(:)
+    integer, private :: lines = 0
+    !> Whether the present line is a row that is still to be handed out.
+    logical, private :: waiting = .false.
+  contains
+    procedure :: open => open_rows
+    procedure :: next
+    procedure :: close => close_rows
+    procedure, private :: next_line
+  end type case_rows_t
+
+contains
+
+  !> Opens a file and reads its line of names, the last comment before the rows if no other is one;
+  !> `deck` knows which of them are keys that hold a word.
+  subroutine open_rows(self, file, deck, error)
+    class(case_rows_t), intent(inout) :: self
+    character(len=*), intent(in) :: file
+    type(deck_t), intent(in) :: deck
+    type(failure_t), allocatable, intent(out) :: error
+    type(source_t) :: comment, named
+    type(cell_t), allocatable :: names(:)
+    character(len=:), allocatable :: reason
+    integer(c_int) :: sort
+    logical :: found
+    integer :: k
+
+    call self%close()
+    self%file = file
+    self%names = ''
+    self%digest = 0
+    self%held = 0
+    self%used = 0
+    self%lines = 0
+    self%waiting = .false.
+    self%descriptor = c_open(file // nul, as_input)
+    if (self%descriptor < 0) then
+      call explain(self%descriptor, sort, reason)
+      if (sort == not_there) reason = 'no such file'
+      call fail(error, file_trouble, printable(file) // ': ' // reason)
+      return
+    end if
+    comment%text = ''
+    do
+      call self%next_line(found, error)
+      if (allocated(error) .or. .not. found) return
+      if (size(self%cells) > 0) exit
+      if (index(self%line%text, '#') > 0) comment = self%line
+    end do
+    names = self%cells
+    named = self%line
+    if (.not. is_header(self%line, 1, self%cells)) then
+      self%waiting = .true.
+      named = comment
+      call split(after_mark(comment%text), names)
+      if (size(names) /= size(self%cells)) then
+        call self%line%complain(1, '', '', 'no line of names before the numbers', error)
+        return
+      end if
+    end if
+    if (allocated(self%words)) deallocate (self%words)
+    allocate (self%words(size(names)))
+    do k = 1, size(names)
+      if (k > 1) self%names = self%names // ' '
+      self%names = self%names // lower(named%part(names(k)%first, names(k)%last))
+      self%words(k) = words_of(deck, word_of(self%names, k))
+    end do
+  end subroutine open_rows
+
+  !> The values of the next row; of words their numbers. Not found: there are no more, and the file
+  !> is closed. error: what is wrong with the row, with file and line.
+  subroutine next(self, values, found, error)
+    class(case_rows_t), intent(inout) :: self
+    real(wp), allocatable, intent(inout) :: values(:)
+    logical, intent(out) :: found
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: what
+    integer :: k
+
+    found = self%waiting
+    do while (.not. found)
+      call self%next_line(found, error)
+      if (allocated(error)) return
+      if (.not. found) then
+        call self%close()
+        return
+      end if
+      found = size(self%cells) > 0
+    end do
+    self%waiting = .false.
+    if (size(self%cells) /= size(self%words)) then
+      call self%line%complain(1, '', '', counted(size(self%cells)) // ' where ' // &
+        counted(size(self%words)) // ' are expected', error)
+      return
+    end if
+    if (.not. allocated(values)) allocate (values(size(self%words)))
+    do k = 1, size(self%words)
+      associate (first => self%cells(k)%first, last => self%cells(k)%last)
+        if (self%words(k) == '') then
+          call parse_real(self%line%text(first:last), values(k), what)
+        else
+          call number_of_word(self%line%text(first:last), self%words(k), values(k), what)
+        end if
+        if (.not. allocated(what)) cycle
+        call self%line%complain(first, '', '', what, error)
+        return
+      end associate
+    end do
+  end subroutine next
+
+  !> Closes the file, if it is open.
+  subroutine close_rows(self)
+    class(case_rows_t), intent(inout) :: self
+    integer(c_int) :: status
+
+    ! Nothing was written.
+    if (self%descriptor >= 0) status = c_close(self%descriptor)
+    self%descriptor = -1
+  end subroutine close_rows
+
+  !> Reads one line further and finds its cells.
+  subroutine next_line(self, found, error)
+    class(case_rows_t), intent(inout) :: self
+    logical, intent(out) :: found
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: bytes
+    integer :: length
+
+    found = .false.
+    if (self%descriptor < 0) return
+    length = line_length()
+    if (length < 0) then
+      ! What is left of the buffer may be the beginning of a line.
+      self%held = self%held - self%used
+      self%buffer(:self%held) = self%buffer(self%used + 1:self%used + self%held)
+      self%used = 0
+      length = int(c_read(self%descriptor, self%buffer(self%held + 1:), &
+        int(piece - self%held, c_long)))
+      if (length < 0) then
+        call fail(error, file_trouble, printable(self%file) // ': cannot be read')
+        return
+      end if
+      self%held = self%held + length
+      length = line_length()
+      if (length < 0) length = self%held
+      if (self%held == 0) return
+    end if
+    if (length == piece) then
+      call fail(error, file_trouble, printable(self%file) // ': a line that is no row of a table')
+      return
+    end if
+    bytes = self%buffer(self%used + 1:self%used + length)
+    self%used = min(self%held, self%used + length + 1)
+    if (len(bytes) > 0) then
+      if (bytes(len(bytes):) == achar(13)) bytes = bytes(:len(bytes) - 1)
+    end if
+    call take_source(self%file, bytes, self%line, error)
+    self%line%lines_before = self%lines
+    self%lines = self%lines + 1
+    if (allocated(error)) return
+    self%digest = checksum([self%digest, checksum(self%line%text)])
+    call point_decimals(self%line%text)
+    call split(uncommented(self%line%text), self%cells)
+    found = .true.
+
+  contains
+
+    !> Characters before the next line's end in the buffer; -1: it has none.
+    integer function line_length()
+      line_length = index(self%buffer(self%used + 1:self%held), new_line('a')) - 1
+    end function line_length
+
+  end subroutine next_line
+
+end module case_rows
