@@ -54,8 +54,9 @@ contains
     type(seen_gaps_t), intent(in), optional :: seen
     real(wp), allocatable :: given(:), parameter(:)
     real(wp) :: most(1)
-    integer :: k
+    integer :: worst, k
 
+    worst = 1
     most = 10.0_wp**(-digits)*abs(problem%law%pressure([problem%law%edge_gap]))
     if (present(seen)) then
       parameter = seen%radius
@@ -113,24 +114,25 @@ contains
         nodes = ceiling(times(k)*nodes_on(z_length, density, fewest))
         if (nodes > allowed) exit
         if (z_length < 2*shortest) return
-        if (tail_on(z, z_length, nodes) <= most(1)) return
+        if (is_resolved(z, z_length, nodes)) return
       end do
       nodes = 0
     end function order_of
 
-    !> The largest of the last two Legendre coefficients of the pressure on a panel, which counts as
-    !> the area does on which it acts.
-    real(wp) function tail_on(z, z_length, nodes) result(tail)
+    !> Whether the last two Legendre coefficients of the pressure on a panel, which count as the area
+    !> does on which it acts, are small. The gap that asked for more before is tried first.
+    logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
       type(local_nodes_t) :: local
       real(wp) :: pressure(nodes), offset(nodes), left
-      integer :: j
+      integer :: j, k
 
-      tail = 0
+      is_resolved = .false.
       local = gauss_nodes(nodes)
       offset = side*d*sinh(z + z_length*local%node)
-      do j = 1, size(parameter)
+      do k = 0, size(parameter)
+        j = merge(k, worst, k > 0)
         associate (unit => merge(1.0_wp, parameter(j), about == about_axis))
           if (present(seen)) then
             pressure = problem%law%pressure(seen%gap(problem%shape, j, offset))
@@ -139,10 +141,13 @@ contains
           end if
           left = local%tail(pressure*(1 + (unit*offset)**2))
           if (squared .and. left > 0) left = left*local%tail(pressure)/maxval(abs(pressure))
-          tail = max(tail, left)
         end associate
+        if (left <= most(1)) cycle
+        worst = j
+        return
       end do
-    end function tail_on
+      is_resolved = .true.
+    end function is_resolved
 
   end subroutine fit_panels
 
