@@ -1,16 +1,15 @@
 !> Panels short enough for a force law with lengths of its own: barriers, oscillations and steps lie
 !> somewhere between the edge and infinity, where no general rule can know of them.
 !>
-!> The pressure is tried over gaps as bodies have them: undeformed before contact; about the front
-!> of a step those of a disk under tension; in contact the gap outside a JKR contact. Or, once there
-!> is a path, over the gaps seen on it. Panels in z on which the last Legendre coefficients of that
+!> The pressure is tried over gaps as bodies have them: undeformed before contact; in contact the gap
+!> outside a JKR contact. Or, once there is a path, over the gaps seen on it. Panels in z on which the last Legendre coefficients of that
 !> pressure are not small get more nodes or are halved, whichever takes fewer.
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
   use discretisation, only: local_nodes_t, gauss_nodes
   use seen_gaps, only: seen_gaps_t
-  use step_front, only: front_leads, gap_about_front
+  use step_front, only: front_leads
   implicit none
   private
   public :: fit_panels, nodes_on
@@ -176,8 +175,8 @@ contains
     values = from*(to/from)**[(real(k, wp)/(tried - 1), k=0, tried - 1)]
   end function between
 
-  !> The gap at an offset from the centre: before contact with the gap h on the axis; about a front
-  !> of radius h; outside a JKR contact of radius h, at whose edge is the gap of largest tension.
+  !> The gap at an offset from the centre: before contact with the gap h on the axis; outside a JKR
+  !> contact of radius h, at whose edge is the gap of largest tension.
   !> JKR theory opens that gap as the root of the distance; cohesion rounds the root over d.
   pure function gap_at(problem, about, h, offset, d) result(gap)
     type(problem_t), intent(in) :: problem
@@ -185,17 +184,14 @@ contains
     real(wp), intent(in) :: h, offset(:), d
     real(wp), dimension(size(offset)) :: gap, x, angle
 
-    select case (about)
-    case (about_axis)
+    if (about == about_axis) then
       gap = h + problem%shape%height(offset)
-    case (about_front)
-      gap = gap_about_front(problem, h, 1 + offset)
-    case default
+    else
       x = 1 + offset**2/(d + sqrt(d**2 + offset**2))
       angle = acos(min(1/x, 1.0_wp))
       gap = problem%law%edge_gap + problem%shape%hertz_gap(h, x) + &
         2/pi*sqrt(4*pi*adhesion_strength(problem)*h)*angle
-    end select
+    end if
   end function gap_at
 
 end module law_panels

@@ -182,9 +182,10 @@ contains
         lengths = [rung*ceiling(z_length/rung)]
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
       end if
-      ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
-      if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
-        (present(seen) .or. .not. (about == about_edge .and. side < 0))) then
+      ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known; and in
+      ! contact under a law with a step meshes wait for gaps that are seen.
+      if (law%edge_gap > 0 .and. .not. law%of_paper .and. (present(seen) .or. about == about_axis &
+        .or. .not. (side < 0 .or. law%step_width > 0))) then
         call fit_panels(problem, about, side, shape%d, low, high, density, fewest, smoothness, &
           .not. (broken .or. law%has_kink), lengths, orders, seen)
       else
