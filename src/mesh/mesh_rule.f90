@@ -152,9 +152,9 @@ contains
   !> Adds sinh panels over z_length. One is enough for the paper's laws, which are powers of the gap
   !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
   !> these. Other laws have lengths of their own anywhere within their reach: they have several
-  !> panels, which are halved where such lengths are seen. Laws that oscillate or have a kink, and other shapes,
-  !> have short panels from the beginning, and as long as gaps are only foreseen, laws that end in a
-  !> step. about, side, low, high, seen: see `fit_panels`.
+  !> panels, which are halved where such lengths are seen. Laws that oscillate or have a kink, and
+  !> other shapes, have short panels from the beginning. about, side, low, high, seen: see
+  !> `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -173,8 +173,7 @@ contains
     fewest = ceiling(short_order + short_orders*digits)
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
     associate (law => problem%law)
-      if (law%period > 0 .or. law%has_kink .or. broken .or. &
-        law%step_width > 0 .and. .not. present(seen) .or. problem%shape%exponent > 2) then
+      if (law%period > 0 .or. law%has_kink .or. broken .or. problem%shape%exponent > 2) then
         panels = ceiling(z_length/short)
         lengths = spread(z_length/panels, 1, panels)
       else
