@@ -29,7 +29,7 @@ module edge_locked
   !> Largest ratio of the contact radii that one mesh serves: a mesh for wider bands has more nodes,
   !> and more bands have more meshes. Under a law that oscillates or has a step, short panels lie
   !> wherever its gaps are at any radius of the band: of a step few, of oscillations many.
-  real(wp), parameter :: widest_band = 30, narrow_band = 2, narrowest_band = 1.3_wp
+  real(wp), parameter :: widest_band = 30, narrow_band = 2, narrowest_band = 1.5_wp
   !> Part of the radius at which a front becomes sharp, from which on a mesh is locked to it.
   real(wp), parameter :: early = 0.25_wp
 
