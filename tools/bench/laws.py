@@ -78,10 +78,9 @@ def _runs(program, quick, decks):
 
 
 def _row(name, accuracy, run):
-    parts = run.kernel_seconds + run.solve_seconds + run.estimate_seconds
-    # A fit, whose paths are many, does not count these.
+    # A fit, whose paths are many, does not tell its parts.
     return {"problem": name, "accuracy": accuracy,
-            "price": run.price * (parts / run.wall if parts else 1),
+            "price": run.calculation / run.unit if run.calculation else run.price,
             "nodes": run.nodes, "states": run.states, "factorisations": run.factorisations,
             "estimate": run.estimate}
 
