@@ -1,9 +1,10 @@
 !> Panels short enough for a force law with lengths of its own: barriers, oscillations and steps lie
 !> somewhere between the edge and infinity, where no general rule can know of them.
 !>
-!> The pressure is tried over gaps as bodies have them: undeformed before contact; in contact the gap
-!> outside a JKR contact. Or, once there is a path, over the gaps seen on it. Panels in z on which the last Legendre coefficients of that
-!> pressure are not small get more nodes or are halved, whichever takes fewer.
+!> The pressure is tried over gaps as bodies have them: undeformed before contact; in contact the
+!> gap outside a JKR contact. Or, once there is a path, over the gaps seen on it. Panels in z on
+!> which the last Legendre coefficients of that pressure are not small get more nodes or are halved,
+!> whichever takes fewer.
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
@@ -118,8 +119,8 @@ contains
       nodes = 0
     end function order_of
 
-    !> Whether the last two Legendre coefficients of the pressure on a panel, which count as the area
-    !> does on which it acts, are small. The gap that asked for more before is tried first.
+    !> Whether the last two Legendre coefficients of the pressure on a panel, which count as the
+    !> area does on which it acts, are small. The gap that asked for more before is tried first.
     logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes

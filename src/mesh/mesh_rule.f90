@@ -26,7 +26,8 @@ module mesh_rule
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
-  !> How many times the nodes laws have to which the rule was not fitted, where no pressure is tried.
+  !> How many times the nodes laws have to which the rule was not fitted, where no pressure is
+  !> tried.
   real(wp), parameter :: for_others = 1.3_wp
   !> Short panels: their length in z, so many nodes, and more for each digit. The longest of laws to
   !> which the rule was not fitted: what a polynomial lacks where the pressure changes shows on all
