@@ -24,9 +24,11 @@ module refinement
   !> too long: what a path that is lost leaves may ask for any number.
   real(wp), parameter :: most_growth = 1.5_wp
   !> The tail from which on a panel is too long, over the accuracy, where there are kinks: at a fold
-  !> the load feels 7 % of it. A tail that the iteration may leave of a stiff pressure; and one from
-  !> which on coefficients do not fall yet.
-  real(wp), parameter :: times_of_kinks = 30, least = 1.0e-8_wp, largest = 1.0e-2_wp
+  !> the load feels 7 % of it; and over the root of the accuracy where there are none:
+  !> of smooth laws load and h0 feel a thousandth of its square to some times that. A tail that the
+  !> iteration may leave of a stiff pressure; and one from which on coefficients do not fall yet.
+  real(wp), parameter :: times_of_kinks = 30, times_of_root = 3, least = 1.0e-8_wp, &
+    largest = 3.0e-2_wp
 
 contains
 
@@ -38,7 +40,7 @@ contains
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: accuracy
 
-    tail = min(sqrt(accuracy), largest)
+    tail = min(times_of_root*sqrt(accuracy), largest)
     if (law%has_kink .or. shape%smooth_from() > 0) tail = times_of_kinks*accuracy
     tail = max(tail, least)
   end function unresolved_from

@@ -100,32 +100,19 @@ contains
   end function value_at
 
   !> The larger of the last two Legendre coefficients of a function given on the nodes: small if its
-  !> polynomial is the function.
+  !> polynomial is the function. On n nodes, roots of P_n, the node's weight times P_(n-1) is 2/n of
+  !> the barycentric weight but for a sign, and P_(n-2) is (2 n - 1)/(n - 1) times x P_(n-1).
   pure real(wp) function tail(self, value)
     class(local_nodes_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
+    integer :: n
 
-    tail = max(abs(coefficient(self, value, size(value) - 1)), &
-      abs(coefficient(self, value, size(value) - 2)))
+    n = size(value)
+    associate (weighted => self%barycentric*value)
+      tail = 2*(2*n - 1.0_wp)/n*max(abs(sum(weighted)), &
+        (2*n - 3.0_wp)/max(n - 1, 1)*abs(sum((2*self%node - 1)*weighted)))
+    end associate
   end function tail
-
-  !> A Legendre coefficient of a function given on Gauss-Legendre nodes.
-  pure real(wp) function coefficient(local, value, degree)
-    class(local_nodes_t), intent(in) :: local
-    real(wp), intent(in) :: value(:)
-    integer, intent(in) :: degree
-    real(wp), dimension(size(value)) :: before, now, next
-    integer :: k
-
-    before = 1
-    now = 2*local%node - 1
-    do k = 1, degree - 1
-      next = ((2*k + 1)*(2*local%node - 1)*now - k*before)/(k + 1)
-      before = now
-      now = next
-    end do
-    coefficient = (2*degree + 1)*sum(local%weight*value*now)
-  end function coefficient
 
   !> The tail of a pressure on each panel, over the largest pressure or its unit, which is the law's
   !> largest tension or near it; 0 on a panel to infinity.

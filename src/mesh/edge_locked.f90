@@ -29,7 +29,7 @@ module edge_locked
   !> Largest ratio of the contact radii that one mesh serves: a mesh for wider bands has more nodes,
   !> and more bands have more meshes. Under a law that oscillates or has a step, short panels lie
   !> wherever its gaps are at any radius of the band: of a step few, of oscillations many.
-  real(wp), parameter :: widest_band = 30, narrow_band = 2, narrowest_band = 1.3_wp
+  real(wp), parameter :: widest_band = 30, narrow_band = 2, narrowest_band = 1.5_wp
   !> Part of the radius at which a front becomes sharp, from which on a mesh is locked to it.
   real(wp), parameter :: early = 0.25_wp
 
@@ -113,10 +113,8 @@ contains
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
       meshes%reach(:, k) = [h0_high, 0.0_wp]
       if (k >= contact) meshes%reach(:, k) = [low(k - 1), high(k - 1)]
-      meshes%shape(k) = meshes%shape_for(problem, k)
-    end do
-    if (present(coarser)) call follow(meshes, coarser, problem%law%of_paper)
-    do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
+      if (present(coarser)) call follow(meshes, coarser, k, problem)
+      if (.not. allocated(meshes%shape(k)%order)) meshes%shape(k) = meshes%shape_for(problem, k)
       call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
     end do
   end function new_mesh_family
@@ -197,22 +195,23 @@ contains
     self%waits(mesh) = .false.
   end subroutine renew
 
-  !> Lets meshes, not made yet, be what coarser ones are with more nodes: where these have short
-  !> panels or halves and, under laws that nodes were tried for, where laid out anew they have fewer
+  !> Lets a mesh, not made yet, be what a coarser one is with more nodes: where that has short
+  !> panels or halves and, under laws that nodes were tried for, where laid out anew it has fewer
   !> than that and so would be off by the same.
-  pure subroutine follow(self, coarser, of_paper)
-    type(mesh_family_t), intent(inout) :: self
+  subroutine follow(self, coarser, mesh, problem)
+    class(mesh_family_t), intent(inout) :: self
     type(mesh_family_t), intent(in) :: coarser
-    logical, intent(in) :: of_paper
+    integer, intent(in) :: mesh
+    type(problem_t), intent(in) :: problem
     type(mapped_shape_t) :: richer
-    integer :: k
 
-    do k = 1, size(coarser%grid)
-      if (.not. allocated(coarser%grid(k)%kernel)) cycle
-      richer = coarser%shape(k)%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
-      if (coarser%has_short_panels(k) .or. .not. of_paper .and. &
-        sum(self%shape(k)%order) < sum(richer%order)) self%shape(k) = richer
-    end do
+    if (.not. allocated(coarser%grid(mesh)%kernel)) return
+    richer = coarser%shape(mesh)%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
+    if (.not. coarser%has_short_panels(mesh)) then
+      self%shape(mesh) = self%shape_for(problem, mesh)
+      if (problem%law%of_paper .or. .not. sum(self%shape(mesh)%order) < sum(richer%order)) return
+    end if
+    self%shape(mesh) = richer
   end subroutine follow
 
   !> Whether a mesh has short panels or halves: more than one on a side of its centre.

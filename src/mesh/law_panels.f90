@@ -1,16 +1,16 @@
 !> Panels short enough for a force law with lengths of its own: barriers, oscillations and steps lie
 !> somewhere between the edge and infinity, where no general rule can know of them.
 !>
-!> The pressure is tried over gaps as bodies have them: undeformed before contact; about the front
-!> of a step those of a disk under tension; in contact the gap outside a JKR contact. Or, once there
-!> is a path, over the gaps seen on it. Panels in z on which the last Legendre coefficients of that
-!> pressure are not small get more nodes or are halved, whichever takes fewer.
+!> The pressure is tried over gaps as bodies have them: undeformed before contact; in contact the
+!> gap outside a JKR contact. Or, once there is a path, over the gaps seen on it. Panels in z on
+!> which the last Legendre coefficients of that pressure are not small get more nodes or are halved,
+!> whichever takes fewer.
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
   use discretisation, only: local_nodes_t, gauss_nodes
   use seen_gaps, only: seen_gaps_t
-  use step_front, only: front_leads, gap_about_front
+  use step_front, only: front_leads
   implicit none
   private
   public :: fit_panels, nodes_on
@@ -54,8 +54,9 @@ contains
     type(seen_gaps_t), intent(in), optional :: seen
     real(wp), allocatable :: given(:), parameter(:)
     real(wp) :: most(1)
-    integer :: k
+    integer :: worst, k
 
+    worst = 1
     most = 10.0_wp**(-digits)*abs(problem%law%pressure([problem%law%edge_gap]))
     if (present(seen)) then
       parameter = seen%radius
@@ -113,24 +114,25 @@ contains
         nodes = ceiling(times(k)*nodes_on(z_length, density, fewest))
         if (nodes > allowed) exit
         if (z_length < 2*shortest) return
-        if (tail_on(z, z_length, nodes) <= most(1)) return
+        if (is_resolved(z, z_length, nodes)) return
       end do
       nodes = 0
     end function order_of
 
-    !> The largest of the last two Legendre coefficients of the pressure on a panel, which counts as
-    !> the area does on which it acts.
-    real(wp) function tail_on(z, z_length, nodes) result(tail)
+    !> Whether the last two Legendre coefficients of the pressure on a panel, which count as the
+    !> area does on which it acts, are small. The gap that asked for more before is tried first.
+    logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
       type(local_nodes_t) :: local
       real(wp) :: pressure(nodes), offset(nodes), left
-      integer :: j
+      integer :: j, k
 
-      tail = 0
+      is_resolved = .false.
       local = gauss_nodes(nodes)
       offset = side*d*sinh(z + z_length*local%node)
-      do j = 1, size(parameter)
+      do k = 0, size(parameter)
+        j = merge(k, worst, k > 0)
         associate (unit => merge(1.0_wp, parameter(j), about == about_axis))
           if (present(seen)) then
             pressure = problem%law%pressure(seen%gap(problem%shape, j, offset))
@@ -139,10 +141,13 @@ contains
           end if
           left = local%tail(pressure*(1 + (unit*offset)**2))
           if (squared .and. left > 0) left = left*local%tail(pressure)/maxval(abs(pressure))
-          tail = max(tail, left)
         end associate
+        if (left <= most(1)) cycle
+        worst = j
+        return
       end do
-    end function tail_on
+      is_resolved = .true.
+    end function is_resolved
 
   end subroutine fit_panels
 
@@ -171,8 +176,8 @@ contains
     values = from*(to/from)**[(real(k, wp)/(tried - 1), k=0, tried - 1)]
   end function between
 
-  !> The gap at an offset from the centre: before contact with the gap h on the axis; about a front
-  !> of radius h; outside a JKR contact of radius h, at whose edge is the gap of largest tension.
+  !> The gap at an offset from the centre: before contact with the gap h on the axis; outside a JKR
+  !> contact of radius h, at whose edge is the gap of largest tension.
   !> JKR theory opens that gap as the root of the distance; cohesion rounds the root over d.
   pure function gap_at(problem, about, h, offset, d) result(gap)
     type(problem_t), intent(in) :: problem
@@ -180,17 +185,14 @@ contains
     real(wp), intent(in) :: h, offset(:), d
     real(wp), dimension(size(offset)) :: gap, x, angle
 
-    select case (about)
-    case (about_axis)
+    if (about == about_axis) then
       gap = h + problem%shape%height(offset)
-    case (about_front)
-      gap = gap_about_front(problem, h, 1 + offset)
-    case default
+    else
       x = 1 + offset**2/(d + sqrt(d**2 + offset**2))
       angle = acos(min(1/x, 1.0_wp))
       gap = problem%law%edge_gap + problem%shape%hertz_gap(h, x) + &
         2/pi*sqrt(4*pi*adhesion_strength(problem)*h)*angle
-    end select
+    end if
   end function gap_at
 
 end module law_panels

@@ -26,11 +26,13 @@ module mesh_rule
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
-  !> How many times the nodes laws have to which the rule was not fitted, where no pressure is tried
-  !> or none as sharp as between bodies that pull each other together.
+  !> How many times the nodes laws have to which the rule was not fitted, where no pressure is
+  !> tried.
   real(wp), parameter :: for_others = 1.3_wp
-  !> Short panels: their length in z, so many nodes, and more for each digit.
-  real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
+  !> Short panels: their length in z, so many nodes, and more for each digit. The longest of laws to
+  !> which the rule was not fitted: what a polynomial lacks where the pressure changes shows on all
+  !> of its panel, and far out that counts as the area does, though the pressure is small there.
+  real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp, longest = 4
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
@@ -50,7 +52,6 @@ contains
 
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
       (1 + 0.03_wp*log(1 + adhesion_strength(problem)))
-    if (.not. problem%law%of_paper) density = for_others*density
     reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
     call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
     feature = smallest_feature(problem, 1.0_wp)
@@ -86,7 +87,6 @@ contains
       inner = 1.5_wp*inner
       outer = inner
     end if
-    if (.not. problem%law%of_paper) inner = for_others*inner
     reach = max(nearest_tail, beyond_poles*problem%shape%position_of(0.5_wp*calm_gap(problem)))
     ! As long as a contact is smaller than its neck, the pressure around it is that before contact;
     ! where the neck is wider than the force reaches, this is smooth enough.
@@ -152,10 +152,10 @@ contains
 
   !> Adds sinh panels over z_length. One is enough for the paper's laws, which are powers of the gap
   !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
-  !> these. Other laws have lengths of their own anywhere within their reach, and where these are
-  !> seen the panel is halved. Laws that oscillate or have a kink, and other shapes,
-  !> have short panels from the beginning, and as long as gaps are only foreseen, laws that end in a
-  !> step. about, side, low, high, seen: see `fit_panels`.
+  !> these. Other laws have lengths of their own anywhere within their reach: they have several
+  !> panels, which are halved where such lengths are seen. Laws that oscillate or have a kink, and
+  !> other shapes, have short panels from the beginning. about, side, low, high, seen: see
+  !> `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -174,21 +174,23 @@ contains
     fewest = ceiling(short_order + short_orders*digits)
     smoothness = merge(min(digits, digits_of_broken), digits, broken)
     associate (law => problem%law)
-      if (law%period > 0 .or. law%has_kink .or. broken .or. &
-        law%step_width > 0 .and. .not. present(seen) .or. problem%shape%exponent > 2) then
+      if (law%period > 0 .or. law%has_kink .or. broken .or. problem%shape%exponent > 2) then
         panels = ceiling(z_length/short)
         lengths = spread(z_length/panels, 1, panels)
       else
         lengths = [rung*ceiling(z_length/rung)]
+        panels = merge(1, ceiling(lengths(1)/longest), law%of_paper)
+        lengths = spread(lengths(1)/panels, 1, panels)
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
       end if
-      ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known.
-      if (law%edge_gap > 0 .and. .not. law%of_paper .and. &
-        (present(seen) .or. .not. (about == about_edge .and. side < 0))) then
+      ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known; and in
+      ! contact under a law with a step meshes wait for gaps that are seen.
+      if (law%edge_gap > 0 .and. .not. law%of_paper .and. (present(seen) .or. about == about_axis &
+        .or. .not. (side < 0 .or. law%step_width > 0))) then
         call fit_panels(problem, about, side, shape%d, low, high, density, fewest, smoothness, &
           .not. (broken .or. law%has_kink), lengths, orders, seen)
       else
-        orders = nodes_on(lengths, density, fewest)
+        orders = nodes_on(lengths, merge(1.0_wp, for_others, law%of_paper)*density, fewest)
       end if
     end associate
     if (.not. allocated(shape%order)) allocate (shape%order(0), shape%z_length(0))

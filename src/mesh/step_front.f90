@@ -8,7 +8,7 @@ module step_front
   use dimensionless_problem, only: problem_t
   implicit none
   private
-  public :: front_leads, first_front, last_front, front_width, gap_about_front
+  public :: front_leads, first_front, last_front, front_width
 
   !> Inside the step, so many of its widths from the middle, its tension is complete; and the least
   !> part of the largest tension that makes bodies follow the step before what is nearer. Under
@@ -71,38 +71,5 @@ contains
     width = min(1.0_wp, problem%law%step_width/ &
       (c*(problem%shape%slope(c) + 4/pi*logarithm*pull(problem))))
   end function front_width
-
-  !> The gap at positions x (units of c) about a front of radius c whose disk is under uniform
-  !> tension.
-  elemental real(wp) function gap_about_front(problem, c, x) result(gap)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: c, x
-
-    gap = problem%law%step_at + problem%shape%height(c*x) - problem%shape%height(c) + &
-      2*pull(problem)*c*(4/pi - raised_by_disk(x))
-  end function gap_about_front
-
-  !> Integral of the kernel (15) over the unit disk: 4/pi E(x^2) inside, and outside
-  !> 4/pi [x E(1/x^2) - (x - 1/x) K(1/x^2)], by arithmetic-geometric means.
-  elemental real(wp) function raised_by_disk(x) result(raised)
-    real(wp), intent(in) :: x
-    real(wp) :: q, a, b, next, total, integral_k, integral_e
-    integer :: step
-
-    q = min(x, 1/max(x, tiny(1.0_wp)))
-    a = 1
-    b = sqrt(max((1 - q)*(1 + q), epsilon(1.0_wp)**2))
-    total = 0.5_wp*q**2
-    do step = 0, 8
-      total = total + 2.0_wp**step*(0.5_wp*(a - b))**2
-      next = 0.5_wp*(a + b)
-      b = sqrt(a*b)
-      a = next
-    end do
-    integral_k = pi/(2*a)
-    integral_e = integral_k*(1 - total)
-    raised = 4/pi*integral_e
-    if (x > 1) raised = 4/pi*(x*integral_e - (x - 1/x)*integral_k)
-  end function raised_by_disk
 
 end module step_front

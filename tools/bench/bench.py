@@ -38,6 +38,7 @@ _GUIDE = program.ROOT / "docs" / "accuracy.md"
 _PARTS = {
     "accuracy": (accuracy.measure, accuracy.draw, accuracy.tables),
     "laws": (laws.measure, None, laws.tables),
+    "experiments": (laws.measure_experiments, None, laws.tables_experiments),
     "error_law": (accuracy.measure_law, accuracy.draw_law, accuracy.tables_law),
     "ratios": (ratios.measure, None, ratios.tables),
     "sigma": (scaling.measure_sigma, scaling.draw_sigma, None),
@@ -48,7 +49,7 @@ _PARTS = {
 }
 
 # Those whose tables compare with the sources before.
-_COMPARED = ("accuracy", "laws", "ratios")
+_COMPARED = ("accuracy", "laws", "experiments", "ratios")
 
 
 def main():

@@ -1,43 +1,111 @@
-"""The price of other laws and shapes than the paper's: paths of examples, calculation alone."""
+"""The price of other laws and shapes than the paper's, and of what is done along a path.
+
+Of laws and shapes it is that of paths of examples, of experiments that of whole examples;
+calculation alone.
+"""
 
 import math
+import shutil
 
 import problems
 
-ACCURACIES = (1e-3, 1e-6)
-# Runs are judged against this accuracy, which the dear ones still reach in seconds.
-_REFERENCE = 1e-9
-_EXAMPLES = ("dlvo", "hydrophobic", "dugdale", "capillary", "sphere", "cone")
+ACCURACIES = (1e-3, 1e-6, 1e-9)
+# Runs are judged against this accuracy; none may take more than so many seconds.
+_REFERENCE, _PATIENCE = 1e-10, 60
+_EXAMPLES = ("van_der_waals", "lennard_jones_10_4", "morse", "hydration", "hydrophobic", "dlvo",
+             "depletion", "dugdale", "capillary", "steric", "structural", "tabulated", "sphere",
+             "cone", "punch", "profile")
+# The first is a cycle.
+_EXPERIMENTS = ("van_der_waals", "table", "fixed_load", "device", "regime", "sensitivity", "fit")
+# A number tells nothing of its estimate if the reference is hardly better.
+_BETTER = 10
 
 
 def measure(program, quick, say):
-    """Return one row for every problem and accuracy."""
+    """Return one row for every path of a problem and accuracy."""
     asked = [problems.in_two_parts(problem) for problem in problems.ADHESIVE]
     asked += [problems.example(name) for name in _EXAMPLES]
+    _lay_out_data(program)
     rows = []
     for problem in asked:
-        reference = program.run(problem.path(f"accuracy = {_REFERENCE}"))
-        decks = {accuracy: problem.path(f"accuracy = {accuracy}") for accuracy in ACCURACIES}
-        runs = program.best_of(3 if quick else 5, decks, enough=0.3)
-        for accuracy, run in runs.items():
+        reference = program.run(problem.path(f"accuracy = {_REFERENCE}"), _PATIENCE)
+        for accuracy, run in _runs(program, quick, {
+                accuracy: problem.path(f"accuracy = {accuracy}") for accuracy in ACCURACIES}):
             errors = run.errors(reference, problem.length)
-            parts = run.kernel_seconds + run.solve_seconds + run.estimate_seconds
-            rows.append({
-                "problem": problem.label, "accuracy": accuracy,
-                "price": run.price * parts / run.wall, "nodes": run.nodes, "states": run.states,
-                "factorisations": run.factorisations,
-                "error": max(errors.values(), default=math.nan), "estimate": run.estimate})
+            rows.append(_row(problem.label, accuracy, run)
+                        | {"error": max(errors.values(), default=math.nan)})
             say(f"{problem.label}, {accuracy:g}: {rows[-1]['price']:.3g} G")
     return rows
 
 
+def measure_experiments(program, quick, say):
+    """Return one row for every experiment and accuracy."""
+    _lay_out_data(program)
+    rows = []
+    for name in _EXPERIMENTS:
+        reference = program.run(problems.experiment(name, _REFERENCE), _PATIENCE)
+        for accuracy, run in _runs(program, quick, {
+                accuracy: problems.experiment(name, accuracy) for accuracy in ACCURACIES}):
+            rows.append(_row(name, accuracy, run) | {"ratio": _error_over_estimate(run, reference)})
+            say(f"{name}, {accuracy:g}: {rows[-1]['price']:.3g} G")
+    return rows
+
+
 def tables(rows, before):
-    """Return the price list."""
+    """Return the price list of laws and shapes."""
+    return {"laws": _price_list(rows, before, "error", "true error")}
+
+
+def tables_experiments(rows, before):
+    """Return the price list of experiments."""
+    return {"experiments": _price_list(rows, before, "ratio", "true error / estimate, largest")}
+
+
+def _price_list(rows, before, judged, title):
     earlier = {(row["problem"], row["accuracy"]): row["price"] for row in before}
-    return {"laws": (
+    return (
         ["", "accuracy", "G, calculation", "before", "nodes", "states", "factorisations",
-         "true error", "error_estimate"],
+         "error_estimate", title],
         [[row["problem"], f"{row['accuracy']:.0e}", row["price"],
-          earlier.get((row["problem"], row["accuracy"]), math.nan), f"{row['nodes']:.0f}",
-          f"{row['states']:.0f}", f"{row['factorisations']:.0f}", row["error"], row["estimate"]]
-         for row in rows])}
+          earlier.get((row["problem"], row["accuracy"]), math.nan),
+          *(f"{row[key]:.0f}" if row[key] else math.nan
+            for key in ("nodes", "states", "factorisations")), row["estimate"], row[judged]]
+         for row in rows])
+
+
+def _runs(program, quick, decks):
+    return program.best_of(3 if quick else 5, decks, _PATIENCE, enough=0.3).items()
+
+
+def _row(name, accuracy, run):
+    # A fit, whose paths are many, does not tell its parts.
+    return {"problem": name, "accuracy": accuracy,
+            "price": run.calculation / run.unit if run.calculation else run.price,
+            "nodes": run.nodes, "states": run.states, "factorisations": run.factorisations,
+            "estimate": run.estimate}
+
+
+def _lay_out_data(program):
+    """Put what decks read where they are run."""
+    for path in problems.EXAMPLES.iterdir():
+        if path.suffix in (".csv", ".txt"):
+            shutil.copy(path, program.scratch)
+
+
+def _error_over_estimate(run, reference):
+    """Return the largest error of a number over its estimate, where the reference can tell."""
+    ratios = []
+    for key in reference.summary:
+        if f"{key}_error" not in reference.summary or f"{key}_error" not in run.summary:
+            continue
+        values, exact, estimates, least = (
+            _listed(summary[name]) for name in (key, f"{key}_error")
+            for summary in (run.summary, reference.summary))
+        ratios += [abs(value - right) / estimate
+                   for value, right, estimate, known in zip(values, exact, estimates, least)
+                   if estimate > _BETTER * known > 0]
+    return max(ratios, default=math.nan)
+
+
+def _listed(value):
+    return value if isinstance(value, list) else [value]

@@ -5,7 +5,7 @@ import math
 import pathlib
 import re
 
-_EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "inputs" / "examples"
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "inputs" / "examples"
 _RADIUS, _Z0, _HAMAKER = 1.5e-2, 0.5e-9, 1e-19
 _P0, _DECAY = 2.5e8, 0.2e-9
 
@@ -69,11 +69,17 @@ def in_two_parts(problem):
 
 def example(name):
     """Return the problem of an example's deck, for its path as far as the deck goes."""
-    deck = (_EXAMPLES / f"{name}.nml").read_text(encoding="utf-8")
+    deck = (EXAMPLES / f"{name}.nml").read_text(encoding="utf-8")
     turn = float(re.search(r"h0_end *= *([-+.\de]+)", deck)[1])
-    left_out = "loading|unloading|equilibrium_path|scene|classical"
+    left_out = "loading|unloading|equilibrium_path|scene|classical|numerics"
     physics = re.sub(rf"&({left_out})\b[^/]*/.*\n?", "", deck)
     return Problem(name, name, physics.strip(), 1e-9, math.nan, turn / 1e-9, math.nan)
+
+
+def experiment(name, accuracy):
+    """Return an example's whole deck at an accuracy."""
+    deck = (EXAMPLES / f"{name}.nml").read_text(encoding="utf-8")
+    return re.sub(r"&numerics\b[^/]*/.*\n?", "", deck) + f"&numerics accuracy = {accuracy} /\n"
 
 
 def _stiffness_of(sigma):
