@@ -5,7 +5,8 @@
 !> for the gaps H at the nodes rho = c x of bodies of the shape f, which yield as their
 !> `elastic_operator` A says. A control says what is prescribed; where that is not H0 at a fixed
 !> scale, one more unknown (H0 or c) and one more equation (the gap on the axis or at the contact
-!> edge) join.
+!> edge) join. Behind a spring H0 follows from the position of its base and the load. Where bodies
+!> remember, what earlier pressures have left (`besides`) raises the gap too.
 module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t, coupling_over
@@ -15,11 +16,12 @@ module equilibrium
   use contact_state, only: state_t, state_from, load_reach, gap_at_end, far_gap
   use edge_locked, only: mesh_family_t
   use elastic_operator, only: elastic_operator_t
+  use besides, only: besides_t
   implicit none
   private
   public :: control_t, cost_t, equations_t, residual, largest_step, unknowns_of, holds, &
     residual_floor
-  public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
+  public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge, h0_is_prescribed
 
   !> H0 prescribed at a fixed scale; no further unknown.
   integer, parameter :: at_h0 = 1
@@ -40,6 +42,8 @@ module equilibrium
     integer :: kind = at_h0
     !> What is prescribed: H0, the gap on the axis, or the contact radius.
     real(wp) :: value = 0
+    !> Where H0 is prescribed behind a spring: `value` is H0 - compliance*load.
+    real(wp) :: compliance = 0
     !> The scale c of the mesh, where it is not an unknown.
     real(wp) :: scale = 1
     !> The mesh that it is prescribed on.
@@ -61,6 +65,7 @@ module equilibrium
     type(mesh_family_t) :: meshes
     type(cost_t) :: cost
     type(elastic_operator_t) :: operator
+    type(besides_t), allocatable :: besides
     !> Scratch of `residual`, which is called too often to allocate any: the rise of the gap.
     real(wp), allocatable, private :: rise(:)
   contains
@@ -77,6 +82,13 @@ contains
     self%problem = problem
     call self%operator%forget()
   end subroutine become_those_of
+
+  !> Whether a control prescribes H0, behind a spring or not.
+  pure logical function h0_is_prescribed(control)
+    type(control_t), intent(in) :: control
+
+    h0_is_prescribed = control%kind == at_h0 .or. control%kind == at_h0_with_edge
+  end function h0_is_prescribed
 
   !> g(:nodes) = G and, where the control has one, g(nodes + 1) = its own equation, for the unknowns
   !> z = (gaps [, H0 or c]). On return `state` is what z stands for, with its load and residual.
@@ -112,8 +124,14 @@ contains
       end if
       state%pressure = problem%law%pressure(state%gap)
       cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
+      state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
+      if (grid%is_bounded()) state%load = state%load + 2*pi*load_beyond(problem, &
+        gap_at_end(problem%shape, grid, state), load_reach(grid, state))
+      if (h0_is_prescribed(control) .and. control%compliance > 0) &
+        state%h0 = control%value + control%compliance*state%load
       columns = acting_columns(state%pressure)
       call equations%operator%deform(problem, grid, state%scale, columns, state%pressure, rise)
+      if (allocated(equations%besides)) rise = rise + equations%besides%at_scale(state%scale)
       cost%operator_products = cost%operator_products + 1
       cost%operator_columns = cost%operator_columns + columns
       do i = 1, n
@@ -131,9 +149,6 @@ contains
         edge_gap = state%h0 + problem%shape%height(state%scale) + rise(centre_row)
         g(n + 1) = edge_gap - equations%meshes%locked_gap(problem%law, control%mesh)
       end select
-      state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
-      if (grid%is_bounded()) state%load = state%load + 2*pi*load_beyond(problem, &
-        gap_at_end(problem%shape, grid, state), load_reach(grid, state))
       state%residual = largest_error(g, state%gap)
     end associate
   end subroutine residual

@@ -1,14 +1,15 @@
 !> Derivatives of the equations of equilibrium: the Jacobian, factorised, and how the equations
 !> depend on what a control prescribes.
 module jacobian
-  use kinds, only: wp
+  use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use linear_algebra, only: factorisation_t, factorise
   use elastic_operator, only: elastic_operator_t
+  use besides, only: besides_t
   use contact_state, only: state_t
   use equilibrium, only: control_t, cost_t, equations_t, at_h0, at_axis_gap, at_edge_radius, &
-    at_h0_with_edge
+    at_h0_with_edge, h0_is_prescribed
   implicit none
   private
   public :: factorise_jacobian, factorise_on, jacobian_times, control_derivative
@@ -26,13 +27,75 @@ contains
     real(wp), intent(in), optional :: shift
 
     associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem)
-      call factorise_on(problem, grid, equations%operator, equations%meshes%locked_gap( &
+      call fill(problem, grid, equations%operator, equations%meshes%locked_gap( &
         problem%law, control%mesh), control, state, factors, equations%cost, shift)
+      if (allocated(equations%besides)) call add_besides(equations%besides, control, state, &
+        factors%lu)
+      if (h0_is_prescribed(control) .and. control%compliance > 0) &
+        call add_spring(equations, control, state, factors%lu)
     end associate
+    call factorise(factors)
+    equations%cost%factorisations = equations%cost%factorisations + 1
   end subroutine factorise_jacobian
 
-  !> The same for a state on a mesh that is given, locked to a given gap.
+  !> What bodies that remember have beside: its rise is in the gaps that `scale_derivative` reads,
+  !> and does not go with the scale.
+  subroutine add_besides(besides, control, state, lu)
+    type(besides_t), intent(in) :: besides
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    real(wp), intent(inout) :: lu(:, :)
+    real(wp) :: change(size(besides%value))
+    integer :: n
+
+    if (control%kind /= at_h0_with_edge) return
+    n = size(state%gap)
+    change = (besides%growth - besides%at_scale(state%scale))/state%scale
+    lu(:n, n + 1) = lu(:n, n + 1) - change(first_node:)
+    lu(n + 1, n + 1) = lu(n + 1, n + 1) + change(centre_row)
+  end subroutine add_besides
+
+  !> Behind a spring H0 goes with the load, which goes with gaps and scale.
+  subroutine add_spring(equations, control, state, lu)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    real(wp), intent(inout) :: lu(:, :)
+    real(wp) :: softer(size(lu, 2))
+    integer :: n, i
+
+    n = size(state%gap)
+    associate (grid => equations%meshes%grid(control%mesh), c => state%scale)
+      softer(:n) = 2*pi*control%compliance*c**2*grid%weight(:n)* &
+        equations%problem%law%slope(state%gap)
+      if (size(lu, 2) > n) softer(n + 1) = 2*control%compliance*state%load/c
+      do i = 1, n
+        lu(i, :) = lu(i, :) - softer
+      end do
+      if (size(lu, 1) > n) lu(n + 1, :) = lu(n + 1, :) + softer
+    end associate
+  end subroutine add_spring
+
+  !> The same for a state on a mesh that is given, locked to a given gap, of bodies at rest.
   subroutine factorise_on(problem, grid, operator, locked_gap, control, state, factors, cost, &
+    shift)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(elastic_operator_t), intent(inout) :: operator
+    real(wp), intent(in) :: locked_gap
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    type(factorisation_t), intent(inout) :: factors
+    type(cost_t), intent(inout) :: cost
+    real(wp), intent(in), optional :: shift
+
+    call fill(problem, grid, operator, locked_gap, control, state, factors, cost, shift)
+    call factorise(factors)
+    cost%factorisations = cost%factorisations + 1
+  end subroutine factorise_on
+
+  !> The matrix that is to be factorised.
+  subroutine fill(problem, grid, operator, locked_gap, control, state, factors, cost, &
     shift)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -66,9 +129,7 @@ contains
       end do
       if (m > n) call border(problem, grid, operator, locked_gap, control, state, lu(:, m))
     end associate
-    call factorise(factors)
-    cost%factorisations = cost%factorisations + 1
-  end subroutine factorise_on
+  end subroutine fill
 
   !> The Jacobian of `residual` at a state times a change of the unknowns.
   function jacobian_times(equations, control, state, change) result(product)

@@ -24,6 +24,7 @@ module experiment
   use result_sensitivities, only: find_sensitivities
   use path, only: follow_path
   use path_readings, only: read_path
+  use timed_run, only: run_timed
   use records, only: observer_t
   use clock, only: seconds
   use blas_threads, only: use_threads_for
@@ -46,9 +47,16 @@ contains
     real(wp) :: low, high
     logical :: fixed
 
-    if (.not. (allocated(request%path) .or. allocated(request%loading))) return
+    if (.not. request%finds_states()) return
     call range_of(request, problem, low, high)
     outcome%chosen = choose(request%numerics, problem, low, allocated(request%profiles))
+    if (allocated(request%drive)) then
+      allocate (outcome%timed)
+      call run_timed(request, problem, outcome%chosen, observer, outcome%timed, outcome%cost, &
+        outcome%nodes)
+      outcome%error_estimate = outcome%timed%estimate
+      return
+    end if
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
       return

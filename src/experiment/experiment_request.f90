@@ -5,10 +5,11 @@
 module experiment_request
   use kinds, only: wp
   use variation, only: variation_t
+  use creep, only: creep_t
   implicit none
   private
   public :: request_t, loading_t, unloading_t, path_range_t, profiles_t, numerics_t, device_t, &
-    fixed_load_t, sensitivity_t
+    fixed_load_t, sensitivity_t, drive_request_t
 
   !> &loading [m]: h0_start > h0_end, h0_step > 0.
   type :: loading_t
@@ -49,6 +50,13 @@ module experiment_request
     type(variation_t), allocatable :: varied(:)
   end type sensitivity_t
 
+  !> &drive: velocity [m/s], positions [m], dwell [s], and where they are given, the stiffness of a
+  !> spring [N/m] and the step [s].
+  type :: drive_request_t
+    real(wp) :: velocity = 0, z_start = 0, z_turn = 0, z_end = 0, dwell = 0
+    real(wp), allocatable :: stiffness, time_step
+  end type drive_request_t
+
   !> &numerics; what is unallocated follows from the accuracy.
   type :: numerics_t
     character(len=:), allocatable :: method, grid, convergence
@@ -66,6 +74,9 @@ module experiment_request
     type(device_t), allocatable :: device
     type(fixed_load_t), allocatable :: fixed_load
     type(sensitivity_t), allocatable :: sensitivity
+    type(drive_request_t), allocatable :: drive
+    !> &viscoelastic: how bodies remember; unallocated: they do not.
+    type(creep_t), allocatable :: creep
     !> &table has no keys.
     logical :: table = .false.
     type(numerics_t) :: numerics
@@ -80,7 +91,7 @@ contains
   pure logical function finds_states(self)
     class(request_t), intent(in) :: self
 
-    finds_states = allocated(self%loading) .or. allocated(self%path)
+    finds_states = allocated(self%loading) .or. allocated(self%path) .or. allocated(self%drive)
   end function finds_states
 
   !> Whether an experiment is read from the path, beside it.

@@ -6,6 +6,7 @@ module experiment_result
   use stepped_branch, only: branch_t
   use path, only: path_t
   use path_readings, only: path_readings_t
+  use timed_pass, only: timed_result_t
   implicit none
   private
   public :: experiment_result_t
@@ -14,6 +15,7 @@ module experiment_result
     type(choice_t) :: chosen
     type(path_t), allocatable :: path
     type(path_readings_t), allocatable :: readings
+    type(timed_result_t), allocatable :: timed
     type(branch_t), allocatable :: stepped_path, loading, unloading(:)
     !> Lost in a cycle of approach and separation, and how well that is known.
     real(wp), allocatable :: energy_lost, energy_uncertainty

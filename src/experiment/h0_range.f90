@@ -35,6 +35,10 @@ contains
       high = request%loading%h0_start
     end if
     if (allocated(request%unloading)) high = max(high, request%unloading%h0_end)
+    if (allocated(request%drive)) then
+      low = min(low, request%drive%z_turn)
+      high = max(high, request%drive%z_start, request%drive%z_end)
+    end if
     if (allocated(request%path)) then
       low = min(low, request%path%h0_end)
       high = max(high, request%path%h0_end)

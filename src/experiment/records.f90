@@ -17,6 +17,8 @@ module records
     character(len=:), allocatable :: branch
     !> [m], [m], [m], [N], [m]; the residual is in units of the law's length.
     real(wp) :: h0 = 0, h_centre = 0, displacement = 0, load = 0, contact_radius = 0
+    !> Of a drive in time: when [s], and the position [m] of a spring's base.
+    real(wp), allocatable :: time, z
     integer :: stable = stable_unasked
     real(wp) :: residual = 0
     integer :: iterations = 0

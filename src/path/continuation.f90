@@ -18,7 +18,7 @@ module continuation
   use arc, only: arc_t, tangent_along
   implicit none
   private
-  public :: continuation_t
+  public :: continuation_t, radius_for
 
   !> States kept for the extrapolation; the first step, the shortest and the longest (changes of the
   !> coordinate).

@@ -9,7 +9,7 @@ module potential_energy
   use equilibrium, only: equations_t
   implicit none
   private
-  public :: energy_of
+  public :: energy_of, energy_of_surface
 
 contains
 
@@ -36,5 +36,20 @@ contains
         gap_at_end(shape, grid, state), load_reach(grid, state))
     end associate
   end subroutine energy_of
+
+  !> The part of the surface force, 2 pi Int e(H) rho drho.
+  real(wp) function energy_of_surface(equations, mesh, state) result(energy)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+
+    associate (n => size(state%gap), c => state%scale, grid => equations%meshes%grid(mesh), &
+      problem => equations%problem)
+      energy = 2*pi*c**2*dot_product(grid%weight(:n), &
+        energy_density(problem, state%gap, c*grid%x(:n)))
+      if (grid%is_bounded()) energy = energy + 2*pi*energy_beyond(problem, &
+        gap_at_end(problem%shape, grid, state), load_reach(grid, state))
+    end associate
+  end function energy_of_surface
 
 end module potential_energy

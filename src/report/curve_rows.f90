@@ -5,7 +5,7 @@ module curve_rows
   use tables, only: put_cells
   implicit none
   private
-  public :: columns_of_curve, curve_row, curve_columns, stability_columns
+  public :: columns_of_curve, curve_row, curve_columns, stability_columns, drive_columns
 
   !> Columns of curve.csv, each described as 'name [unit] meaning'.
   character(len=*), parameter :: curve_columns(*) = [character(len=96) :: &
@@ -25,22 +25,30 @@ module curve_rows
     'criterion_28 [] largest |2 u p''/p| where surfaces attract; above 1: unstable by (28)', &
     'criterion_29 [] 2 p'' u/p on an axis that attracts; below -1: unstable by (29)']
 
+  !> Added by &drive, the second where there is a spring.
+  character(len=*), parameter :: drive_columns(*) = [character(len=96) :: &
+    'time [s] since the drive began to move', &
+    'z [m] position of the base of the spring']
+
 contains
 
-  !> The columns of the table; with those of stability where `eigenvalues` are shown.
-  pure function columns_of_curve(eigenvalues) result(columns)
+  !> The columns of the table; with those of stability where `eigenvalues` are shown, and as many of
+  !> a drive in time as there are.
+  pure function columns_of_curve(eigenvalues, of_drive) result(columns)
     logical, intent(in) :: eigenvalues
+    integer, intent(in) :: of_drive
     character(len=96), allocatable :: columns(:)
 
     columns = curve_columns
     if (eigenvalues) columns = [curve_columns, stability_columns]
+    columns = [columns, drive_columns(:of_drive)]
   end function columns_of_curve
 
   !> The row of a record; columns of stability where the record has them.
   pure function curve_row(record) result(text)
     type(record_t), intent(in) :: record
     character(len=:), allocatable :: text
-    character(len=len(record%branch) + 12*(longest_real + 1)) :: row
+    character(len=len(record%branch) + 14*(longest_real + 1)) :: row
     integer :: held
 
     row(:len(record%branch)) = record%branch
@@ -53,6 +61,8 @@ contains
     call put_count(merge(1, 0, record%converged), row, held)
     if (allocated(record%eigenvalue)) call put_cells([record%eigenvalue, record%local_criterion, &
       record%axis_criterion], row, held)
+    if (allocated(record%time)) call put_cells([record%time], row, held)
+    if (allocated(record%z)) call put_cells([record%z], row, held)
     text = row(:held)
 
   end function curve_row

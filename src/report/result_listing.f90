@@ -3,7 +3,7 @@
 module result_listing
   use result_names, only: result_files
   use result_rows, only: row_t, rows, in_summary, in_cost
-  use curve_rows, only: curve_columns, stability_columns
+  use curve_rows, only: curve_columns, stability_columns, drive_columns
   use derived_tables, only: theory_columns
   use device_rows, only: device_columns, jump_columns
   use fixed_load_rows, only: fixed_load_columns
@@ -30,9 +30,10 @@ contains
       if (i > 1) write (unit, '()', iostat=status)
       select case (result_files(i))
       case ('curve.csv')
-        call heading('with &loading or &equilibrium_path', 'One row for each equilibrium.')
+        call heading('with &loading, &equilibrium_path or &drive', 'One row for each equilibrium.')
         call list_columns(unit, curve_columns, '')
         call list_columns(unit, stability_columns, 'with &stability')
+        call list_columns(unit, drive_columns, 'with &drive')
       case ('profiles.csv')
         call heading('with &profiles', 'One row for each node of each profile, from r = 0 outward.')
         call list_columns(unit, profile_columns, '')

@@ -11,7 +11,7 @@ module result_rows
   !> are not the paper's, or once for each turning point.
   character(len=*), parameter :: never = '', always = 'always', classical = 'classical', &
     approximations = 'approximations', regime = 'regime', forces = '(forces)', &
-    turning = 'unloading', layer = 'layer'
+    turning = 'unloading', layer = 'layer', drive = 'drive'
 
   !> Key, unit and meaning; a list has one value a turning point, fold, profile or the like.
   type :: row_t
@@ -104,6 +104,15 @@ module result_rows
     row_t('load_folds_load_error', 'N', 'estimated error of load_folds_load', list=.true.), &
     row_t('energy_lost', 'J', 'energy lost in the jumps of a cycle', always), &
     row_t('energy_lost_uncertainty', 'J', 'estimated error of energy_lost'), &
+    row_t('energy_dissipated', 'J', 'work of a drive in time less what bodies hold in the end', &
+      drive), &
+    row_t('energy_dissipated_error', 'J', 'estimated error of energy_dissipated'), &
+    row_t('effective_work_of_adhesion', 'J/m^2', &
+      'largest tension of a drive in time over 1.5 pi R', drive), &
+    row_t('effective_work_of_adhesion_error', 'J/m^2', &
+      'estimated error of effective_work_of_adhesion'), &
+    row_t('sigma_relaxed', '', 'strength of adhesion of viscoelastic bodies at rest'), &
+    row_t('time_steps', '', 'number of steps of a drive in time', drive), &
     row_t('path_traced_h0', 'm', 'h0 from which the path was traced for what is read from it'), &
     row_t('path_undeformed_h0', 'm', &
       'h0 from which bodies were taken as undeformed, as far as path_traced_h0'), &

@@ -99,7 +99,8 @@ contains
       call self%claim(owner, resume, error)
     end if
     if (scene%has_curve() .and. .not. allocated(error)) then
-      call self%begin(self%curve, 'curve.csv', columns_of_curve(scene%has_eigenvalues()), error)
+      call self%begin(self%curve, 'curve.csv', columns_of_curve(scene%has_eigenvalues(), &
+        scene%drive_columns()), error)
       if (allocated(scene%profiles) .and. .not. allocated(error)) &
         call self%begin(self%shapes, 'profiles.csv', columns_of_profiles(problem), error)
     end if

@@ -20,6 +20,7 @@ module summarise
   use device_rows, only: summarise_device
   use fixed_load_rows, only: summarise_fixed_loads
   use regime_rows, only: summarise_regime
+  use rate_entries, only: summarise_timed
   use validity, only: judge_law, judge_extent, extent_of
   use layer_entries, only: summarise_layers, judge_layers
   use quality_warnings, only: judge_resolution, judge_accuracy, judge_stopping
@@ -46,6 +47,8 @@ contains
     if (.not. allocated(outcome%chosen%grid)) return
     call describe_numerics(outcome, summary)
     call summarise_branches(scene, problem, outcome, summary)
+    if (allocated(outcome%timed)) &
+      call summarise_timed(scene, problem, outcome%timed, summary)
     if (allocated(outcome%path)) call summarise_path(problem, outcome%path, summary)
     if (allocated(outcome%readings)) call take_readings(scene, problem, outcome, summary)
     if (allocated(scene%regime)) call summarise_regime(problem, outcome, summary)

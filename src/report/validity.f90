@@ -83,6 +83,7 @@ contains
     if (allocated(outcome%path)) call join(outcome%path%extent)
     if (allocated(outcome%stepped_path)) call join(outcome%stepped_path%extent)
     if (allocated(outcome%loading)) call join(outcome%loading%extent)
+    if (allocated(outcome%timed)) call join(outcome%timed%extent)
     if (.not. allocated(outcome%unloading)) return
     do k = 1, size(outcome%unloading)
       call join(outcome%unloading(k)%extent)

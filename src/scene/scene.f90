@@ -15,6 +15,7 @@ module scene
   use table_group, only: take_table
   use sensitivity_group, only: take_sensitivity
   use regime_group, only: take_regime
+  use rate_groups, only: take_rates
   use profiles_group, only: take_profiles
   use theory_groups, only: take_theories
   use stability_group, only: take_stability
@@ -29,7 +30,7 @@ module scene
 
   !> The groups that compute something by themselves; a deck needs at least one of them.
   character(len=*), parameter :: computing(*) = [character(len=17) :: 'loading', &
-    'equilibrium_path', 'approximations', 'classical', 'fit']
+    'equilibrium_path', 'drive', 'approximations', 'classical', 'fit']
 
 contains
 
@@ -72,6 +73,7 @@ contains
     call take_table(scene, error)
     call take_sensitivity(scene, error)
     call take_regime(scene, error)
+    call take_rates(scene, error)
     call take_profiles(scene, error)
     call take_theories(scene, error)
     call take_stability(scene, error)

@@ -95,6 +95,7 @@ module scene_groups
   contains
     procedure :: has_curve
     procedure :: has_eigenvalues
+    procedure :: drive_columns
   end type scene_t
 
 contains
@@ -167,5 +168,15 @@ contains
 
     has_eigenvalues = self%has_curve() .and. allocated(self%stability)
   end function has_eigenvalues
+
+  !> How many columns of the curve a drive in time adds.
+  pure integer function drive_columns(self)
+    class(scene_t), intent(in) :: self
+
+    drive_columns = 0
+    if (.not. allocated(self%drive)) return
+    drive_columns = 1
+    if (allocated(self%drive%stiffness)) drive_columns = 2
+  end function drive_columns
 
 end module scene_groups

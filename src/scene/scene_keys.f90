@@ -11,6 +11,7 @@ module scene_keys
   use table_group, only: table_keys
   use sensitivity_group, only: sensitivity_keys
   use regime_group, only: regime_keys
+  use rate_groups, only: rate_keys
   use profiles_group, only: profiles_keys
   use theory_groups, only: theory_keys
   use stability_group, only: stability_keys
@@ -39,6 +40,7 @@ contains
       table_keys(), &
       sensitivity_keys(), &
       regime_keys(), &
+      rate_keys(), &
       profiles_keys(), &
       theory_keys(), &
       stability_keys(), &

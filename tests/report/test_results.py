@@ -183,7 +183,7 @@ def test_summary_has_every_key_of_the_contract(full):
 def test_the_listing_names_every_column_and_entry_of_a_run(full, snapin):
     sections = sections_of(snapin("--results").stdout)
     listed = {s.name: [line.split(";")[0].split(" ")[0] for line, _ in s.items] for s in sections}
-    assert listed["curve.csv"] == full.curve.names
+    assert listed["curve.csv"][: len(full.curve.names)] == full.curve.names
     assert listed["profiles.csv"][: len(PROFILES)] == full.table("profiles.csv").names
     assert listed["classical.csv"] == full.table("classical.csv").names
     for group in ("summary", "cost"):

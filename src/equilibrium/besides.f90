@@ -1,0 +1,78 @@
+!> What raises the gap beside the pressures of the moment: what earlier pressures have left in
+!> bodies that remember. It belongs to the bodies' material, and is known on a mesh fixed in space.
+module besides
+  use kinds, only: wp
+  use discretisation, only: discretisation_t, axis_row, centre_row, first_node
+  implicit none
+  private
+  public :: besides_t, rise_at
+
+  !> The rise of the gap on the rows of the kernel (axis, centre, nodes) of the present mesh: at the
+  !> scale that is expected, and its derivatives by the logarithm of that. A scale that is found to
+  !> be another moves the nodes by little, and the rise is linear in it.
+  type :: besides_t
+    real(wp) :: scale = 1
+    real(wp), allocatable :: value(:), growth(:)
+  contains
+    procedure :: at_scale
+  end type besides_t
+
+  !> Part of the position over which its change is taken.
+  real(wp), parameter :: apart = 1.0e-5_wp
+
+contains
+
+  !> The rise at a scale.
+  pure function at_scale(self, scale) result(rise)
+    class(besides_t), intent(in) :: self
+    real(wp), intent(in) :: scale
+    real(wp) :: rise(size(self%value))
+
+    rise = self%value
+    if (abs(scale - self%scale) > 0) rise = rise + log(scale/self%scale)*self%growth
+  end function at_scale
+
+  !> A rise that is known on the rows of a mesh fixed in space (scale 1), for another mesh at about
+  !> a scale. Far out it is that of a load on a point.
+  pure function rise_at(material, risen, grid, scale) result(besides)
+    type(discretisation_t), intent(in) :: material, grid
+    real(wp), intent(in) :: risen(:), scale
+    type(besides_t) :: besides
+    real(wp) :: r
+    integer :: i, rows
+
+    rows = first_node - 1 + grid%nodes
+    allocate (besides%value(rows), besides%growth(rows))
+    besides%scale = scale
+    do i = 1, rows
+      select case (i)
+      case (axis_row)
+        r = 0
+      case (centre_row)
+        r = scale*grid%centre
+      case default
+        r = scale*grid%x(i - first_node + 1)
+      end select
+      besides%value(i) = value(r)
+      besides%growth(i) = (value((1 + apart)*r) - value((1 - apart)*r))/(2*apart)
+    end do
+
+  contains
+
+    pure real(wp) function value(r)
+      real(wp), intent(in) :: r
+
+      associate (last => material%x(material%nodes))
+        if (.not. r > 0) then
+          value = risen(axis_row)
+        else if (r < last) then
+          value = material%interpolate(risen(first_node:), r)
+        else
+          value = risen(size(risen))*last/r
+        end if
+      end associate
+    end function value
+
+  end function rise_at
+
+end module besides

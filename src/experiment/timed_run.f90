@@ -1,0 +1,169 @@
+!> A drive that moves in time, and what comes of it. The motion is gone through several times, each
+!> time with every step halved and more nodes for the memory: what two of these passes differ by is
+!> the error of the later one, with a margin. Steps of the
+!> first follow what the load does, how far the contact edge moves, or the deck.
+module timed_run
+  use kinds, only: wp
+  use clock, only: seconds
+  use dimensionless_problem, only: problem_t
+  use equilibrium, only: cost_t
+  use edge_locked, only: new_mesh_family
+  use mesh_digits, only: most_digits
+  use records, only: observer_t
+  use numerics_choice, only: choice_t, choose, fixed_mesh
+  use experiment_request, only: request_t, numerics_t
+  use creep, only: elastic_bodies
+  use motion, only: motion_t, new_motion
+  use time_stepper, only: time_stepper_t
+  use timed_pass, only: timed_result_t, pass_t, go_through, most_steps, of_tension, of_end_load, &
+    of_dissipation
+  implicit none
+  private
+  public :: run_timed
+
+  !> First pass: change of the load in a step that is not linear, over the largest load, and of the
+  !> The largest change of the path's coordinate in a step of the first pass: what changes by more
+  !> Differences of passes count so many times: steps gain a factor of four from pass to pass,
+  !> meshes may gain less.
+  real(wp), parameter :: margin = 2
+  !> Part of the accuracy that meshes may leave, which are often the same in two passes.
+  real(wp), parameter :: of_meshes = 0.05_wp
+  !> Passes, and the largest change of the path's coordinate in a step of the first: what changes by
+  !> more has jumped, or is to be followed in shorter steps.
+  integer, parameter :: most_passes = 9
+  real(wp), parameter :: farthest = 0.3_wp
+  !> Digits of the meshes that each pass has more.
+  real(wp), parameter :: more_digits = 0.7_wp
+
+contains
+
+  !> Goes through the motion of request%drive, and shows the rows of the last pass.
+  subroutine run_timed(request, problem, chosen, observer, result, cost, nodes)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    type(choice_t), intent(in) :: chosen
+    class(observer_t), intent(inout) :: observer
+    type(timed_result_t), intent(out) :: result
+    type(cost_t), intent(inout) :: cost
+    integer, intent(out) :: nodes
+    type(time_stepper_t) :: steps
+    type(motion_t) :: drive
+    type(pass_t) :: now, before
+    real(wp) :: began
+    integer :: pass, i
+    logical :: enough
+
+    call prepare(request, problem, chosen, steps, drive)
+    began = seconds()
+    do pass = 1, most_passes
+      if (pass > 1) then
+        before = now
+        now = pass_t()
+      end if
+      call lay_out(request, drive, chosen, pass, steps)
+      steps%farthest = farthest/2**(pass - 1)
+      call go_through(request, drive, pass, before, steps, observer, now)
+      if (pass == 1) cycle
+      call compare(request%numerics%accuracy, before%result, now%result)
+      enough = relative_error(now%result) <= request%numerics%accuracy .or. &
+        allocated(request%drive%time_step)
+      if (enough .or. now%result%lost .or. 2*now%held > most_steps) exit
+    end do
+    result = now%result
+    result%estimate = relative_error(result)
+    nodes = sum(steps%meshes%grid%nodes)
+    do i = 1, now%held
+      call observer%take(now%row(i), steps%problem, steps%meshes%grid(1), steps%before%state, &
+        .false.)
+    end do
+    steps%cost%states = now%held
+    steps%cost%solve_seconds = seconds() - began
+    cost = steps%cost
+  end subroutine run_timed
+
+  !> The stepper of the problem, and the motion.
+  subroutine prepare(request, problem, chosen, steps, drive)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    type(choice_t), intent(in) :: chosen
+    type(time_stepper_t), intent(out) :: steps
+    type(motion_t), intent(out) :: drive
+    associate (asked => request%drive, law => problem%law)
+      steps%problem = problem
+      steps%instant = problem%coupling
+      steps%creep = elastic_bodies()
+      if (allocated(request%creep)) steps%creep = request%creep
+      steps%options = chosen%options
+      if (steps%options%method == 'mixing') steps%options%method = 'anderson'
+      if (allocated(asked%stiffness)) &
+        steps%compliance = problem%load/(asked%stiffness*problem%length)
+      drive = new_motion(asked%velocity/problem%length, law%gap_of(asked%z_start), &
+        law%gap_of(asked%z_turn), asked%dwell, law%gap_of(asked%z_end))
+    end associate
+  end subroutine prepare
+
+  !> Meshes for relaxed bodies, whose neck is the narrowest, with more digits from pass to pass; for
+  !> the memory panels fixed in space, with a node more on each.
+  subroutine lay_out(request, drive, chosen, pass, steps)
+    class(request_t), intent(in) :: request
+    type(motion_t), intent(in) :: drive
+    type(choice_t), intent(in) :: chosen
+    integer, intent(in) :: pass
+    type(time_stepper_t), intent(inout) :: steps
+    type(problem_t) :: relaxed
+    type(numerics_t) :: numerics
+    type(choice_t) :: of_memory
+    real(wp) :: digits
+    integer :: k
+
+    relaxed = steps%problem
+    relaxed%coupling = steps%instant*steps%creep%relaxed()
+    ! The memory takes the pressure at places, not only its integrals, which have twice its digits.
+    digits = chosen%digits
+    if (allocated(request%creep)) digits = 2*digits
+    associate (low => minval(drive%position), meshes => steps%meshes)
+      meshes = new_mesh_family(relaxed, maxval(drive%position), low, &
+        min(most_digits, digits + more_digits*(pass - 1)))
+      ! No path comes to a mesh that waits for it.
+      do k = 1, size(meshes%grid)
+        if (meshes%waits(k)) call meshes%renew(k, meshes%shape_for(relaxed, k))
+      end do
+      steps%frozen%factors%valid = .false.
+      steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
+      if (.not. allocated(request%creep)) return
+      numerics = request%numerics
+      numerics%method = 'mixing'
+      numerics%grid = 'panels'
+      of_memory = choose(numerics, relaxed, low, .false.)
+      of_memory%panel_order = of_memory%panel_order + pass
+      steps%material = fixed_mesh(of_memory, relaxed, low)
+      if (allocated(steps%risen)) deallocate (steps%risen)
+      steps%cost%kernel_entries = steps%cost%kernel_entries + steps%material%kernel_entries()
+    end associate
+  end subroutine lay_out
+
+  !> Errors of what a pass found: what it differs by from the one before.
+  subroutine compare(accuracy, before, now)
+    real(wp), intent(in) :: accuracy
+    type(timed_result_t), intent(in) :: before
+    type(timed_result_t), intent(inout) :: now
+
+    now%error = margin*abs(now%number - before%number)
+    now%error(of_tension) = now%error(of_tension) + now%lifted + &
+      of_meshes*accuracy*now%number(of_tension)
+    now%error(of_end_load) = now%error(of_end_load) + &
+      of_meshes*accuracy*abs(now%number(of_end_load))
+    now%error(of_dissipation) = max(now%error(of_dissipation), abs(now%balance))
+  end subroutine compare
+
+  !> The largest error: of loads over the largest, and of what is dissipated over itself or, if that
+  !> is more, the largest load times the law's length.
+  pure real(wp) function relative_error(now) result(largest)
+    type(timed_result_t), intent(in) :: now
+
+    largest = max(max(now%error(of_tension), now%error(of_end_load))/ &
+      max(now%largest_load, tiny(1.0_wp)), now%error(of_dissipation)/ &
+      max(abs(now%number(of_dissipation)), now%largest_load, tiny(1.0_wp)))
+  end function relative_error
+
+end module timed_run

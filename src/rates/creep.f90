@@ -1,0 +1,69 @@
+!> How bodies that remember yield to a pressure that changes. Their compliance after a time t is
+!>
+!>     theta_0 [1 + Sum_k share_k (1 - exp(-t/time_k))] ,
+!>
+!> that of springs and dashpots. What has yielded late by the k-th of them is theta_0 share_k W Z_k
+!> with a memory Z_k, in the material, that follows the pressure:
+!>
+!>     time_k dZ_k/dt = P - Z_k .
+!>
+!> Over a step in which P changes linearly Z_k becomes kept Z_k + past P + present P_new, exactly:
+!> the present pressure meets a softer half-space, and earlier ones have left a deformation.
+module creep
+  use kinds, only: wp
+  implicit none
+  private
+  public :: creep_t, elastic_bodies
+
+  !> Compliances over the instantaneous one, and times of retardation [s].
+  type :: creep_t
+    real(wp), allocatable :: share(:), time(:)
+  contains
+    procedure :: relaxed
+    procedure :: over_step
+    procedure :: shortest
+  end type creep_t
+
+  !> Steps over a time of retardation below which exponentials are summed as series.
+  real(wp), parameter :: short = 0.02_wp
+
+contains
+
+  !> Bodies that remember nothing.
+  pure type(creep_t) function elastic_bodies() result(creep)
+    allocate (creep%share(0), creep%time(0))
+  end function elastic_bodies
+
+  !> The compliance of bodies at rest over the instantaneous one.
+  pure real(wp) function relaxed(self)
+    class(creep_t), intent(in) :: self
+
+    relaxed = 1 + sum(self%share)
+  end function relaxed
+
+  !> The shortest time of retardation; huge where there is none.
+  pure real(wp) function shortest(self)
+    class(creep_t), intent(in) :: self
+
+    shortest = minval(self%time)
+  end function shortest
+
+  !> What a step of so many seconds keeps of the memory, and takes of the pressures at its ends.
+  pure subroutine over_step(self, seconds, kept, past, present)
+    class(creep_t), intent(in) :: self
+    real(wp), intent(in) :: seconds
+    real(wp), intent(out) :: kept(:), past(:), present(:)
+    real(wp) :: q(size(self%time))
+
+    q = seconds/self%time
+    kept = exp(-q)
+    where (q > short)
+      present = 1 - (1 - kept)/q
+    elsewhere
+      present = q*(0.5_wp - q*(1.0_wp/6 - q*(1.0_wp/24 - q*(1.0_wp/120 - q/720))))
+    end where
+    past = 1 - present - kept
+    where (q <= short) past = q*(0.5_wp - q*(1.0_wp/3 - q*(0.125_wp - q*(1.0_wp/30 - q/144))))
+  end subroutine over_step
+
+end module creep

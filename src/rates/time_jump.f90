@@ -1,0 +1,206 @@
+!> Steps in time where h0 does not tell the state, beside folds and over them: along the path of the
+!> equilibria that the memory of the moment allows, in its own coordinate, until the drive is where
+!> it is to be. A jump is such a step that takes no time.
+module time_jump
+  use kinds, only: wp
+  use contact_state, only: state_t
+  use equilibrium, only: control_t, at_edge_radius
+  use edge_locked, only: approach
+  use path_coordinate, only: path_control, coordinate_of, inward
+  use regridding, only: regrid
+  use root_finding, only: root_search_t, new_root_search
+  use continuation, only: radius_for
+  use time_stepper, only: time_stepper_t, instant_t, extrapolate
+  implicit none
+  private
+  public :: step_along
+
+  !> First, longest and shortest step of the coordinate; steps before a path is given up.
+  real(wp), parameter :: first = 0.01_wp, longest = 0.15_wp, shortest = 1.0e-6_wp
+  integer, parameter :: most_steps = 1000
+  !> A position so far from the drive's, law's lengths, is on the way to infinity.
+  real(wp), parameter :: too_far = 1.0e4_wp
+  !> What is left of the drive's position, law's lengths, and states to find it with.
+  real(wp), parameter :: left_over = 1.0e-9_wp
+  integer, parameter :: most_rounds = 30
+
+contains
+
+  !> From an instant to a time and the position there, along the path inward or outward or, where
+  !> that does not come there, the other way, and no farther than `farthest` in its coordinate.
+  subroutine step_along(steps, from, time, position, inwards, farthest, to, done)
+    class(time_stepper_t), intent(inout) :: steps
+    type(instant_t), intent(in) :: from
+    real(wp), intent(in) :: time, position, farthest
+    logical, intent(in) :: inwards
+    type(instant_t), intent(out) :: to
+    logical, intent(out) :: done
+
+    call steps%prepare(from, time)
+    call go(steps, from, position, inwards, farthest, to, done)
+    if (.not. done) call go(steps, from, position, .not. inwards, farthest, to, done)
+    if (.not. done) return
+    to%time = time
+    to%position = position
+    steps%frozen%factors%valid = .false.
+    call steps%remember(from, to)
+  end subroutine step_along
+
+  !> Goes one way.
+  subroutine go(steps, from, position, inwards, farthest, to, done)
+    class(time_stepper_t), intent(inout) :: steps
+    type(instant_t), intent(in) :: from
+    real(wp), intent(in) :: position, farthest
+    logical, intent(in) :: inwards
+    type(instant_t), intent(out) :: to
+    logical, intent(out) :: done
+    type(instant_t) :: last
+    real(wp) :: s, s_last, missing, missing_last, ds, way
+    integer :: i, mesh
+    logical :: found
+
+    done = .false.
+    to = from
+    s = coordinate_of(steps%problem, to%mesh, to%state)
+    call solve_at(steps, s, to, found)
+    if (.not. found) return
+    last = to
+    s_last = s
+    missing = off(steps, to, position)
+    ds = first
+    way = 0
+    do i = 1, most_steps
+      if (way > farthest .or. ds < shortest .or. abs(missing) > too_far) return
+      missing_last = missing
+      call advance(steps, merge(ds, -ds, inwards), last, s_last, to, s, found)
+      if (.not. found) then
+        ds = 0.4_wp*ds
+        cycle
+      end if
+      way = way + ds
+      missing = off(steps, to, position)
+      if ((missing < 0) .neqv. (missing_last < 0)) exit
+      ds = min(longest, 1.5_wp*ds)
+      mesh = steps%mesh_for(to%mesh, to%state)
+      if (mesh == to%mesh) cycle
+      call change_mesh(steps, mesh, to, found)
+      if (.not. found) cycle
+      last = to
+      s = coordinate_of(steps%problem, to%mesh, to%state)
+      s_last = s
+      missing_last = missing
+      missing = off(steps, to, position)
+      if ((missing < 0) .eqv. (missing_last < 0)) cycle
+      ! Between what the two meshes say of one state.
+      steps%frozen%factors%valid = .false.
+      call steps%solve(steps%control_at(position, mesh, to%state), to%state, done)
+      return
+    end do
+    call find_between(steps, position, last, s_last, missing_last, to, s, missing, done)
+  end subroutine go
+
+  !> By how much the drive is beyond a position.
+  pure real(wp) function off(steps, at, position)
+    class(time_stepper_t), intent(in) :: steps
+    type(instant_t), intent(in) :: at
+    real(wp), intent(in) :: position
+
+    off = at%state%h0 - steps%compliance*at%state%load - position
+  end function off
+
+  !> Solves for the state at a coordinate, from that of an instant as it is.
+  subroutine solve_at(steps, s, at, found)
+    class(time_stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: s
+    type(instant_t), intent(inout) :: at
+    logical, intent(out) :: found
+    type(control_t) :: control
+    type(state_t) :: state
+
+    control = path_control(steps%problem, at%mesh, s)
+    call steps%place_rise(at%mesh, scale_of(control))
+    state = at%state
+    call steps%solve(control, state, found)
+    if (.not. found) steps%frozen%factors%valid = .false.
+    if (found) at%state = state
+  end subroutine solve_at
+
+  !> Goes on by a step of the coordinate, inward if it is positive.
+  subroutine advance(steps, ds, last, s_last, at, s, found)
+    class(time_stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: ds
+    type(instant_t), intent(inout) :: last, at
+    real(wp), intent(inout) :: s_last, s
+    logical, intent(out) :: found
+    type(instant_t) :: next
+    real(wp) :: to
+
+    next = at
+    to = s + ds*inward(at%mesh)
+    if (last%mesh == at%mesh .and. abs(s - s_last) > 0) call extrapolate(steps%problem%shape, &
+      steps%meshes%grid(at%mesh), last%state, at%state, (to - s)/(s - s_last), next%state)
+    call solve_at(steps, to, next, found)
+    if (.not. found) return
+    last = at
+    s_last = s
+    at = next
+    s = to
+  end subroutine advance
+
+  !> The place between two where the drive is at a position; `at`: the second, then that.
+  subroutine find_between(steps, position, last, s_last, missing_last, at, s, missing, done)
+    class(time_stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: position, s_last, missing_last, s, missing
+    type(instant_t), intent(in) :: last
+    type(instant_t), intent(inout) :: at
+    logical, intent(out) :: done
+    type(root_search_t) :: search
+    real(wp) :: here, left
+    integer :: round
+
+    search = new_root_search(s_last, missing_last, s, missing)
+    left = missing
+    done = .false.
+    do round = 1, most_rounds
+      done = abs(left) < left_over
+      if (done .or. .not. search%is_open()) exit
+      here = search%place()
+      at%state = last%state
+      call solve_at(steps, here, at, done)
+      if (.not. done) return
+      left = off(steps, at, position)
+      call search%note(here, left)
+    end do
+  end subroutine find_between
+
+  !> The scale of the mesh under a control of the path.
+  pure real(wp) function scale_of(control)
+    type(control_t), intent(in) :: control
+
+    scale_of = control%scale
+    if (control%kind == at_edge_radius) scale_of = control%value
+  end function scale_of
+
+  !> Moves a state of the path to another mesh, at the same coordinate.
+  subroutine change_mesh(steps, mesh, at, done)
+    class(time_stepper_t), intent(inout) :: steps
+    integer, intent(in) :: mesh
+    type(instant_t), intent(inout) :: at
+    logical, intent(out) :: done
+    type(instant_t) :: moved
+    real(wp) :: scale
+
+    scale = 1
+    if (mesh > approach) scale = radius_for(steps%equations_t, at%mesh, mesh, at%state)
+    done = scale > 0
+    if (.not. done) return
+    moved = at
+    moved%mesh = mesh
+    moved%state = regrid(steps%problem%shape, at%state, steps%meshes%grid(at%mesh), &
+      steps%meshes%grid(mesh), scale)
+    steps%frozen%factors%valid = .false.
+    call solve_at(steps, coordinate_of(steps%problem, mesh, moved%state), moved, done)
+    if (done) at = moved
+  end subroutine change_mesh
+
+end module time_jump

@@ -1,0 +1,398 @@
+!> Steps in time of bodies that remember. A step is an elastic problem: over it the pressures change
+!> linearly, so that the present ones meet half-spaces softer than at once, and earlier ones have
+!> left a deformation (`creep`). States are solved on meshes that follow the contact edge. The
+!> memory belongs to the material: it is kept on a mesh fixed in space, where pressures are
+!> interpolated to, and the deformation that it makes, which is smoother, is interpolated from.
+module time_stepper
+  use kinds, only: wp, pi
+  use dimensionless_problem, only: calm_gap
+  use discretisation, only: discretisation_t, first_node
+  use shape, only: shape_t
+  use contact_state, only: state_t, state_from
+  use equilibrium, only: control_t, at_h0_with_edge
+  use edge_locked, only: approach, contact
+  use contact_scales, only: cohesive_width
+  use locked_meshes, only: h0_control, scale_at
+  use path_coordinate, only: coordinate_of
+  use continuation, only: radius_for
+  use regridding, only: regrid
+  use potential_energy, only: energy_of_surface
+  use besides, only: besides_t, rise_at
+  use linear_algebra, only: multiply
+  use creep, only: creep_t
+  use solver, only: solver_t
+  implicit none
+  private
+  public :: time_stepper_t, instant_t, extrapolate
+
+  !> Bodies at a time [s]: the position of the drive, D = H0 - compliance*load, the state; on the
+  !> material's mesh the memories (nodes, terms of `creep`) and the pressure. dissipated: what
+  !> dashpots took in the step that led there.
+  type :: instant_t
+    real(wp) :: time = 0, position = 0
+    integer :: mesh = 1
+    type(state_t) :: state
+    real(wp), allocatable :: memory(:, :), pressure(:)
+    real(wp) :: dissipated = 0
+  end type instant_t
+
+  !> instant: coupling of bodies that have no time to yield more.
+  type, extends(solver_t) :: time_stepper_t
+    type(creep_t) :: creep
+    real(wp) :: instant = 0, compliance = 0
+    !> The largest change of the path's coordinate in a step: what changes by more has jumped, or is
+    !> to be followed in shorter steps.
+    real(wp) :: farthest = 0.3_wp
+    !> Fixed in space, of scale 1; there is none of bodies that do not remember.
+    type(discretisation_t) :: material
+    !> What came before the present instant, to guess the next from. Of a step: memories that are
+    !> left of earlier ones, the parts of the present pressure in them, and the rise that they make.
+    type(instant_t) :: before
+    real(wp), allocatable :: left(:, :), present(:), risen(:)
+  contains
+    procedure :: begin
+    procedure :: step
+    procedure :: prepare
+    procedure :: place_rise
+    procedure :: move_to_mesh
+    procedure :: mesh_for
+    procedure :: control_at
+    procedure :: remember
+    procedure :: energy
+    procedure :: finest
+    procedure, private :: on_material
+    procedure, private :: solve_relaxed
+    procedure, private :: guess
+  end type time_stepper_t
+
+  !> Radius over that of a passage at which a mesh is left again; longest extrapolation over the
+  !> step before.
+  real(wp), parameter :: back = 0.97_wp, longest_guess = 3
+  !> What the scale may miss the expected one by, over what is finest, for the memory to be
+  !> linear in it; rounds.
+  real(wp), parameter :: far_off = 0.1_wp
+  integer, parameter :: most_rounds = 3
+  !> Steps of the position on the way to a start, over the gap; the least, over the gap.
+  real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-5_wp
+  !> The part of a contact that is as fine as its edge may be.
+  real(wp), parameter :: part_of_contact = 0.3_wp
+
+contains
+
+  !> The equilibrium of relaxed bodies at a position, to which an approach from afar leads;
+  !> found = .false.: they jump before.
+  subroutine begin(self, position, at, found)
+    class(time_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: position
+    type(instant_t), intent(out) :: at
+    logical, intent(out) :: found
+    type(state_t) :: state
+    real(wp) :: far, next, step
+
+    if (allocated(self%besides)) deallocate (self%besides)
+    self%problem%coupling = self%instant*self%creep%relaxed()
+    at%mesh = merge(approach, contact, self%meshes%traceable)
+    far = max(position, calm_gap(self%problem), self%meshes%level + 3)
+    associate (grid => self%meshes%grid(at%mesh), shape => self%problem%shape)
+      state = state_from(grid%nodes)
+      state%h0 = far
+      state%scale = scale_at(shape, self%meshes, far)
+      state%gap = far + shape%height(state%scale*grid%x(:grid%nodes))
+    end associate
+    at%position = far
+    call self%solve_relaxed(far, state, at, found)
+    step = part_of_gap
+    do while (found .and. at%position > position)
+      next = max(position, at%position - step*max(at%state%axis_gap, 1.0_wp))
+      state = at%state
+      call self%solve_relaxed(next, state, at, found)
+      if (.not. found) then
+        step = 0.3_wp*step
+        found = step > least_part
+        if (.not. found) exit
+      end if
+    end do
+    if (.not. found) return
+    at%pressure = self%on_material(at)
+    at%memory = spread(at%pressure, 2, size(self%creep%time))
+    self%before = at
+  end subroutine begin
+
+  !> Solves from a guess for relaxed bodies at a position; if they are found near where they were,
+  !> that is where they are.
+  subroutine solve_relaxed(self, position, state, at, found)
+    class(time_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: position
+    type(state_t), intent(inout) :: state
+    type(instant_t), intent(inout) :: at
+    logical, intent(out) :: found
+    type(control_t) :: control
+
+    control = self%control_at(position, at%mesh, state)
+    if (abs(control%scale - state%scale) > 0) state = regrid(self%problem%shape, state, &
+      self%meshes%grid(at%mesh), self%meshes%grid(at%mesh), control%scale)
+    call self%solve(control, state, found)
+    if (found .and. allocated(at%state%gap) .and. self%meshes%traceable) found = &
+      abs(coordinate_of(self%problem, at%mesh, state) - &
+      coordinate_of(self%problem, at%mesh, at%state)) < self%farthest
+    if (.not. found) return
+    at%state = state
+    at%position = position
+  end subroutine solve_relaxed
+
+  !> From an instant to a later time and the position there. done = .false.: the bodies are not near
+  !> where they were, and the step is too long, or leads over a jump.
+  subroutine step(self, from, time, position, to, done)
+    class(time_stepper_t), intent(inout) :: self
+    type(instant_t), intent(in) :: from
+    real(wp), intent(in) :: time, position
+    type(instant_t), intent(out) :: to
+    logical, intent(out) :: done
+    type(control_t) :: control
+    real(wp) :: expected
+    integer :: mesh, round
+
+    call self%prepare(from, time)
+    to%time = time
+    to%position = position
+    to%mesh = from%mesh
+    call self%guess(from, time, position, control, to%state)
+    do round = 1, most_rounds
+      call self%place_rise(to%mesh, control_scale(control, to%state))
+      expected = to%state%scale
+      call self%solve(control, to%state, done)
+      if (done .and. self%meshes%traceable) done = &
+        abs(coordinate_of(self%problem, to%mesh, to%state) - &
+        coordinate_of(self%problem, from%mesh, from%state)) < self%farthest
+      if (.not. done) exit
+      if (abs(to%state%scale - expected) <= far_off*self%finest(expected)) exit
+    end do
+    if (.not. done) then
+      self%frozen%factors%valid = .false.
+      return
+    end if
+    mesh = self%mesh_for(to%mesh, to%state)
+    if (mesh /= to%mesh) call self%move_to_mesh(mesh, position, to)
+    call self%remember(from, to)
+  end subroutine step
+
+  !> Makes the equations those of a step from an instant to a time.
+  subroutine prepare(self, from, time)
+    class(time_stepper_t), intent(inout) :: self
+    type(instant_t), intent(in) :: from
+    real(wp), intent(in) :: time
+    real(wp), dimension(size(self%creep%time)) :: kept, past
+    real(wp) :: softer
+    integer :: k
+
+    if (.not. allocated(self%present)) allocate (self%present(size(kept)))
+    call self%creep%over_step(time - from%time, kept, past, self%present)
+    softer = 1 + dot_product(self%creep%share, self%present)
+    self%problem%coupling = self%instant*softer
+    if (size(kept) == 0) return
+    self%left = from%memory
+    do k = 1, size(kept)
+      self%left(:, k) = kept(k)*from%memory(:, k) + past(k)*from%pressure
+    end do
+    if (.not. allocated(self%risen)) allocate (self%risen(size(self%material%kernel, 1)))
+    call multiply(self%material%kernel, self%material%nodes, matmul(self%left, self%creep%share), &
+      self%risen)
+    self%risen = 2*self%instant*self%risen
+  end subroutine prepare
+
+  !> The memories of the instant that a step has led to.
+  subroutine remember(self, from, to)
+    class(time_stepper_t), intent(inout) :: self
+    type(instant_t), intent(in) :: from
+    type(instant_t), intent(inout) :: to
+    integer :: k
+
+    to%pressure = self%on_material(to)
+    to%memory = from%memory
+    to%dissipated = 0
+    do k = 1, size(to%memory, 2)
+      to%memory(:, k) = self%left(:, k) + self%present(k)*to%pressure
+      if (to%time > from%time) to%dissipated = to%dissipated + self%creep%share(k)* &
+        self%creep%time(k)/(to%time - from%time)*elastic(self, self%material, 1.0_wp, &
+        to%memory(:, k) - from%memory(:, k))
+    end do
+  end subroutine remember
+
+  !> The pressure of an instant on the nodes of the material's mesh.
+  function on_material(self, at) result(pressure)
+    class(time_stepper_t), intent(in) :: self
+    type(instant_t), intent(in) :: at
+    real(wp) :: pressure(self%material%nodes), x
+    integer :: i
+
+    associate (grid => self%meshes%grid(at%mesh), c => at%state%scale)
+      do i = 1, size(pressure)
+        x = self%material%x(i)/c
+        pressure(i) = 0
+        if (x <= grid%end) pressure(i) = grid%interpolate(at%state%pressure, x)
+      end do
+    end associate
+  end function on_material
+
+  !> Brings the rise that the memory makes to the nodes of a mesh at about a scale.
+  subroutine place_rise(self, mesh, scale)
+    class(time_stepper_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: scale
+
+    if (size(self%creep%share) > 0) &
+      self%besides = rise_at(self%material, self%risen, self%meshes%grid(mesh), scale)
+  end subroutine place_rise
+
+  !> The state to be expected at a time, from the last two instants where they are on one mesh, and
+  !> the control for it.
+  subroutine guess(self, from, time, position, control, state)
+    class(time_stepper_t), intent(in) :: self
+    type(instant_t), intent(in) :: from
+    real(wp), intent(in) :: time, position
+    type(control_t), intent(out) :: control
+    type(state_t), intent(out) :: state
+    real(wp) :: ahead
+
+    state = from%state
+    associate (before => self%before)
+      if (before%mesh == from%mesh .and. from%time > before%time) then
+        ahead = min(longest_guess, (time - from%time)/(from%time - before%time))
+        call extrapolate(self%problem%shape, self%meshes%grid(from%mesh), before%state, &
+          from%state, ahead, state)
+      end if
+    end associate
+    control = self%control_at(position, from%mesh, state)
+    if (.not. self%meshes%traceable) state = regrid(self%problem%shape, from%state, &
+      self%meshes%grid(from%mesh), self%meshes%grid(from%mesh), control%scale)
+  end subroutine guess
+
+  !> The state that the line through two of a mesh leads to, so far beyond the later one:
+  !> deformations are on it, and the shape beneath, which is known, is not. A gap that would shrink
+  !> by much is not believed.
+  pure subroutine extrapolate(shape, grid, before, now, ahead, state)
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: before, now
+    real(wp), intent(in) :: ahead
+    type(state_t), intent(inout) :: state
+
+    state = now
+    state%scale = now%scale + ahead*(now%scale - before%scale)
+    state%h0 = now%h0 + ahead*(now%h0 - before%h0)
+    if (state%scale > 0.5_wp*now%scale) then
+      associate (n => grid%nodes, x => grid%x)
+        state%gap = (1 + ahead)*(now%gap - shape%height(now%scale*x(:n))) - &
+          ahead*(before%gap - shape%height(before%scale*x(:n))) + &
+          shape%height(state%scale*x(:n))
+      end associate
+      if (.not. any(state%gap < 0.7_wp*now%gap)) return
+    end if
+    state = now
+  end subroutine extrapolate
+
+  !> The control that prescribes the position of the drive on a mesh; state: about what is expected.
+  type(control_t) function control_at(self, position, mesh, state) result(control)
+    class(time_stepper_t), intent(in) :: self
+    real(wp), intent(in) :: position
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+
+    control = h0_control(self%problem%shape, self%meshes, mesh, &
+      position + self%compliance*state%load)
+    control%value = position
+    control%compliance = self%compliance
+  end function control_at
+
+  !> The finest that the memory is about the edge: the neck of relaxed bodies, or a part of the
+  !> contact.
+  pure real(wp) function finest(self, radius)
+    class(time_stepper_t), intent(in) :: self
+    real(wp), intent(in) :: radius
+
+    finest = min(cohesive_width(self%problem)*self%problem%coupling/ &
+      (self%instant*self%creep%relaxed()), part_of_contact*radius)
+  end function finest
+
+  !> The scale that a state is expected to have under a control.
+  pure real(wp) function control_scale(control, state)
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+
+    control_scale = control%scale
+    if (control%kind == at_h0_with_edge) control_scale = state%scale
+  end function control_scale
+
+  !> The mesh that a state belongs on, which it may be on already.
+  integer function mesh_for(self, mesh, state)
+    class(time_stepper_t), intent(in) :: self
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+
+    mesh_for = mesh
+    if (.not. self%problem%law%edge_gap > 0 .or. .not. self%meshes%traceable) return
+    associate (meshes => self%meshes)
+      if (mesh < size(meshes%grid)) then
+        if (radius_for(self%equations_t, mesh, mesh + 1, state) > meshes%passage(mesh)) then
+          mesh_for = mesh + 1
+          return
+        end if
+      end if
+      if (mesh > approach) then
+        if (state%scale < back*meshes%passage(mesh - 1)) mesh_for = mesh - 1
+      end if
+    end associate
+  end function mesh_for
+
+  !> Moves an instant to another mesh, at the same position; where that fails it stays.
+  subroutine move_to_mesh(self, mesh, position, at)
+    class(time_stepper_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: position
+    type(instant_t), intent(inout) :: at
+    type(state_t) :: state
+    real(wp) :: scale
+    logical :: done
+
+    scale = 1
+    if (mesh > approach) scale = radius_for(self%equations_t, at%mesh, mesh, at%state)
+    if (.not. scale > 0) return
+    state = regrid(self%problem%shape, at%state, self%meshes%grid(at%mesh), &
+      self%meshes%grid(mesh), scale)
+    call self%place_rise(mesh, scale)
+    call self%solve(self%control_at(position, mesh, at%state), state, done)
+    if (done) done = abs(state%axis_gap - at%state%axis_gap) < &
+      self%farthest*(1 + abs(at%state%axis_gap))
+    if (.not. done) return
+    at%state = state
+    at%mesh = mesh
+  end subroutine move_to_mesh
+
+  !> The energy that bodies, surface force and spring hold, in units of load times length.
+  real(wp) function energy(self, at)
+    class(time_stepper_t), intent(inout) :: self
+    type(instant_t), intent(in) :: at
+    integer :: k
+
+    energy = energy_of_surface(self%equations_t, at%mesh, at%state) + &
+      0.5_wp*self%compliance*at%state%load**2 + 0.5_wp*elastic(self, &
+      self%meshes%grid(at%mesh), at%state%scale, at%state%pressure)
+    do k = 1, size(self%creep%share)
+      energy = energy + 0.5_wp*self%creep%share(k)*elastic(self, self%material, &
+        1.0_wp, at%memory(:, k))
+    end do
+  end function energy
+
+  !> 2 pi Int p theta_0 W p rho drho for pressures on the nodes of a mesh.
+  real(wp) function elastic(self, grid, scale, pressure)
+    class(time_stepper_t), intent(in) :: self
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: scale, pressure(:)
+    real(wp) :: rise(first_node - 1 + size(pressure))
+
+    call multiply(grid%kernel, size(pressure), pressure, rise)
+    elastic = 4*pi*self%instant*scale**3*sum(grid%weight(:size(pressure))*pressure* &
+      rise(first_node:))
+  end function elastic
+
+end module time_stepper

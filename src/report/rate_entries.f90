@@ -1,0 +1,71 @@
+!> A drive in time, in the summary.
+module rate_entries
+  use kinds, only: wp, pi, long
+  use dimensionless_problem, only: problem_t, adhesion_strength
+  use scene_groups, only: scene_t
+  use timed_pass, only: timed_result_t, of_tension, of_tension_h0, of_end_h0, of_end_load, &
+    of_end_displacement, of_dissipation
+  use summary, only: summary_t
+  use summary_entries, only: widen_spacing
+  use quality_warnings, only: short_number
+  implicit none
+  private
+  public :: summarise_timed
+
+  !> The part of the memory that panels may leave without a word.
+  real(wp), parameter :: unresolved = 0.02_wp
+
+contains
+
+  !> Numbers, errors and trouble of a drive.
+  subroutine summarise_timed(scene, problem, timed, summary)
+    type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
+    type(timed_result_t), intent(in) :: timed
+    type(summary_t), intent(inout) :: summary
+
+    call summary%set('worst_residual', timed%worst_residual)
+    call widen_spacing(summary, timed%worst_spacing)
+    if (allocated(scene%creep) .and. problem%law%adhesion > 0) call summary%set('sigma_relaxed', &
+      adhesion_strength(problem)*scene%creep%relaxed())
+    if (.not. timed%begun) then
+      call summary%fail_with('drive: at z_start the bodies have jumped into contact already; ' // &
+        'start farther apart')
+      return
+    end if
+    call summary%set('time_steps', int(timed%steps, long))
+    if (timed%lost) then
+      call summary%fail_with('drive: after ' // short_number(timed%lost_at) // ' s no state ' // &
+        'was found that the bodies go on to, or steps were too many; the curve ends there')
+      return
+    end if
+    if (timed%number(of_tension) > 0) then
+      call take('max_tension', of_tension, problem%load)
+      call summary%set('max_tension_h0', &
+        problem%law%separation_of(timed%number(of_tension_h0)))
+      call summary%set('max_tension_h0_error', timed%error(of_tension_h0)*problem%length)
+      if (problem%shape%parabolic) call take('effective_work_of_adhesion', of_tension, &
+        problem%load/(1.5_wp*pi*problem%radius))
+    end if
+    call take('energy_dissipated', of_dissipation, problem%load*problem%length)
+    call summary%set('end_h0', problem%law%separation_of(timed%number(of_end_h0)))
+    call take('end_displacement', of_end_displacement, problem%length)
+    call take('end_load', of_end_load, problem%load)
+    if (timed%memory_tail > unresolved) call summary%warn('the mesh does not resolve what the ' // &
+      'bodies remember: ' // short_number(timed%memory_tail) // ' of it is left between ' // &
+      'nodes; a higher accuracy resolves more')
+
+  contains
+
+    subroutine take(key, which, unit)
+      character(len=*), intent(in) :: key
+      integer, intent(in) :: which
+      real(wp), intent(in) :: unit
+
+      call summary%set(key, timed%number(which)*unit)
+      call summary%set(key // '_error', timed%error(which)*unit)
+    end subroutine take
+
+  end subroutine summarise_timed
+
+end module rate_entries

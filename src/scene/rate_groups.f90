@@ -1,0 +1,138 @@
+!> &drive and &viscoelastic: bodies driven in time, and bodies that remember.
+module rate_groups
+  use kinds, only: wp
+  use failure, only: failure_t
+  use text, only: brief
+  use deck_keys, only: key_spec, group, real_key, list_key
+  use creep, only: creep_t
+  use scene_groups, only: scene_t
+  implicit none
+  private
+  public :: rate_keys, take_rates
+
+  !> Terms of a creep.
+  integer, parameter :: most_terms = 20
+  !> Accuracy of a drive where the deck names none: each further digit takes three times the steps.
+  real(wp), parameter :: usual_accuracy = 1.0e-4_wp
+  !> Most steps of a given length.
+  real(wp), parameter :: most_steps = 1.0e5_wp
+  !> Groups that show bodies at rest.
+  character(len=*), parameter :: at_rest(*) = [character(len=16) :: 'loading', 'unloading', &
+    'equilibrium_path', 'profiles', 'stability', 'fit', 'regime']
+
+contains
+
+  !> Their rows of the table.
+  pure function rate_keys() result(specs)
+    type(key_spec), allocatable :: specs(:)
+    real(wp), parameter :: zero = 0
+
+    specs = [ &
+      group('drive', 'Bodies driven together and apart in time, at constant velocity.'), &
+      real_key('drive', 'velocity', 'm/s', 'Velocity of h0 or, behind a spring, of its base.', &
+               above=zero, required=.true.), &
+      real_key('drive', 'z_start', 'm', 'Position at which the bodies are at rest and the ' // &
+               'drive begins.', required=.true.), &
+      real_key('drive', 'z_turn', 'm', 'Position at which it turns round, below z_start.', &
+               required=.true.), &
+      real_key('drive', 'z_end', 'm', 'Position at which it ends, above z_turn.', &
+               otherwise='z_start'), &
+      real_key('drive', 'dwell', 's', 'Time that it waits at z_turn.', default='0', low=zero), &
+      real_key('drive', 'stiffness', 'N/m', 'Stiffness of a spring between drive and bodies.', &
+               above=zero, otherwise='none: h0 itself is driven'), &
+      real_key('drive', 'time_step', 's', 'Length of the steps.', above=zero, &
+               otherwise='from accuracy, 1e-4 unless it is given'), &
+      group('viscoelastic', 'Bodies that yield late; &bodies has the stiffness at once. ' // &
+            'stiffness_relaxed, or compliance. Needs &drive.'), &
+      real_key('viscoelastic', 'stiffness_relaxed', 'Pa', 'Stiffness of bodies at rest, that of ' &
+               // 'a standard linear solid, at most that at once.', above=zero), &
+      list_key('viscoelastic', 'compliance', '1/Pa', 'What each term adds to the compliance ' // &
+               '(1-nu^2)/E in the end.', most=most_terms, above=zero), &
+      list_key('viscoelastic', 'retardation_time', 's', 'Time of each term, of creep under a ' // &
+               'constant load.', most=most_terms, above=zero, required=.true.)]
+  end function rate_keys
+
+  !> &drive and &viscoelastic.
+  subroutine take_rates(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (scene%deck%has_group('drive')) call take_drive(scene, error)
+    if (scene%deck%has_group('viscoelastic')) call take_creep(scene, error)
+  end subroutine take_rates
+
+  subroutine take_drive(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: time
+    character(len=:), allocatable :: word
+    integer :: i
+
+    allocate (scene%drive)
+    associate (deck => scene%deck, drive => scene%drive)
+      call deck%get('drive', 'velocity', drive%velocity)
+      call deck%get('drive', 'z_start', drive%z_start)
+      call deck%get('drive', 'z_turn', drive%z_turn)
+      call deck%get('drive', 'dwell', drive%dwell)
+      call deck%get_optional('drive', 'stiffness', drive%stiffness)
+      call deck%get_optional('drive', 'time_step', drive%time_step)
+      call deck%assume('drive', 'z_end', drive%z_start)
+      call deck%get('drive', 'z_end', drive%z_end)
+      call deck%assume('numerics', 'accuracy', usual_accuracy)
+      if (drive%z_start <= drive%z_turn) call deck%mistake('drive', 'z_start', &
+        brief(drive%z_start) // ' is not above z_turn = ' // brief(drive%z_turn) // ' m', error)
+      if (drive%z_end <= drive%z_turn) call deck%mistake('drive', 'z_end', &
+        brief(drive%z_end) // ' is not above z_turn = ' // brief(drive%z_turn) // ' m', error)
+      if (allocated(drive%time_step)) then
+        time = (drive%z_start - 2*drive%z_turn + drive%z_end)/drive%velocity + drive%dwell
+        if (time > most_steps*drive%time_step) call deck%mistake('drive', 'time_step', &
+          'the drive takes ' // brief(time) // ' s, more than 1e5 steps of this length', error)
+      end if
+      do i = 1, size(at_rest)
+        if (deck%has_group(trim(at_rest(i)))) call deck%mistake(trim(at_rest(i)), '', &
+          'shows bodies at rest, and cannot stand beside &drive; use a deck of its own', error)
+      end do
+      if (scene%bodies%rigid) call deck%mistake('drive', '', &
+        'needs bodies that deform; rigid ones have the same load at any velocity', error)
+      call deck%get('numerics', 'grid', word)
+      if (word /= 'auto') call deck%mistake('numerics', 'grid', &
+        '&drive has meshes that move with the contact; leave grid out', error)
+      call deck%get('numerics', 'method', word)
+      if (word == 'mixing') call deck%mistake('numerics', 'method', &
+        '&drive does not mix; leave method out', error)
+    end associate
+  end subroutine take_drive
+
+  subroutine take_creep(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: relaxed, compliance(:), time(:)
+
+    associate (deck => scene%deck, bodies => scene%bodies)
+      if (.not. allocated(scene%drive)) call deck%mistake('viscoelastic', '', 'needs &drive; ' // &
+        'bodies at rest are elastic ones with the relaxed stiffness', error)
+      if (deck%has_group('classical')) call deck%mistake('classical', '', &
+        'is of elastic bodies, and cannot stand beside &viscoelastic', error)
+      if (allocated(bodies%surface)) call deck%mistake('layer', '', &
+        'bodies with layers cannot be viscoelastic', error)
+      call deck%get_optional('viscoelastic', 'stiffness_relaxed', relaxed)
+      call deck%get('viscoelastic', 'compliance', compliance)
+      call deck%get('viscoelastic', 'retardation_time', time)
+      if (allocated(relaxed) .eqv. size(compliance) > 0) then
+        call deck%mistake('viscoelastic', 'stiffness_relaxed', &
+          'give one of: stiffness_relaxed; compliance', error)
+      else if (allocated(relaxed)) then
+        if (relaxed > bodies%stiffness) call deck%mistake('viscoelastic', 'stiffness_relaxed', &
+          brief(relaxed) // ' is above the stiffness at once, ' // brief(bodies%stiffness) // &
+          ' Pa; bodies yield more with time', error)
+        compliance = [1/relaxed - 1/bodies%stiffness]
+      end if
+      if (.not. allocated(error) .and. size(compliance) /= size(time)) call deck%mistake( &
+        'viscoelastic', 'retardation_time', 'has ' // brief(real(size(time), wp)) // &
+        ' values for ' // brief(real(size(compliance), wp)) // ' terms', error)
+      if (allocated(error)) return
+      scene%creep = creep_t(compliance*bodies%stiffness, time)
+    end associate
+  end subroutine take_creep
+
+end module rate_groups

@@ -1,0 +1,152 @@
+"""Claims about bodies that are driven in time, and bodies that remember."""
+
+import math
+
+import numpy as np
+import pytest
+from support.creeping import cycle
+from support.scenes import JKR, lennard_jones, runner
+
+# In units of z0, and of the time of retardation.
+FAST, SLOW = 1.0e5, 0.01
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("rates"))
+
+
+def scene(sigma, relaxed=None, *, velocity=1.0, start=15.0, turn=-1.0, accuracy=1e-4, creep=None,
+          **drive):
+    """Bodies of strength sigma at once, and of `relaxed` at rest."""
+    if relaxed is not None:
+        creep = {"stiffness_relaxed": sigma / relaxed, "retardation_time": 1.0}
+    return lennard_jones(
+        sigma, drive={"velocity": velocity, "z_start": start, "z_turn": turn, **drive},
+        viscoelastic=creep, numerics={"accuracy": accuracy})
+
+
+def at_rest(run, sigma):
+    return run(lennard_jones(sigma, equilibrium_path={"h0_end": -1.0})).summary
+
+
+def near(summary, key, value, times=1.0):
+    return abs(summary[key] - value) <= times * summary[key + "_error"]
+
+
+@pytest.mark.parametrize("sigma", [0.1, 2.0])
+def test_an_elastic_body_has_its_path_at_any_velocity(run, sigma):
+    path = at_rest(run, sigma)
+    for velocity in (0.1, 10.0):
+        found = run(scene(sigma, velocity=velocity, accuracy=1e-5)).summary
+        assert near(found, "max_tension", path["max_tension"])
+        assert abs(found["max_tension"] / path["max_tension"] - 1) < 1e-5
+        lost = path.get("energy_lost", 0.0)
+        off = abs(found["energy_dissipated"] - lost)
+        assert off <= found["energy_dissipated_error"] + 1e-4 * sigma
+
+
+def test_fast_bodies_are_those_at_once_and_slow_ones_those_at_rest(run):
+    fast = run(scene(0.1, 0.5, velocity=FAST)).summary["max_tension"]
+    slow, slower = (run(scene(0.1, 0.5, velocity=velocity, accuracy=1e-3)).summary["max_tension"]
+                    for velocity in (2 * SLOW, SLOW))
+    assert fast == pytest.approx(at_rest(run, 0.1)["max_tension"], rel=5e-4)
+    # What is left goes with the velocity.
+    assert 2 * slower - slow == pytest.approx(at_rest(run, 0.5)["max_tension"] / 5, rel=1e-3)
+
+
+@pytest.mark.parametrize("velocity", [1.0, 20.0])
+def test_a_dense_solution_of_another_kind_agrees(run, velocity):
+    coarse, fine = (cycle(0.05, 3.0, 12.0, -1.0, velocity, steps) for steps in (300, 600))
+    expected = 0.05 * (fine + (fine - coarse) / 3)
+    found = run(scene(0.05, 0.2, velocity=velocity, start=12.0)).summary
+    for key, value in zip(("max_tension", "energy_dissipated", "end_load"), expected):
+        assert abs(found[key] - value) <= found[key + "_error"] + 1e-5 * abs(value)
+        assert found[key + "_error"] < 3e-4 * abs(value)
+
+
+def test_two_terms_of_one_time_are_one(run):
+    one = run(scene(0.1, 0.3, time_step=0.1)).summary
+    two = run(scene(0.1, creep={"compliance": [1.0, 1.0], "retardation_time": [1.0, 1.0]},
+                    time_step=0.1)).summary
+    for key in ("max_tension", "energy_dissipated", "end_load"):
+        assert two[key] == pytest.approx(one[key], rel=1e-9)
+
+
+def test_steps_are_of_second_order(run):
+    found = [run(scene(0.1, 0.25, velocity=8.0, time_step=step, accuracy=1e-7)).summary
+             for step in (0.016, 0.008, 0.004)]
+    for key in ("end_load", "energy_dissipated"):
+        a, b, c = (summary[key] for summary in found)
+        assert 3.3 < (a - b) / (b - c) < 4.7
+
+
+def test_pull_offs_rise_and_fall_with_velocity(run):
+    slow, middle, fast = (
+        run(scene(0.2, 2.0, velocity=velocity, start=20.0, turn=-4.0, accuracy=1e-3)).summary
+        for velocity in (2.0, 20.0, 2.0e5))
+    unit = JKR * 0.2
+    assert fast["max_tension"] < slow["max_tension"] < middle["max_tension"]
+    assert 3.1 < middle["max_tension"] / unit < 3.4
+    assert middle["effective_work_of_adhesion"] == pytest.approx(
+        middle["max_tension"] / (1.5 * math.pi))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_cycle_gives_energy(run, seed):
+    rng = np.random.default_rng(seed)
+    sigma = 10 ** rng.uniform(-2, -0.5)
+    found = run(scene(sigma, sigma * 10 ** rng.uniform(0.1, 1), velocity=10 ** rng.uniform(0, 3),
+                      turn=rng.uniform(-3, 0), start=20.0, accuracy=1e-3,
+                      dwell=rng.choice([0.0, 1.0])))
+    summary = found.summary
+    assert summary["converged"]
+    assert summary["energy_dissipated"] > -summary["energy_dissipated_error"]
+    assert not [text for text in summary.get("warnings", []) if "drive" in text]
+
+
+def test_a_spring_driven_slowly_is_the_device(run):
+    device = run(lennard_jones(2.0, equilibrium_path={"h0_end": -2.0},
+                               device={"stiffness": 0.4, "z_end": -1.0})).summary
+    found = run(scene(2.0, stiffness=0.4, start=60.0, velocity=1.0)).summary
+    assert near(found, "energy_dissipated", device["device_energy_lost"], 2.0)
+    assert near(found, "max_tension", -device["device_jump_out_load"], 30.0) or \
+        found["max_tension"] > -device["device_jump_out_load"]
+
+
+def test_rows_have_times_and_ways(run):
+    found = run(scene(0.1, 0.3, dwell=2.0, stiffness=10.0, accuracy=1e-2))
+    table = found.table("curve.csv")
+    assert table.names[-2:] == ["time", "z"]
+    assert list(dict.fromkeys(table["branch"])) == ["approach", "dwell", "retreat"]
+    assert (np.diff(table["time"]) >= 0).all()
+    waiting = table["branch"] == "dwell"
+    assert np.ptp(table["z"][waiting]) == 0 and np.ptp(table["time"][waiting]) > 1.5
+    np.testing.assert_allclose(table["z"], table["h0"] - table["load"] / 10, atol=1e-9)
+
+
+@pytest.mark.parametrize("change, message", [
+    ({"viscoelastic": {"stiffness_relaxed": 2.0, "retardation_time": 1.0}}, "above the stiffness"),
+    ({"viscoelastic": {"stiffness_relaxed": 0.5, "retardation_time": -1.0}}, "retardation_time"),
+    ({"viscoelastic": {"retardation_time": 1.0}}, "give one of"),
+    ({"viscoelastic": {"compliance": [1.0, 2.0], "retardation_time": 1.0}}, "1 values for 2"),
+    ({"drive": None, "viscoelastic": {"stiffness_relaxed": 0.5, "retardation_time": 1.0},
+      "equilibrium_path": {"h0_end": 0.0}}, "needs &drive"),
+    ({"drive": {"velocity": 1.0, "z_start": 1.0, "z_turn": 2.0}}, "is not above z_turn"),
+    ({"drive": {"velocity": 0.0, "z_start": 3.0, "z_turn": 2.0}}, "velocity"),
+    ({"drive": {"velocity": 1.0, "z_start": 3.0, "z_turn": 2.0, "time_step": 1e-9}}, "steps"),
+    ({"equilibrium_path": {"h0_end": 0.0}}, "cannot stand beside &drive"),
+    ({"bodies": {"radius": 1.0, "rigid": True}}, "needs bodies that deform"),
+])
+def test_mistakes_are_named(run, change, message):
+    groups = {"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1.0}, **change}
+    bodies = groups.pop("bodies", None)
+    text = lennard_jones(0.1, **groups)
+    if bodies:
+        text = text.replace("stiffness = 1.0", "rigid = .true.")
+    assert message in run(text, status=2).stderr
+
+
+def test_a_start_in_contact_is_refused(run):
+    found = run(scene(2.0, 4.0, start=0.5, turn=-1.0), status=1)
+    assert any("start farther apart" in text for text in found.summary["warnings"])

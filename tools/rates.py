@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""Renew the pictures of docs/rates.md and print its tables: some minutes.
+
+    .venv/bin/python tools/rates.py
+"""
+
+import math
+import os
+import sys
+import warnings
+
+# Before anything loads OpenMP.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import pages  # noqa: E402
+
+sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap")]
+
+import matplotlib  # noqa: E402
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt  # noqa: E402
+import snapin  # noqa: E402
+
+DOCS = pages.ROOT / "docs"
+# Strength at once, and the velocities of the bell in lengths of the law over the time of retardation.
+SIGMA = 0.2
+SPEEDS = [0.02 * 10 ** (k / 3) for k in range(22)]
+RATIOS = [2.0, 5.0, 10.0]
+# In these units R is as short as the range of the force.
+warnings.simplefilter("ignore", snapin.SnapinWarning)
+
+
+def driven(ratio, velocity, accuracy=1e-3, **drive):
+    """The result of a cycle in units of z0, of the stiffness at once and of the time of retardation."""
+    deck = {
+        "bodies": {"radius": 1.0, "stiffness": 1.0},
+        "force": {"law": "lennard_jones", "surface_energy": SIGMA, "z0": 1.0},
+        "drive": {"velocity": velocity, "z_start": 20.0, "z_turn": -4.0, **drive},
+        "numerics": {"accuracy": accuracy}}
+    if ratio > 1:
+        deck["viscoelastic"] = {"stiffness_relaxed": 1 / ratio, "retardation_time": 1.0}
+    return snapin.run(deck)
+
+
+def draw_bell():
+    """Pull-off against velocity."""
+    figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+    for ratio in RATIOS:
+        tension = [driven(ratio, v).summary["max_tension"] / (1.5 * math.pi * SIGMA) for v in SPEEDS]
+        axes.semilogx(SPEEDS, tension, "o-", ms=3, label=f"$E_0/E_\\infty$ = {ratio:g}")
+        print(ratio, " ".join(f"{t:.4f}" for t in tension))
+    axes.set_xlabel("velocity times retardation time over $z_0$")
+    axes.set_ylabel("largest tension over that of JKR theory")
+    axes.legend()
+    figure.savefig(DOCS / "rates_bell.png", dpi=110)
+
+
+def draw_cycles():
+    """Load against h0 at several velocities."""
+    figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+    for velocity in (0.02, 0.2, 2.0, 20.0, 200.0, 2.0e4):
+        curve = driven(10.0, velocity).curve
+        axes.plot(curve["h0"], curve["load"] / (math.pi * SIGMA), lw=1.2, label=f"{velocity:g}")
+    axes.set(xlabel="$h_0$ over $z_0$", ylabel="load over $\\pi R w$", xlim=(-4.2, 12), ylim=(-5, 6))
+    axes.axhline(0, color="0.8", lw=0.8, zorder=0)
+    axes.legend(title="velocity $\\times\\,\\tau/z_0$")
+    figure.savefig(DOCS / "rates_cycles.png", dpi=110)
+
+
+def print_orders():
+    """How many steps buy how many digits."""
+    exact = driven(4.0, 8.0, 1e-6).summary
+    for parts in (50, 100, 200, 400, 800, 1600):
+        found = driven(4.0, 8.0, 1e-6, time_step=24 / 8.0 / parts).summary
+        print(f"| {2 * parts} |", " | ".join(
+            f"{abs(found[key] / exact[key] - 1):.1e}" for key in ("max_tension", "energy_dissipated")),
+            "|")
+
+
+def main():
+    draw_cycles()
+    print_orders()
+    draw_bell()
+
+
+if __name__ == "__main__":
+    main()
