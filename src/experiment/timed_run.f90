@@ -48,7 +48,7 @@ contains
     integer, intent(out) :: nodes
     type(time_stepper_t) :: steps
     type(motion_t) :: drive
-    type(pass_t) :: now, before
+    type(pass_t) :: now, before, none
     real(wp) :: began
     integer :: pass, i
     logical :: enough
@@ -58,7 +58,7 @@ contains
     do pass = 1, most_passes
       if (pass > 1) then
         before = now
-        now = pass_t()
+        now = none
       end if
       call lay_out(request, drive, chosen, pass, steps)
       steps%farthest = farthest/2**(pass - 1)
@@ -137,7 +137,6 @@ contains
       of_memory = choose(numerics, relaxed, low, .false.)
       of_memory%panel_order = of_memory%panel_order + pass
       steps%material = fixed_mesh(of_memory, relaxed, low)
-      if (allocated(steps%risen)) deallocate (steps%risen)
       steps%cost%kernel_entries = steps%cost%kernel_entries + steps%material%kernel_entries()
     end associate
   end subroutine lay_out

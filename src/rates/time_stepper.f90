@@ -33,6 +33,8 @@ module time_stepper
     integer :: mesh = 1
     type(state_t) :: state
     real(wp), allocatable :: memory(:, :), pressure(:)
+    !> What the kernel makes of them, so that a step has one product with it.
+    real(wp), allocatable :: memory_rise(:, :), pressure_rise(:)
     real(wp) :: dissipated = 0
   end type instant_t
 
@@ -48,7 +50,7 @@ module time_stepper
     !> What came before the present instant, to guess the next from. Of a step: memories that are
     !> left of earlier ones, the parts of the present pressure in them, and the rise that they make.
     type(instant_t) :: before
-    real(wp), allocatable :: left(:, :), present(:), risen(:)
+    real(wp), allocatable :: left(:, :), left_rise(:, :), present(:), risen(:)
   contains
     procedure :: begin
     procedure :: step
@@ -61,6 +63,7 @@ module time_stepper
     procedure :: energy
     procedure :: finest
     procedure, private :: on_material
+    procedure, private :: made_of
     procedure, private :: solve_relaxed
     procedure, private :: guess
   end type time_stepper_t
@@ -74,6 +77,8 @@ module time_stepper
   integer, parameter :: most_rounds = 3
   !> Steps of the position on the way to a start, over the gap; the least, over the gap.
   real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-5_wp
+  !> A pressure over the largest whose deformation is no matter.
+  real(wp), parameter :: nothing = 1.0e-12_wp
   !> The part of a contact that is as fine as its edge may be.
   real(wp), parameter :: part_of_contact = 0.3_wp
 
@@ -114,7 +119,9 @@ contains
     end do
     if (.not. found) return
     at%pressure = self%on_material(at)
+    at%pressure_rise = self%made_of(at%pressure)
     at%memory = spread(at%pressure, 2, size(self%creep%time))
+    at%memory_rise = spread(at%pressure_rise, 2, size(self%creep%time))
     self%before = at
   end subroutine begin
 
@@ -191,13 +198,12 @@ contains
     self%problem%coupling = self%instant*softer
     if (size(kept) == 0) return
     self%left = from%memory
+    self%left_rise = from%memory_rise
     do k = 1, size(kept)
       self%left(:, k) = kept(k)*from%memory(:, k) + past(k)*from%pressure
+      self%left_rise(:, k) = kept(k)*from%memory_rise(:, k) + past(k)*from%pressure_rise
     end do
-    if (.not. allocated(self%risen)) allocate (self%risen(size(self%material%kernel, 1)))
-    call multiply(self%material%kernel, self%material%nodes, matmul(self%left, self%creep%share), &
-      self%risen)
-    self%risen = 2*self%instant*self%risen
+    self%risen = 2*self%instant*matmul(self%left_rise, self%creep%share)
   end subroutine prepare
 
   !> The memories of the instant that a step has led to.
@@ -208,15 +214,38 @@ contains
     integer :: k
 
     to%pressure = self%on_material(to)
+    to%pressure_rise = self%made_of(to%pressure)
     to%memory = from%memory
+    to%memory_rise = from%memory_rise
     to%dissipated = 0
-    do k = 1, size(to%memory, 2)
-      to%memory(:, k) = self%left(:, k) + self%present(k)*to%pressure
-      if (to%time > from%time) to%dissipated = to%dissipated + self%creep%share(k)* &
-        self%creep%time(k)/(to%time - from%time)*elastic(self, self%material, 1.0_wp, &
-        to%memory(:, k) - from%memory(:, k))
-    end do
+    associate (weight => 4*pi*self%instant*self%material%weight)
+      do k = 1, size(to%memory, 2)
+        to%memory(:, k) = self%left(:, k) + self%present(k)*to%pressure
+        to%memory_rise(:, k) = self%left_rise(:, k) + self%present(k)*to%pressure_rise
+        if (to%time > from%time) to%dissipated = to%dissipated + self%creep%share(k)* &
+          self%creep%time(k)/(to%time - from%time)* &
+          sum(weight*(to%memory(:, k) - from%memory(:, k))* &
+          (to%memory_rise(first_node:, k) - from%memory_rise(first_node:, k)))
+      end do
+    end associate
   end subroutine remember
+
+  !> What the kernel of the material's mesh makes of a pressure there; where it is nothing it costs
+  !> nothing.
+  function made_of(self, pressure) result(rise)
+    class(time_stepper_t), intent(in) :: self
+    real(wp), intent(in) :: pressure(:)
+    real(wp), allocatable :: rise(:)
+    integer :: last
+
+    if (size(pressure) == 0) then
+      allocate (rise(0))
+      return
+    end if
+    allocate (rise(size(self%material%kernel, 1)))
+    last = findloc(abs(pressure) > nothing*maxval(abs(pressure)), .true., 1, back=.true.)
+    call multiply(self%material%kernel, max(1, last), pressure, rise)
+  end function made_of
 
   !> The pressure of an instant on the nodes of the material's mesh.
   function on_material(self, at) result(pressure)
@@ -372,27 +401,20 @@ contains
   real(wp) function energy(self, at)
     class(time_stepper_t), intent(inout) :: self
     type(instant_t), intent(in) :: at
+    real(wp), allocatable :: rise(:)
     integer :: k
 
-    energy = energy_of_surface(self%equations_t, at%mesh, at%state) + &
-      0.5_wp*self%compliance*at%state%load**2 + 0.5_wp*elastic(self, &
-      self%meshes%grid(at%mesh), at%state%scale, at%state%pressure)
+    associate (grid => self%meshes%grid(at%mesh), p => at%state%pressure, c => at%state%scale)
+      allocate (rise(size(grid%kernel, 1)))
+      call multiply(grid%kernel, size(p), p, rise)
+      energy = energy_of_surface(self%equations_t, at%mesh, at%state) + &
+        0.5_wp*self%compliance*at%state%load**2 + &
+        2*pi*self%instant*c**3*sum(grid%weight(:size(p))*p*rise(first_node:))
+    end associate
     do k = 1, size(self%creep%share)
-      energy = energy + 0.5_wp*self%creep%share(k)*elastic(self, self%material, &
-        1.0_wp, at%memory(:, k))
+      energy = energy + 2*pi*self%instant*self%creep%share(k)*sum(self%material%weight* &
+        at%memory(:, k)*at%memory_rise(first_node:, k))
     end do
   end function energy
-
-  !> 2 pi Int p theta_0 W p rho drho for pressures on the nodes of a mesh.
-  real(wp) function elastic(self, grid, scale, pressure)
-    class(time_stepper_t), intent(in) :: self
-    type(discretisation_t), intent(in) :: grid
-    real(wp), intent(in) :: scale, pressure(:)
-    real(wp) :: rise(first_node - 1 + size(pressure))
-
-    call multiply(grid%kernel, size(pressure), pressure, rise)
-    elastic = 4*pi*self%instant*scale**3*sum(grid%weight(:size(pressure))*pressure* &
-      rise(first_node:))
-  end function elastic
 
 end module time_stepper
