@@ -21,6 +21,9 @@ module timed_pass
   integer, parameter :: of_tension = 1, of_tension_h0 = 2, of_end_h0 = 3, of_end_load = 4, &
     of_end_displacement = 5, of_dissipation = 6, numbers = 6
 
+  !> Most steps of a pass.
+  integer, parameter :: most_steps = 40000
+
   !> What a pass through the motion has shown. Numbers in units of the problem; balance: what is
   !> dissipated by the work of the drive, less what dashpots and jumps take.
   type :: timed_result_t
@@ -45,6 +48,8 @@ module timed_pass
     real(wp), allocatable :: time(:)
     integer, allocatable :: way(:)
     integer :: held = 0
+    !> Steps and jumps at which it is given up.
+    integer :: most = most_steps, most_jumps = 50
     real(wp) :: recent(3, 3) = 0
     integer :: recently = 0
     !> Whether the bodies were coming nearer to each other when they last moved.
@@ -55,8 +60,6 @@ module timed_pass
   !> contact radius over the width of the neck. Longest and first step, parts of a way.
   real(wp), parameter :: bend = 2.0e-3_wp, edge_moves = 1, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
-  !> Most steps of a pass.
-  integer, parameter :: most_steps = 40000
   !> A relative change of gap or radius that is no rounding.
   real(wp), parameter :: moves = 1.0e-6_wp
   !> The shortest step over the shortest time of retardation, and way over the law's length.
@@ -77,6 +80,12 @@ contains
     real(wp) :: begun_with
     integer :: way
 
+    ! A pass that halves steps and needs far more than twice as many, or has many more jumps, goes to
+    ! and fro in what is not resolved.
+    if (pass > 1) then
+      now%most = 6*before%held + 2000
+      now%most_jumps = before%result%jumps + 10
+    end if
     call steps%begin(drive%position(0), at, now%result%begun)
     now%result%lost = .not. now%result%begun
     if (now%result%lost) return
@@ -217,7 +226,7 @@ contains
       try = min(max(try, least), time - at%time)
       if (steps%meshes%traceable) call step_along(steps, at, at%time, &
         drive%at(way, at%time + try), now%inwards, huge(1.0_wp), next, done)
-      if (.not. done .or. now%held > 3*most_steps) then
+      if (.not. done .or. now%held > now%most .or. now%result%jumps > now%most_jumps) then
         call lose(at, now)
         return
       end if

@@ -64,6 +64,11 @@ contains
       steps%farthest = farthest/2**(pass - 1)
       call go_through(request, drive, pass, before, steps, observer, now)
       if (pass == 1) cycle
+      if (now%result%lost .and. pass > 2) then
+        ! What came before has its errors.
+        now = before
+        exit
+      end if
       call compare(request%numerics%accuracy, before%result, now%result)
       enough = relative_error(now%result) <= request%numerics%accuracy .or. &
         allocated(request%drive%time_step)

@@ -218,6 +218,7 @@ contains
     to%memory = from%memory
     to%memory_rise = from%memory_rise
     to%dissipated = 0
+    if (size(to%memory, 2) == 0) return
     associate (weight => 4*pi*self%instant*self%material%weight)
       do k = 1, size(to%memory, 2)
         to%memory(:, k) = self%left(:, k) + self%present(k)*to%pressure
