@@ -80,8 +80,8 @@ contains
     real(wp) :: begun_with
     integer :: way
 
-    ! A pass that halves steps and needs far more than twice as many, or has many more jumps, goes to
-    ! and fro in what is not resolved.
+    ! A pass that halves steps and needs far more than twice as many, or has many more jumps, goes
+    ! to and fro in what is not resolved.
     if (pass > 1) then
       now%most = 6*before%held + 2000
       now%most_jumps = before%result%jumps + 10

@@ -152,6 +152,7 @@ def test_a_start_in_contact_is_refused(run):
     assert any("start farther apart" in text for text in found.summary["warnings"])
 
 
+@pytest.mark.long
 def test_what_cannot_be_resolved_is_not_silent(run):
     found = run(scene(4.0, 80.0, velocity=20.0, start=80.0, turn=-8.0, accuracy=1e-2))
     assert found.summary["error_estimate"] < 3e-2 or any(
