@@ -30,8 +30,8 @@ from support.scenes import Run, exponential, lennard_jones, loading, several  # 
 # Limits of differences. EXACT is what is promised of Newton's method and of a residual_tolerance of
 # 1e-12. Anderson acceleration stops anywhere below its tolerance, 1e-10 by default, and rounding
 # decides where: then the states agree to WITHIN (between OpenBLAS's kernels they differ by 1.1e-12
-# at sigma 0.87 already, between compilers by 1.4e-11). Mixing stops where its last change of the ratio leaves it, perhaps an
-# iteration sooner or later: to a part of the tolerance. A fit stops where a step changes the sum of
+# at sigma 0.87 already, between compilers by 1.4e-11). Mixing stops where its last change of the
+# ratio leaves it, perhaps an iteration sooner or later: to a part of the tolerance. A fit stops where a step changes the sum of
 # squares by less than 1e-8 of it: what is fitted is known to the root of that times its error.
 EXACT, WITHIN, STOPPED, FITTED = 1e-12, 3e-11, 1e-8, 1e-5
 # Rows of a traced path lie where its steps end. Rounding moves them along the path, which stays the
@@ -42,8 +42,9 @@ PLACED = 1e-6
 OF_RESIDUAL = 10
 # Decks of inputs/ that stop by the paper's rule, whose states rounding decides (./reproduce gives
 # their ranges), and those with grids so coarse that the edge of a contact is held until it slips:
-# rounding decides which slip is the last.
-LEFT_OUT = ("_paper", "history_")
+# rounding decides which slip is the last. Maps: thousands of paths such as others show alone. And a
+# drive whose steps are as long as differences of loads allow: rows are at other times.
+LEFT_OUT = ("_paper", "history_", "map_", "viscoelastic")
 # Not compared: what an iteration leaves, estimates, which are differences of numbers that agree to
 # many digits, and the resolution, which depends on which node is the nearest to the edge.
 ROUNDED = ("residual", "iterations", "_error", "_uncertainty", "_estimate", "spacing_over_neck")
