@@ -9,7 +9,7 @@ module path_demand
   use experiment_request, only: request_t
   implicit none
   private
-  public :: widen_path, farthest_wanted
+  public :: widen_path, farthest_wanted, h0_in_contact
 
   !> What is left of the bodies' yielding, over what makes them jump, where their deformation no
   !> longer shows in the load: beyond, closed forms take the place of the path.

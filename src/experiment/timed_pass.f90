@@ -1,6 +1,6 @@
-!> One pass of a drive through its motion: step by step, with what is read on the way. Steps of the
-!> first pass follow what the load does, how far the contact edge moves, or the deck; a later pass
-!> halves those of the one before.
+!> One pass of a drive through its motion: step by step, with what is read on the way. Steps follow
+!> what the load does, how far the contact edge moves, or the deck; a pass after one that came to
+!> its end halves the steps of that.
 module timed_pass
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, spacing_over_neck
@@ -67,7 +67,7 @@ module timed_pass
 
 contains
 
-  !> One pass. The first chooses its steps, the others halve those of the one before.
+  !> One pass. It chooses its steps, or halves those of the one before, if there is one.
   subroutine go_through(request, drive, pass, before, steps, listener, now)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
@@ -82,7 +82,7 @@ contains
 
     ! A pass that halves steps and needs far more than twice as many, or has many more jumps, goes
     ! to and fro in what is not resolved.
-    if (pass > 1) then
+    if (before%held > 0) then
       now%most = 6*before%held + 2000
       now%most_jumps = before%result%jumps + 10
     end if
@@ -95,8 +95,10 @@ contains
       if (now%result%lost .or. .not. drive%time(way) > drive%time(way - 1)) cycle
       now%recently = 0
       call take_row(at, now)
-      if (pass == 1) then
-        call choose_steps(request, drive, way, steps, listener, at, now)
+      ! What moved before does not tell how things move now.
+      steps%before = at
+      if (before%held == 0) then
+        call choose_steps(request, drive, way, pass, steps, listener, at, now)
       else
         call halve_steps(drive, way, pass, before, steps, listener, at, now)
       end if
@@ -111,10 +113,10 @@ contains
   end subroutine go_through
 
   !> Steps of the first pass through a way.
-  subroutine choose_steps(request, drive, way, steps, listener, at, now)
+  subroutine choose_steps(request, drive, way, pass, steps, listener, at, now)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
-    integer, intent(in) :: way
+    integer, intent(in) :: way, pass
     type(time_stepper_t), intent(inout) :: steps
     class(listener_t), intent(inout) :: listener
     type(instant_t), intent(inout) :: at
@@ -131,7 +133,7 @@ contains
       if (end + 0.01_wp*step > drive%time(way)) end = drive%time(way)
       from = at
       call go_to(drive, way, end, steps, at, now)
-      call tell(drive, 1, at, listener)
+      call tell(drive, pass, at, listener)
       moved = missed(steps, from, at, now)
       step = (at%time - from%time)*min(2.0_wp, max(0.3_wp, 0.9_wp/sqrt(moved)))
       step = min(max(step, shortest_step), longest_part*whole)
@@ -207,6 +209,8 @@ contains
     end associate
     least = shortest_part*steps%creep%shortest()
     if (way_speed > 0) least = min(least, shortest_way/way_speed)
+    ! Bodies that do not attract never jump.
+    if (.not. steps%meshes%traceable) least = shortest_way*least
     try = time - at%time
     do while (at%time < time)
       if (at%time + 1.01_wp*try > time) try = time - at%time

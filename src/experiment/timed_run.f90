@@ -1,7 +1,7 @@
 !> A drive that moves in time, and what comes of it. The motion is gone through several times, each
 !> time with every step halved and more nodes for the memory: what two of these passes differ by is
-!> the error of the later one, with a margin. Steps of the
-!> first follow what the load does, how far the contact edge moves, or the deck.
+!> the error of the later one, with a margin. Steps of the first follow what the load does, how far
+!> the contact edge moves, or the deck.
 module timed_run
   use kinds, only: wp
   use clock, only: seconds
@@ -12,6 +12,7 @@ module timed_run
   use records, only: observer_t
   use numerics_choice, only: choice_t, choose, fixed_mesh
   use experiment_request, only: request_t, numerics_t
+  use path_demand, only: h0_in_contact
   use creep, only: elastic_bodies
   use motion, only: motion_t, new_motion
   use time_stepper, only: time_stepper_t
@@ -21,8 +22,6 @@ module timed_run
   private
   public :: run_timed
 
-  !> First pass: change of the load in a step that is not linear, over the largest load, and of the
-  !> The largest change of the path's coordinate in a step of the first pass: what changes by more
   !> Differences of passes count so many times: steps gain a factor of four from pass to pass,
   !> meshes may gain less.
   real(wp), parameter :: margin = 2
@@ -31,6 +30,8 @@ module timed_run
   !> Passes, and the largest change of the path's coordinate in a step of the first: what changes by
   !> more has jumped, or is to be followed in shorter steps.
   integer, parameter :: most_passes = 9
+  !> Passes that may lose the bodies before one is whole.
+  integer, parameter :: most_tries = 2
   real(wp), parameter :: farthest = 0.3_wp
   !> Digits of the meshes that each pass has more.
   real(wp), parameter :: more_digits = 0.7_wp
@@ -49,30 +50,34 @@ contains
     type(time_stepper_t) :: steps
     type(motion_t) :: drive
     type(pass_t) :: now, before, none
-    real(wp) :: began
-    integer :: pass, i
+    real(wp) :: began, low
+    integer :: pass, whole, i
     logical :: enough
 
     call prepare(request, problem, chosen, steps, drive)
     began = seconds()
+    low = deepest(request, drive, steps)
+    whole = 0
     do pass = 1, most_passes
-      if (pass > 1) then
-        before = now
-        now = none
-      end if
-      call lay_out(request, drive, chosen, pass, steps)
+      before = none
+      if (whole > 0) before = now
+      now = none
+      call lay_out(request, drive, low, chosen, pass, steps)
       steps%farthest = farthest/2**(pass - 1)
       call go_through(request, drive, pass, before, steps, observer, now)
-      if (pass == 1) cycle
-      if (now%result%lost .and. pass > 2) then
-        ! What came before has its errors.
-        now = before
-        exit
+      if (now%result%lost) then
+        ! Finer meshes may hold what was lost; what came before has its errors.
+        if (whole > 1) now = before
+        if (whole > 0 .or. pass == most_tries .or. .not. now%result%begun .or. &
+          now%held > most_steps) exit
+        cycle
       end if
+      whole = whole + 1
+      if (whole == 1) cycle
       call compare(request%numerics%accuracy, before%result, now%result)
       enough = relative_error(now%result) <= request%numerics%accuracy .or. &
         allocated(request%drive%time_step)
-      if (enough .or. now%result%lost .or. 2*now%held > most_steps) exit
+      if (enough .or. 2*now%held > most_steps) exit
     end do
     result = now%result
     result%estimate = relative_error(result)
@@ -107,11 +112,32 @@ contains
     end associate
   end subroutine prepare
 
-  !> Meshes for relaxed bodies, whose neck is the narrowest, with more digits from pass to pass; for
-  !> the memory panels fixed in space, with a node more on each.
-  subroutine lay_out(request, drive, chosen, pass, steps)
+  !> The bodies as they are at rest.
+  type(problem_t) function relaxed_problem(steps) result(relaxed)
+    type(time_stepper_t), intent(in) :: steps
+
+    relaxed = steps%problem
+    relaxed%coupling = steps%instant*steps%creep%relaxed()
+  end function relaxed_problem
+
+  !> The lowest h0 that the bodies may come to: that of the drive or, through a spring, of the
+  !> contact that carries its load.
+  real(wp) function deepest(request, drive, steps) result(low)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
+    type(time_stepper_t), intent(in) :: steps
+
+    low = minval(drive%position)
+    if (allocated(request%drive%stiffness)) low = &
+      h0_in_contact(relaxed_problem(steps), 1.0_wp, steps%compliance, low)
+  end function deepest
+
+  !> Meshes for relaxed bodies, whose neck is the narrowest, with more digits from pass to pass; for
+  !> the memory panels fixed in space, with a node more on each.
+  subroutine lay_out(request, drive, low, chosen, pass, steps)
+    class(request_t), intent(in) :: request
+    type(motion_t), intent(in) :: drive
+    real(wp), intent(in) :: low
     type(choice_t), intent(in) :: chosen
     integer, intent(in) :: pass
     type(time_stepper_t), intent(inout) :: steps
@@ -121,12 +147,11 @@ contains
     real(wp) :: digits
     integer :: k
 
-    relaxed = steps%problem
-    relaxed%coupling = steps%instant*steps%creep%relaxed()
+    relaxed = relaxed_problem(steps)
     ! The memory takes the pressure at places, not only its integrals, which have twice its digits.
     digits = chosen%digits
     if (allocated(request%creep)) digits = 2*digits
-    associate (low => minval(drive%position), meshes => steps%meshes)
+    associate (meshes => steps%meshes)
       meshes = new_mesh_family(relaxed, maxval(drive%position), low, &
         min(most_digits, digits + more_digits*(pass - 1)))
       ! No path comes to a mesh that waits for it.

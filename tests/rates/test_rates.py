@@ -74,8 +74,9 @@ def test_two_terms_of_one_time_are_one(run):
 
 
 def test_steps_are_of_second_order(run):
-    found = [run(scene(0.1, 0.25, velocity=8.0, time_step=step, accuracy=1e-7)).summary
-             for step in (0.016, 0.008, 0.004)]
+    # Softer bodies move fast about a jump, where steps are halved on the way.
+    found = [run(scene(0.1, 0.15, velocity=8.0, z_end=3.0, time_step=step, accuracy=1e-7)).summary
+             for step in (0.004, 0.002, 0.001)]
     for key in ("end_load", "energy_dissipated"):
         a, b, c = (summary[key] for summary in found)
         assert 3.3 < (a - b) / (b - c) < 4.7
@@ -157,3 +158,9 @@ def test_what_cannot_be_resolved_is_not_silent(run):
     found = run(scene(4.0, 80.0, velocity=20.0, start=80.0, turn=-8.0, accuracy=1e-2))
     assert found.summary["error_estimate"] < 3e-2 or any(
         "above the accuracy" in text for text in found.summary["warnings"])
+
+
+def test_bodies_that_are_lost_have_no_numbers(run):
+    found = run(scene(1.0, 200.0, start=30.0, time_step=1.0, accuracy=1e-2), status=1)
+    assert any("no state was found" in text for text in found.warnings)
+    assert "energy_dissipated" not in found.summary

@@ -1,0 +1,71 @@
+"""Claims about bodies that remember and only repel: as the repulsion hardens they are Hertz's, of
+which load and depth are known in closed form (Lee and Radok; Ting on the way back)."""
+
+import numpy as np
+import pytest
+from support.scenes import exponential, runner
+
+# Depth in decay lengths of the repulsion, and stiffness at rest over that at once.
+DEPTH, RELAXED = 1000.0, 0.25
+MODULUS = 0.5  # E* at once
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    return runner(snapin, tmp_path_factory.mktemp("rates"))
+
+
+def scene(accuracy=1e-3, **drive):
+    return exponential(1.0, drive={"z_start": 20.0, **drive}, numerics={"accuracy": accuracy},
+                       viscoelastic={"stiffness_relaxed": RELAXED, "retardation_time": 1.0})
+
+
+def relaxation(time):
+    """E* a time after a step of depth."""
+    return MODULUS * (RELAXED + (1 - RELAXED) * np.exp(-time / RELAXED))
+
+
+def relaxed_between(time, first, last):
+    """The integral of relaxation(time - s) over s."""
+    late, early = (np.exp((s - time) / RELAXED) for s in (last, first))
+    return MODULUS * RELAXED * (last - first + (1 - RELAXED) * (late - early))
+
+
+def ting(time, turn):
+    """Load of a sphere of radius 1 that goes in with velocity DEPTH/turn, and back."""
+    low, high = 0.0, min(time, turn)
+    # On the way back the contact is as wide as it was at a time when it grew.
+    for _ in range(60 if time > turn else 0):
+        middle = (low + high) / 2
+        if relaxed_between(time, middle, turn) > relaxed_between(time, turn, time):
+            low = middle
+        else:
+            high = middle
+    root = np.sqrt(high) * (NODES + 1) / 2
+    integral = np.sqrt(high) / 2 * WEIGHTS @ (2 * root**2 * relaxation(time - root**2))
+    return 4 / 3 * 1.5 * (DEPTH / turn)**1.5 * integral
+
+
+@pytest.mark.parametrize("turn", [0.1, 1.0])
+def test_a_hard_sphere_has_tings_load_on_both_ways(run, turn):
+    curve = run(scene(velocity=DEPTH / turn, z_turn=-DEPTH)).curve
+    begun = np.interp(0.0, -curve["h0"][curve["branch"] == "approach"],
+                      curve["time"][curve["branch"] == "approach"])
+    largest = curve["load"].max()
+    for i in range(0, len(curve), max(1, len(curve) // 40)):
+        time = curve["time"][i] - begun
+        if time > 0:
+            assert abs(curve["load"][i] - ting(time, turn)) < 0.01 * largest
+
+
+def test_depth_under_a_constant_load_relaxes_exponentially(run):
+    soft, travel = 0.01, 2.0e6
+    curve = run(scene(1e-2, velocity=2.0e10, z_turn=-travel, dwell=3.0,
+                      stiffness=soft)).curve
+    dwell = curve["branch"] == "dwell"
+    time = curve["time"][dwell] - curve["time"][dwell][0]
+    load = curve["load"][dwell]
+    assert np.ptp(load) < 1e-3 * load[0]
+    compliance = (1 + (1 / RELAXED - 1) * (1 - np.exp(-time))) / MODULUS
+    np.testing.assert_allclose((-curve["h0"][dwell])**1.5, 0.75 * load * compliance, rtol=0.01)
