@@ -19,9 +19,10 @@ module numerics_choice
     type(solver_options_t) :: options
     !> Digits that edge-locked meshes are to have.
     real(wp) :: digits = 7
-    !> Fixed grids: nodes and extent (lateral units), and nodes of a panel.
+    !> Fixed grids: nodes and extent (lateral units), nodes of a panel, and its size over the smallest
+    !> feature.
     integer :: nodes = 0, panel_order = 12
-    real(wp) :: extent = 0
+    real(wp) :: extent = 0, panel_over_feature = 0.5_wp
   contains
     procedure :: is_fixed
   end type choice_t
@@ -35,8 +36,6 @@ module numerics_choice
   !> What may be left of an extremum's place over the accuracy: a load goes with it by some times as
   !> much.
   real(wp), parameter :: place_over_accuracy = 1.0e-5_wp
-  !> Size of panels fixed in space over the smallest feature.
-  real(wp), parameter :: panel_over_feature = 0.5_wp
 
 contains
 
@@ -141,7 +140,7 @@ contains
       return
     end if
     widest = min(largest_radius(problem, h0_low, contact_level(problem)), chosen%extent)
-    finest = panel_over_feature*smallest_feature(problem, widest)
+    finest = chosen%panel_over_feature*smallest_feature(problem, widest)
     ! No more nodes than a uniform grid would have been given.
     count = ceiling(min(widest/finest, real(max(1, chosen%nodes/chosen%panel_order), wp)))
     finest = widest/count

@@ -52,6 +52,9 @@ module timed_pass
     integer :: most = most_steps, most_jumps = 50
     real(wp) :: recent(3, 3) = 0
     integer :: recently = 0
+    !> The longest step [s] to be tried, and how many steps were taken since one was too long.
+    real(wp) :: longest = huge(1.0_wp)
+    integer :: since = 0
     !> Whether the bodies were coming nearer to each other when they last moved.
     logical :: inwards = .true.
     real(wp) :: work = 0, inside = 0
@@ -60,6 +63,8 @@ module timed_pass
   !> contact radius over the width of the neck. Longest and first step, parts of a way.
   real(wp), parameter :: bend = 2.0e-3_wp, edge_moves = 1, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
+  !> Steps after one that was too long before longer ones are tried again.
+  integer, parameter :: patience = 3
   !> A relative change of gap or radius that is no rounding.
   real(wp), parameter :: moves = 1.0e-6_wp
   !> The shortest step over the shortest time of retardation, and way over the law's length.
@@ -211,8 +216,8 @@ contains
     if (way_speed > 0) least = min(least, shortest_way/way_speed)
     ! Bodies that do not attract never jump.
     if (.not. steps%meshes%traceable) least = shortest_way*least
-    try = time - at%time
     do while (at%time < time)
+      try = min(now%longest, time - at%time)
       if (at%time + 1.01_wp*try > time) try = time - at%time
       when = min(at%time + try, time)
       call steps%step(at, when, drive%at(way, when), next, done)
@@ -221,13 +226,15 @@ contains
         drive%at(way, when), now%inwards, steps%farthest, next, done)
       if (done) then
         call accept(steps, way, next, smooth, at, now)
-        try = 2*try
+        now%since = now%since + 1
+        if (now%since > patience) now%longest = max(now%longest, 2*try)
         cycle
       end if
       steps%cost%rejected_steps = steps%cost%rejected_steps + 1
-      try = 0.5_wp*try
-      if (try > least .and. at%time + try > at%time) cycle
-      try = min(max(try, least), time - at%time)
+      now%longest = 0.5_wp*try
+      now%since = 0
+      if (now%longest > least .and. at%time + now%longest > at%time) cycle
+      try = min(max(now%longest, least), time - at%time)
       if (steps%meshes%traceable) call step_along(steps, at, at%time, &
         drive%at(way, at%time + try), now%inwards, huge(1.0_wp), next, done)
       if (.not. done .or. now%held > now%most .or. now%result%jumps > now%most_jumps) then
@@ -239,7 +246,8 @@ contains
       now%recently = 0
       call accept(steps, way, next, .false., at, now)
       steps%before = at
-      try = least
+      now%longest = least
+      now%since = patience
     end do
   end subroutine go_to
 

@@ -6,6 +6,7 @@ module timed_run
   use kinds, only: wp
   use clock, only: seconds
   use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t
   use equilibrium, only: cost_t
   use edge_locked, only: new_mesh_family
   use mesh_digits, only: most_digits
@@ -16,6 +17,7 @@ module timed_run
   use creep, only: elastic_bodies
   use motion, only: motion_t, new_motion
   use time_stepper, only: time_stepper_t
+  use material, only: new_material
   use timed_pass, only: timed_result_t, pass_t, go_through, most_steps, of_tension, of_end_load, &
     of_dissipation
   implicit none
@@ -33,6 +35,12 @@ module timed_run
   !> Passes that may lose the bodies before one is whole.
   integer, parameter :: most_tries = 2
   real(wp), parameter :: farthest = 0.3_wp
+  !> Panels of the memory's mesh over the neck, with so many nodes more than others have; the most
+  !> nodes: beyond, what is not resolved is told.
+  real(wp), parameter :: over_neck = 3
+  integer, parameter :: over_order = 3, most_nodes = 5000
+  !> What long panels of the memory's mesh may lack of a pressure, over the accuracy.
+  real(wp), parameter :: left_out = 1.0e-3_wp
   !> Digits of the meshes that each pass has more.
   real(wp), parameter :: more_digits = 0.7_wp
 
@@ -144,6 +152,7 @@ contains
     type(problem_t) :: relaxed
     type(numerics_t) :: numerics
     type(choice_t) :: of_memory
+    type(discretisation_t) :: grid
     real(wp) :: digits
     integer :: k
 
@@ -165,8 +174,12 @@ contains
       numerics%method = 'mixing'
       numerics%grid = 'panels'
       of_memory = choose(numerics, relaxed, low, .false.)
-      of_memory%panel_order = of_memory%panel_order + pass
-      steps%material = fixed_mesh(of_memory, relaxed, low)
+      of_memory%panel_over_feature = over_neck
+      of_memory%panel_order = of_memory%panel_order + over_order + pass
+      of_memory%nodes = most_nodes
+      grid = fixed_mesh(of_memory, relaxed, low)
+      steps%material = new_material(grid, count(abs(grid%panel%right - grid%panel%left - &
+        grid%panel(1)%right) <= 1.0e-9_wp*grid%panel(1)%right), left_out*request%numerics%accuracy)
       steps%cost%kernel_entries = steps%cost%kernel_entries + steps%material%kernel_entries()
     end associate
   end subroutine lay_out

@@ -19,6 +19,7 @@ module time_stepper
   use potential_energy, only: energy_of_surface
   use besides, only: besides_t, rise_at
   use linear_algebra, only: multiply
+  use material, only: material_t
   use creep, only: creep_t
   use solver, only: solver_t
   implicit none
@@ -46,7 +47,7 @@ module time_stepper
     !> to be followed in shorter steps.
     real(wp) :: farthest = 0.3_wp
     !> Fixed in space, of scale 1; there is none of bodies that do not remember.
-    type(discretisation_t) :: material
+    type(material_t) :: material
     !> What came before the present instant, to guess the next from. Of a step: memories that are
     !> left of earlier ones, the parts of the present pressure in them, and the rise that they make.
     type(instant_t) :: before
@@ -62,8 +63,7 @@ module time_stepper
     procedure :: remember
     procedure :: energy
     procedure :: finest
-    procedure, private :: on_material
-    procedure, private :: made_of
+    procedure, private :: note_pressure
     procedure, private :: solve_relaxed
     procedure, private :: guess
   end type time_stepper_t
@@ -77,8 +77,6 @@ module time_stepper
   integer, parameter :: most_rounds = 3
   !> Steps of the position on the way to a start, over the gap; the least, over the gap.
   real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-5_wp
-  !> A pressure over the largest whose deformation is no matter.
-  real(wp), parameter :: nothing = 1.0e-12_wp
   !> The part of a contact that is as fine as its edge may be.
   real(wp), parameter :: part_of_contact = 0.3_wp
 
@@ -118,8 +116,7 @@ contains
       end if
     end do
     if (.not. found) return
-    at%pressure = self%on_material(at)
-    at%pressure_rise = self%made_of(at%pressure)
+    call self%note_pressure(at)
     at%memory = spread(at%pressure, 2, size(self%creep%time))
     at%memory_rise = spread(at%pressure_rise, 2, size(self%creep%time))
     self%before = at
@@ -213,8 +210,7 @@ contains
     type(instant_t), intent(inout) :: to
     integer :: k
 
-    to%pressure = self%on_material(to)
-    to%pressure_rise = self%made_of(to%pressure)
+    call self%note_pressure(to)
     to%memory = from%memory
     to%memory_rise = from%memory_rise
     to%dissipated = 0
@@ -231,38 +227,20 @@ contains
     end associate
   end subroutine remember
 
-  !> What the kernel of the material's mesh makes of a pressure there; where it is nothing it costs
-  !> nothing.
-  function made_of(self, pressure) result(rise)
+  !> Notes the pressure of an instant on the nodes of the material's mesh, and what the half-space
+  !> makes of it; bodies that do not remember have none.
+  subroutine note_pressure(self, at)
     class(time_stepper_t), intent(in) :: self
-    real(wp), intent(in) :: pressure(:)
-    real(wp), allocatable :: rise(:)
-    integer :: last
+    type(instant_t), intent(inout) :: at
 
-    if (size(pressure) == 0) then
-      allocate (rise(0))
-      return
+    if (size(self%creep%time) == 0) then
+      at%pressure = [real(wp) ::]
+      at%pressure_rise = at%pressure
+    else
+      call self%material%take(self%meshes%grid(at%mesh), at%state%scale, at%state%pressure, &
+        at%pressure, at%pressure_rise)
     end if
-    allocate (rise(size(self%material%kernel, 1)))
-    last = findloc(abs(pressure) > nothing*maxval(abs(pressure)), .true., 1, back=.true.)
-    call multiply(self%material%kernel, max(1, last), pressure, rise)
-  end function made_of
-
-  !> The pressure of an instant on the nodes of the material's mesh.
-  function on_material(self, at) result(pressure)
-    class(time_stepper_t), intent(in) :: self
-    type(instant_t), intent(in) :: at
-    real(wp) :: pressure(self%material%nodes), x
-    integer :: i
-
-    associate (grid => self%meshes%grid(at%mesh), c => at%state%scale)
-      do i = 1, size(pressure)
-        x = self%material%x(i)/c
-        pressure(i) = 0
-        if (x <= grid%end) pressure(i) = grid%interpolate(at%state%pressure, x)
-      end do
-    end associate
-  end function on_material
+  end subroutine note_pressure
 
   !> Brings the rise that the memory makes to the nodes of a mesh at about a scale.
   subroutine place_rise(self, mesh, scale)
@@ -270,8 +248,8 @@ contains
     integer, intent(in) :: mesh
     real(wp), intent(in) :: scale
 
-    if (size(self%creep%share) > 0) &
-      self%besides = rise_at(self%material, self%risen, self%meshes%grid(mesh), scale)
+    if (size(self%creep%share) > 0) self%besides = rise_at(self%material%discretisation_t, &
+      self%risen, self%meshes%grid(mesh), scale)
   end subroutine place_rise
 
   !> The state to be expected at a time, from the last two instants where they are on one mesh, and

@@ -74,12 +74,12 @@ def test_two_terms_of_one_time_are_one(run):
 
 
 def test_steps_are_of_second_order(run):
-    # Softer bodies move fast about a jump, where steps are halved on the way.
-    found = [run(scene(0.1, 0.15, velocity=8.0, z_end=3.0, time_step=step, accuracy=1e-7)).summary
-             for step in (0.004, 0.002, 0.001)]
+    # Not so soft that they move fast about a jump, where some steps are halved on the way.
+    found = [run(scene(0.05, 0.125, start=8.0, velocity=4.0, z_end=3.0, time_step=step,
+                       accuracy=1e-7)).summary for step in (0.004, 0.002, 0.001)]
     for key in ("end_load", "energy_dissipated"):
         a, b, c = (summary[key] for summary in found)
-        assert 3.3 < (a - b) / (b - c) < 4.7
+        assert 3.6 < (a - b) / (b - c) < 4.4
 
 
 def test_pull_offs_rise_and_fall_with_velocity(run):

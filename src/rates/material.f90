@@ -1,0 +1,143 @@
+!> A mesh fixed in the material, for what bodies remember: pressures are brought to it from meshes
+!> that move with the contact, and the rise of the gap that the half-space makes of them is found
+!> there. Panels are as fine as the edge of a contact wherever that may pass; where the edge is not,
+!> a pressure is smooth, and long panels, each in place of several, hold it.
+module material
+  use kinds, only: wp
+  use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes, first_node
+  use quadrature, only: lagrange_basis
+  use linear_algebra, only: multiply
+  implicit none
+  private
+  public :: material_t, new_material
+
+  !> Nodes of the fine mesh are those of long panels, in order, and then of the panels farther out.
+  type, extends(discretisation_t) :: material_t
+    !> Long panels: how many, their length, the fine nodes of each, their own nodes.
+    integer :: long = 0, inside = 0
+    real(wp) :: length = 0
+    type(local_nodes_t) :: own
+    !> Values on the fine nodes of a long panel from those on its own, (inside, own nodes).
+    real(wp), allocatable :: spread(:, :)
+    !> The kernel's columns for the own nodes of all long panels.
+    real(wp), allocatable :: smooth_kernel(:, :)
+    !> What a long panel may lack of a pressure, over the largest.
+    real(wp) :: lacking = 0
+  contains
+    procedure :: take
+  end type material_t
+
+  !> Fine panels in a long one, and how many nodes it has more than each of these.
+  integer, parameter :: together = 8, more_nodes = 2
+  !> A pressure over the largest whose deformation is no matter.
+  real(wp), parameter :: nothing = 1.0e-12_wp
+
+contains
+
+  !> The mesh `grid`, whose first `equal` panels from the axis have one length, with long panels that
+  !> may lack a part `lacking` of a pressure.
+  function new_material(grid, equal, lacking) result(material)
+    type(discretisation_t), intent(in) :: grid
+    integer, intent(in) :: equal
+    real(wp), intent(in) :: lacking
+    type(material_t) :: material
+    integer :: order, k, n
+
+    material%discretisation_t = grid
+    material%lacking = lacking
+    material%long = equal/together
+    order = size(grid%local(1)%node)
+    material%inside = together*order
+    material%length = together*(grid%panel(1)%right - grid%panel(1)%left)
+    material%own = gauss_nodes(order + more_nodes)
+    n = order + more_nodes
+    allocate (material%spread(material%inside, n))
+    allocate (material%smooth_kernel(size(grid%kernel, 1), n*material%long))
+    if (material%long == 0) return
+    do k = 1, material%inside
+      material%spread(k, :) = lagrange_basis(material%own%node, material%own%barycentric, &
+        grid%x(k)/material%length)
+    end do
+    do k = 1, material%long
+      material%smooth_kernel(:, (k - 1)*n + 1:k*n) = matmul( &
+        grid%kernel(:, (k - 1)*material%inside + 1:k*material%inside), material%spread)
+    end do
+  end function new_material
+
+  !> Brings the pressure of another mesh at a scale to the nodes (values), and makes the rise of it
+  !> on the rows of the kernel.
+  subroutine take(self, grid, scale, pressure, values, rise)
+    class(material_t), intent(in) :: self
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: scale, pressure(:)
+    real(wp), allocatable, intent(out) :: values(:), rise(:)
+    real(wp) :: own(size(self%spread, 2), self%long), part(size(self%kernel, 1)), largest
+    logical :: smooth(self%long)
+    integer :: first, last, k, n
+
+    allocate (values(self%nodes), rise(size(self%kernel, 1)))
+    n = size(own, 1)
+    do k = 1, self%long
+      own(:, k) = at((k - 1 + self%own%node)*self%length)
+    end do
+    largest = maxval(abs(pressure))
+    do k = 1, self%long
+      smooth(k) = self%own%tail(own(:, k)) <= self%lacking*largest
+      associate (here => (k - 1)*self%inside)
+        if (smooth(k)) then
+          values(here + 1:here + self%inside) = matmul(self%spread, own(:, k))
+        else
+          values(here + 1:here + self%inside) = at(self%x(here + 1:here + self%inside))
+        end if
+      end associate
+    end do
+    values(self%long*self%inside + 1:) = at(self%x(self%long*self%inside + 1:))
+    ! Neighbours of one kind together, the panels farther out with the last.
+    rise = 0
+    first = 1
+    do while (first <= self%long)
+      last = first
+      do while (last < self%long)
+        if (smooth(last + 1) .neqv. smooth(first)) exit
+        last = last + 1
+      end do
+      if (smooth(first)) then
+        call add(self%smooth_kernel(:, (first - 1)*n + 1:last*n), &
+          reshape(own(:, first:last), [n*(last - first + 1)]))
+      else
+        call add(self%kernel(:, (first - 1)*self%inside + 1:last*self%inside), &
+          values((first - 1)*self%inside + 1:last*self%inside))
+      end if
+      first = last + 1
+    end do
+    call add(self%kernel(:, self%long*self%inside + 1:), values(self%long*self%inside + 1:))
+
+  contains
+
+    !> The pressure at some radii.
+    pure function at(radii) result(found)
+      real(wp), intent(in) :: radii(:)
+      real(wp) :: found(size(radii))
+      integer :: j
+
+      found = 0
+      do j = 1, size(radii)
+        if (radii(j) <= scale*grid%end) found(j) = grid%interpolate(pressure, radii(j)/scale)
+      end do
+    end function at
+
+    !> Adds the rise that columns make, up to the last that matters.
+    subroutine add(columns, weights)
+      real(wp), intent(in), contiguous :: columns(:, :)
+      real(wp), intent(in) :: weights(:)
+      integer :: count
+
+      count = findloc(abs(weights) > nothing*largest, .true., 1, back=.true.)
+      if (count == 0) return
+      call multiply(columns, count, weights, part)
+      rise = rise + part
+    end subroutine add
+
+  end subroutine take
+
+end module material
