@@ -1,6 +1,7 @@
 !> Steps in time where h0 does not tell the state, beside folds and over them: along the path of the
 !> equilibria that the memory of the moment allows, in its own coordinate, until the drive is where
-!> it is to be. A jump is such a step that takes no time.
+!> it is to be. A jump is such a step that takes no time, and lands where bodies are stable: where
+!> the drive has to come nearer for them to come nearer.
 module time_jump
   use kinds, only: wp
   use contact_state, only: state_t
@@ -35,10 +36,12 @@ contains
     logical, intent(in) :: inwards
     type(instant_t), intent(out) :: to
     logical, intent(out) :: done
+    logical :: jumps
 
     call steps%prepare(from, time)
-    call go(steps, from, position, inwards, farthest, to, done)
-    if (.not. done) call go(steps, from, position, .not. inwards, farthest, to, done)
+    jumps = .not. time > from%time
+    call go(steps, from, position, inwards, jumps, farthest, to, done)
+    if (.not. done) call go(steps, from, position, .not. inwards, jumps, farthest, to, done)
     if (.not. done) return
     to%time = time
     to%position = position
@@ -47,11 +50,11 @@ contains
   end subroutine step_along
 
   !> Goes one way.
-  subroutine go(steps, from, position, inwards, farthest, to, done)
+  subroutine go(steps, from, position, inwards, jumps, farthest, to, done)
     class(time_stepper_t), intent(inout) :: steps
     type(instant_t), intent(in) :: from
     real(wp), intent(in) :: position, farthest
-    logical, intent(in) :: inwards
+    logical, intent(in) :: inwards, jumps
     type(instant_t), intent(out) :: to
     logical, intent(out) :: done
     type(instant_t) :: last
@@ -79,7 +82,7 @@ contains
       end if
       way = way + ds
       missing = off(steps, to, position)
-      if ((missing < 0) .neqv. (missing_last < 0)) exit
+      if (passed()) exit
       ds = min(longest, 1.5_wp*ds)
       mesh = steps%mesh_for(to%mesh, to%state)
       if (mesh == to%mesh) cycle
@@ -90,13 +93,22 @@ contains
       s_last = s
       missing_last = missing
       missing = off(steps, to, position)
-      if ((missing < 0) .eqv. (missing_last < 0)) cycle
+      if (.not. passed()) cycle
       ! Between what the two meshes say of one state.
       steps%frozen%factors%valid = .false.
       call steps%solve(steps%control_at(position, mesh, to%state), to%state, done)
       return
     end do
     call find_between(steps, position, last, s_last, missing_last, to, s, missing, done)
+
+  contains
+
+    !> Whether the drive's position was passed, by a jump in the sense in which bodies are stable.
+    pure logical function passed()
+      passed = (missing < 0) .neqv. (missing_last < 0)
+      if (jumps) passed = passed .and. (inwards .eqv. missing < 0)
+    end function passed
+
   end subroutine go
 
   !> By how much the drive is beyond a position.

@@ -77,6 +77,8 @@ module time_stepper
   integer, parameter :: most_rounds = 3
   !> Steps of the position on the way to a start, over the gap; the least, over the gap.
   real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-5_wp
+  !> Parts of radius and gap by which two meshes may differ in what they say of one state.
+  real(wp), parameter :: same_state = 0.05_wp
   !> The part of a contact that is as fine as its edge may be.
   real(wp), parameter :: part_of_contact = 0.3_wp
 
@@ -370,8 +372,9 @@ contains
       self%meshes%grid(mesh), scale)
     call self%place_rise(mesh, scale)
     call self%solve(self%control_at(position, mesh, at%state), state, done)
+    ! Beside a fold another state has the same h0.
     if (done) done = abs(state%axis_gap - at%state%axis_gap) < &
-      self%farthest*(1 + abs(at%state%axis_gap))
+      same_state*(1 + abs(at%state%axis_gap)) .and. abs(state%scale - scale) < same_state*scale
     if (.not. done) return
     at%state = state
     at%mesh = mesh
