@@ -37,7 +37,7 @@ _GUIDE = program.ROOT / "docs" / "accuracy.md"
 # What measures, what draws, what makes the guide's tables.
 _PARTS = {
     "accuracy": (accuracy.measure, accuracy.draw, accuracy.tables),
-    "laws": (laws.measure, None, laws.tables),
+    "laws": (laws.measure, laws.draw, laws.tables),
     "experiments": (laws.measure_experiments, None, laws.tables_experiments),
     "error_law": (accuracy.measure_law, accuracy.draw_law, accuracy.tables_law),
     "ratios": (ratios.measure, None, ratios.tables),

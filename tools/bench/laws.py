@@ -7,6 +7,7 @@ calculation alone.
 import math
 import shutil
 
+import pictures
 import problems
 
 ACCURACIES = (1e-3, 1e-6, 1e-9)
@@ -49,6 +50,28 @@ def measure_experiments(program, quick, say):
             rows.append(_row(name, accuracy, run) | {"ratio": _error_over_estimate(run, reference)})
             say(f"{name}, {accuracy:g}: {rows[-1]['price']:.3g} G")
     return rows
+
+
+def draw(rows, folder):
+    """Draw what each law and shape costs at each accuracy, the cheapest at the top."""
+    names = sorted({row["problem"] for row in rows}, reverse=True, key=lambda name: [
+        row["price"] for row in rows if row["problem"] == name and row["accuracy"] == 1e-6])
+    page, panels = pictures.figure(1, 1, (8.0, 0.28 * len(names) + 1.4))
+    panel = panels[0, 0]
+    pictures.dress(panel, "", "time of a path [G]", log="x")
+    for accuracy, colour, marker in zip(ACCURACIES, pictures.COLOURS, pictures.MARKERS):
+        mine = [row for row in rows if row["accuracy"] == accuracy]
+        for reached in (True, False):
+            these = [row for row in mine if (row["error"] <= accuracy) == reached]
+            panel.plot([row["price"] for row in these], [names.index(row["problem"])
+                                                         for row in these], marker,
+                       color=colour, markerfacecolor=colour if reached else "white",
+                       linestyle="none", label=f"accuracy {accuracy:g}" if reached else None)
+    panel.plot([], [], "o", color="#555555", markerfacecolor="white", linestyle="none",
+               label="accuracy missed, or not known")
+    panel.set_yticks(range(len(names)), names)
+    pictures.legend(page, 4)
+    pictures.save(page, folder / "laws.png")
 
 
 def tables(rows, before):
