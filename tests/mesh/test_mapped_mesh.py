@@ -195,15 +195,15 @@ def test_deformation_is_that_of_adaptive_quadrature(mesh):
     first = np.concatenate([[0], np.cumsum(orders)])
     with mpmath.workdps(18):
         for panel, order in enumerate(orders):
-            for degree in (0, 3):
-                found = panel_deformation(grid, panel, degree)
-                near = [2 + min(k, grid.size - 1) for k in (first[panel], first[panel + 1])]
-                for row in {0, 1, 3, grid.size + 1, 2 + first[panel] + order // 2, *near}:
-                    exact = float(panel_reference(grid, row, panel, degree))
-                    # The tail's last polynomial is large where its factor is nearly gone:
-                    # rounding, another on other processors, leaves up to 5e-11 of its integral.
-                    missed = abs(found[row] - exact) / np.abs(found).max()
-                    assert missed < 2e-10, (row, panel, degree)
+            degree = 3 * (panel % 2)
+            found = panel_deformation(grid, panel, degree)
+            near = [2 + min(k, grid.size - 1) for k in (first[panel], first[panel + 1])]
+            for row in {0, 1, 3, grid.size + 1, 2 + first[panel] + order // 2, *near}:
+                exact = float(panel_reference(grid, row, panel, degree))
+                # The tail's last polynomial is large where its factor is nearly gone: rounding,
+                # another on other processors, leaves up to 5e-11 of its integral.
+                missed = abs(found[row] - exact) / np.abs(found).max()
+                assert missed < 2e-10, (row, panel, degree)
 
 
 @pytest.mark.parametrize("digits", [4.0, 7.0, 10.0])

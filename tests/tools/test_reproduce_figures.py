@@ -207,7 +207,9 @@ CHAPTERS = ["fig06", "fig07", "fig08", "fig09", "fig10", "fig11"]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", CHAPTERS)
+@pytest.mark.parametrize("name", [
+    name if name in ("fig06", "fig10") else pytest.param(name, marks=pytest.mark.long)
+    for name in CHAPTERS])
 def test_the_chapter_is_complete(tools, quick, name, tmp_path, monkeypatch):
     if name == "fig11":
         import fig11

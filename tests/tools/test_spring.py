@@ -48,6 +48,8 @@ def power_laws(seed):
 
 FIELDS = {"lennard_jones": lennard_jones(), "cubic": cubic(), "morse": morse()}
 FIELDS |= {f"power_laws_{seed}": power_laws(seed) for seed in range(8)}
+# Places at which a slow cycle rests, on each way.
+STEPS = 61
 # Of the field's largest slope: from springs that all but follow the field to the softest.
 FRACTIONS = (1e-3, 1e-2, 0.1, 0.3, 0.6, 0.9, 0.9999)
 
@@ -109,7 +111,7 @@ def test_a_slow_cycle_jumps_there_and_never_rests_between_the_starts(field, frac
     width = inward.start - outward.start
     away = 0.3 * (inward.rest - outward.rest)
     low, high = sorted((inward.rest, outward.rest))
-    rests = np.linspace(low - abs(away), high + abs(away), 121)
+    rests = np.linspace(low - abs(away), high + abs(away), STEPS)
     gap, visited = outward.end + 10 * width, []
     for rest in np.concatenate([rests[::-1], rests]):
         gap = spring.settle(force, stiffness, rest, gap, 1e-4 * width)
@@ -118,7 +120,7 @@ def test_a_slow_cycle_jumps_there_and_never_rests_between_the_starts(field, frac
     inside = (visited > outward.start + 1e-6 * width) & (visited < inward.start - 1e-6 * width)
     assert not inside.any()
     # The approach comes to the inward start and the retreat to the outward one.
-    approach, retreat = visited[:121], visited[121:]
+    approach, retreat = visited[:STEPS], visited[STEPS:]
     assert approach[approach > inward.start].min() - inward.start < 0.2 * width
     assert outward.start - retreat[retreat < outward.start].max() < 0.2 * width
     assert (np.diff(approach) < 0).all()
