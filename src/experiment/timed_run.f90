@@ -15,7 +15,10 @@ module timed_run
   use creep, only: elastic_bodies
   use motion, only: motion_t, new_motion
   use time_stepper, only: time_stepper_t
-  use timed_pass, only: timed_result_t, pass_t, go_through, most_steps, of_tension, of_end_load, &
+  use solver_options, only: tightened
+  use drainage, only: drainage_t, farthest_pole
+  use timed_pass, only: go_through
+  use timed_record, only: timed_result_t, pass_t, most_steps, of_tension, of_end_load, &
     of_dissipation
   implicit none
   private
@@ -32,6 +35,8 @@ module timed_run
   !> more has jumped, or is to be followed in shorter steps.
   integer, parameter :: most_passes = 9
   real(wp), parameter :: farthest = 0.3_wp
+  !> Up to where bodies remember the pressure of a fluid, over the width of the film.
+  real(wp), parameter :: far_out = 50
   !> Digits of the meshes that each pass has more.
   real(wp), parameter :: more_digits = 0.7_wp
 
@@ -105,6 +110,14 @@ contains
       drive = new_motion(asked%velocity/problem%length, law%gap_of(asked%z_start), &
         law%gap_of(asked%z_turn), asked%dwell, law%gap_of(asked%z_end))
     end associate
+    if (allocated(request%fluid)) then
+      ! Rates are differences over short steps.
+      steps%options = tightened(steps%options)
+      allocate (steps%drainage)
+      steps%drainage%strength = 12*request%fluid%viscosity*problem%lateral**2/ &
+        (problem%length**2*problem%pressure)
+      steps%drainage%slip = request%fluid%slip/problem%length
+    end if
   end subroutine prepare
 
   !> Meshes for relaxed bodies, whose neck is the narrowest, with more digits from pass to pass; for
@@ -125,7 +138,9 @@ contains
     relaxed%coupling = steps%instant*steps%creep%relaxed()
     ! The memory takes the pressure at places, not only its integrals, which have twice its digits.
     digits = chosen%digits
-    if (allocated(request%creep)) digits = 2*digits
+    if (allocated(request%creep) .or. allocated(request%fluid)) digits = 2*digits
+    if (allocated(steps%drainage)) relaxed%film_gap = maxval(drive%position) + &
+      farthest_pole(steps%drainage%fluid_t)
     associate (low => minval(drive%position), meshes => steps%meshes)
       meshes = new_mesh_family(relaxed, maxval(drive%position), low, &
         min(most_digits, digits + more_digits*(pass - 1)))
@@ -133,12 +148,15 @@ contains
       do k = 1, size(meshes%grid)
         if (meshes%waits(k)) call meshes%renew(k, meshes%shape_for(relaxed, k))
       end do
+      if (allocated(steps%drainage)) call steps%drainage%lay_out(meshes%grid)
       steps%frozen%factors%valid = .false.
       steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
       if (.not. allocated(request%creep)) return
       numerics = request%numerics
       numerics%method = 'mixing'
       numerics%grid = 'panels'
+      if (relaxed%film_gap > 0) numerics%r_max = far_out*relaxed%lateral* &
+        relaxed%shape%position_of(relaxed%film_gap)
       of_memory = choose(numerics, relaxed, low, .false.)
       of_memory%panel_order = of_memory%panel_order + pass
       steps%material = fixed_mesh(of_memory, relaxed, low)

@@ -3,7 +3,7 @@ module rate_entries
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t, adhesion_strength
   use scene_groups, only: scene_t
-  use timed_pass, only: timed_result_t, of_tension, of_tension_h0, of_end_h0, of_end_load, &
+  use timed_record, only: timed_result_t, of_tension, of_tension_h0, of_end_h0, of_end_load, &
     of_end_displacement, of_dissipation
   use summary, only: summary_t
   use summary_entries, only: widen_spacing

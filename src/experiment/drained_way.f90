@@ -1,0 +1,85 @@
+!> A way of a drive with a fluid between the bodies. It resists every motion, so that none takes no
+!> time: where bodies jump together or apart steps become as short as that takes.
+module drained_way
+  use kinds, only: wp, pi
+  use edge_locked, only: contact
+  use motion, only: motion_t
+  use time_stepper, only: time_stepper_t, instant_t
+  use timed_record, only: pass_t, accept, lose
+  implicit none
+  private
+  public :: go_drained
+
+  !> What a step may miss on a straight line through the two instants before: of the load over the
+  !> largest or a pull-off, of the gap on the axis over itself, and the way of the edge over what is
+  !> finest there. A step that misses so many times as much is taken again.
+  real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4
+  !> A step is so many times the last at most, and at least.
+  real(wp), parameter :: longer = 2, shorter = 0.2_wp
+  !> No step is so near to the rounding of the time.
+  real(wp), parameter :: roundings = 64
+
+contains
+
+  !> From an instant to a time of a way. step: the length of the first, on return that of the next.
+  !> choosing: steps follow the motion; else only those are shortened that have no end near.
+  subroutine go_drained(drive, way, time, longest, choosing, steps, step, at, now)
+    type(motion_t), intent(in) :: drive
+    integer, intent(in) :: way
+    real(wp), intent(in) :: time, longest
+    logical, intent(in) :: choosing
+    type(time_stepper_t), intent(inout) :: steps
+    real(wp), intent(inout) :: step
+    type(instant_t), intent(inout) :: at
+    type(pass_t), intent(inout) :: now
+    type(instant_t) :: next
+    real(wp) :: when, off, taken, least
+    logical :: done
+
+    do while (at%time < time)
+      least = roundings*spacing(max(at%time, step))
+      when = at%time + step
+      if (when + 0.01_wp*step > time) when = time
+      taken = when - at%time
+      call steps%step(at, when, drive%at(way, when), next, done)
+      off = 1/longer**2
+      if (done .and. choosing) off = missed(steps, at, next, now)
+      if (done .and. (off < rejected .or. taken <= 2*least)) then
+        call accept(steps, way, next, .true., at, now)
+        step = min(longest, taken*min(longer, max(shorter, 0.9_wp/sqrt(off))))
+        if (now%held > now%most) call lose(at, now)
+      else
+        steps%cost%rejected_steps = steps%cost%rejected_steps + 1
+        step = taken*merge(max(shorter, 0.7_wp/sqrt(off)), 0.3_wp, done)
+        if (.not. step > least) call lose(at, now)
+      end if
+      if (now%result%lost) exit
+    end do
+  end subroutine go_drained
+
+  !> What a step asks to be: below 1 it may be longer, above 1 it has to be shorter.
+  real(wp) function missed(steps, at, next, now)
+    type(time_stepper_t), intent(in) :: steps
+    type(instant_t), intent(in) :: at, next
+    type(pass_t), intent(in) :: now
+    real(wp) :: ahead, unit
+
+    missed = 0.05_wp
+    if (at%mesh >= contact .and. next%mesh >= contact .and. steps%meshes%traceable) missed = &
+      max(missed, ((next%state%scale - at%state%scale)/ &
+      (edge_moves*steps%finest(at%state%scale)))**2)
+    if (now%recently < 2 .or. .not. at%time > steps%before%time) then
+      missed = max(missed, 1.0_wp)
+      return
+    end if
+    ahead = (next%time - at%time)/(at%time - steps%before%time)
+    unit = max(now%result%largest_load, abs(next%state%load), tiny(1.0_wp), &
+      pi*steps%problem%law%adhesion)
+    associate (before => steps%before%state, last => at%state, new => next%state)
+      missed = max(missed, abs(new%load - last%load - ahead*(last%load - before%load))/ &
+        (bend*unit), abs(new%axis_gap - last%axis_gap - ahead*(last%axis_gap - &
+        before%axis_gap))/(bend_of_gap*abs(last%axis_gap)))
+    end associate
+  end function missed
+
+end module drained_way
