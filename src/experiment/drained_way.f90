@@ -68,7 +68,7 @@ contains
     if (at%mesh >= contact .and. next%mesh >= contact .and. steps%meshes%traceable) missed = &
       max(missed, ((next%state%scale - at%state%scale)/ &
       (edge_moves*steps%finest(at%state%scale)))**2)
-    if (now%recently < 2 .or. .not. at%time > steps%before%time) then
+    if (at%since_turn < 2) then
       missed = max(missed, 1.0_wp)
       return
     end if

@@ -22,7 +22,7 @@ module timed_pass
   real(wp), parameter :: bend = 2.0e-3_wp, edge_moves = 1, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
   !> The same with a fluid, whose pressure jumps where the drive turns; parts of a way that are told.
-  real(wp), parameter :: first_drained = 1.0e-6_wp
+  real(wp), parameter :: first_drained = 1.0e-7_wp
   integer, parameter :: parts = 10
   !> The shortest step over the shortest time of retardation, and way over the law's length.
   real(wp), parameter :: shortest_part = 1.0e-3_wp, shortest_way = 1.0e-6_wp
@@ -59,6 +59,7 @@ contains
       if (allocated(steps%drainage)) then
         ! Its rates and loads jump where the drive turns.
         steps%before = at
+        at%since_turn = 0
       else
         call take_row(at, now)
       end if

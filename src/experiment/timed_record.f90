@@ -93,7 +93,7 @@ contains
 
     work = -0.5_wp*(at%state%load + next%state%load)*(next%position - at%position)
     ! Where a drive turns the load of a fluid jumps.
-    if (allocated(steps%drainage) .and. .not. at%time > steps%before%time) &
+    if (allocated(steps%drainage) .and. at%since_turn == 0) &
       work = -next%state%load*(next%position - at%position)
     now%work = now%work + work
     if (smooth) then

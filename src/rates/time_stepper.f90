@@ -37,6 +37,8 @@ module time_stepper
     !> What the kernel makes of them, so that a step has one product with it.
     real(wp), allocatable :: memory_rise(:, :), pressure_rise(:)
     real(wp) :: dissipated = 0, power = 0, suction = 0, suction_at = 0
+    !> Steps since the drive turned.
+    integer :: since_turn = 0
   end type instant_t
 
   !> instant: coupling of bodies that have no time to yield more.
@@ -77,6 +79,8 @@ module time_stepper
   !> the earlier gaps to be linear in it; rounds.
   real(wp), parameter :: far_off = 0.1_wp, far_off_fluid = 0.02_wp
   integer, parameter :: most_rounds = 3
+  !> Steps after a turn over which gaps change along lines.
+  integer, parameter :: calming = 4
   !> A pressure over the largest whose deformation is no matter.
   real(wp), parameter :: nothing = 1.0e-12_wp
   !> The part of a contact that is as fine as its edge may be.
@@ -153,7 +157,10 @@ contains
     real(wp), intent(in) :: time
     real(wp) :: weights(3)
 
-    weights = rate_weights(time - from%time, from%time - self%before%time)
+    ! Where the drive turns the rate jumps. What bodies that hardly yield make of that dies away in
+    ! a time that no step may resolve: a parabola would overshoot.
+    weights = rate_weights(time - from%time, merge(from%time - self%before%time, 0.0_wp, &
+      from%since_turn >= calming))
     self%drainage%weight = weights(1)
     self%drainage%earlier(1) = earlier(from, weights(2))
     self%drainage%earlier(2) = earlier(self%before, weights(3))
@@ -187,9 +194,9 @@ contains
       to%suction_at = c*grid%x(lowest)
       to%power = -2*pi*c**2*sum(grid%weight*pressure*rate)
     end associate
-    ! Where the drive turns the rate jumps.
+    to%since_turn = from%since_turn + 1
     to%dissipated = (to%time - from%time)*to%power
-    if (from%time > self%before%time) to%dissipated = &
+    if (from%since_turn > 0) to%dissipated = &
       (to%time - from%time)*0.5_wp*(from%power + to%power)
   end subroutine remember_fluid
 
