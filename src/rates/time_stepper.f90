@@ -48,6 +48,8 @@ module time_stepper
     !> The largest change of the path's coordinate in a step: what changes by more has jumped, or is
     !> to be followed in shorter steps.
     real(wp) :: farthest = 0.3_wp
+    !> The weight of the present gaps in the rate, 1/s, that the Jacobian was made for.
+    real(wp) :: made_for = 1
     !> Fixed in space, of scale 1; there is none of bodies that do not remember.
     type(discretisation_t) :: material
     !> What came before the present instant, to guess the next from. Of a step: memories that are
@@ -81,6 +83,8 @@ module time_stepper
   integer, parameter :: most_rounds = 3
   !> Steps after a turn over which gaps change along lines.
   integer, parameter :: calming = 4
+  !> Logarithm of the ratio of steps that have no Jacobian in common.
+  real(wp), parameter :: other_length = 0.5_wp
   !> A pressure over the largest whose deformation is no matter.
   real(wp), parameter :: nothing = 1.0e-12_wp
   !> The part of a contact that is as fine as its edge may be.
@@ -161,6 +165,11 @@ contains
     ! a time that no step may resolve: a parabola would overshoot.
     weights = rate_weights(time - from%time, merge(from%time - self%before%time, 0.0_wp, &
       from%since_turn >= calming))
+    ! A Jacobian made for another length of steps says little of this one.
+    if (abs(log(weights(1)/self%made_for)) > other_length) then
+      self%frozen%factors%valid = .false.
+      self%made_for = weights(1)
+    end if
     self%drainage%weight = weights(1)
     self%drainage%earlier(1) = earlier(from, weights(2))
     self%drainage%earlier(2) = earlier(self%before, weights(3))
