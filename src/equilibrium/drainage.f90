@@ -19,6 +19,7 @@ module drainage
   use kinds, only: wp
   use discretisation, only: discretisation_t
   use running_integrals, only: running_integrals_t, new_running_integrals
+  use carried_values, only: carried_t, new_carried
   use linear_algebra, only: multiply, multiply_by_transposed
   use besides, only: besides_t
   implicit none
@@ -114,6 +115,7 @@ contains
     integer, intent(in) :: mesh
     real(wp), intent(in) :: scale
     real(wp), dimension(grids(mesh)%nodes) :: value, growth
+    type(carried_t) :: carried
     integer :: i, k
 
     value = 0
@@ -122,11 +124,12 @@ contains
       associate (past => self%earlier(k), x => grids(mesh)%x)
         if (.not. abs(past%weight) > 0) cycle
         associate (from => grids(past%mesh), ratio => scale/past%scale)
+          carried = new_carried(from, past%raised, ratio > 1)
           do i = 1, size(value)
-            value(i) = value(i) + past%weight*from%interpolate(past%raised, ratio*x(i))
+            value(i) = value(i) + past%weight*carried%at(from, ratio*x(i))
             growth(i) = growth(i) + past%weight/(2*apart)* &
-              (from%interpolate(past%raised, (1 + apart)*ratio*x(i)) - &
-              from%interpolate(past%raised, (1 - apart)*ratio*x(i)))
+              (carried%at(from, (1 + apart)*ratio*x(i)) - &
+              carried%at(from, (1 - apart)*ratio*x(i)))
           end do
         end associate
       end associate
