@@ -88,19 +88,22 @@ contains
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(instant_t) :: from
-    real(wp) :: step, whole, end, moved, shortest_step
+    real(wp) :: step, whole, end, moved, shortest_step, longest
     integer :: part
 
     whole = drive%time(way) - drive%time(way - 1)
     step = first_part*whole
     shortest_step = max(1.0e-8_wp*whole, min(1.0e-5_wp*whole, 1.0e-4_wp*steps%creep%shortest()))
-    if (allocated(steps%drainage) .and. .not. allocated(request%drive%time_step)) then
+    if (allocated(steps%drainage)) then
       step = first_drained*whole
+      longest = longest_part*whole
+      if (allocated(request%drive%time_step)) longest = 2*request%drive%time_step
       do part = 1, parts
         if (now%result%lost) return
         end = drive%time(way - 1) + whole*part/parts
         if (part == parts) end = drive%time(way)
-        call go_drained(drive, way, end, longest_part*whole, .true., steps, step, at, now)
+        call go_drained(drive, way, end, longest, .not. allocated(request%drive%time_step), &
+          steps, step, at, now)
         call tell(drive, 1, at, listener)
       end do
       return
