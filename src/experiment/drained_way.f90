@@ -22,12 +22,12 @@ module drained_way
 contains
 
   !> From an instant to a time of a way. step: the length of the first, on return that of the next.
-  !> choosing: steps follow the motion; else only those are shortened that have no end near.
-  subroutine go_drained(drive, way, time, longest, choosing, steps, step, at, now)
+  !> Steps follow the motion, `part` of what they might be; if that is 0, they are the longest, and only
+  !> those are shortened that have no end near.
+  subroutine go_drained(drive, way, time, longest, part, steps, step, at, now)
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: way
-    real(wp), intent(in) :: time, longest
-    logical, intent(in) :: choosing
+    real(wp), intent(in) :: time, longest, part
     type(time_stepper_t), intent(inout) :: steps
     real(wp), intent(inout) :: step
     type(instant_t), intent(inout) :: at
@@ -43,7 +43,9 @@ contains
       taken = when - at%time
       call steps%step(at, when, drive%at(way, when), next, done)
       off = 1/longer**2
-      if (done .and. choosing) off = missed(steps, at, next, now)
+      if (done .and. part > 0) off = max(off, missed(steps, at, next, now)/part**2)
+      ! A line has no bend yet.
+      if (done .and. at%since_turn < 2) off = 1
       if (done .and. (off < rejected .or. taken <= 2*least)) then
         call accept(steps, way, next, .true., at, now)
         step = min(longest, taken*min(longer, max(shorter, 0.9_wp/sqrt(off))))
@@ -64,14 +66,10 @@ contains
     type(pass_t), intent(in) :: now
     real(wp) :: ahead, unit
 
-    missed = 0.05_wp
+    missed = 0
     if (at%mesh >= contact .and. next%mesh >= contact .and. steps%meshes%traceable) missed = &
-      max(missed, ((next%state%scale - at%state%scale)/ &
-      (edge_moves*steps%finest(at%state%scale)))**2)
-    if (at%since_turn < 2) then
-      missed = max(missed, 1.0_wp)
-      return
-    end if
+      ((next%state%scale - at%state%scale)/(edge_moves*steps%finest(at%state%scale)))**2
+    if (at%since_turn < 2) return
     ahead = (next%time - at%time)/(at%time - steps%before%time)
     unit = max(now%result%largest_load, abs(next%state%load), tiny(1.0_wp), &
       pi*steps%problem%law%adhesion)

@@ -63,7 +63,9 @@ contains
       else
         call take_row(at, now)
       end if
-      if (pass == 1) then
+      if (allocated(steps%drainage)) then
+        call drain(request, drive, way, pass, steps, listener, at, now)
+      else if (pass == 1) then
         call choose_steps(request, drive, way, steps, listener, at, now)
       else
         call halve_steps(drive, way, pass, before, steps, listener, at, now)
@@ -88,26 +90,11 @@ contains
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(instant_t) :: from
-    real(wp) :: step, whole, end, moved, shortest_step, longest
-    integer :: part
+    real(wp) :: step, whole, end, moved, shortest_step
 
     whole = drive%time(way) - drive%time(way - 1)
     step = first_part*whole
     shortest_step = max(1.0e-8_wp*whole, min(1.0e-5_wp*whole, 1.0e-4_wp*steps%creep%shortest()))
-    if (allocated(steps%drainage)) then
-      step = first_drained*whole
-      longest = longest_part*whole
-      if (allocated(request%drive%time_step)) longest = 2*request%drive%time_step
-      do part = 1, parts
-        if (now%result%lost) return
-        end = drive%time(way - 1) + whole*part/parts
-        if (part == parts) end = drive%time(way)
-        call go_drained(drive, way, end, longest, .not. allocated(request%drive%time_step), &
-          steps, step, at, now)
-        call tell(drive, 1, at, listener)
-      end do
-      return
-    end if
     do while (at%time < drive%time(way) .and. .not. now%result%lost)
       if (allocated(request%drive%time_step)) step = 2*request%drive%time_step
       end = at%time + step
@@ -121,6 +108,35 @@ contains
       if (now%held > most_steps) call lose(at, now)
     end do
   end subroutine choose_steps
+
+  !> A pass through a way with a fluid. Where bodies jump together their gap closes at a moment that
+  !> differs a little from pass to pass, with ever shorter steps: each pass chooses its own, half as
+  !> long as those of the one before.
+  subroutine drain(request, drive, way, pass, steps, listener, at, now)
+    class(request_t), intent(in) :: request
+    type(motion_t), intent(in) :: drive
+    integer, intent(in) :: way, pass
+    type(time_stepper_t), intent(inout) :: steps
+    class(listener_t), intent(inout) :: listener
+    type(instant_t), intent(inout) :: at
+    type(pass_t), intent(inout) :: now
+    real(wp) :: whole, shorter, step, longest, end
+    integer :: part
+
+    shorter = 0.5_wp**(pass - 1)
+    whole = drive%time(way) - drive%time(way - 1)
+    step = shorter*first_drained*whole
+    longest = longest_part*whole
+    if (allocated(request%drive%time_step)) longest = 2*request%drive%time_step
+    do part = 1, parts
+      end = drive%time(way - 1) + whole*part/parts
+      if (part == parts) end = drive%time(way)
+      call go_drained(drive, way, end, shorter*longest, merge(0.0_wp, shorter, &
+        allocated(request%drive%time_step)), steps, step, at, now)
+      if (now%result%lost) exit
+      call tell(drive, pass, at, listener)
+    end do
+  end subroutine drain
 
   !> What a step asks to be: below 1 it may be longer, above 1 it has to be shorter.
   real(wp) function missed(steps, from, at, now)
@@ -185,11 +201,6 @@ contains
     real(wp) :: try, least, way_speed, when
     logical :: done, smooth
 
-    if (allocated(steps%drainage)) then
-      try = time - at%time
-      call go_drained(drive, way, time, try, .false., steps, try, at, now)
-      return
-    end if
     associate (from => drive%position(way - 1), to => drive%position(way))
       way_speed = abs(to - from)/(drive%time(way) - drive%time(way - 1))
     end associate
