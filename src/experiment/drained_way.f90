@@ -2,7 +2,8 @@
 !> time: where bodies jump together or apart steps become as short as that takes.
 module drained_way
   use kinds, only: wp, pi
-  use edge_locked, only: contact
+  use edge_locked, only: approach
+  use continuation, only: radius_for
   use motion, only: motion_t
   use time_stepper, only: time_stepper_t, instant_t
   use timed_record, only: pass_t, accept, lose
@@ -66,9 +67,8 @@ contains
     type(pass_t), intent(in) :: now
     real(wp) :: ahead, unit
 
-    missed = 0
-    if (at%mesh >= contact .and. next%mesh >= contact .and. steps%meshes%traceable) missed = &
-      ((next%state%scale - at%state%scale)/(edge_moves*steps%finest(at%state%scale)))**2
+    missed = ((edge(steps, next) - edge(steps, at))/(edge_moves*steps%finest( &
+      merge(at%state%scale, huge(1.0_wp), at%mesh > approach))))**2
     if (at%since_turn < 2) return
     ahead = (next%time - at%time)/(at%time - steps%before%time)
     unit = max(now%result%largest_load, abs(next%state%load), tiny(1.0_wp), &
@@ -79,5 +79,17 @@ contains
         before%axis_gap))/(bend_of_gap*abs(last%axis_gap)))
     end associate
   end function missed
+
+  !> The radius of the edge of a contact about the axis; 0 where there is none to follow. One that
+  !> begins away from the axis has no radius to grow from.
+  real(wp) function edge(steps, at)
+    type(time_stepper_t), intent(in) :: steps
+    type(instant_t), intent(in) :: at
+
+    edge = 0
+    if (steps%meshes%traceable .and. size(steps%meshes%grid) > approach .and. &
+      at%state%axis_gap < steps%problem%law%edge_gap) edge = &
+      radius_for(steps%equations_t, at%mesh, size(steps%meshes%grid), at%state)
+  end function edge
 
 end module drained_way

@@ -269,6 +269,7 @@ contains
 
     kernel_digits = max(5, ceiling(1.2_wp*digits - 2 + &
       0.5_wp*log10(1 + adhesion_strength(problem))))
+    if (problem%film_gap > 0) kernel_digits = 14
   end function kernel_digits
 
 end module mesh_rule
