@@ -26,6 +26,9 @@ module mesh_rule
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
   !> Power of the position with which the pressure of a fluid between parabolas falls.
   real(wp), parameter :: film_decay = 4
+  !> Length of its panels at most: on longer ones, over which a mobility changes by many orders, matrices
+  !> of film and bodies that are symmetric together are so no more, and short waves grow in time.
+  real(wp), parameter :: longest_film = 3
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
   !> How many times the nodes laws have to which the rule was not fitted, where no pressure is
@@ -186,6 +189,7 @@ contains
       else
         lengths = [rung*ceiling(z_length/rung)]
         panels = merge(1, ceiling(lengths(1)/longest), law%of_paper)
+        if (problem%film_gap > 0) panels = ceiling(lengths(1)/longest_film)
         lengths = spread(lengths(1)/panels, 1, panels)
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
       end if
@@ -269,7 +273,6 @@ contains
 
     kernel_digits = max(5, ceiling(1.2_wp*digits - 2 + &
       0.5_wp*log10(1 + adhesion_strength(problem))))
-    if (problem%film_gap > 0) kernel_digits = 14
   end function kernel_digits
 
 end module mesh_rule
