@@ -17,8 +17,11 @@ module drained_way
   real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4
   !> A step is so many times the last at most, and at least.
   real(wp), parameter :: longer = 2, shorter = 0.2_wp
-  !> No step is so near to the rounding of the time.
-  real(wp), parameter :: roundings = 64
+  !> Steps are no shorter than so many roundings of the time; those may go so far in the path's
+  !> coordinate.
+  real(wp), parameter :: roundings = 64, unfollowed = 3
+  !> Part of the radius of a contact that its edge may move whatever is finest.
+  real(wp), parameter :: part_of_radius = 0.01_wp
 
 contains
 
@@ -34,7 +37,7 @@ contains
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(instant_t) :: next
-    real(wp) :: when, off, taken, least
+    real(wp) :: when, off, taken, least, farthest
     logical :: done
 
     do while (at%time < time)
@@ -42,7 +45,11 @@ contains
       when = at%time + step
       if (when + 0.01_wp*step > time) when = time
       taken = when - at%time
+      farthest = steps%farthest
+      ! What is over in the rounding of the time is not followed.
+      if (taken <= 2*least) steps%farthest = unfollowed
       call steps%step(at, when, drive%at(way, when), next, done)
+      steps%farthest = farthest
       off = 1/longer**2
       if (done .and. part > 0) off = max(off, missed(steps, at, next, now)/part**2)
       ! A line has no bend yet.
@@ -54,7 +61,8 @@ contains
       else
         steps%cost%rejected_steps = steps%cost%rejected_steps + 1
         step = taken*merge(max(shorter, 0.7_wp/sqrt(off)), 0.3_wp, done)
-        if (.not. step > least) call lose(at, now)
+        if (.not. done .and. taken <= least) call lose(at, now)
+        step = max(step, least)
       end if
       if (now%result%lost) exit
     end do
@@ -65,10 +73,12 @@ contains
     type(time_stepper_t), intent(in) :: steps
     type(instant_t), intent(in) :: at, next
     type(pass_t), intent(in) :: now
-    real(wp) :: ahead, unit
+    real(wp) :: ahead, unit, radius, finest
 
-    missed = ((edge(steps, next) - edge(steps, at))/(edge_moves*steps%finest( &
-      merge(at%state%scale, huge(1.0_wp), at%mesh > approach))))**2
+    radius = merge(at%state%scale, huge(1.0_wp), at%mesh > approach)
+    finest = steps%finest(radius)
+    if (at%mesh > approach) finest = max(finest, part_of_radius*radius)
+    missed = (moved(steps, at, next)/(edge_moves*finest))**2
     if (at%since_turn < 2) return
     ahead = (next%time - at%time)/(at%time - steps%before%time)
     unit = max(now%result%largest_load, abs(next%state%load), tiny(1.0_wp), &
@@ -80,16 +90,30 @@ contains
     end associate
   end function missed
 
-  !> The radius of the edge of a contact about the axis; 0 where there is none to follow. One that
-  !> begins away from the axis has no radius to grow from.
-  real(wp) function edge(steps, at)
+  !> How far the edge of a contact about the axis moves. One that begins or ends away from the axis
+  !> has no radius to grow from.
+  real(wp) function moved(steps, at, next)
     type(time_stepper_t), intent(in) :: steps
-    type(instant_t), intent(in) :: at
+    type(instant_t), intent(in) :: at, next
+    real(wp) :: radius(2)
 
-    edge = 0
-    if (steps%meshes%traceable .and. size(steps%meshes%grid) > approach .and. &
-      at%state%axis_gap < steps%problem%law%edge_gap) edge = &
-      radius_for(steps%equations_t, at%mesh, size(steps%meshes%grid), at%state)
-  end function edge
+    moved = 0
+    if (.not. steps%meshes%traceable .or. size(steps%meshes%grid) == approach) return
+    associate (edge => steps%problem%law%edge_gap)
+      if (.not. min(at%state%axis_gap, next%state%axis_gap) < edge) return
+      radius = [edge_of(at), edge_of(next)]
+      if (minval(radius) > 0 .and. max(at%state%axis_gap, next%state%axis_gap) > edge) return
+      moved = abs(radius(2) - radius(1))
+    end associate
+
+  contains
+
+    real(wp) function edge_of(one)
+      type(instant_t), intent(in) :: one
+
+      edge_of = radius_for(steps%equations_t, one%mesh, size(steps%meshes%grid), one%state)
+    end function edge_of
+
+  end function moved
 
 end module drained_way

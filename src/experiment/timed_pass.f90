@@ -44,7 +44,7 @@ contains
 
     ! A pass that halves steps and needs far more than twice as many, or has many more jumps, goes
     ! to and fro in what is not resolved.
-    if (pass > 1) then
+    if (pass > 1 .and. .not. allocated(steps%drainage)) then
       now%most = 6*before%held + 2000
       now%most_jumps = before%result%jumps + 10
     end if

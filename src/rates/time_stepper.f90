@@ -20,6 +20,8 @@ module time_stepper
   use linear_algebra, only: multiply
   use drainage, only: drainage_t, earlier_t, rate_weights
   use creep, only: creep_t
+  use anderson, only: solve_anderson
+  use solver_options, only: newton_of
   use solver, only: solver_t
   implicit none
   private
@@ -113,6 +115,13 @@ contains
       call self%place_rise(to%mesh, control_scale(control, to%state))
       expected = to%state%scale
       call self%solve(control, to%state, done)
+      if (.not. done .and. allocated(self%drainage)) then
+        ! The fluid's part of the Jacobian changes much where gaps close.
+        call self%guess(from, time, position, control, to%state)
+        self%frozen%factors%valid = .false.
+        call solve_anderson(self%equations_t, newton_of(self%options), self%frozen, control, &
+          to%state, done)
+      end if
       if (done .and. self%meshes%traceable) done = &
         abs(coordinate_of(self%problem, to%mesh, to%state) - &
         coordinate_of(self%problem, from%mesh, from%state)) < self%farthest
