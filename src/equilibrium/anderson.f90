@@ -39,6 +39,8 @@ module anderson
   integer, parameter :: few_iterations = 2, unknowns_an_iteration = 20
   !> Steps rejected before a solution is given up.
   integer, parameter :: most_rejections = 4
+  !> Length of a plain step, over the tolerance, that is the last.
+  real(wp), parameter :: few_roundings = 10
 
 contains
 
@@ -73,6 +75,11 @@ contains
         call renew(equations, control, state, frozen, now)
       call take_plain_step(equations, control, state, frozen, now)
       if (.not. frozen%factors%valid .or. now%rejections > most_rejections) exit
+      if (allocated(equations%drainage) .and. now%length <= few_roundings*options%tolerance) then
+        call finish(equations, control, state, now)
+        converged = .true.
+        return
+      end if
       call advance(equations, options%depth, control, now)
     end do
     if (.not. converged .and. now%least < state%residual) &
@@ -81,6 +88,19 @@ contains
     frozen%excess = frozen%excess + max(0, state%iterations - few_iterations)
     if (unknowns_an_iteration*frozen%excess > size(now%z)) frozen%factors%valid = .false.
   end subroutine solve_anderson
+
+  !> Makes the last plain step. Over a short step in time a fluid multiplies roundings of gaps in the
+  !> residual, not in the step that this asks for, which is then what counts.
+  subroutine finish(equations, control, state, now)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    type(state_t), intent(inout) :: state
+    type(iterate_t), intent(inout) :: now
+
+    now%z = now%z - now%f
+    call residual(equations, control, now%z, now%g, state)
+    state%residual = min(state%residual, now%length)
+  end subroutine finish
 
   !> A factorisation at the present state; what was learnt with the old one is forgotten.
   subroutine renew(equations, control, state, frozen, now)

@@ -6,7 +6,8 @@
 !> `elastic_operator` A says. A control says what is prescribed; where that is not H0 at a fixed
 !> scale, one more unknown (H0 or c) and one more equation (the gap on the axis or at the contact
 !> edge) join. Behind a spring H0 follows from the position of its base and the load. Where bodies
-!> remember, what earlier pressures have left (`besides`) raises the gap too.
+!> remember, what earlier pressures have left (`besides`) raises the gap too, and a fluid between them
+!> adds its pressure to P(H) (`drainage`).
 module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t, coupling_over
@@ -17,6 +18,7 @@ module equilibrium
   use edge_locked, only: mesh_family_t
   use elastic_operator, only: elastic_operator_t
   use besides, only: besides_t
+  use drainage, only: drainage_t
   implicit none
   private
   public :: control_t, cost_t, equations_t, residual, largest_step, unknowns_of, holds, &
@@ -66,13 +68,40 @@ module equilibrium
     type(cost_t) :: cost
     type(elastic_operator_t) :: operator
     type(besides_t), allocatable :: besides
+    type(drainage_t), allocatable :: drainage
     !> Scratch of `residual`, which is called too often to allocate any: the rise of the gap.
     real(wp), allocatable, private :: rise(:)
   contains
     procedure :: become_those_of
+    procedure :: raised
+    procedure :: fluid_pressure
   end type equations_t
 
 contains
+
+  !> What the gaps of a state have beside the shape.
+  pure function raised(self, mesh, state)
+    class(equations_t), intent(in) :: self
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+    real(wp) :: raised(size(state%gap))
+
+    raised = state%gap - self%problem%shape%height( &
+      state%scale*self%meshes%grid(mesh)%x(:size(state%gap)))
+  end function raised
+
+  !> The part of the fluid in the pressure of a state. rate: that of the gaps, [1/s].
+  function fluid_pressure(self, mesh, state, rate) result(pressure)
+    class(equations_t), intent(in) :: self
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+    real(wp), intent(out), optional :: rate(:)
+    real(wp), dimension(size(state%gap)) :: pressure, change
+
+    change = self%drainage%rate(state%scale, self%raised(mesh, state))
+    pressure = self%drainage%pressure(mesh, state%scale, state%gap, change)
+    if (present(rate)) rate = change
+  end function fluid_pressure
 
   !> Turns them into those of another problem on the same meshes.
   subroutine become_those_of(self, problem)
@@ -124,6 +153,8 @@ contains
       end if
       state%pressure = problem%law%pressure(state%gap)
       cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
+      if (allocated(equations%drainage)) state%pressure = state%pressure + &
+        equations%fluid_pressure(control%mesh, state)
       state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
       if (grid%is_bounded()) state%load = state%load + 2*pi*load_beyond(problem, &
         gap_at_end(problem%shape, grid, state), load_reach(grid, state))

@@ -4,7 +4,7 @@ module jacobian
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
-  use linear_algebra, only: factorisation_t, factorise
+  use linear_algebra, only: factorisation_t, factorise, multiply_by_transposed
   use elastic_operator, only: elastic_operator_t
   use besides, only: besides_t
   use contact_state, only: state_t
@@ -34,6 +34,7 @@ contains
       if (h0_is_prescribed(control) .and. control%compliance > 0) &
         call add_spring(equations, control, state, factors%lu)
     end associate
+    if (allocated(equations%drainage)) call add_drainage(equations, control, state, factors%lu)
     call factorise(factors)
     equations%cost%factorisations = equations%cost%factorisations + 1
   end subroutine factorise_jacobian
@@ -75,6 +76,42 @@ contains
       if (size(lu, 1) > n) lu(n + 1, :) = lu(n + 1, :) + softer
     end associate
   end subroutine add_spring
+
+  !> What a fluid adds to the derivatives of the pressures meets the same elastic operator.
+  subroutine add_drainage(equations, control, state, lu)
+    type(equations_t), intent(inout) :: equations
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    real(wp), intent(inout) :: lu(:, :)
+    real(wp), dimension(size(state%gap), size(state%gap)) :: by_gap
+    real(wp) :: slopes(size(lu, 2), size(state%gap)), yields(first_node - 1 + size(state%gap), &
+      size(state%gap)), rise(size(yields, 1), size(lu, 2)), load(size(lu, 2))
+    integer :: n, i
+
+    n = size(state%gap)
+    associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem, &
+      c => state%scale)
+      block
+        real(wp) :: by_scale(n)
+
+        call equations%drainage%derivatives(control%mesh, c, state%gap, &
+          equations%raised(control%mesh, state), grid%x(:n)*problem%shape%slope(c*grid%x(:n)), &
+          by_gap, by_scale)
+        slopes(:n, :) = transpose(by_gap)
+        if (size(lu, 2) > n) slopes(n + 1, :) = merge(by_scale, 0.0_wp, &
+          control%kind == at_h0_with_edge)
+      end block
+      call equations%operator%matrix(problem, grid, c, spread(1.0_wp, 1, n), axis_row, yields)
+      call multiply_by_transposed(yields, slopes, rise)
+      load = 0
+      if (h0_is_prescribed(control) .and. control%compliance > 0) &
+        load = 2*pi*control%compliance*c**2*matmul(slopes, grid%weight(:n))
+      do i = 1, n
+        lu(i, :) = lu(i, :) - rise(first_node - 1 + i, :) - load
+      end do
+      if (size(lu, 1) > n) lu(n + 1, :) = lu(n + 1, :) + rise(bordered_row(control), :) + load
+    end associate
+  end subroutine add_drainage
 
   !> The same for a state on a mesh that is given, locked to a given gap, of bodies at rest.
   subroutine factorise_on(problem, grid, operator, locked_gap, control, state, factors, cost, &

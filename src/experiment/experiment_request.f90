@@ -9,7 +9,7 @@ module experiment_request
   implicit none
   private
   public :: request_t, loading_t, unloading_t, path_range_t, profiles_t, numerics_t, device_t, &
-    fixed_load_t, sensitivity_t, drive_request_t
+    fixed_load_t, sensitivity_t, drive_request_t, fluid_request_t
 
   !> &loading [m]: h0_start > h0_end, h0_step > 0.
   type :: loading_t
@@ -57,6 +57,11 @@ module experiment_request
     real(wp), allocatable :: stiffness, time_step
   end type drive_request_t
 
+  !> &fluid: viscosity [Pa s], and slip lengths [m] on the two walls.
+  type :: fluid_request_t
+    real(wp) :: viscosity = 0, slip(2) = 0
+  end type fluid_request_t
+
   !> &numerics; what is unallocated follows from the accuracy.
   type :: numerics_t
     character(len=:), allocatable :: method, grid, convergence
@@ -77,6 +82,8 @@ module experiment_request
     type(drive_request_t), allocatable :: drive
     !> &viscoelastic: how bodies remember; unallocated: they do not.
     type(creep_t), allocatable :: creep
+    !> &fluid; unallocated: none drains.
+    type(fluid_request_t), allocatable :: fluid
     !> &table has no keys.
     logical :: table = .false.
     type(numerics_t) :: numerics

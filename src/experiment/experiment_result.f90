@@ -6,7 +6,7 @@ module experiment_result
   use stepped_branch, only: branch_t
   use path, only: path_t
   use path_readings, only: path_readings_t
-  use timed_pass, only: timed_result_t
+  use timed_record, only: timed_result_t
   implicit none
   private
   public :: experiment_result_t

@@ -3,70 +3,29 @@
 !> its end halves the steps of that.
 module timed_pass
   use kinds, only: wp, pi
-  use dimensionless_problem, only: problem_t, spacing_over_neck
-  use equilibrium, only: holds
-  use edge_locked, only: approach, contact
-  use records, only: record_t, extent_t, record_of, stable_unasked
+  use dimensionless_problem, only: problem_t
+  use edge_locked, only: contact
   use listener, only: listener_t
   use experiment_request, only: request_t
-  use motion, only: motion_t, names_of_ways
+  use motion, only: motion_t
   use time_stepper, only: time_stepper_t, instant_t
   use time_jump, only: step_along
+  use rest, only: begin_at_rest
+  use drained_way, only: go_drained
+  use timed_record, only: timed_result_t, pass_t, accept, take_row, note, lose, most_steps, &
+    of_end_h0, of_end_load, of_end_displacement, of_dissipation
   implicit none
   private
-  public :: timed_result_t, pass_t, go_through, most_steps, numbers, of_tension, of_tension_h0, &
-    of_end_h0, of_end_load, of_end_displacement, of_dissipation
-
-  !> The numbers that are reported.
-  integer, parameter :: of_tension = 1, of_tension_h0 = 2, of_end_h0 = 3, of_end_load = 4, &
-    of_end_displacement = 5, of_dissipation = 6, numbers = 6
-
-  !> Most steps of a pass.
-  integer, parameter :: most_steps = 40000
-
-  !> What a pass through the motion has shown. Numbers in units of the problem; balance: what is
-  !> dissipated by the work of the drive, less what dashpots and jumps take.
-  type :: timed_result_t
-    real(wp) :: number(numbers) = 0, error(numbers) = huge(1.0_wp)
-    real(wp) :: balance = 0
-    !> By how much the largest tension is above that of any row.
-    real(wp) :: lifted = 0
-    !> The largest error of a load over the largest load.
-    real(wp) :: estimate = 0
-    integer :: steps = 0, jumps = 0
-    type(extent_t) :: extent
-    real(wp) :: worst_residual = 0, worst_spacing = 0, memory_tail = 0, largest_load = 0
-    !> The time [s] at which the bodies were lost, if they were; or no start was found.
-    logical :: begun = .false., lost = .false.
-    real(wp) :: lost_at = 0
-  end type timed_result_t
-
-  !> A pass: its rows, and the times of its steps and the last three loads.
-  type :: pass_t
-    type(timed_result_t) :: result
-    type(record_t), allocatable :: row(:)
-    real(wp), allocatable :: time(:)
-    integer, allocatable :: way(:)
-    integer :: held = 0
-    !> Steps and jumps at which it is given up.
-    integer :: most = most_steps, most_jumps = 50
-    real(wp) :: recent(3, 3) = 0
-    integer :: recently = 0
-    !> The longest step [s] to be tried, and how many steps were taken since one was too long.
-    real(wp) :: longest = huge(1.0_wp)
-    integer :: since = 0
-    !> Whether the bodies were coming nearer to each other when they last moved.
-    logical :: inwards = .true.
-    real(wp) :: work = 0, inside = 0
-  end type pass_t
+  public :: go_through
 
   !> contact radius over the width of the neck. Longest and first step, parts of a way.
   real(wp), parameter :: bend = 2.0e-3_wp, edge_moves = 1, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
   !> Steps after one that was too long before longer ones are tried again.
   integer, parameter :: patience = 3
-  !> A relative change of gap or radius that is no rounding.
-  real(wp), parameter :: moves = 1.0e-6_wp
+  !> The same with a fluid, whose pressure jumps where the drive turns; parts of a way that are told.
+  real(wp), parameter :: first_drained = 1.0e-7_wp
+  integer, parameter :: parts = 10
   !> The shortest step over the shortest time of retardation, and way over the law's length.
   real(wp), parameter :: shortest_part = 1.0e-3_wp, shortest_way = 1.0e-6_wp
 
@@ -87,11 +46,11 @@ contains
 
     ! A pass that halves steps and needs far more than twice as many, or has many more jumps, goes
     ! to and fro in what is not resolved.
-    if (before%held > 0) then
+    if (before%held > 0 .and. .not. allocated(steps%drainage)) then
       now%most = 6*before%held + 2000
       now%most_jumps = before%result%jumps + 10
     end if
-    call steps%begin(drive%position(0), at, now%result%begun)
+    call begin_at_rest(steps, drive%position(0), at, now%result%begun)
     now%result%lost = .not. now%result%begun
     if (now%result%lost) return
     begun_with = steps%energy(at)
@@ -99,9 +58,14 @@ contains
     do way = 1, 3
       if (now%result%lost .or. .not. drive%time(way) > drive%time(way - 1)) cycle
       now%recently = 0
-      call take_row(at, now)
-      ! What moved before does not tell how things move now.
+      ! What moved before does not tell how things move now; rates and loads of a fluid jump.
       steps%before = at
+      at%since_turn = 0
+      if (allocated(steps%drainage)) then
+        call drain(request, drive, way, pass, steps, listener, at, now)
+        cycle
+      end if
+      call take_row(at, now)
       if (before%held == 0) then
         call choose_steps(request, drive, way, pass, steps, listener, at, now)
       else
@@ -145,6 +109,35 @@ contains
       if (now%held > most_steps) call lose(at, now)
     end do
   end subroutine choose_steps
+
+  !> A pass through a way with a fluid. Where bodies jump together their gap closes at a moment that
+  !> differs a little from pass to pass, with ever shorter steps: each pass chooses its own, half as
+  !> long as those of the one before.
+  subroutine drain(request, drive, way, pass, steps, listener, at, now)
+    class(request_t), intent(in) :: request
+    type(motion_t), intent(in) :: drive
+    integer, intent(in) :: way, pass
+    type(time_stepper_t), intent(inout) :: steps
+    class(listener_t), intent(inout) :: listener
+    type(instant_t), intent(inout) :: at
+    type(pass_t), intent(inout) :: now
+    real(wp) :: whole, shorter, step, longest, end
+    integer :: part
+
+    shorter = 0.5_wp**(pass - 1)
+    whole = drive%time(way) - drive%time(way - 1)
+    step = shorter*first_drained*whole
+    longest = longest_part*whole
+    if (allocated(request%drive%time_step)) longest = 2*request%drive%time_step
+    do part = 1, parts
+      end = drive%time(way - 1) + whole*part/parts
+      if (part == parts) end = drive%time(way)
+      call go_drained(drive, way, end, shorter*longest, merge(0.0_wp, shorter, &
+        allocated(request%drive%time_step)), steps, step, at, now)
+      if (now%result%lost) exit
+      call tell(drive, pass, at, listener)
+    end do
+  end subroutine drain
 
   !> What a step asks to be: below 1 it may be longer, above 1 it has to be shorter.
   real(wp) function missed(steps, from, at, now)
@@ -250,120 +243,6 @@ contains
       now%since = patience
     end do
   end subroutine go_to
-
-  !> Gives the pass up.
-  subroutine lose(at, now)
-    type(instant_t), intent(in) :: at
-    type(pass_t), intent(inout) :: now
-
-    now%result%lost = .true.
-    now%result%lost_at = at%time
-  end subroutine lose
-
-  !> Notes whether the bodies come nearer to each other, if they move by more than rounding.
-  subroutine note_sense(from, to, inwards)
-    type(instant_t), intent(in) :: from, to
-    logical, intent(inout) :: inwards
-    real(wp) :: nearer
-
-    nearer = (from%state%axis_gap - to%state%axis_gap)/abs(from%state%axis_gap)
-    if (min(from%mesh, to%mesh) > approach) nearer = to%state%scale/from%state%scale - 1
-    if (abs(nearer) > moves) inwards = nearer > 0
-  end subroutine note_sense
-
-  !> Makes the next instant the present one. smooth: nothing has jumped; else what the bodies hold
-  !> less, and dashpots have not taken, is lost in the jump.
-  subroutine accept(steps, way, next, smooth, at, now)
-    type(time_stepper_t), intent(inout) :: steps
-    integer, intent(in) :: way
-    type(instant_t), intent(in) :: next
-    logical, intent(in) :: smooth
-    type(instant_t), intent(inout) :: at
-    type(pass_t), intent(inout) :: now
-    real(wp) :: work
-
-    work = -0.5_wp*(at%state%load + next%state%load)*(next%position - at%position)
-    now%work = now%work + work
-    if (smooth) then
-      now%inside = now%inside + next%dissipated
-    else
-      now%inside = now%inside + work + steps%energy(at) - steps%energy(next)
-    end if
-    call note_sense(at, next, now%inwards)
-    steps%before = at
-    at = next
-    call take_row(at, now)
-    call note(steps, way, at, now)
-  end subroutine accept
-
-  !> Keeps the last three loads, and the largest tension: of the parabola through them where the
-  !> middle one is the largest.
-  subroutine take_row(at, now)
-    type(instant_t), intent(in) :: at
-    type(pass_t), intent(inout) :: now
-    real(wp) :: slope(2), curvature, away, least, h0
-
-    now%recent(:, :2) = now%recent(:, 2:)
-    now%recent(:, 3) = [at%time, at%state%load, at%state%h0]
-    now%recently = min(3, now%recently + 1)
-    least = at%state%load
-    h0 = at%state%h0
-    associate (t => now%recent(1, :), f => now%recent(2, :), h => now%recent(3, :))
-      if (now%recently == 3 .and. f(2) < min(f(1), f(3)) .and. t(3) > t(2) .and. t(2) > t(1)) then
-        slope = (f(2:) - f(:2))/(t(2:) - t(:2))
-        curvature = (slope(2) - slope(1))/(t(3) - t(1))
-        away = -0.5_wp*(slope(1)/curvature - (t(2) - t(1)))
-        least = f(2) + away*(slope(1) + curvature*(t(2) - t(1))) + curvature*away**2
-        slope = (h(2:) - h(:2))/(t(2:) - t(:2))
-        h0 = h(2) + away*merge(slope(1), slope(2), away < 0)
-      end if
-    end associate
-    if (-least <= now%result%number(of_tension)) return
-    now%result%lifted = minval(now%recent(2, 4 - now%recently:)) - least
-    now%result%number(of_tension) = -least
-    now%result%number(of_tension_h0) = h0
-  end subroutine take_row
-
-  !> Adds an instant to the rows, and its qualities to those of the pass.
-  subroutine note(steps, way, at, now)
-    type(time_stepper_t), intent(in) :: steps
-    integer, intent(in) :: way
-    type(instant_t), intent(in) :: at
-    type(pass_t), intent(inout) :: now
-    type(pass_t) :: longer
-    integer :: k
-
-    if (.not. allocated(now%row)) allocate (now%row(1024), now%time(1024), now%way(1024))
-    if (now%held == size(now%row)) then
-      allocate (longer%row(2*now%held), longer%time(2*now%held), longer%way(2*now%held))
-      longer%row(:now%held) = now%row
-      longer%time(:now%held) = now%time
-      longer%way(:now%held) = now%way
-      call move_alloc(longer%row, now%row)
-      call move_alloc(longer%time, now%time)
-      call move_alloc(longer%way, now%way)
-    end if
-    now%held = now%held + 1
-    now%time(now%held) = at%time
-    now%way(now%held) = way
-    associate (row => now%row(now%held), result => now%result, problem => steps%problem, &
-      grid => steps%meshes%grid(at%mesh))
-      row = record_of(trim(names_of_ways(way)), problem, grid, at%state, stable_unasked, &
-        holds(problem, steps%options%tolerance, at%state))
-      row%time = at%time
-      if (steps%compliance > 0) row%z = problem%law%separation_of(at%position)
-      call result%extent%cover(row, at%state)
-      result%steps = now%held - 1
-      result%worst_residual = max(result%worst_residual, at%state%residual)
-      result%largest_load = max(result%largest_load, abs(at%state%load))
-      if (at%state%axis_gap < problem%law%edge_gap) result%worst_spacing = max( &
-        result%worst_spacing, spacing_over_neck(problem, at%state%scale*grid%spacing))
-      do k = 1, size(at%memory, 2)
-        result%memory_tail = max(result%memory_tail, &
-          maxval(steps%material%panel_tails(at%memory(:, k))))
-      end do
-    end associate
-  end subroutine note
 
   !> Says how far a pass has come, ten times or so in a way.
   subroutine tell(drive, pass, at, listener)

@@ -18,7 +18,10 @@ module timed_run
   use motion, only: motion_t, new_motion
   use time_stepper, only: time_stepper_t
   use material, only: new_material
-  use timed_pass, only: timed_result_t, pass_t, go_through, most_steps, of_tension, of_end_load, &
+  use solver_options, only: tightened
+  use drainage, only: drainage_t, farthest_pole
+  use timed_pass, only: go_through
+  use timed_record, only: timed_result_t, pass_t, most_steps, of_tension, of_end_load, &
     of_dissipation
   implicit none
   private
@@ -41,6 +44,8 @@ module timed_run
   integer, parameter :: over_order = 3, most_nodes = 5000
   !> What long panels of the memory's mesh may lack of a pressure, over the accuracy.
   real(wp), parameter :: left_out = 1.0e-3_wp
+  !> Up to where bodies remember the pressure of a fluid, over the width of the film.
+  real(wp), parameter :: far_out = 50
   !> Digits of the meshes that each pass has more.
   real(wp), parameter :: more_digits = 0.7_wp
 
@@ -118,6 +123,14 @@ contains
       drive = new_motion(asked%velocity/problem%length, law%gap_of(asked%z_start), &
         law%gap_of(asked%z_turn), asked%dwell, law%gap_of(asked%z_end))
     end associate
+    if (allocated(request%fluid)) then
+      ! Rates are differences over short steps.
+      steps%options = tightened(steps%options)
+      allocate (steps%drainage)
+      steps%drainage%strength = 12*request%fluid%viscosity*problem%lateral**2/ &
+        (problem%length**2*problem%pressure)
+      steps%drainage%slip = request%fluid%slip/problem%length
+    end if
   end subroutine prepare
 
   !> The bodies as they are at rest.
@@ -159,7 +172,9 @@ contains
     relaxed = relaxed_problem(steps)
     ! The memory takes the pressure at places, not only its integrals, which have twice its digits.
     digits = chosen%digits
-    if (allocated(request%creep)) digits = 2*digits
+    if (allocated(request%creep) .or. allocated(request%fluid)) digits = 2*digits
+    if (allocated(steps%drainage)) relaxed%film_gap = maxval(drive%position) + &
+      farthest_pole(steps%drainage%fluid_t)
     associate (meshes => steps%meshes)
       meshes = new_mesh_family(relaxed, maxval(drive%position), low, &
         min(most_digits, digits + more_digits*(pass - 1)))
@@ -167,12 +182,15 @@ contains
       do k = 1, size(meshes%grid)
         if (meshes%waits(k)) call meshes%renew(k, meshes%shape_for(relaxed, k))
       end do
+      if (allocated(steps%drainage)) call steps%drainage%lay_out(meshes%grid)
       steps%frozen%factors%valid = .false.
       steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
       if (.not. allocated(request%creep)) return
       numerics = request%numerics
       numerics%method = 'mixing'
       numerics%grid = 'panels'
+      if (relaxed%film_gap > 0) numerics%r_max = far_out*relaxed%lateral* &
+        relaxed%shape%position_of(relaxed%film_gap)
       of_memory = choose(numerics, relaxed, low, .false.)
       of_memory%panel_over_feature = over_neck
       of_memory%panel_order = of_memory%panel_order + over_order + pass

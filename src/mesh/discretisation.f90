@@ -59,7 +59,7 @@ module discretisation
     procedure :: is_bounded
     procedure :: in_tail
     procedure :: panel_tails
-    procedure, private :: panel_at
+    procedure :: panel_at
     procedure :: kernel_entries
   end type discretisation_t
 

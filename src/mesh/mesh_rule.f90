@@ -24,6 +24,11 @@ module mesh_rule
   !> A pressure that falls faster than any power ends where this part of the accuracy is left of it;
   !> up to there it needs so many times the nodes.
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
+  !> Power of the position with which the pressure of a fluid between parabolas falls.
+  real(wp), parameter :: film_decay = 4
+  !> Length of its panels at most: on longer ones, over which a mobility changes by many orders, matrices
+  !> of film and bodies that are symmetric together are so no more, and short waves grow in time.
+  real(wp), parameter :: longest_film = 3
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
   !> How many times the nodes laws have to which the rule was not fitted, where no pressure is
@@ -131,6 +136,10 @@ contains
         max(fading_gap(problem, from, negligible*10.0_wp**(-digits)), 1.0_wp))
       density = crowding*density
     end if
+    if (.not. problem%film_gap > 0) return
+    shape%tail_order = max(shape%tail_order, ceiling(1.5_wp + 0.6_wp*digits))
+    shape%decay = min(merge(shape%decay, huge(1.0_wp), shape%decay > 0), film_decay)
+    reach = max(reach, beyond_poles*problem%shape%position_of(problem%film_gap))
   end subroutine give_tail
 
   !> The gap beyond `from` at which `part` is left of the pressure there.
@@ -180,6 +189,7 @@ contains
       else
         lengths = [rung*ceiling(z_length/rung)]
         panels = merge(1, ceiling(lengths(1)/longest), law%of_paper)
+        if (problem%film_gap > 0) panels = ceiling(lengths(1)/longest_film)
         lengths = spread(lengths(1)/panels, 1, panels)
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
       end if

@@ -28,6 +28,9 @@ module dimensionless_problem
     !> Bodies, SI: R of their shape, and E/(1-nu^2) of two identical bodies.
     real(wp) :: radius = 1, stiffness = 1
     logical :: rigid = .false.
+    !> Where a fluid drains from between the bodies, the largest gap (law's lengths) about which its
+    !> pressure is no power yet of the position; 0: there is none.
+    real(wp) :: film_gap = 0
     !> What each body deforms by over what it is for identical ones.
     real(wp) :: share(2) = 1
   end type problem_t

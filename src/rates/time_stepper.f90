@@ -5,14 +5,13 @@
 !> interpolated to, and the deformation that it makes, which is smoother, is interpolated from.
 module time_stepper
   use kinds, only: wp, pi
-  use dimensionless_problem, only: calm_gap
   use discretisation, only: discretisation_t, first_node
   use shape, only: shape_t
-  use contact_state, only: state_t, state_from
+  use contact_state, only: state_t
   use equilibrium, only: control_t, at_h0_with_edge
-  use edge_locked, only: approach, contact
+  use edge_locked, only: approach
   use contact_scales, only: cohesive_width
-  use locked_meshes, only: h0_control, scale_at
+  use locked_meshes, only: h0_control
   use path_coordinate, only: coordinate_of
   use continuation, only: radius_for
   use regridding, only: regrid
@@ -20,7 +19,10 @@ module time_stepper
   use besides, only: besides_t, rise_at
   use linear_algebra, only: multiply
   use material, only: material_t
+  use drainage, only: drainage_t, earlier_t, rate_weights
   use creep, only: creep_t
+  use anderson, only: solve_anderson
+  use solver_options, only: newton_of
   use solver, only: solver_t
   implicit none
   private
@@ -28,7 +30,8 @@ module time_stepper
 
   !> Bodies at a time [s]: the position of the drive, D = H0 - compliance*load, the state; on the
   !> material's mesh the memories (nodes, terms of `creep`) and the pressure. dissipated: what
-  !> dashpots took in the step that led there.
+  !> dashpots and the fluid took in the step that led there. Of the fluid: the power [1/s] that it
+  !> takes, its largest suction and where that is (lateral units).
   type :: instant_t
     real(wp) :: time = 0, position = 0
     integer :: mesh = 1
@@ -36,7 +39,9 @@ module time_stepper
     real(wp), allocatable :: memory(:, :), pressure(:)
     !> What the kernel makes of them, so that a step has one product with it.
     real(wp), allocatable :: memory_rise(:, :), pressure_rise(:)
-    real(wp) :: dissipated = 0
+    real(wp) :: dissipated = 0, power = 0, suction = 0, suction_at = 0
+    !> Steps since the drive turned.
+    integer :: since_turn = 0
   end type instant_t
 
   !> instant: coupling of bodies that have no time to yield more.
@@ -46,6 +51,8 @@ module time_stepper
     !> The largest change of the path's coordinate in a step: what changes by more has jumped, or is
     !> to be followed in shorter steps.
     real(wp) :: farthest = 0.3_wp
+    !> The weight of the present gaps in the rate, 1/s, that the Jacobian was made for.
+    real(wp) :: made_for = 1
     !> Fixed in space, of scale 1; there is none of bodies that do not remember.
     type(material_t) :: material
     !> What came before the present instant, to guess the next from. Of a step: memories that are
@@ -53,7 +60,6 @@ module time_stepper
     type(instant_t) :: before
     real(wp), allocatable :: left(:, :), left_rise(:, :), present(:), risen(:)
   contains
-    procedure :: begin
     procedure :: step
     procedure :: prepare
     procedure :: place_rise
@@ -64,87 +70,29 @@ module time_stepper
     procedure :: energy
     procedure :: finest
     procedure, private :: note_pressure
-    procedure, private :: solve_relaxed
+    procedure :: set_memory
+    procedure, private :: prepare_fluid
+    procedure, private :: remember_fluid
     procedure, private :: guess
   end type time_stepper_t
 
   !> Radius over that of a passage at which a mesh is left again; longest extrapolation over the
   !> step before.
   real(wp), parameter :: back = 0.97_wp, longest_guess = 3
-  !> What the scale may miss the expected one by, over what is finest, for the memory to be
-  !> linear in it; rounds.
-  real(wp), parameter :: far_off = 0.1_wp
+  !> What the scale may miss the expected one by, over what is finest, for the memory or
+  !> the earlier gaps to be linear in it; rounds.
+  real(wp), parameter :: far_off = 0.1_wp, far_off_fluid = 0.02_wp
   integer, parameter :: most_rounds = 3
-  !> Steps of the position on the way to a start, over the gap; the least, over the gap.
-  real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-5_wp
   !> Parts of radius and gap by which two meshes may differ in what they say of one state.
   real(wp), parameter :: same_state = 0.05_wp
+  !> Steps after a turn over which gaps change along lines.
+  integer, parameter :: calming = 4
+  !> Logarithm of the ratio of steps that have no Jacobian in common.
+  real(wp), parameter :: other_length = 0.5_wp
   !> The part of a contact that is as fine as its edge may be.
   real(wp), parameter :: part_of_contact = 0.3_wp
 
 contains
-
-  !> The equilibrium of relaxed bodies at a position, to which an approach from afar leads;
-  !> found = .false.: they jump before.
-  subroutine begin(self, position, at, found)
-    class(time_stepper_t), intent(inout) :: self
-    real(wp), intent(in) :: position
-    type(instant_t), intent(out) :: at
-    logical, intent(out) :: found
-    type(state_t) :: state
-    real(wp) :: far, next, step
-
-    if (allocated(self%besides)) deallocate (self%besides)
-    self%problem%coupling = self%instant*self%creep%relaxed()
-    at%mesh = merge(approach, contact, self%meshes%traceable)
-    far = max(position, calm_gap(self%problem), self%meshes%level + 3)
-    associate (grid => self%meshes%grid(at%mesh), shape => self%problem%shape)
-      state = state_from(grid%nodes)
-      state%h0 = far
-      state%scale = scale_at(shape, self%meshes, far)
-      state%gap = far + shape%height(state%scale*grid%x(:grid%nodes))
-    end associate
-    at%position = far
-    call self%solve_relaxed(far, state, at, found)
-    step = part_of_gap
-    do while (found .and. at%position > position)
-      next = max(position, at%position - step*max(at%state%axis_gap, 1.0_wp))
-      state = at%state
-      call self%solve_relaxed(next, state, at, found)
-      if (.not. found) then
-        step = 0.3_wp*step
-        found = step > least_part
-        if (.not. found) exit
-      end if
-    end do
-    if (.not. found) return
-    call self%note_pressure(at)
-    at%memory = spread(at%pressure, 2, size(self%creep%time))
-    at%memory_rise = spread(at%pressure_rise, 2, size(self%creep%time))
-    self%before = at
-  end subroutine begin
-
-  !> Solves from a guess for relaxed bodies at a position; if they are found near where they were,
-  !> that is where they are.
-  subroutine solve_relaxed(self, position, state, at, found)
-    class(time_stepper_t), intent(inout) :: self
-    real(wp), intent(in) :: position
-    type(state_t), intent(inout) :: state
-    type(instant_t), intent(inout) :: at
-    logical, intent(out) :: found
-    type(control_t) :: control
-
-    control = self%control_at(position, at%mesh, state)
-    if (abs(control%scale - state%scale) > 0) state = regrid(self%problem%shape, state, &
-      self%meshes%grid(at%mesh), self%meshes%grid(at%mesh), control%scale)
-    call self%solve(control, state, found)
-    if (found .and. allocated(at%state%gap) .and. self%meshes%traceable) found = &
-      abs(coordinate_of(self%problem, at%mesh, state) - &
-      coordinate_of(self%problem, at%mesh, at%state)) < self%farthest
-    if (.not. found) return
-    at%state = state
-    at%position = position
-  end subroutine solve_relaxed
 
   !> From an instant to a later time and the position there. done = .false.: the bodies are not near
   !> where they were, and the step is too long, or leads over a jump.
@@ -167,11 +115,19 @@ contains
       call self%place_rise(to%mesh, control_scale(control, to%state))
       expected = to%state%scale
       call self%solve(control, to%state, done)
+      if (.not. done .and. allocated(self%drainage)) then
+        ! The fluid's part of the Jacobian changes much where gaps close.
+        call self%guess(from, time, position, control, to%state)
+        self%frozen%factors%valid = .false.
+        call solve_anderson(self%equations_t, newton_of(self%options), self%frozen, control, &
+          to%state, done)
+      end if
       if (done .and. self%meshes%traceable) done = &
         abs(coordinate_of(self%problem, to%mesh, to%state) - &
         coordinate_of(self%problem, from%mesh, from%state)) < self%farthest
       if (.not. done) exit
-      if (abs(to%state%scale - expected) <= far_off*self%finest(expected)) exit
+      if (abs(to%state%scale - expected) <= merge(far_off_fluid, far_off, &
+        allocated(self%drainage))*self%finest(expected)) exit
     end do
     if (.not. done) then
       self%frozen%factors%valid = .false.
@@ -191,6 +147,7 @@ contains
     real(wp) :: softer
     integer :: k
 
+    if (allocated(self%drainage)) call self%prepare_fluid(from, time)
     if (.not. allocated(self%present)) allocate (self%present(size(kept)))
     call self%creep%over_step(time - from%time, kept, past, self%present)
     softer = 1 + dot_product(self%creep%share, self%present)
@@ -205,6 +162,62 @@ contains
     self%risen = 2*self%instant*matmul(self%left_rise, self%creep%share)
   end subroutine prepare
 
+  !> The rate at which gaps change over a step: of a parabola through the last two instants, where
+  !> these are two.
+  subroutine prepare_fluid(self, from, time)
+    class(time_stepper_t), intent(inout) :: self
+    type(instant_t), intent(in) :: from
+    real(wp), intent(in) :: time
+    real(wp) :: weights(3)
+
+    ! Where the drive turns the rate jumps. What bodies that hardly yield make of that dies away in
+    ! a time that no step may resolve: a parabola would overshoot.
+    weights = rate_weights(time - from%time, merge(from%time - self%before%time, 0.0_wp, &
+      from%since_turn >= calming))
+    ! A Jacobian made for another length of steps says little of this one.
+    if (abs(log(weights(1)/self%made_for)) > other_length) then
+      self%frozen%factors%valid = .false.
+      self%made_for = weights(1)
+    end if
+    self%drainage%weight = weights(1)
+    self%drainage%earlier(1) = earlier(from, weights(2))
+    self%drainage%earlier(2) = earlier(self%before, weights(3))
+
+  contains
+
+    type(earlier_t) function earlier(at, weight)
+      type(instant_t), intent(in) :: at
+      real(wp), intent(in) :: weight
+
+      earlier%mesh = at%mesh
+      earlier%scale = at%state%scale
+      earlier%weight = weight
+      earlier%raised = self%raised(at%mesh, at%state)
+    end function earlier
+
+  end subroutine prepare_fluid
+
+  !> What the fluid does at the end of a step; what it takes in it.
+  subroutine remember_fluid(self, from, to)
+    class(time_stepper_t), intent(in) :: self
+    type(instant_t), intent(in) :: from
+    type(instant_t), intent(inout) :: to
+    real(wp), dimension(size(to%state%gap)) :: pressure, rate
+    integer :: lowest
+
+    associate (grid => self%meshes%grid(to%mesh), c => to%state%scale)
+      pressure = self%fluid_pressure(to%mesh, to%state, rate)
+      lowest = minloc(pressure, 1)
+      to%suction = -pressure(lowest)
+      to%suction_at = c*grid%x(lowest)
+      to%power = -2*pi*c**2*sum(grid%weight*pressure*rate)
+    end associate
+    to%since_turn = from%since_turn + 1
+    to%dissipated = (to%time - from%time)*to%power
+    if (from%since_turn > 0) to%dissipated = &
+      (to%time - from%time)*0.5_wp*(from%power + to%power)
+  end subroutine remember_fluid
+
   !> The memories of the instant that a step has led to.
   subroutine remember(self, from, to)
     class(time_stepper_t), intent(inout) :: self
@@ -216,6 +229,7 @@ contains
     to%memory = from%memory
     to%memory_rise = from%memory_rise
     to%dissipated = 0
+    if (allocated(self%drainage)) call self%remember_fluid(from, to)
     if (size(to%memory, 2) == 0) return
     associate (weight => 4*pi*self%instant*self%material%weight)
       do k = 1, size(to%memory, 2)
@@ -228,6 +242,16 @@ contains
       end do
     end associate
   end subroutine remember
+
+  !> Lets an instant be one of bodies at rest under their pressure.
+  subroutine set_memory(self, at)
+    class(time_stepper_t), intent(in) :: self
+    type(instant_t), intent(inout) :: at
+
+    call self%note_pressure(at)
+    at%memory = spread(at%pressure, 2, size(self%creep%time))
+    at%memory_rise = spread(at%pressure_rise, 2, size(self%creep%time))
+  end subroutine set_memory
 
   !> Notes the pressure of an instant on the nodes of the material's mesh, and what the half-space
   !> makes of it; bodies that do not remember have none.
@@ -250,6 +274,7 @@ contains
     integer, intent(in) :: mesh
     real(wp), intent(in) :: scale
 
+    if (allocated(self%drainage)) call self%drainage%place(self%meshes%grid, mesh, scale)
     if (size(self%creep%share) > 0) self%besides = rise_at(self%material%discretisation_t, &
       self%risen, self%meshes%grid(mesh), scale)
   end subroutine place_rise
@@ -375,7 +400,10 @@ contains
     ! Beside a fold another state has the same h0.
     if (done) done = abs(state%axis_gap - at%state%axis_gap) < &
       same_state*(1 + abs(at%state%axis_gap)) .and. abs(state%scale - scale) < same_state*scale
-    if (.not. done) return
+    if (.not. done) then
+      call self%place_rise(at%mesh, at%state%scale)
+      return
+    end if
     at%state = state
     at%mesh = mesh
   end subroutine move_to_mesh

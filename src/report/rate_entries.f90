@@ -3,8 +3,8 @@ module rate_entries
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t, adhesion_strength
   use scene_groups, only: scene_t
-  use timed_pass, only: timed_result_t, of_tension, of_tension_h0, of_end_h0, of_end_load, &
-    of_end_displacement, of_dissipation
+  use timed_record, only: timed_result_t, of_tension, of_tension_h0, of_end_h0, of_end_load, &
+    of_end_displacement, of_dissipation, of_suction
   use summary, only: summary_t
   use summary_entries, only: widen_spacing
   use quality_warnings, only: short_number
@@ -15,6 +15,8 @@ module rate_entries
   !> The part of the memory that panels may leave without a word. What it makes of the gap is much
   !> smoother: of 100 random cycles none with less was off by more than its errors.
   real(wp), parameter :: unresolved = 0.7_wp
+  !> Pa.
+  real(wp), parameter :: atmosphere = 101325
 
 contains
 
@@ -52,11 +54,26 @@ contains
     call summary%set('end_h0', problem%law%separation_of(timed%number(of_end_h0)))
     call take('end_displacement', of_end_displacement, problem%length)
     call take('end_load', of_end_load, problem%load)
+    if (allocated(scene%fluid)) then
+      call take('max_suction', of_suction, problem%pressure)
+      if (timed%number(of_suction)*problem%pressure > atmosphere) call warn_of_cavities()
+    end if
     if (timed%memory_tail > unresolved) call summary%warn('the mesh does not resolve what the ' // &
       'bodies remember: ' // short_number(timed%memory_tail) // ' of it is left between ' // &
       'nodes; a higher accuracy resolves more')
 
   contains
+
+    subroutine warn_of_cavities()
+      associate (at => timed%suction_at)
+        call summary%warn('the fluid is under a suction of ' // &
+          short_number(timed%number(of_suction)*problem%pressure) // ' Pa after ' // &
+          short_number(at(1)) // ' s, at h0 = ' // &
+          short_number(problem%law%separation_of(at(2))) // ' m and ' // &
+          short_number(at(3)*problem%lateral) // ' m from the axis: more than an atmosphere, ' // &
+          'it may cavitate, which the model does not')
+      end associate
+    end subroutine warn_of_cavities
 
     subroutine take(key, which, unit)
       character(len=*), intent(in) :: key

@@ -11,7 +11,7 @@ module result_rows
   !> are not the paper's, or once for each turning point.
   character(len=*), parameter :: never = '', always = 'always', classical = 'classical', &
     approximations = 'approximations', regime = 'regime', forces = '(forces)', &
-    turning = 'unloading', layer = 'layer', drive = 'drive'
+    turning = 'unloading', layer = 'layer', drive = 'drive', fluid = 'fluid'
 
   !> Key, unit and meaning; a list has one value a turning point, fold, profile or the like.
   type :: row_t
@@ -111,6 +111,8 @@ module result_rows
       'largest tension of a drive in time over 1.5 pi R', drive), &
     row_t('effective_work_of_adhesion_error', 'J/m^2', &
       'estimated error of effective_work_of_adhesion'), &
+    row_t('max_suction', 'Pa', 'largest suction of a fluid that drains', fluid), &
+    row_t('max_suction_error', 'Pa', 'estimated error of max_suction'), &
     row_t('sigma_relaxed', '', 'strength of adhesion of viscoelastic bodies at rest'), &
     row_t('time_steps', '', 'number of steps of a drive in time', drive), &
     row_t('path_traced_h0', 'm', 'h0 from which the path was traced for what is read from it'), &

@@ -1,4 +1,5 @@
-!> &drive and &viscoelastic: bodies driven in time, and bodies that remember.
+!> &drive, &viscoelastic and &fluid: bodies driven in time, bodies that remember, and a fluid that
+!> drains from between them.
 module rate_groups
   use kinds, only: wp
   use failure, only: failure_t
@@ -49,16 +50,23 @@ contains
       list_key('viscoelastic', 'compliance', '1/Pa', 'What each term adds to the compliance ' // &
                '(1-nu^2)/E in the end.', most=most_terms, above=zero), &
       list_key('viscoelastic', 'retardation_time', 's', 'Time of each term, of creep under a ' // &
-               'constant load.', most=most_terms, above=zero, required=.true.)]
+               'constant load.', most=most_terms, above=zero, required=.true.), &
+      group('fluid', 'A fluid between the bodies that resists where it has to drain. Needs ' // &
+            '&drive.'), &
+      real_key('fluid', 'viscosity', 'Pa s', 'Viscosity of the fluid.', above=zero, &
+               required=.true.), &
+      list_key('fluid', 'slip_length', 'm', 'Slip length of the fluid on the walls: one of ' // &
+               'both, or two.', most=2, low=zero, otherwise='none')]
   end function rate_keys
 
-  !> &drive and &viscoelastic.
+  !> &drive, &viscoelastic and &fluid.
   subroutine take_rates(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
 
     if (scene%deck%has_group('drive')) call take_drive(scene, error)
     if (scene%deck%has_group('viscoelastic')) call take_creep(scene, error)
+    if (scene%deck%has_group('fluid')) call take_fluid(scene, error)
   end subroutine take_rates
 
   subroutine take_drive(scene, error)
@@ -134,5 +142,26 @@ contains
       scene%creep = creep_t(compliance*bodies%stiffness, time)
     end associate
   end subroutine take_creep
+
+  subroutine take_fluid(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: slip(:)
+
+    allocate (scene%fluid)
+    associate (deck => scene%deck, fluid => scene%fluid)
+      if (.not. allocated(scene%drive)) call deck%mistake('fluid', '', &
+        'needs &drive; it does nothing between bodies at rest', error)
+      if (allocated(scene%shape)) then
+        if (.not. scene%shape%parabolic) call deck%mistake('fluid', '', &
+          'drains between parabolas alone; leave &shape out', error)
+      end if
+      call deck%get('fluid', 'viscosity', fluid%viscosity)
+      call deck%get('fluid', 'slip_length', slip)
+      if (allocated(error)) return
+      if (size(slip) == 1) fluid%slip = slip(1)
+      if (size(slip) == 2) fluid%slip = slip
+    end associate
+  end subroutine take_fluid
 
 end module rate_groups

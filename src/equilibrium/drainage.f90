@@ -1,0 +1,192 @@
+!> A fluid between the bodies, which has to flow out where they approach and in where they part. In
+!> the thin gap it is a film of Reynolds (1886): between parabolas, in the units of
+!> `dimensionless_problem`,
+!>
+!>     dH/dt = (1/strength) (1/rho) d/drho [rho m(H) dP_h/drho] ,  strength = 12 eta R/(p0 L) [s],
+!>
+!> so that two integrals give the pressure from the rate at which the gap changes at fixed rho:
+!>
+!>     P_h(rho) = -strength Int_rho^infinity [1/(rho' m)] Int_0^rho' dH/dt rho'' drho'' drho' .
+!>
+!> The mobility m is that of walls on which the fluid slips with lengths b1 and b2 (Navier):
+!>
+!>     m = H**2 [H**2 + 4 H (b1 + b2) + 12 b1 b2]/(H + b1 + b2) ,
+!>
+!> H**3 without slip, H**3 + 6 b H**2 if both are b, 4 H**3 where one wall holds nothing back. The
+!> rate follows from the present gap and those of the last two instants, to second order in the
+!> step. At fixed rho it is that of the deformation: the shape does not change.
+module drainage
+  use kinds, only: wp
+  use discretisation, only: discretisation_t
+  use running_integrals, only: running_integrals_t, new_running_integrals
+  use carried_values, only: carried_t, new_carried
+  use linear_algebra, only: multiply, multiply_by_transposed
+  use besides, only: besides_t
+  implicit none
+  private
+  public :: fluid_t, drainage_t, earlier_t, rate_weights, farthest_pole
+
+  !> Of the fluid: strength [s], and slip lengths in the law's.
+  type :: fluid_t
+    real(wp) :: strength = 0, slip(2) = 0
+  contains
+    procedure :: mobility
+  end type fluid_t
+
+  !> An earlier state: mesh, scale, what its gaps have beside the shape, and its weight in the rate
+  !> [1/s].
+  type :: earlier_t
+    integer :: mesh = 1
+    real(wp) :: scale = 1, weight = 0
+    real(wp), allocatable :: raised(:)
+  end type earlier_t
+
+  !> The fluid over a step: its films on the meshes of a family, the weight [1/s] of the present gap
+  !> in the rate, the earlier states, and what these give on the nodes of the present mesh.
+  type, extends(fluid_t) :: drainage_t
+    type(running_integrals_t), allocatable :: film(:)
+    real(wp) :: weight = 0
+    type(earlier_t) :: earlier(2)
+    type(besides_t), private :: known
+  contains
+    procedure :: lay_out
+    procedure :: place
+    procedure :: rate
+    procedure :: pressure
+    procedure :: derivatives
+  end type drainage_t
+
+  !> Part of the position over which its change is taken.
+  real(wp), parameter :: apart = 1.0e-5_wp
+
+contains
+
+  !> The mobility of the fluid, and its derivative by the gap.
+  elemental subroutine mobility(self, gap, m, slope)
+    class(fluid_t), intent(in) :: self
+    real(wp), intent(in) :: gap
+    real(wp), intent(out) :: m, slope
+    real(wp) :: freer
+
+    associate (sum => self%slip(1) + self%slip(2), product => self%slip(1)*self%slip(2))
+      freer = (gap*(gap + 4*sum) + 12*product)/(gap + sum)
+      m = gap**2*freer
+      slope = 2*gap*freer + gap**2*(2*gap + 4*sum - freer)/(gap + sum)
+    end associate
+  end subroutine mobility
+
+  !> How far below zero the mobility has a pole or a zero, law's lengths.
+  pure real(wp) function farthest_pole(fluid) result(depth)
+    type(fluid_t), intent(in) :: fluid
+
+    associate (sum => fluid%slip(1) + fluid%slip(2))
+      depth = 2*(sum + sqrt(sum**2 - 3*fluid%slip(1)*fluid%slip(2)))
+    end associate
+  end function farthest_pole
+
+  !> Weights [1/s] of the present value and of the two before it in the rate at the end of a step:
+  !> of the parabola through them, or of the line where before = 0.
+  pure function rate_weights(seconds, before) result(weights)
+    real(wp), intent(in) :: seconds, before
+    real(wp) :: weights(3), ratio
+
+    ratio = 0
+    if (before > 0) ratio = seconds/before
+    weights = [(1 + 2*ratio)/(1 + ratio), -(1 + ratio), ratio**2/(1 + ratio)]/seconds
+  end function rate_weights
+
+  !> Films on meshes.
+  pure subroutine lay_out(self, grids)
+    class(drainage_t), intent(inout) :: self
+    type(discretisation_t), intent(in) :: grids(:)
+    integer :: k
+
+    if (allocated(self%film)) deallocate (self%film)
+    allocate (self%film(size(grids)))
+    do k = 1, size(grids)
+      if (allocated(grids(k)%kernel)) self%film(k) = new_running_integrals(grids(k))
+    end do
+  end subroutine lay_out
+
+  !> Brings what the earlier states give to the nodes of a mesh at about a scale.
+  pure subroutine place(self, grids, mesh, scale)
+    class(drainage_t), intent(inout) :: self
+    type(discretisation_t), intent(in) :: grids(:)
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: scale
+    real(wp), dimension(grids(mesh)%nodes) :: value, growth
+    type(carried_t) :: carried
+    integer :: i, k
+
+    value = 0
+    growth = 0
+    do k = 1, size(self%earlier)
+      associate (past => self%earlier(k), x => grids(mesh)%x)
+        if (.not. abs(past%weight) > 0) cycle
+        associate (from => grids(past%mesh), ratio => scale/past%scale)
+          carried = new_carried(from, past%raised, ratio > 1)
+          do i = 1, size(value)
+            value(i) = value(i) + past%weight*carried%at(from, ratio*x(i))
+            growth(i) = growth(i) + past%weight/(2*apart)* &
+              (carried%at(from, (1 + apart)*ratio*x(i)) - &
+              carried%at(from, (1 - apart)*ratio*x(i)))
+          end do
+        end associate
+      end associate
+    end do
+    self%known = besides_t(scale, value, growth)
+  end subroutine place
+
+  !> The rate [1/s] at which gaps change that are raised beside the shape by so much.
+  pure function rate(self, scale, raised) result(change)
+    class(drainage_t), intent(in) :: self
+    real(wp), intent(in) :: scale, raised(:)
+    real(wp) :: change(size(raised))
+
+    change = self%weight*raised + self%known%at_scale(scale)
+  end function rate
+
+  !> The pressure of the fluid on the nodes of a mesh.
+  function pressure(self, mesh, scale, gap, rate) result(p)
+    class(drainage_t), intent(in) :: self
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: scale, gap(:), rate(:)
+    real(wp), dimension(size(gap)) :: p, gathered, m, slope
+
+    call self%mobility(gap, m, slope)
+    associate (film => self%film(mesh))
+      call multiply(film%gathered, size(gap), rate, gathered)
+      call multiply(film%beyond, size(gap), gathered/m, p)
+    end associate
+    p = -self%strength*scale**2*p
+  end function pressure
+
+  !> Derivatives of the pressure by the gaps, (nodes, nodes), and by the scale of the mesh at fixed
+  !> gaps; shape_slope: x f'(c x), the derivative of the shape by the scale.
+  subroutine derivatives(self, mesh, scale, gap, raised, shape_slope, by_gap, by_scale)
+    class(drainage_t), intent(in) :: self
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: scale, gap(:), raised(:), shape_slope(:)
+    real(wp), intent(out), contiguous :: by_gap(:, :)
+    real(wp), intent(out) :: by_scale(:)
+    real(wp), dimension(size(gap)) :: now, gathered, m, slope
+    real(wp) :: flow(size(gap), size(gap)), times
+    integer :: i
+
+    now = self%rate(scale, raised)
+    call self%mobility(gap, m, slope)
+    times = -self%strength*scale**2
+    associate (film => self%film(mesh))
+      call multiply(film%gathered, size(gap), now, gathered)
+      do i = 1, size(gap)
+        flow(:, i) = self%weight*film%gathered(:, i)/m
+        flow(i, i) = flow(i, i) - gathered(i)*slope(i)/m(i)**2
+      end do
+      call multiply_by_transposed(film%beyond, transpose(flow), by_gap)
+      by_gap = times*by_gap
+      by_scale = 2*self%pressure(mesh, scale, gap, now)/scale + self%pressure(mesh, scale, gap, &
+        self%known%growth/scale - self%weight*shape_slope)
+    end associate
+  end subroutine derivatives
+
+end module drainage

@@ -1,0 +1,119 @@
+!> A way of a drive with a fluid between the bodies. It resists every motion, so that none takes no
+!> time: where bodies jump together or apart steps become as short as that takes.
+module drained_way
+  use kinds, only: wp, pi
+  use edge_locked, only: approach
+  use continuation, only: radius_for
+  use motion, only: motion_t
+  use time_stepper, only: time_stepper_t, instant_t
+  use timed_record, only: pass_t, accept, lose
+  implicit none
+  private
+  public :: go_drained
+
+  !> What a step may miss on a straight line through the two instants before: of the load over the
+  !> largest or a pull-off, of the gap on the axis over itself, and the way of the edge over what is
+  !> finest there. A step that misses so many times as much is taken again.
+  real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4
+  !> A step is so many times the last at most, and at least.
+  real(wp), parameter :: longer = 2, shorter = 0.2_wp
+  !> Steps are no shorter than so many roundings of the time; those may go so far in the path's
+  !> coordinate.
+  real(wp), parameter :: roundings = 64, unfollowed = 3
+  !> Part of the radius of a contact that its edge may move whatever is finest.
+  real(wp), parameter :: part_of_radius = 0.01_wp
+
+contains
+
+  !> From an instant to a time of a way. step: the length of the first, on return that of the next.
+  !> Steps follow the motion, `part` of what they might be; if that is 0, they are the longest, and only
+  !> those are shortened that have no end near.
+  subroutine go_drained(drive, way, time, longest, part, steps, step, at, now)
+    type(motion_t), intent(in) :: drive
+    integer, intent(in) :: way
+    real(wp), intent(in) :: time, longest, part
+    type(time_stepper_t), intent(inout) :: steps
+    real(wp), intent(inout) :: step
+    type(instant_t), intent(inout) :: at
+    type(pass_t), intent(inout) :: now
+    type(instant_t) :: next
+    real(wp) :: when, off, taken, least, farthest
+    logical :: done
+
+    do while (at%time < time)
+      least = roundings*spacing(max(at%time, step))
+      when = at%time + step
+      if (when + 0.01_wp*step > time) when = time
+      taken = when - at%time
+      farthest = steps%farthest
+      ! What is over in the rounding of the time is not followed.
+      if (taken <= 2*least) steps%farthest = unfollowed
+      call steps%step(at, when, drive%at(way, when), next, done)
+      steps%farthest = farthest
+      off = 1/longer**2
+      if (done .and. part > 0) off = max(off, missed(steps, at, next, now)/part**2)
+      ! A line has no bend yet.
+      if (done .and. at%since_turn < 2) off = 1
+      if (done .and. (off < rejected .or. taken <= 2*least)) then
+        call accept(steps, way, next, .true., at, now)
+        step = min(longest, taken*min(longer, max(shorter, 0.9_wp/sqrt(off))))
+        if (now%held > now%most) call lose(at, now)
+      else
+        steps%cost%rejected_steps = steps%cost%rejected_steps + 1
+        step = taken*merge(max(shorter, 0.7_wp/sqrt(off)), 0.3_wp, done)
+        if (.not. done .and. taken <= least) call lose(at, now)
+        step = max(step, least)
+      end if
+      if (now%result%lost) exit
+    end do
+  end subroutine go_drained
+
+  !> What a step asks to be: below 1 it may be longer, above 1 it has to be shorter.
+  real(wp) function missed(steps, at, next, now)
+    type(time_stepper_t), intent(in) :: steps
+    type(instant_t), intent(in) :: at, next
+    type(pass_t), intent(in) :: now
+    real(wp) :: ahead, unit, radius, finest
+
+    radius = merge(at%state%scale, huge(1.0_wp), at%mesh > approach)
+    finest = steps%finest(radius)
+    if (at%mesh > approach) finest = max(finest, part_of_radius*radius)
+    missed = (moved(steps, at, next)/(edge_moves*finest))**2
+    if (at%since_turn < 2) return
+    ahead = (next%time - at%time)/(at%time - steps%before%time)
+    unit = max(now%result%largest_load, abs(next%state%load), tiny(1.0_wp), &
+      pi*steps%problem%law%adhesion)
+    associate (before => steps%before%state, last => at%state, new => next%state)
+      missed = max(missed, abs(new%load - last%load - ahead*(last%load - before%load))/ &
+        (bend*unit), abs(new%axis_gap - last%axis_gap - ahead*(last%axis_gap - &
+        before%axis_gap))/(bend_of_gap*abs(last%axis_gap)))
+    end associate
+  end function missed
+
+  !> How far the edge of a contact about the axis moves. One that begins or ends away from the axis
+  !> has no radius to grow from.
+  real(wp) function moved(steps, at, next)
+    type(time_stepper_t), intent(in) :: steps
+    type(instant_t), intent(in) :: at, next
+    real(wp) :: radius(2)
+
+    moved = 0
+    if (.not. steps%meshes%traceable .or. size(steps%meshes%grid) == approach) return
+    associate (edge => steps%problem%law%edge_gap)
+      if (.not. min(at%state%axis_gap, next%state%axis_gap) < edge) return
+      radius = [edge_of(at), edge_of(next)]
+      if (minval(radius) > 0 .and. max(at%state%axis_gap, next%state%axis_gap) > edge) return
+      moved = abs(radius(2) - radius(1))
+    end associate
+
+  contains
+
+    real(wp) function edge_of(one)
+      type(instant_t), intent(in) :: one
+
+      edge_of = radius_for(steps%equations_t, one%mesh, size(steps%meshes%grid), one%state)
+    end function edge_of
+
+  end function moved
+
+end module drained_way

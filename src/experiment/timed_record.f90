@@ -1,0 +1,187 @@
+!> What is read of a drive on its way: its rows, the numbers that are reported, and their quality.
+module timed_record
+  use kinds, only: wp
+  use dimensionless_problem, only: spacing_over_neck
+  use equilibrium, only: holds
+  use edge_locked, only: approach
+  use records, only: record_t, extent_t, record_of, stable_unasked
+  use motion, only: names_of_ways
+  use time_stepper, only: time_stepper_t, instant_t
+  implicit none
+  private
+  public :: timed_result_t, pass_t, accept, take_row, note, lose, most_steps, numbers, &
+    of_tension, of_tension_h0, of_end_h0, of_end_load, of_end_displacement, of_dissipation, &
+    of_suction
+
+  !> The numbers that are reported.
+  integer, parameter :: of_tension = 1, of_tension_h0 = 2, of_end_h0 = 3, of_end_load = 4, &
+    of_end_displacement = 5, of_dissipation = 6, of_suction = 7, numbers = 7
+
+  !> Most steps of a pass.
+  integer, parameter :: most_steps = 40000
+
+  !> What a pass through the motion has shown. Numbers in units of the problem; balance: what is
+  !> dissipated by the work of the drive, less what dashpots and jumps take.
+  type :: timed_result_t
+    real(wp) :: number(numbers) = 0, error(numbers) = huge(1.0_wp)
+    real(wp) :: balance = 0
+    !> By how much the largest tension is above that of any row.
+    real(wp) :: lifted = 0
+    !> The largest error of a load over the largest load.
+    real(wp) :: estimate = 0
+    integer :: steps = 0, jumps = 0
+    !> Where the suction of a fluid is largest: the time [s], h0 and the distance from the axis.
+    real(wp) :: suction_at(3) = 0
+    type(extent_t) :: extent
+    real(wp) :: worst_residual = 0, worst_spacing = 0, memory_tail = 0, largest_load = 0
+    !> The time [s] at which the bodies were lost, if they were; or no start was found.
+    logical :: begun = .false., lost = .false.
+    real(wp) :: lost_at = 0
+  end type timed_result_t
+
+  !> A pass: its rows, and the times of its steps and the last three loads.
+  type :: pass_t
+    type(timed_result_t) :: result
+    type(record_t), allocatable :: row(:)
+    real(wp), allocatable :: time(:)
+    integer, allocatable :: way(:)
+    integer :: held = 0
+    !> Steps and jumps at which it is given up.
+    integer :: most = most_steps, most_jumps = 50
+    real(wp) :: recent(3, 3) = 0
+    integer :: recently = 0
+    !> The longest step [s] to be tried, and how many steps were taken since one was too long.
+    real(wp) :: longest = huge(1.0_wp)
+    integer :: since = 0
+    !> Whether the bodies were coming nearer to each other when they last moved.
+    logical :: inwards = .true.
+    real(wp) :: work = 0, inside = 0
+  end type pass_t
+
+  !> A relative change of gap or radius that is no rounding.
+  real(wp), parameter :: moves = 1.0e-6_wp
+
+contains
+
+  !> Gives the pass up.
+  subroutine lose(at, now)
+    type(instant_t), intent(in) :: at
+    type(pass_t), intent(inout) :: now
+
+    now%result%lost = .true.
+    now%result%lost_at = at%time
+  end subroutine lose
+
+  !> Notes whether the bodies come nearer to each other, if they move by more than rounding.
+  subroutine note_sense(from, to, inwards)
+    type(instant_t), intent(in) :: from, to
+    logical, intent(inout) :: inwards
+    real(wp) :: nearer
+
+    nearer = (from%state%axis_gap - to%state%axis_gap)/abs(from%state%axis_gap)
+    if (min(from%mesh, to%mesh) > approach) nearer = to%state%scale/from%state%scale - 1
+    if (abs(nearer) > moves) inwards = nearer > 0
+  end subroutine note_sense
+
+  !> Makes the next instant the present one. smooth: nothing has jumped; else what the bodies hold
+  !> less, and dashpots have not taken, is lost in the jump.
+  subroutine accept(steps, way, next, smooth, at, now)
+    type(time_stepper_t), intent(inout) :: steps
+    integer, intent(in) :: way
+    type(instant_t), intent(in) :: next
+    logical, intent(in) :: smooth
+    type(instant_t), intent(inout) :: at
+    type(pass_t), intent(inout) :: now
+    real(wp) :: work
+
+    work = -0.5_wp*(at%state%load + next%state%load)*(next%position - at%position)
+    ! Where a drive turns the load of a fluid jumps.
+    if (allocated(steps%drainage) .and. at%since_turn == 0) &
+      work = -next%state%load*(next%position - at%position)
+    now%work = now%work + work
+    if (smooth) then
+      now%inside = now%inside + next%dissipated
+    else
+      now%inside = now%inside + work + steps%energy(at) - steps%energy(next)
+    end if
+    call note_sense(at, next, now%inwards)
+    steps%before = at
+    at = next
+    call take_row(at, now)
+    call note(steps, way, at, now)
+  end subroutine accept
+
+  !> Keeps the last three loads, and the largest tension: of the parabola through them where the
+  !> middle one is the largest.
+  subroutine take_row(at, now)
+    type(instant_t), intent(in) :: at
+    type(pass_t), intent(inout) :: now
+    real(wp) :: slope(2), curvature, away, least, h0
+
+    now%recent(:, :2) = now%recent(:, 2:)
+    now%recent(:, 3) = [at%time, at%state%load, at%state%h0]
+    now%recently = min(3, now%recently + 1)
+    least = at%state%load
+    h0 = at%state%h0
+    associate (t => now%recent(1, :), f => now%recent(2, :), h => now%recent(3, :))
+      if (now%recently == 3 .and. f(2) < min(f(1), f(3)) .and. t(3) > t(2) .and. t(2) > t(1)) then
+        slope = (f(2:) - f(:2))/(t(2:) - t(:2))
+        curvature = (slope(2) - slope(1))/(t(3) - t(1))
+        away = -0.5_wp*(slope(1)/curvature - (t(2) - t(1)))
+        least = f(2) + away*(slope(1) + curvature*(t(2) - t(1))) + curvature*away**2
+        slope = (h(2:) - h(:2))/(t(2:) - t(:2))
+        h0 = h(2) + away*merge(slope(1), slope(2), away < 0)
+      end if
+    end associate
+    if (-least <= now%result%number(of_tension)) return
+    now%result%lifted = minval(now%recent(2, 4 - now%recently:)) - least
+    now%result%number(of_tension) = -least
+    now%result%number(of_tension_h0) = h0
+  end subroutine take_row
+
+  !> Adds an instant to the rows, and its qualities to those of the pass.
+  subroutine note(steps, way, at, now)
+    type(time_stepper_t), intent(in) :: steps
+    integer, intent(in) :: way
+    type(instant_t), intent(in) :: at
+    type(pass_t), intent(inout) :: now
+    type(pass_t) :: longer
+    integer :: k
+
+    if (.not. allocated(now%row)) allocate (now%row(1024), now%time(1024), now%way(1024))
+    if (now%held == size(now%row)) then
+      allocate (longer%row(2*now%held), longer%time(2*now%held), longer%way(2*now%held))
+      longer%row(:now%held) = now%row
+      longer%time(:now%held) = now%time
+      longer%way(:now%held) = now%way
+      call move_alloc(longer%row, now%row)
+      call move_alloc(longer%time, now%time)
+      call move_alloc(longer%way, now%way)
+    end if
+    now%held = now%held + 1
+    now%time(now%held) = at%time
+    now%way(now%held) = way
+    associate (row => now%row(now%held), result => now%result, problem => steps%problem, &
+      grid => steps%meshes%grid(at%mesh))
+      row = record_of(trim(names_of_ways(way)), problem, grid, at%state, stable_unasked, &
+        holds(problem, steps%options%tolerance, at%state))
+      row%time = at%time
+      if (steps%compliance > 0) row%z = problem%law%separation_of(at%position)
+      call result%extent%cover(row, at%state)
+      result%steps = now%held - 1
+      result%worst_residual = max(result%worst_residual, at%state%residual)
+      result%largest_load = max(result%largest_load, abs(at%state%load))
+      if (at%state%axis_gap < problem%law%edge_gap) result%worst_spacing = max( &
+        result%worst_spacing, spacing_over_neck(problem, at%state%scale*grid%spacing))
+      if (at%suction > result%number(of_suction)) then
+        result%number(of_suction) = at%suction
+        result%suction_at = [at%time, at%state%h0, at%suction_at]
+      end if
+      do k = 1, size(at%memory, 2)
+        result%memory_tail = max(result%memory_tail, &
+          maxval(steps%material%panel_tails(at%memory(:, k))))
+      end do
+    end associate
+  end subroutine note
+
+end module timed_record

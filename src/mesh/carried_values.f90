@@ -1,0 +1,89 @@
+!> Values that stay where they are while the mesh moves, step after step. A panel's polynomial knows
+!> nothing of what comes into the panel from the next: taken alone, again and again, it is an
+!> extrapolation, whose errors grow without bound. With the value that the next panel has at the end
+!> where the mesh moves to it is a collocation of the flow through the mesh, which is stable.
+module carried_values
+  use kinds, only: wp
+  use discretisation, only: discretisation_t
+  implicit none
+  private
+  public :: carried_t, new_carried
+
+  type :: carried_t
+    private
+    real(wp), allocatable :: value(:)
+    !> Of each panel, what the neighbour has more at the common end, and which end that is.
+    real(wp), allocatable :: jump(:)
+    logical :: outward = .true.
+  contains
+    procedure :: at
+  end type carried_t
+
+contains
+
+  !> Values on the nodes of a mesh, to be carried to one that has moved outward or inward.
+  pure function new_carried(grid, value, outward) result(carried)
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: value(:)
+    logical, intent(in) :: outward
+    type(carried_t) :: carried
+    integer :: k, next
+
+    carried%value = value
+    carried%outward = outward
+    allocate (carried%jump(size(grid%panel)), source=0.0_wp)
+    do k = 1, size(grid%panel)
+      next = k + merge(1, -1, outward)
+      if (next < 1 .or. next > size(grid%panel)) cycle
+      carried%jump(k) = end_of(next, .not. outward) - end_of(k, outward)
+    end do
+
+  contains
+
+    pure real(wp) function end_of(k, right)
+      integer, intent(in) :: k
+      logical, intent(in) :: right
+
+      associate (local => grid%local(grid%which(k)), first => grid%first(k))
+        end_of = local%value(value(first:first + size(local%node) - 1), &
+          merge(1.0_wp, 0.0_wp, right))
+      end associate
+    end function end_of
+
+  end function new_carried
+
+  !> The value at a position: the panel's polynomial, and the one that is zero on its nodes, P_n, to
+  !> meet the neighbour.
+  pure real(wp) function at(self, grid, x)
+    class(carried_t), intent(in) :: self
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: x
+    real(wp) :: s
+    integer :: k
+
+    k = grid%panel_at(x)
+    associate (local => grid%local(grid%which(k)), first => grid%first(k))
+      s = grid%panel(k)%local(x - grid%centre)
+      at = local%value(self%value(first:first + size(local%node) - 1), s)
+      if (abs(self%jump(k)) > 0) at = at + self%jump(k)* &
+        legendre(size(local%node), merge(2*s - 1, 1 - 2*s, self%outward))
+    end associate
+  end function at
+
+  !> The Legendre polynomial P_n.
+  pure real(wp) function legendre(n, x) result(value)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: x
+    real(wp) :: before, next
+    integer :: m
+
+    before = 1
+    value = x
+    do m = 2, n
+      next = ((2*m - 1)*x*value - (m - 1)*before)/m
+      before = value
+      value = next
+    end do
+  end function legendre
+
+end module carried_values

@@ -1,0 +1,86 @@
+!> Where a drive in time begins: bodies at rest, as an approach from afar leaves them.
+module rest
+  use kinds, only: wp
+  use dimensionless_problem, only: calm_gap
+  use contact_state, only: state_t, state_from
+  use equilibrium, only: control_t
+  use edge_locked, only: approach, contact
+  use locked_meshes, only: scale_at
+  use path_coordinate, only: coordinate_of
+  use regridding, only: regrid
+  use drainage, only: drainage_t
+  use time_stepper, only: time_stepper_t, instant_t
+  implicit none
+  private
+  public :: begin_at_rest
+
+  !> Steps of the position on the way to a start, over the gap; the least, over the gap.
+  real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-5_wp
+
+contains
+
+  !> The equilibrium of relaxed bodies at a position, to which an approach from afar leads;
+  !> found = .false.: they jump before.
+  subroutine begin_at_rest(steps, position, at, found)
+    type(time_stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: position
+    type(instant_t), intent(out) :: at
+    logical, intent(out) :: found
+    type(state_t) :: state
+    type(drainage_t), allocatable :: fluid
+    real(wp) :: far, next, step
+
+    if (allocated(steps%besides)) deallocate (steps%besides)
+    ! A fluid at rest has no part in it.
+    if (allocated(steps%drainage)) call move_alloc(steps%drainage, fluid)
+    steps%problem%coupling = steps%instant*steps%creep%relaxed()
+    at%mesh = merge(approach, contact, steps%meshes%traceable)
+    far = max(position, calm_gap(steps%problem), steps%meshes%level + 3)
+    associate (grid => steps%meshes%grid(at%mesh), shape => steps%problem%shape)
+      state = state_from(grid%nodes)
+      state%h0 = far
+      state%scale = scale_at(shape, steps%meshes, far)
+      state%gap = far + shape%height(state%scale*grid%x(:grid%nodes))
+    end associate
+    at%position = far
+    call solve_relaxed(steps, far, state, at, found)
+    step = part_of_gap
+    do while (found .and. at%position > position)
+      next = max(position, at%position - step*max(at%state%axis_gap, 1.0_wp))
+      state = at%state
+      call solve_relaxed(steps, next, state, at, found)
+      if (.not. found) then
+        step = 0.3_wp*step
+        found = step > least_part
+        if (.not. found) exit
+      end if
+    end do
+    if (allocated(fluid)) call move_alloc(fluid, steps%drainage)
+    if (.not. found) return
+    call steps%set_memory(at)
+    steps%before = at
+  end subroutine begin_at_rest
+
+  !> Solves from a guess for relaxed bodies at a position; if they are found near where they were,
+  !> that is where they are.
+  subroutine solve_relaxed(steps, position, state, at, found)
+    type(time_stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: position
+    type(state_t), intent(inout) :: state
+    type(instant_t), intent(inout) :: at
+    logical, intent(out) :: found
+    type(control_t) :: control
+
+    control = steps%control_at(position, at%mesh, state)
+    if (abs(control%scale - state%scale) > 0) state = regrid(steps%problem%shape, state, &
+      steps%meshes%grid(at%mesh), steps%meshes%grid(at%mesh), control%scale)
+    call steps%solve(control, state, found)
+    if (found .and. allocated(at%state%gap) .and. steps%meshes%traceable) found = &
+      abs(coordinate_of(steps%problem, at%mesh, state) - &
+      coordinate_of(steps%problem, at%mesh, at%state)) < steps%farthest
+    if (.not. found) return
+    at%state = state
+    at%position = position
+  end subroutine solve_relaxed
+
+end module rest
