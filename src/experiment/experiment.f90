@@ -32,6 +32,10 @@ module experiment
   private
   public :: run_experiment, prepare
 
+  !> The coupling of bodies that do not deform visibly under a fluid either, whose pressure may be
+  !> many times that of the law.
+  real(wp), parameter :: unyielding = 1.0e-18_wp
+
 contains
 
   !> Runs the path and the cycle; neither may be asked for, and then nothing is done.
@@ -48,15 +52,12 @@ contains
     logical :: fixed
 
     if (.not. request%finds_states()) return
-    call range_of(request, problem, low, high)
-    outcome%chosen = choose(request%numerics, problem, low, allocated(request%profiles))
     if (allocated(request%drive)) then
-      allocate (outcome%timed)
-      call run_timed(request, problem, outcome%chosen, observer, outcome%timed, outcome%cost, &
-        outcome%nodes)
-      outcome%error_estimate = outcome%timed%estimate
+      call run_driven(request, problem, observer, outcome)
       return
     end if
+    call range_of(request, problem, low, high)
+    outcome%chosen = choose(request%numerics, problem, low, allocated(request%profiles))
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
       return
@@ -67,6 +68,26 @@ contains
     if (allocated(request%loading) .and. fixed) &
       call run_fixed(request, problem, low, observer, outcome, keeper)
   end subroutine run_experiment
+
+  !> The drive in time. Rigid bodies are some that are too stiff for their deformation to show.
+  subroutine run_driven(request, problem, observer, outcome)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    type(problem_t) :: driven
+    real(wp) :: low, high
+
+    driven = problem
+    driven%rigid = .false.
+    if (problem%rigid) driven%coupling = unyielding
+    call range_of(request, driven, low, high)
+    outcome%chosen = choose(request%numerics, driven, low, .false.)
+    allocate (outcome%timed)
+    call run_timed(request, driven, outcome%chosen, observer, outcome%timed, outcome%cost, &
+      outcome%nodes)
+    outcome%error_estimate = outcome%timed%estimate
+  end subroutine run_driven
 
   !> The path, and the cycle if `with_cycle` and the scene has one, in edge-locked coordinates, for
   !> H0 from high to low (law's lengths).

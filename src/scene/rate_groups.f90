@@ -100,8 +100,8 @@ contains
         if (deck%has_group(trim(at_rest(i)))) call deck%mistake(trim(at_rest(i)), '', &
           'shows bodies at rest, and cannot stand beside &drive; use a deck of its own', error)
       end do
-      if (scene%bodies%rigid) call deck%mistake('drive', '', &
-        'needs bodies that deform; rigid ones have the same load at any velocity', error)
+      if (scene%bodies%rigid .and. .not. deck%has_group('fluid')) call deck%mistake('drive', '', &
+        'needs bodies that deform, or &fluid; rigid ones have the same load at any velocity', error)
       call deck%get('numerics', 'grid', word)
       if (word /= 'auto') call deck%mistake('numerics', 'grid', &
         '&drive has meshes that move with the contact; leave grid out', error)
@@ -119,6 +119,8 @@ contains
     associate (deck => scene%deck, bodies => scene%bodies)
       if (.not. allocated(scene%drive)) call deck%mistake('viscoelastic', '', 'needs &drive; ' // &
         'bodies at rest are elastic ones with the relaxed stiffness', error)
+      if (bodies%rigid) call deck%mistake('viscoelastic', '', &
+        'needs bodies that deform, and these are rigid', error)
       if (deck%has_group('classical')) call deck%mistake('classical', '', &
         'is of elastic bodies, and cannot stand beside &viscoelastic', error)
       if (allocated(bodies%surface)) call deck%mistake('layer', '', &

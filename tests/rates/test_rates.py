@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from support.creeping import cycle
-from support.scenes import JKR, lennard_jones, runner
+from support.scenes import JKR, deck, lennard_jones, runner
 
 # In units of z0, and of the time of retardation.
 FAST, SLOW = 1.0e5, 0.01
@@ -137,7 +137,9 @@ def test_rows_have_times_and_ways(run):
     ({"drive": {"velocity": 0.0, "z_start": 3.0, "z_turn": 2.0}}, "velocity"),
     ({"drive": {"velocity": 1.0, "z_start": 3.0, "z_turn": 2.0, "time_step": 1e-9}}, "steps"),
     ({"equilibrium_path": {"h0_end": 0.0}}, "cannot stand beside &drive"),
-    ({"bodies": {"radius": 1.0, "rigid": True}}, "needs bodies that deform"),
+    ({"bodies": {"radius": 1.0, "rigid": True}}, "needs bodies that deform, or &fluid"),
+    ({"bodies": {"radius": 1.0, "rigid": True}, "fluid": {"viscosity": 1.0},
+      "viscoelastic": {"stiffness_relaxed": 1.0, "retardation_time": 1.0}}, "these are rigid"),
 ])
 def test_mistakes_are_named(run, change, message):
     groups = {"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1.0}, **change}
@@ -164,3 +166,19 @@ def test_bodies_that_are_lost_have_no_numbers(run):
     found = run(scene(1.0, 200.0, start=30.0, time_step=1.0, accuracy=1e-2), status=1)
     assert any("no state was found" in text for text in found.warnings)
     assert "energy_dissipated" not in found.summary
+
+
+def test_rigid_bodies_have_the_drag_of_a_film_beside_their_force(run):
+    curve = run(deck(
+        bodies={"radius": 1e-5, "rigid": True},
+        force={"law": "lennard_jones", "hamaker": 1e-21, "z0": 0.2e-9},
+        fluid={"viscosity": 1e-3},
+        drive={"velocity": 1e-6, "z_start": 500e-9, "z_turn": 10e-9},
+        numerics={"accuracy": 1e-4})).curve
+    # Some steps after each turn, where the fluid starts to move at once.
+    for branch, sense in (("approach", 1), ("retreat", -1)):
+        way = curve["branch"] == branch
+        h0, load = curve["h0"][way][10:], curve["load"][way][10:]
+        drag = 6 * math.pi * 1e-3 * 1e-10 * 1e-6 / h0
+        force = -1e-21 * 1e-5 / (6 * h0**2) * (1 - (0.2e-9 / h0) ** 6 / 4)
+        np.testing.assert_allclose(load, sense * drag + force, rtol=1e-7)
