@@ -228,13 +228,13 @@ contains
       now%since = 0
       if (now%longest > least .and. at%time + now%longest > at%time) cycle
       try = min(max(now%longest, least), time - at%time)
-      if (steps%meshes%traceable) call step_along(steps, at, at%time, &
-        drive%at(way, at%time + try), now%inwards, huge(1.0_wp), next, done)
+      when = min(at%time + try, time)
+      if (steps%meshes%traceable) call step_along(steps, at, when, drive%at(way, when), &
+        now%inwards, huge(1.0_wp), next, done)
       if (.not. done .or. now%held > now%most .or. now%result%jumps > now%most_jumps) then
         call lose(at, now)
         return
       end if
-      next%time = at%time + try
       now%result%jumps = now%result%jumps + 1
       now%recently = 0
       call accept(steps, way, next, .false., at, now)

@@ -1,6 +1,6 @@
 !> Steps in time where h0 does not tell the state, beside folds and over them: along the path of the
 !> equilibria that the memory of the moment allows, in its own coordinate, until the drive is where
-!> it is to be. A jump is such a step that takes no time, and lands where bodies are stable: where
+!> it is to be. A jump is such a step however far it leads, and lands where bodies are stable: where
 !> the drive has to come nearer for them to come nearer.
 module time_jump
   use kinds, only: wp
@@ -28,7 +28,8 @@ module time_jump
 contains
 
   !> From an instant to a time and the position there, along the path inward or outward or, where
-  !> that does not come there, the other way, and no farther than `farthest` in its coordinate.
+  !> that does not come there, the other way, and no farther than `farthest` in its coordinate; if
+  !> that is huge, it is a jump.
   subroutine step_along(steps, from, time, position, inwards, farthest, to, done)
     class(time_stepper_t), intent(inout) :: steps
     type(instant_t), intent(in) :: from
@@ -39,7 +40,7 @@ contains
     logical :: jumps
 
     call steps%prepare(from, time)
-    jumps = .not. time > from%time
+    jumps = farthest >= huge(1.0_wp)
     call go(steps, from, position, inwards, jumps, farthest, to, done)
     if (.not. done) call go(steps, from, position, .not. inwards, jumps, farthest, to, done)
     if (.not. done) return
