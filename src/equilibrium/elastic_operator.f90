@@ -19,10 +19,14 @@ module elastic_operator
 
   !> Scales for which waves are found, over the present one. For larger ones some are added.
   real(wp), parameter :: smaller = 0.1_wp, larger = 1.5_wp
+  !> Meshes whose waves are kept: the path passes from one to the next, and jumps lead back.
+  integer, parameter :: most_meshes = 8
 
   type :: elastic_operator_t
     private
-    type(mesh_waves_t) :: waves
+    !> The waves of the last meshes, and which of them are those of the present one.
+    type(mesh_waves_t), allocatable :: waves_of(:)
+    integer :: now = 1
     !> The scale for which what follows was found, with the strengths of the waves, as many as there
     !> are.
     real(wp) :: scale = 0
@@ -64,7 +68,7 @@ contains
       if (allocated(self%remainder)) then
         call multiply(self%remainder, columns, pressure, more)
       else
-        call through_waves(self%waves, self%strength, pressure(:columns), more)
+        call through_waves(self%waves_of(self%now), self%strength, pressure(:columns), more)
       end if
       rise = rise + more
     end if
@@ -111,9 +115,9 @@ contains
     more = 0
     if (problem%body%is_homogeneous()) return
     call self%prepare(problem, grid, scale)
-    associate (k => self%waves%k(:size(self%strength)))
-      call through_waves(self%waves, -2*self%waves%weight(:size(k))* &
-        problem%body%growth(k/scale), pressure, rows)
+    associate (waves => self%waves_of(self%now), n => size(self%strength))
+      call through_waves(waves, -2*waves%weight(:n)*problem%body%growth(waves%k(:n)/scale), &
+        pressure, rows)
     end associate
     more = 2*problem%coupling*rows(first:)
   end subroutine unlike_scaling
@@ -140,19 +144,41 @@ contains
     real(wp) :: range(2)
     logical :: same
 
-    same = self%waves%belong_to(grid)
+    if (.not. allocated(self%waves_of)) allocate (self%waves_of(most_meshes))
+    same = self%waves_of(self%now)%belong_to(grid)
     if (same .and. .not. abs(self%scale - scale) > 0) return
     range = scale*problem%body%wave_range()
-    if (same) same = range(1) >= self%waves%range(1)
-    if (.not. same) self%waves = new_mesh_waves(grid, smaller*range(1))
-    if (.not. range(2) <= self%waves%range(2)) call self%waves%add(grid, larger*range(2))
-    self%scale = scale
-    if (allocated(self%remainder)) deallocate (self%remainder)
-    ! Beyond the last wave there is nothing.
-    associate (n => count(self%waves%k <= range(2)))
-      self%strength = 2*self%waves%weight(:n)*problem%body%beside_half_space(self%waves%k(:n)/scale)
+    if (.not. same) call find(self%waves_of, grid, self%now, same)
+    associate (waves => self%waves_of(self%now))
+      if (same) same = range(1) >= waves%range(1)
+      if (.not. same) waves = new_mesh_waves(grid, smaller*range(1))
+      if (.not. range(2) <= waves%range(2)) call waves%add(grid, larger*range(2))
+      self%scale = scale
+      if (allocated(self%remainder)) deallocate (self%remainder)
+      ! Beyond the last wave there is nothing.
+      associate (n => count(waves%k <= range(2)))
+        self%strength = 2*waves%weight(:n)*problem%body%beside_half_space(waves%k(:n)/scale)
+      end associate
     end associate
   end subroutine prepare
+
+  !> Where the waves of a mesh are, or whose place they may take: the next one's, in turn.
+  pure subroutine find(waves, grid, place, there)
+    type(mesh_waves_t), intent(in) :: waves(:)
+    type(discretisation_t), intent(in) :: grid
+    integer, intent(inout) :: place
+    logical, intent(out) :: there
+    integer :: k
+
+    do k = 1, size(waves)
+      there = waves(k)%belong_to(grid)
+      if (there) then
+        place = k
+        return
+      end if
+    end do
+    place = 1 + modulo(place, size(waves))
+  end subroutine find
 
   !> Makes the matrix of the second part, unless it is there.
   subroutine fill_remainder(self)
@@ -161,13 +187,13 @@ contains
     integer :: q
 
     if (allocated(self%remainder)) return
-    associate (n => size(self%strength), rows => size(self%waves%wave, 1), &
-      nodes => size(self%waves%spectrum, 1))
-      allocate (strong(nodes, n), self%remainder(rows, nodes))
+    associate (waves => self%waves_of(self%now), n => size(self%strength))
+      allocate (strong(size(waves%spectrum, 1), n), &
+        self%remainder(size(waves%wave, 1), size(waves%spectrum, 1)))
       do q = 1, n
-        strong(:, q) = self%strength(q)*self%waves%spectrum(:, q)
+        strong(:, q) = self%strength(q)*waves%spectrum(:, q)
       end do
-      call multiply_by_transposed(self%waves%wave(:, :n), strong, self%remainder)
+      call multiply_by_transposed(waves%wave(:, :n), strong, self%remainder)
     end associate
   end subroutine fill_remainder
 

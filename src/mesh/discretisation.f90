@@ -51,6 +51,8 @@ module discretisation
     type(local_nodes_t), allocatable :: local(:)
     !> Smallest distance between neighbouring nodes of a panel; mean over the finest panel.
     real(wp) :: spacing = 0
+    !> Digits of the kernel.
+    real(wp) :: digits = 14
   contains
     procedure :: interpolate
     procedure :: on_one_panel

@@ -87,6 +87,7 @@ contains
     integer :: k
 
     grid%centre = shape%centre
+    grid%digits = shape%digits
     call place_panels(shape, grid)
     call place_nodes(shape, grid, offset)
     if (.not. elastic) return

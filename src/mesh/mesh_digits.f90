@@ -21,8 +21,8 @@ module mesh_digits
   real(wp), parameter :: without_jumps = -0.5_wp, for_lengths = 0.6_wp, for_profiles = 2, &
     for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
   !> For each decade of how much wider contacts are than layers that yield unlike a half-space to
-  !> waves of this many or fewer over the radius.
-  real(wp), parameter :: for_layers = 1.5_wp, waves_in_layer = 32
+  !> waves of this many or fewer over the radius: at weak adhesion, and more for each decade of sigma.
+  real(wp), parameter :: for_layers = 0.4_wp, for_necks_in_layers = 1.2_wp, waves_in_layer = 32
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; what is more
   !> there, the factor in sigma up to which that is felt, and the part of it, logarithmically, in
   !> which the two folds are so near each other that coarse meshes lose them.
@@ -49,8 +49,8 @@ contains
     end if
     if (profiles) digits = digits + for_profiles + for_narrow_necks*decades
     if (problem%shape%smooth_from() > 0) digits = digits + for_kinks
-    digits = digits + for_layers*log10(hypot(1.0_wp, &
-      widest*maxval(problem%body%wave_range())/waves_in_layer))
+    digits = digits + (for_layers + for_necks_in_layers*decades)* &
+      log10(hypot(1.0_wp, widest*maxval(problem%body%wave_range())/waves_in_layer))
     away = abs(log(max(sigma, tiny(1.0_wp))/onset))/log(about_onset)
     digits = digits + at_onset*max(0.0_wp, min(1.0_wp, 1.5_wp*(1 - away)))
     if (away < near_onset) least = max(least, enough_for_folds)

@@ -43,6 +43,9 @@ module mesh_rule
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
   !> near one another have the same meshes: at the cost of a fraction of a node.
   real(wp), parameter :: rung = 0.25_wp
+  !> More digits of kernels of bodies with layers: what the half-space yields and what these yield
+  !> beside it may be much more than both together.
+  integer, parameter :: for_layers = 2
   !> Digits that a shape with kinks allows.
   real(wp), parameter :: digits_of_broken = 4
 
@@ -273,6 +276,7 @@ contains
 
     kernel_digits = max(5, ceiling(1.2_wp*digits - 2 + &
       0.5_wp*log10(1 + adhesion_strength(problem))))
+    if (.not. problem%body%is_homogeneous()) kernel_digits = kernel_digits + for_layers
   end function kernel_digits
 
 end module mesh_rule

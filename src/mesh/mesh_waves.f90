@@ -20,20 +20,21 @@ module mesh_waves
   private
   public :: mesh_waves_t, new_mesh_waves
 
-  !> Waves are left out that turn by more than `passing` from node to node, of pressures smoothly
-  !> from the part `from` of that on. Between there and here a product with a pressure is one with a
-  !> window that moves with the wave, which must be wide enough for the product to have none of the
-  !> wave.
+  !> Of pressures outside the mesh's centre, waves are left out that turn by more than `passing` from
+  !> node to node, smoothly from the part `from` of that on. Between there and here a product with a
+  !> pressure is one with a window that moves with the wave, which must be wide enough for the
+  !> product to have none of the wave. Inside, where bodies are in contact, nothing is left out: of
+  !> thin films the second part of the operator is nearly the negative of the first, which has all.
   real(wp), parameter :: passing = 20, from = 0.6_wp
-  !> Places are moved by these waves and all that turn less than `crossing` between the axis and
-  !> them, smoothly as exp(-(1.6 k/last)^8).
-  real(wp), parameter :: crossing = 48, left_out = 1.6_wp
-  integer, parameter :: sharpness = 8
+  !> Places are moved by waves that turn by less than this from node to node, and by all that turn
+  !> less than this between the axis and them, each for a digit; smoothly from that part on.
+  real(wp), parameter :: passing_place = 1.4_wp, crossing = 3.4_wp, from_of_place = 0.25_wp
   !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave that turns by some angle
   !> over it is one of so many times the angle, to this and a few degrees more.
   real(wp), parameter :: degrees = 0.55_wp, more_degrees = 8
-  !> The nodes at the ends of a hat function.
+  !> The nodes at the ends of a hat function; by how much rules have more nodes for shorter waves.
   integer, parameter :: hat = 2
+  real(wp), parameter :: rung = 1.5_wp
 
   type :: mesh_waves_t
     !> Wave numbers in one over the mesh's scale, in order, and weights, (waves).
@@ -81,18 +82,19 @@ contains
     real(wp), intent(in) :: last
     real(wp) :: x(first_node - 1 + grid%nodes), last_of(first_node - 1 + grid%nodes)
     real(wp), allocatable :: k(:), weight(:), rows(:, :), wave(:, :), spectrum(:, :)
-    integer :: i, p, n, before
+    integer :: i, p, before
 
     x([axis_row, centre_row]) = [0.0_wp, grid%centre]
     x(first_node:) = grid%x
     last_of(:first_node - 1) = huge(1.0_wp)
     do p = 1, size(grid%panel)
       associate (first => first_node - 1 + grid%first(p), local => grid%local(grid%which(p)))
-        last_of(first:first + size(local%node) - 1) = last_on(grid, p, local%node)
+        last_of(first:first + size(local%node) - 1) = &
+          passing_place*grid%digits/step_on(grid, p, local%node)
       end associate
     end do
-    where (x > 0) last_of = max(last_of, crossing/x)
-    call wave_rule(x, last_of, self%range(2), self%range(1), last, k, weight)
+    where (x > 0) last_of = max(last_of, crossing*grid%digits/x)
+    call wave_rule(x, last_of, grid%digits, self%range(2), self%range(1), last, k, weight)
     before = size(self%k)
     self%range(2) = last
     self%k = [self%k, k]
@@ -103,96 +105,140 @@ contains
     spectrum(:, :before) = self%spectrum
     allocate (rows(size(k), size(x)))
     do i = 1, size(x)
-      n = count(k < last_of(i))
-      call self%bessel%j0(x(i)*k(:n), rows(:n, i))
-      rows(:n, i) = rows(:n, i)*exp(-(k(:n)*left_out/last_of(i))**sharpness)
-      rows(n + 1:, i) = 0
+      call find_wave(self%bessel, x(i), last_of(i), from_of_place, k, rows(:, i))
     end do
-    do i = 1, size(k)
-      wave(:, before + i) = rows(i, :)
+    wave(:, before + 1:) = transpose(rows)
+    do p = 1, size(grid%panel)
+      call add_spectrum(self%bessel, grid, p, k, spectrum(:, before + 1:))
     end do
-    associate (new => spectrum(:, before + 1:))
-      do p = 1, size(grid%panel)
-        call add_spectrum(self%bessel, grid, p, k, wave(first_node:, before + 1:), new)
-      end do
-    end associate
     call move_alloc(wave, self%wave)
     call move_alloc(spectrum, self%spectrum)
   end subroutine add
 
-  !> What the polynomials of a panel have of the waves; those of its nodes are known.
-  subroutine add_spectrum(bessel, grid, p, k, wave, spectrum)
+  !> What the polynomials of a panel have of the waves, in order. Its own nodes do for the longest;
+  !> for others it is cut into pieces, each about as wide as it is far from the mesh's centre, and
+  !> these are given the more nodes the shorter the waves are.
+  subroutine add_spectrum(bessel, grid, p, k, spectrum)
     type(bessel_t), intent(in) :: bessel
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: p
-    real(wp), intent(in) :: k(:), wave(:, :)
+    real(wp), intent(in) :: k(:)
+    real(wp), intent(inout) :: spectrum(:, :)
+    real(wp) :: whole(size(k))
+    integer :: j, own, piece, pieces
+
+    associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
+      own = 0
+      if (panel%kind /= algebraic_map .and. size(local%node) > hat) &
+        own = count(nodes_for(grid, p, [0.0_wp, 1.0_wp], k) <= size(local%node))
+      do j = grid%first(p), grid%first(p) + size(local%node) - 1
+        call bessel%j0(grid%x(j)*k(:own), whole(:own))
+        spectrum(j, :own) = grid%weight(j)*whole(:own)
+      end do
+      pieces = max(1, ceiling(panel%z_length))
+      do piece = 1, pieces
+        call add_piece(bessel, grid, p, [piece - 1, piece]/real(pieces, wp), k(own + 1:), &
+          spectrum(:, own + 1:))
+      end do
+    end associate
+  end subroutine add_spectrum
+
+  !> Adds what comes of the piece of a panel between two places s.
+  subroutine add_piece(bessel, grid, p, ends, k, spectrum)
+    type(bessel_t), intent(in) :: bessel
+    type(discretisation_t), intent(in) :: grid
+    integer, intent(in) :: p
+    real(wp), intent(in) :: ends(2), k(:)
     real(wp), intent(inout) :: spectrum(:, :)
     type(local_nodes_t) :: fine
     real(wp), allocatable :: basis(:, :), rows(:, :), part(:, :), x(:), last_of(:), weight(:)
-    integer :: i, j, first, last, n
+    integer :: needed(size(k)), i, n, first, last, before, now, waves
 
     associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
       first = grid%first(p)
       last = first + size(local%node) - 1
-      n = nodes_for(grid, p, k(size(k)))
-      if (n <= size(local%node) .and. panel%kind /= algebraic_map) then
-        do j = first, last
-          spectrum(j, :) = grid%weight(j)*wave(j, :)
+      waves = count(k < maxval(last_on(grid, p, ends)))
+      needed = nodes_for(grid, p, ends, k)
+      before = 0
+      n = 0
+      do while (before < waves)
+        n = max(n, needed(before + 1))
+        now = min(waves, count(needed <= n))
+        fine = gauss_nodes(n)
+        fine%node = ends(1) + (ends(2) - ends(1))*fine%node
+        x = grid%centre + panel%offset(fine%node)
+        weight = (ends(2) - ends(1))*fine%weight*panel%speed(fine%node)*x
+        last_of = last_on(grid, p, fine%node)
+        allocate (basis(size(local%node), n), rows(now - before, n), &
+          part(size(local%node), now - before))
+        do i = 1, n
+          basis(:, i) = weight(i)*lagrange_basis(local%node, local%barycentric, fine%node(i))
+          if (panel%kind == algebraic_map) basis(:, i) = basis(:, i)* &
+            ((1 - fine%node(i))/(1 - local%node))**panel%decay
+          call find_wave(bessel, x(i), last_of(i), from, k(before + 1:now), rows(:, i))
         end do
-        return
-      end if
-      fine = gauss_nodes(n)
-      x = grid%centre + panel%offset(fine%node)
-      weight = fine%weight*panel%speed(fine%node)*x
-      last_of = last_on(grid, p, fine%node)
-      allocate (basis(size(local%node), n), rows(size(k), n), part(size(local%node), size(k)))
-      do i = 1, n
-        basis(:, i) = weight(i)*lagrange_basis(local%node, local%barycentric, fine%node(i))
-        if (panel%kind == algebraic_map) basis(:, i) = basis(:, i)* &
-          ((1 - fine%node(i))/(1 - local%node))**panel%decay
-        call find_wave(bessel, x(i), last_of(i), k, rows(:, i))
+        call multiply_by_transposed(basis, rows, part)
+        ! Neighbours that are hat functions share a node.
+        spectrum(first:last, before + 1:now) = spectrum(first:last, before + 1:now) + part
+        deallocate (basis, rows, part)
+        before = now
+        n = ceiling(rung*n)
       end do
-      call multiply_by_transposed(basis, rows, part)
-      ! Neighbours that are hat functions share a node.
-      spectrum(first:last, :) = spectrum(first:last, :) + part
     end associate
-  end subroutine add_spectrum
+  end subroutine add_piece
 
-  !> Nodes of a panel that integrate its polynomials times waves up to k.
-  pure integer function nodes_for(grid, p, k) result(nodes)
+  !> Nodes of a piece of a panel that integrate its polynomials times waves, in order.
+  pure function nodes_for(grid, p, ends, k) result(nodes)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: p
-    real(wp), intent(in) :: k
-    real(wp) :: turn
+    real(wp), intent(in) :: ends(2), k(:)
+    integer :: nodes(size(k)), i
+    real(wp) :: of_pressure, last(2), speed(2)
 
-    associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
-      turn = maxval(min(k, last_on(grid, p, local%node))*panel%speed(local%node))
-      nodes = size(local%node)
-      nodes = max(nodes, merge(hat + 1, 0, nodes == hat), &
-        ceiling(0.5_wp*(nodes + degrees*turn + more_degrees)))
+    associate (panel => grid%panel(p), local => grid%local(grid%which(p)), &
+      length => ends(2) - ends(1))
+      ! At an end of the panel polynomials go to and fro the fastest.
+      of_pressure = min(1.0_wp*size(local%node), sqrt(length)*size(local%node) + more_degrees)
+      ! To infinity the last waves turn by as much anywhere.
+      associate (places => merge(min(ends, 0.95_wp), ends, panel%kind == algebraic_map))
+        last = last_on(grid, p, places)
+        speed = panel%speed(places)
+      end associate
+      nodes = [(max(hat + 1, ceiling(0.5_wp*(of_pressure + more_degrees + &
+        degrees*length*maxval(min(k(i), last)*speed)))), i=1, size(k))]
     end associate
   end function nodes_for
 
-  !> The last wave number that is not left out, at places s of a panel. One that goes on to infinity
-  !> begins as the one before it ends.
+  !> The last wave number that pressures have, at places s of a panel.
   pure function last_on(grid, p, s) result(last)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: p
     real(wp), intent(in) :: s(:)
     real(wp) :: last(size(s))
 
-    if (grid%panel(p)%kind == algebraic_map) then
-      last = passing*size(grid%local(grid%which(p - 1))%node)/grid%panel(p - 1)%speed(1.0_wp)* &
-        (1 - s)**2
-    else
-      last = passing*size(grid%local(grid%which(p))%node)/grid%panel(p)%speed(s)
-    end if
+    last = huge(last)
+    if (grid%panel(p)%left >= 0) last = passing/step_on(grid, p, s)
   end function last_on
 
-  !> J0(k x) for a pressure; k ascending.
-  subroutine find_wave(bessel, x, last, k, wave)
+  !> The distance between nodes at places s of a panel. On one that goes on to infinity it begins as
+  !> it ends on the one before.
+  pure function step_on(grid, p, s)
+    type(discretisation_t), intent(in) :: grid
+    integer, intent(in) :: p
+    real(wp), intent(in) :: s(:)
+    real(wp) :: step_on(size(s))
+
+    if (grid%panel(p)%kind == algebraic_map) then
+      step_on = grid%panel(p - 1)%speed(1.0_wp)/size(grid%local(grid%which(p - 1))%node)/(1 - s)**2
+    else
+      step_on = grid%panel(p)%speed(s)/size(grid%local(grid%which(p))%node)
+    end if
+  end function step_on
+
+  !> J0(k x), left out smoothly from a part of `last` up to it; k ascending.
+  subroutine find_wave(bessel, x, last, from, k, wave)
     type(bessel_t), intent(in) :: bessel
-    real(wp), intent(in) :: x, last, k(:)
+    real(wp), intent(in) :: x, last, from, k(:)
     real(wp), intent(out) :: wave(:)
     real(wp) :: u
     integer :: i, n
