@@ -7,10 +7,9 @@ module wave_quadrature
   private
   public :: wave_rule
 
-  !> Length of k x over a panel, and how many nodes it has for so many digits. In a product of the
-  !> two waves of the largest x that leaves some (16/2)^(2 nodes)/(2 nodes)!, 2e-12 for 14 digits;
-  !> such a product matters little where x matters less and less as k grows.
-  real(wp), parameter :: swing = 16, nodes_at_first = 8, nodes_a_digit = 0.85_wp
+  !> Length of k x over a panel: of a product of two waves of the largest x n nodes leave some
+  !> (16/2)**(2 n)/(2 n)!, 2e-12 of 20 nodes, which have room for the function besides.
+  real(wp), parameter :: swing = 16
   !> Ratio of the ends of panels where waves are longer than that.
   real(wp), parameter :: ratio = 3
 
@@ -18,13 +17,13 @@ contains
 
   !> Nodes in order from `start` to `last`, and weights. sharpest: up to where each x matters. The
   !> function is a polynomial of low degree up to `first` and between k and 3 k.
-  pure subroutine wave_rule(x, sharpest, digits, start, first, last, k, weight)
-    real(wp), intent(in) :: x(:), sharpest(:), digits, start, first, last
+  pure subroutine wave_rule(x, sharpest, nodes, start, first, last, k, weight)
+    real(wp), intent(in) :: x(:), sharpest(:), start, first, last
+    integer, intent(in) :: nodes
     real(wp), allocatable, intent(out) :: k(:), weight(:)
     real(wp), allocatable :: ends(:)
-    real(wp), allocatable :: node(:), part(:)
-    real(wp) :: from, to
-    integer :: nodes, i
+    real(wp) :: node(nodes), part(nodes), from, to
+    integer :: i
 
     allocate (ends(1))
     ends = start
@@ -33,8 +32,6 @@ contains
       to = min(last, merge(ratio*from, first, from > 0), from + swing/maxval(x, sharpest > from))
       ends = [ends, to]
     end do
-    nodes = ceiling(nodes_at_first + nodes_a_digit*digits)
-    allocate (node(nodes), part(nodes))
     call gauss_legendre(node, part)
     allocate (k(nodes*(size(ends) - 1)), weight(nodes*(size(ends) - 1)))
     do i = 1, size(ends) - 1

@@ -21,7 +21,8 @@ module mesh_digits
   real(wp), parameter :: without_jumps = -0.5_wp, for_lengths = 0.6_wp, for_profiles = 2, &
     for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
   !> For each decade of how much wider contacts are than layers that yield unlike a half-space to
-  !> waves of this many or fewer over the radius: at weak adhesion, and more for each decade of sigma.
+  !> waves of this many or fewer over the radius: at weak adhesion, and more for each decade of
+  !> sigma.
   real(wp), parameter :: for_layers = 0.4_wp, for_necks_in_layers = 1.2_wp, waves_in_layer = 32
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; what is more
   !> there, the factor in sigma up to which that is felt, and the part of it, logarithmically, in

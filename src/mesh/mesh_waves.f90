@@ -20,15 +20,18 @@ module mesh_waves
   private
   public :: mesh_waves_t, new_mesh_waves
 
-  !> Of pressures outside the mesh's centre, waves are left out that turn by more than `passing` from
+  !> Outside the mesh's centre waves are left out of pressures that turn by more than `passing` from
   !> node to node, smoothly from the part `from` of that on. Between there and here a product with a
   !> pressure is one with a window that moves with the wave, which must be wide enough for the
   !> product to have none of the wave. Inside, where bodies are in contact, nothing is left out: of
   !> thin films the second part of the operator is nearly the negative of the first, which has all.
   real(wp), parameter :: passing = 20, from = 0.6_wp
-  !> Places are moved by waves that turn by less than this from node to node, and by all that turn
-  !> less than this between the axis and them, each for a digit; smoothly from that part on.
-  real(wp), parameter :: passing_place = 1.4_wp, crossing = 3.4_wp, from_of_place = 0.25_wp
+  !> Places there are moved by waves that turn by less than this from node to node, and by all that
+  !> turn less than this between the axis and them, each for a digit; smoothly from that part on.
+  real(wp), parameter :: passing_place = 1.4_wp, crossing = 2.4_wp, from_of_place = 0.25_wp
+  !> Nodes of a panel of waves (`wave_rule`), at first and for each digit: they need not do for a
+  !> product of two that end in the same place, which is far out and has little pressure.
+  real(wp), parameter :: nodes_at_first = 6, nodes_a_digit = 0.8_wp
   !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave that turns by some angle
   !> over it is one of so many times the angle, to this and a few degrees more.
   real(wp), parameter :: degrees = 0.55_wp, more_degrees = 8
@@ -90,11 +93,12 @@ contains
     do p = 1, size(grid%panel)
       associate (first => first_node - 1 + grid%first(p), local => grid%local(grid%which(p)))
         last_of(first:first + size(local%node) - 1) = &
-          passing_place*grid%digits/step_on(grid, p, local%node)
+          last_on(grid, p, local%node, passing_place*grid%digits)
       end associate
     end do
     where (x > 0) last_of = max(last_of, crossing*grid%digits/x)
-    call wave_rule(x, last_of, grid%digits, self%range(2), self%range(1), last, k, weight)
+    call wave_rule(x, last_of, ceiling(nodes_at_first + nodes_a_digit*grid%digits), &
+      self%range(2), self%range(1), last, k, weight)
     before = size(self%k)
     self%range(2) = last
     self%k = [self%k, k]
@@ -157,7 +161,7 @@ contains
     associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
       first = grid%first(p)
       last = first + size(local%node) - 1
-      waves = count(k < maxval(last_on(grid, p, ends)))
+      waves = count(k < maxval(last_on(grid, p, ends, passing)))
       needed = nodes_for(grid, p, ends, k)
       before = 0
       n = 0
@@ -168,7 +172,7 @@ contains
         fine%node = ends(1) + (ends(2) - ends(1))*fine%node
         x = grid%centre + panel%offset(fine%node)
         weight = (ends(2) - ends(1))*fine%weight*panel%speed(fine%node)*x
-        last_of = last_on(grid, p, fine%node)
+        last_of = last_on(grid, p, fine%node, passing)
         allocate (basis(size(local%node), n), rows(now - before, n), &
           part(size(local%node), now - before))
         do i = 1, n
@@ -201,7 +205,7 @@ contains
       of_pressure = min(1.0_wp*size(local%node), sqrt(length)*size(local%node) + more_degrees)
       ! To infinity the last waves turn by as much anywhere.
       associate (places => merge(min(ends, 0.95_wp), ends, panel%kind == algebraic_map))
-        last = last_on(grid, p, places)
+        last = last_on(grid, p, places, passing)
         speed = panel%speed(places)
       end associate
       nodes = [(max(hat + 1, ceiling(0.5_wp*(of_pressure + more_degrees + &
@@ -209,11 +213,11 @@ contains
     end associate
   end function nodes_for
 
-  !> The last wave number that pressures have, at places s of a panel.
-  pure function last_on(grid, p, s) result(last)
+  !> The last wave number that counts at places s of a panel.
+  pure function last_on(grid, p, s, passing) result(last)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: p
-    real(wp), intent(in) :: s(:)
+    real(wp), intent(in) :: s(:), passing
     real(wp) :: last(size(s))
 
     last = huge(last)
