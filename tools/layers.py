@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
-"""Renew the table of indentation of layers and the pictures of docs/layers.md: half a minute.
+"""Renew the table of indentation of layers, the pictures and the table of prices of docs/layers.md:
+two minutes.
 
-    .venv/bin/python tools/layers.py
+    .venv/bin/python tools/layers.py            # all of them
+    .venv/bin/python tools/layers.py --prices   # the table of prices alone, on an idle machine
 """
 
+import dataclasses
 import math
 import os
 import sys
+import tempfile
 import warnings
 
 # Before anything loads OpenMP.
@@ -14,7 +18,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import pages  # noqa: E402
 
-sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap")]
+sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap", "tools/bench")]
 
 import matplotlib  # noqa: E402
 
@@ -22,17 +26,28 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+import problems  # noqa: E402
 import snapin  # noqa: E402
+import tables  # noqa: E402
+from program import Program  # noqa: E402
 
 TABLE = pages.ROOT / "docs" / "layers_indentation.csv"
 PICTURE = pages.ROOT / "docs" / "layers.png"
 FILMS = pages.ROOT / "docs" / "layers_films.png"
+PAGE = pages.ROOT / "docs" / "layers.md"
 CHI = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0]
 # Films on something rigid by their Poisson's ratio; incompressible films on bases of Poisson's ratio
 # 0.5 by the ratio of moduli, film over base.
 BONDED = [0.3, 0.4, 0.45, 0.49, 0.5]
 ON_ELASTIC = [0.01, 0.1, 0.5, 2.0, 10.0, 100.0]
 SIGMA = 25.0
+# What prices are told of: coats by their modulus over that of the base (0: rigid) and their Poisson's
+# ratio, their thickness over the radius of the contact without load, sigma; the accuracy asked for.
+COATS = {"film on a rigid base, ν = 0.5": (0, 0.5), "the same, ν = 0.3": (0, 0.3),
+         "five times as soft as its base": (0.2, 0.3), "five times as stiff": (5, 0.3),
+         "100 times as soft": (0.01, 0.3), "100 times as stiff": (100, 0.3)}
+THIN, STRENGTHS, ACCURACY = (3, 1, 0.3, 0.1, 0.03), (0.1, 1, 25), 1e-6
+ROUNDS = 7
 # In these units R is as short as the range of the force.
 warnings.simplefilter("ignore", snapin.SnapinWarning)
 
@@ -138,6 +153,49 @@ def draw_films():
     figure.savefig(FILMS, dpi=90)
 
 
+def coated(sigma, thin=None, ratio=0, nu=0.0):
+    """The path's deck of a coat, thin: thickness over the radius without load, or of a half-space."""
+    half = problems.lennard_jones(sigma)
+    numerics = f"accuracy = {ACCURACY}"
+    if thin is None:
+        return half.path(numerics)
+    # E* of the half-space's deck is half of the stiffness there: here one body yields.
+    bodies, force = half.physics.split("\n")
+    stiffness = float(bodies.split("=")[-1].strip(" /")) / 2
+    radius = float(bodies.split("=")[1].split(",")[0])
+    young = stiffness * (1 - nu**2)
+    thickness = thin * math.sqrt(radius * half.length) * (9 * math.pi * sigma) ** (1 / 3)
+    base = f"young = {young / ratio!r}, poisson = {nu}" if ratio else "rigid = .true."
+    physics = (f"&bodies radius = {radius!r}, {base} /\n&layer thickness = {thickness!r}, "
+               f"young = {young!r}, poisson = {nu}, partner = 'rigid' /\n{force}")
+    return dataclasses.replace(half, physics=physics).path(numerics)
+
+
+def write_prices():
+    """Measure what paths cost, and write the table of it into the page: processor time of a run, that
+    of the start taken off, over the half-space's. What is not as exact as asked for says how exact."""
+    decks = {(sigma, None, None): coated(sigma) for sigma in STRENGTHS}
+    decks |= {(sigma, thin, coat): coated(sigma, thin, *COATS[coat])
+              for sigma in STRENGTHS for thin in THIN for coat in COATS}
+    with tempfile.TemporaryDirectory() as folder:
+        program = Program(pages.ROOT / "build", folder)
+        runs = program.best_of(ROUNDS, decks)
+        start = program.start_up() * program.gauge.unit()
+
+    def cell(sigma, thin, coat):
+        run = runs[sigma, thin, coat]
+        if run.failure:
+            return "–"
+        price = (run.seconds - start) / (runs[sigma, None, None].seconds - start)
+        return f"{price:.1f}" + (f" ({run.estimate:.0e})" if run.estimate > ACCURACY else "")
+
+    rows = [[str(thin), str(sigma), *(cell(sigma, thin, coat) for coat in COATS)]
+            for thin in THIN for sigma in STRENGTHS]
+    tables.insert(PAGE, "prices", tables.markdown(["t/a₀", "σ", *COATS], rows))
+
+
 if __name__ == "__main__":
-    draw(write_table())
-    draw_films()
+    write_prices()
+    if "--prices" not in sys.argv[1:]:
+        draw(write_table())
+        draw_films()
