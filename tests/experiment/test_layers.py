@@ -62,6 +62,27 @@ def test_folds_and_states_are_those_of_independent_states(solve, scene):
     assert [found["jump_in_load"], found["jump_out_load"]] == pytest.approx(load, rel=2e-8)
 
 
+def test_a_film_thirty_times_thinner_than_the_contact_has_independent_states(solve):
+    """The one that yields least beside what its half-space does: it cannot be compressed."""
+    layer = (0.1, 0.0, 0.5, 0.0, 1.0)
+    h0, load = states_by_axis("lennard_jones", 1.0, [*FAR, *CLOSE], ENDS, layer=layer)
+    run = solve(layered(layer, equilibrium_path={"h0_end": float(h0[-1])}))
+    assert run.summary["end_load"] == pytest.approx(load[-1], rel=1e-7)
+
+
+@pytest.mark.parametrize("sigma", [0.1, 25])
+@pytest.mark.parametrize("ratio, nu", [(0.0, 0.5), (0.0, 0.3), (0.2, 0.3), (5.0, 0.3)])
+def test_paths_over_coats_thirty_times_thinner_are_as_exact_as_asked_for(solve, sigma, ratio, nu):
+    """Where what layers yield beside a half-space nearly cancels that."""
+    layer = (0.03 * (9 * math.pi * sigma) ** (1 / 3), ratio, nu, nu, 1.0)
+    path = {"h0_end": -1.6 if sigma < 1 else -6.0}
+    asked, finer = (solve(layered(layer, sigma, accuracy=accuracy, equilibrium_path=path)).summary
+                    for accuracy in (1e-6, 1e-9))
+    assert asked["error_estimate"] < 1e-6
+    for key in ("max_tension", "end_load"):
+        assert asked[key] == pytest.approx(finer[key], rel=1e-6, abs=1e-6 * finer["max_tension"])
+
+
 @pytest.mark.parametrize("pieces", [1, 3])
 def test_equal_moduli_are_a_half_space(solve, pieces):
     plain = solve(deck(bodies={"radius": 1.0, "young": 0.91, "poisson": 0.3},
