@@ -41,8 +41,8 @@ CHI = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0]
 BONDED = [0.3, 0.4, 0.45, 0.49, 0.5]
 ON_ELASTIC = [0.01, 0.1, 0.5, 2.0, 10.0, 100.0]
 SIGMA = 25.0
-# What prices are told of: coats by their modulus over that of the base (0: rigid) and their Poisson's
-# ratio, their thickness over the radius of the contact without load, sigma; the accuracy asked for.
+# What prices are told of: coats by their modulus over that of the base (0: rigid) and their
+# Poisson's ratio, their thickness over the radius of the contact without load, sigma; the accuracy.
 COATS = {"film on a rigid base, ν = 0.5": (0, 0.5), "the same, ν = 0.3": (0, 0.3),
          "five times as soft as its base": (0.2, 0.3), "five times as stiff": (5, 0.3),
          "100 times as soft": (0.01, 0.3), "100 times as stiff": (100, 0.3)}
@@ -154,7 +154,7 @@ def draw_films():
 
 
 def coated(sigma, thin=None, ratio=0, nu=0.0):
-    """The path's deck of a coat, thin: thickness over the radius without load, or of a half-space."""
+    """The path's deck of a coat, or of a half-space; thin: thickness over radius without load."""
     half = problems.lennard_jones(sigma)
     numerics = f"accuracy = {ACCURACY}"
     if thin is None:
@@ -172,8 +172,8 @@ def coated(sigma, thin=None, ratio=0, nu=0.0):
 
 
 def write_prices():
-    """Measure what paths cost, and write the table of it into the page: processor time of a run, that
-    of the start taken off, over the half-space's. What is not as exact as asked for says how exact."""
+    """Measure what paths cost, and write the table of it into the page: processor time of a run,
+    that of the start taken off, over the half-space's, and estimates above what was asked for."""
     decks = {(sigma, None, None): coated(sigma) for sigma in STRENGTHS}
     decks |= {(sigma, thin, coat): coated(sigma, thin, *COATS[coat])
               for sigma in STRENGTHS for thin in THIN for coat in COATS}

@@ -213,8 +213,8 @@ contains
     sums = 0
     if (self%plain) return
     range = self%wave_range()
-    call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], wave_nodes, 0.0_wp, range(1), range(2), k, &
-      weight)
+    call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], wave_nodes, 0.0_wp, range(1), &
+      range(2), k, weight)
     weight = 2*weight*self%beside_half_space(k)
     allocate (left(size(k), size(x)), right(size(k), size(y)))
     do j = 1, size(x)
