@@ -1,9 +1,10 @@
 !> The tables beside the curve, in `write_derived_tables` one statement each.
 module derived_tables
+  ! First what uses most: compiler note 12.
+  use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t
   use experiment_request, only: sensitivity_t
   use h0_range, only: path_start
-  use scene_groups, only: scene_t
   use experiment_result, only: experiment_result_t
   use summary, only: summary_t
   use results, only: results_t
