@@ -35,8 +35,8 @@ def of_way(table, way):
 
 
 def of_film(viscosity, h0, one, other):
-    """The load of a film at unit velocity: 12 pi eta R^2 Int (h - h0)/m dh, flow by flow between walls
-    of two slip lengths that Navier's condition gives."""
+    """The load of a film at unit velocity, 12 pi eta R^2 Int (h - h0)/m dh, with the flow between
+    walls of two slip lengths that Navier's condition gives."""
     points, weights = np.polynomial.legendre.leggauss(400)
     y = 20 * (points + 1)
     h = h0 * np.exp(y)
@@ -48,7 +48,8 @@ def of_film(viscosity, h0, one, other):
 
 @pytest.mark.parametrize("slip", [None, [2.0], [0.5, 8.0], [0.0, 3.0]])
 def test_rigid_bodies_feel_the_film_of_reynolds(run, slip):
-    table = run(scene(1e-9, 1e-9, start=100.0, turn=2.0, accuracy=1e-4, slip=slip)).table("curve.csv")
+    found = run(scene(1e-9, 1e-9, start=100.0, turn=2.0, accuracy=1e-4, slip=slip))
+    table = found.table("curve.csv")
     walls = [0.0, 0.0] if slip is None else (slip * 2)[:2]
     for way, sign in (("approach", 1), ("retreat", -1)):
         rows = of_way(table, way)
@@ -135,7 +136,7 @@ def test_little_fluid_or_slow_drives_leave_elastic_cycles(run):
 
 
 def test_viscoelastic_bodies_with_a_fluid_have_their_limits(run):
-    """Without creep to speak of they are elastic, at once or at rest; without fluid, as without one."""
+    """Without creep to speak of they are elastic, at once or at rest."""
     elastic = run(scene(0.1, 0.01, start=40.0)).summary
     hardly = run(scene(0.1, 0.01, start=40.0, creep={
         "stiffness_relaxed": 0.999999, "retardation_time": 1.0})).summary

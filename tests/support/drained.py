@@ -1,8 +1,8 @@
-"""An independent solution for bodies with a fluid between them, to hold the program against: dense, on a
-mesh fixed in space. The film is one of finite volumes: through the edge of a ring flows what the gaps
-inside it lose, with the mobility there times the difference of the pressures beside it. Euler's implicit
-rule in time, with Newton's method for the gaps; runs with steps halved and rings doubled are
-extrapolated.
+"""An independent solution for bodies with a fluid between them, to hold the program against: dense,
+on a mesh fixed in space. The film is one of finite volumes: through the edge of a ring flows what
+the gaps inside it lose, and that is the mobility there times the difference of the pressures beside
+it. Euler's implicit rule in time, with Newton's method for the gaps; runs with steps halved and
+rings doubled are extrapolated.
 
 Units: z0 for gaps, gamma/z0 for pressures, gamma R for loads. strength = 12 eta R/gamma is a time.
 """
@@ -46,8 +46,8 @@ class Drained:
         # What flows through edges, of rates at nodes.
         self.gather = np.cumsum(area[:, None] * interpolation(mesh, edge - width / 2), axis=0)
         self.at_edge = interpolation(mesh, edge)
-        # Pressures at nodes, of their drops from ring to ring: sums from without, interpolated along
-        # the nodes' parabolas through three rings.
+        # Pressures at nodes, of their drops from ring to ring: sums from without, on parabolas
+        # through three rings.
         middle = edge - width / 2
         sums = np.triu(np.ones((rings, rings)))
         k = np.clip(np.round(mesh.z / width - 0.5).astype(int), 1, rings - 2)
@@ -74,8 +74,8 @@ class Drained:
             over = self.strength * self.speed / (self.edge * at_edge**3)
             flow = self.gather @ (gap - known) / time
             fluid = -self.drops @ (over * flow) - self.beyond * flow[-1]
-            by_gap = -(self.drops * over) @ (self.gather / time) - self.beyond * self.gather[-1] / time \
-                + 3 * (self.drops * (over * flow / at_edge)) @ self.at_edge
+            by_gap = 3 * (self.drops * (over * flow / at_edge)) @ self.at_edge - (
+                (self.drops * over) @ self.gather + self.beyond * self.gather[-1]) / time
             left = gap - h0 - self.shape - self.w @ (pressure(gap) + fluid)
             matrix = np.eye(gap.size) - self.w * slope(gap) - self.w @ by_gap
             step = np.linalg.solve(matrix, -left)
@@ -95,8 +95,8 @@ class Drained:
 
 
 def cycle(sigma, strength, start, turn, velocity, steps, rings):
-    """Loads of an approach and a retreat at the ends of ten equal parts of each. Steps become longer by
-    a tenth of what has passed since a turn, and no longer than a part over `steps`."""
+    """Loads of an approach and a retreat at the ends of ten equal parts of each. Steps in the first
+    part after a turn are in proportion to what has passed, in the others a part over `steps`."""
     bodies = Drained(sigma, strength, start, rings)
     part = (start - turn) / velocity / 10
     loads = []
