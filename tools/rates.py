@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Renew the pictures of docs/rates.md and print its tables: some minutes.
 
-    .venv/bin/python tools/rates.py
+    .venv/bin/python tools/rates.py [drainage]
+
+With drainage: those of fluids alone.
 """
 
 import math
@@ -79,10 +81,68 @@ def print_orders():
             "|")
 
 
+# A bead of 10 um and a flat in a viscous liquid, SI units.
+BEAD = {
+    "bodies": {"radius": 1e-5, "stiffness": 7e10},
+    "force": {"law": "lennard_jones", "surface_energy": 5e-3, "z0": 3e-10}}
+VISCOSITY, VELOCITY = 1e-2, 2e-5
+
+
+def drained(slip, accuracy=1e-3, viscosity=VISCOSITY, **drive):
+    """The result of a cycle of the bead; slip: length on both walls [m]."""
+    deck = BEAD | {
+        "fluid": {"viscosity": viscosity}, "numerics": {"accuracy": accuracy},
+        "drive": {"velocity": VELOCITY, "z_start": 1e-6, "z_turn": -5e-9, **drive}}
+    if slip:
+        deck["fluid"]["slip_length"] = slip
+    return snapin.run(deck)
+
+
+def draw_drainage():
+    """Load against separation with and without slip, and what Reynolds and Vinogradova have."""
+    figure, panels = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained")
+    h = [10 ** (-9.2 + 3.2 * k / 200) for k in range(201)]
+    for slip, colour in ((0, "C0"), (5e-9, "C1"), (20e-9, "C2"), (100e-9, "C3")):
+        curve = drained(slip).curve
+        approach, retreat = (curve[curve["branch"] == way] for way in ("approach", "retreat"))
+        name = f"b = {slip * 1e9:g} nm" if slip else "no slip"
+        inward = approach[1:]
+        pulled = [row["load"] <= 0 for row in inward]
+        inward = inward[:pulled.index(True)] if True in pulled else inward
+        panels[0].loglog(inward["h_centre"] * 1e9, inward["load"] * 1e9, color=colour, label=name)
+        film = [6 * math.pi * VISCOSITY * 1e-10 * VELOCITY / x for x in h]
+        if slip:
+            film = [f * x / (3 * slip) * ((1 + x / (6 * slip)) * math.log1p(6 * slip / x) - 1)
+                    for f, x in zip(film, h)]
+        panels[0].loglog([x * 1e9 for x in h], [f * 1e9 for f in film], ":", color=colour)
+        panels[1].plot(approach["h0"] * 1e9, approach["load"] * 1e9, color=colour, lw=1)
+        panels[1].plot(retreat["h0"] * 1e9, retreat["load"] * 1e9, color=colour, label=name)
+    panels[0].set(xlabel="separation on the axis, nm", ylabel="load on approach, nN", xlim=(0.5, 1e3),
+                  ylim=(0.1, 300))
+    panels[1].set(xlabel="$h_0$, nm", ylabel="load, nN", xlim=(-3, 20), ylim=(-900, 300))
+    panels[0].legend()
+    figure.savefig(DOCS / "rates_drainage.png", dpi=110)
+
+
+def print_drained():
+    """What the accuracy of a drive with a fluid costs."""
+    exact = drained(0, 1e-5).summary
+    for accuracy in (1e-2, 1e-3, 1e-4):
+        found = drained(0, accuracy)
+        print(f"| {accuracy:g} | {found.summary['time_steps']} |", " | ".join(
+            f"{abs(found.summary[key] / exact[key] - 1):.1e}"
+            for key in ("max_tension", "energy_dissipated")),
+            f"| {found.cost['nodes']} | {found.cost['factorisations']} | "
+            f"{found.cost['solve_seconds']:.2g} |")
+
+
 def main():
-    draw_cycles()
-    print_orders()
-    draw_bell()
+    if sys.argv[1:] != ["drainage"]:
+        draw_cycles()
+        print_orders()
+        draw_bell()
+    draw_drainage()
+    print_drained()
 
 
 if __name__ == "__main__":

@@ -89,8 +89,8 @@ contains
     if (unknowns_an_iteration*frozen%excess > size(now%z)) frozen%factors%valid = .false.
   end subroutine solve_anderson
 
-  !> Makes the last plain step. Over a short step in time a fluid multiplies roundings of gaps in the
-  !> residual, not in the step that this asks for, which is then what counts.
+  !> Makes the last plain step. Over a short step in time a fluid multiplies roundings of gaps in
+  !> the residual, not in the step that this asks for, which is then what counts.
   subroutine finish(equations, control, state, now)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control

@@ -46,7 +46,8 @@ module drainage
   type, extends(fluid_t) :: drainage_t
     type(running_integrals_t), allocatable :: film(:)
     real(wp) :: weight = 0
-    type(earlier_t) :: earlier(2)
+    !> Two of them; allocatable: compiler note 11.
+    type(earlier_t), allocatable :: earlier(:)
     type(besides_t), private :: known
   contains
     procedure :: lay_out
@@ -103,6 +104,7 @@ contains
 
     if (allocated(self%film)) deallocate (self%film)
     allocate (self%film(size(grids)))
+    if (.not. allocated(self%earlier)) allocate (self%earlier(2))
     do k = 1, size(grids)
       if (allocated(grids(k)%kernel)) self%film(k) = new_running_integrals(grids(k))
     end do

@@ -6,8 +6,8 @@
 !> `elastic_operator` A says. A control says what is prescribed; where that is not H0 at a fixed
 !> scale, one more unknown (H0 or c) and one more equation (the gap on the axis or at the contact
 !> edge) join. Behind a spring H0 follows from the position of its base and the load. Where bodies
-!> remember, what earlier pressures have left (`besides`) raises the gap too, and a fluid between them
-!> adds its pressure to P(H) (`drainage`).
+!> remember, what earlier pressures have left (`besides`) raises the gap too, and a fluid between
+!> them adds its pressure to P(H) (`drainage`).
 module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t, coupling_over

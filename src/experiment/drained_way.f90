@@ -5,7 +5,8 @@ module drained_way
   use edge_locked, only: approach
   use continuation, only: radius_for
   use motion, only: motion_t
-  use time_stepper, only: time_stepper_t, instant_t
+  use time_instant, only: instant_t
+  use time_stepper, only: time_stepper_t
   use timed_record, only: pass_t, accept, lose
   implicit none
   private
@@ -26,8 +27,8 @@ module drained_way
 contains
 
   !> From an instant to a time of a way. step: the length of the first, on return that of the next.
-  !> Steps follow the motion, `part` of what they might be; if that is 0, they are the longest, and only
-  !> those are shortened that have no end near.
+  !> Steps follow the motion, `part` of what they might be; if that is 0, they are the longest, and
+  !> only those are shortened that have no end near.
   subroutine go_drained(drive, way, time, longest, part, steps, step, at, now)
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: way

@@ -19,8 +19,8 @@ module numerics_choice
     type(solver_options_t) :: options
     !> Digits that edge-locked meshes are to have.
     real(wp) :: digits = 7
-    !> Fixed grids: nodes and extent (lateral units), nodes of a panel, and its size over the smallest
-    !> feature.
+    !> Fixed grids: nodes and extent (lateral units), nodes of a panel, and its size over the
+    !> smallest feature.
     integer :: nodes = 0, panel_order = 12
     real(wp) :: extent = 0, panel_over_feature = 0.5_wp
   contains

@@ -8,7 +8,8 @@ module timed_pass
   use listener, only: listener_t
   use experiment_request, only: request_t
   use motion, only: motion_t
-  use time_stepper, only: time_stepper_t, instant_t
+  use time_instant, only: instant_t
+  use time_stepper, only: time_stepper_t
   use time_jump, only: step_along
   use rest, only: begin_at_rest
   use drained_way, only: go_drained
@@ -23,7 +24,8 @@ module timed_pass
     first_part = 1.0e-3_wp
   !> Steps after one that was too long before longer ones are tried again.
   integer, parameter :: patience = 3
-  !> The same with a fluid, whose pressure jumps where the drive turns; parts of a way that are told.
+  !> The same with a fluid, whose pressure jumps where the drive turns; parts of a way that are
+  !> told.
   real(wp), parameter :: first_drained = 1.0e-7_wp
   integer, parameter :: parts = 10
   !> The shortest step over the shortest time of retardation, and way over the law's length.

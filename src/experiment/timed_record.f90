@@ -6,7 +6,8 @@ module timed_record
   use edge_locked, only: approach
   use records, only: record_t, extent_t, record_of, stable_unasked
   use motion, only: names_of_ways
-  use time_stepper, only: time_stepper_t, instant_t
+  use time_instant, only: instant_t
+  use time_stepper, only: time_stepper_t
   implicit none
   private
   public :: timed_result_t, pass_t, accept, take_row, note, lose, most_steps, numbers, &

@@ -26,8 +26,8 @@ module mesh_rule
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
   !> Power of the position with which the pressure of a fluid between parabolas falls.
   real(wp), parameter :: film_decay = 4
-  !> Length of its panels at most: on longer ones, over which a mobility changes by many orders, matrices
-  !> of film and bodies that are symmetric together are so no more, and short waves grow in time.
+  !> Length of its panels at most: on longer ones, over which a mobility changes by many orders,
+  !> matrices of film and bodies are no longer positive together, and short waves grow in time.
   real(wp), parameter :: longest_film = 3
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60

@@ -1,7 +1,7 @@
 !> Integrals over a mesh from the axis up to each node, and from each node on to infinity, of
-!> functions given on the nodes: matrices from the integrals of the panels' polynomials. On a panel to
-!> infinity, where u = begin/position, functions to be gathered are bounded, polynomials in u, and
-!> those to be taken beyond fall as position**(-6) times one.
+!> functions given on the nodes: matrices from the integrals of the panels' polynomials. On a panel
+!> to infinity, where u = begin/position, functions to be gathered are bounded, polynomials in u,
+!> and those to be taken beyond fall as position**(-6) times one.
 module running_integrals
   use kinds, only: wp
   use discretisation, only: discretisation_t, local_nodes_t
@@ -11,8 +11,8 @@ module running_integrals
   private
   public :: running_integrals_t, new_running_integrals
 
-  !> matmul(gathered, f): x_i**(-2) Int_0^x_i f x dx, and matmul(beyond, g): Int_x_i^infinity g x dx,
-  !> both (nodes, nodes).
+  !> matmul(gathered, f): x_i**(-2) Int_0^x_i f x dx, and matmul(beyond, g):
+  !> Int_x_i^infinity g x dx, both (nodes, nodes).
   type :: running_integrals_t
     real(wp), allocatable :: gathered(:, :), beyond(:, :)
   end type running_integrals_t

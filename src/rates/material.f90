@@ -34,8 +34,8 @@ module material
 
 contains
 
-  !> The mesh `grid`, whose first `equal` panels from the axis have one length, with long panels that
-  !> may lack a part `lacking` of a pressure.
+  !> The mesh `grid`, whose first `equal` panels from the axis have one length, with long panels
+  !> that may lack a part `lacking` of a pressure.
   function new_material(grid, equal, lacking) result(material)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: equal

@@ -9,7 +9,8 @@ module rest
   use path_coordinate, only: coordinate_of
   use regridding, only: regrid
   use drainage, only: drainage_t
-  use time_stepper, only: time_stepper_t, instant_t
+  use time_instant, only: instant_t
+  use time_stepper, only: time_stepper_t
   implicit none
   private
   public :: begin_at_rest
@@ -55,11 +56,28 @@ contains
         if (.not. found) exit
       end if
     end do
+    if (found) then
+      call steps%set_memory(at)
+      if (allocated(fluid) .and. size(steps%creep%time) > 0) &
+        call begin_as_steps_do(steps, at, found)
+    end if
     if (allocated(fluid)) call move_alloc(fluid, steps%drainage)
-    if (.not. found) return
-    call steps%set_memory(at)
-    steps%before = at
+    if (found) steps%before = at
   end subroutine begin_at_rest
+
+  !> The same state as a step of no time has it, most of its deformation from the material's mesh:
+  !> what that and the other mesh differ by is no motion, and a fluid must not resist it.
+  subroutine begin_as_steps_do(steps, at, found)
+    type(time_stepper_t), intent(inout) :: steps
+    type(instant_t), intent(inout) :: at
+    logical, intent(out) :: found
+
+    call steps%prepare_memory(at, at%time)
+    call steps%place_rise(at%mesh, at%state%scale)
+    steps%frozen%factors%valid = .false.
+    call steps%solve(steps%control_at(at%position, at%mesh, at%state), at%state, found)
+    steps%frozen%factors%valid = .false.
+  end subroutine begin_as_steps_do
 
   !> Solves from a guess for relaxed bodies at a position; if they are found near where they were,
   !> that is where they are.

@@ -11,7 +11,8 @@ module time_jump
   use regridding, only: regrid
   use root_finding, only: root_search_t, new_root_search
   use continuation, only: radius_for
-  use time_stepper, only: time_stepper_t, instant_t, extrapolate
+  use time_instant, only: instant_t, extrapolate
+  use time_stepper, only: time_stepper_t
   implicit none
   private
   public :: step_along

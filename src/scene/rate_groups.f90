@@ -158,6 +158,10 @@ contains
         if (.not. scene%shape%parabolic) call deck%mistake('fluid', '', &
           'drains between parabolas alone; leave &shape out', error)
       end if
+      if (allocated(scene%law)) then
+        if (.not. scene%law%adhesion > 0) call deck%mistake('fluid', '', &
+          'needs a force that attracts, however weak', error)
+      end if
       call deck%get('fluid', 'viscosity', fluid%viscosity)
       call deck%get('fluid', 'slip_length', slip)
       if (allocated(error)) return

@@ -164,7 +164,8 @@ def test_what_cannot_be_resolved_is_not_silent(run):
 
 def test_bodies_that_are_lost_have_no_numbers(run):
     # Through a spring, beside a fold where two states have nearly the same gap on the axis.
-    found = run(scene(0.0411617, 0.156701, velocity=14.4811, start=22.0142, turn=-2.12752, dwell=1.0,
+    found = run(scene(0.0411617, 0.156701, velocity=14.4811, start=22.0142,
+                      turn=-2.12752, dwell=1.0,
                       stiffness=0.758587, accuracy=1e-2), status=1)
     assert any("no state was found" in text for text in found.warnings)
     assert "energy_dissipated" not in found.summary

@@ -1,0 +1,119 @@
+!> What a fluid between the bodies makes of the last instants: the rate of the gaps over a step, and
+!> what the fluid takes in it (`drainage`); beside what the bodies remember.
+module draining
+  use kinds, only: wp, pi
+  use besides, only: rise_at
+  use drainage, only: earlier_t, rate_weights
+  use time_instant, only: instant_t
+  use remembering, only: remembering_t
+  implicit none
+  private
+  public :: draining_t
+
+  type, extends(remembering_t) :: draining_t
+    !> What came before the present instant.
+    type(instant_t) :: before
+    !> The weight of the present gaps in the rate, 1/s, that the Jacobian was made for.
+    real(wp) :: made_for = 1
+  contains
+    procedure :: prepare
+    procedure :: place_rise
+    procedure :: remember
+    procedure, private :: prepare_fluid
+    procedure, private :: remember_fluid
+  end type draining_t
+
+  !> Steps after a turn over which gaps change along lines.
+  integer, parameter :: calming = 4
+  !> Logarithm of the ratio of steps that have no Jacobian in common.
+  real(wp), parameter :: other_length = 0.5_wp
+
+contains
+
+  !> Makes the equations those of a step from an instant to a time.
+  subroutine prepare(self, from, time)
+    class(draining_t), intent(inout) :: self
+    type(instant_t), intent(in) :: from
+    real(wp), intent(in) :: time
+
+    if (allocated(self%drainage)) call self%prepare_fluid(from, time)
+    call self%prepare_memory(from, time)
+  end subroutine prepare
+
+  !> What the instant that a step has led to remembers.
+  subroutine remember(self, from, to)
+    class(draining_t), intent(inout) :: self
+    type(instant_t), intent(in) :: from
+    type(instant_t), intent(inout) :: to
+
+    call self%remember_pressure(from, to)
+    if (allocated(self%drainage)) call self%remember_fluid(from, to)
+  end subroutine remember
+
+  !> Brings the rise that the memory makes to the nodes of a mesh at about a scale.
+  subroutine place_rise(self, mesh, scale)
+    class(draining_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: scale
+
+    if (allocated(self%drainage)) call self%drainage%place(self%meshes%grid, mesh, scale)
+    if (size(self%creep%share) > 0) self%besides = rise_at(self%material%discretisation_t, &
+      self%risen, self%meshes%grid(mesh), scale)
+  end subroutine place_rise
+
+  !> The rate at which gaps change over a step: of a parabola through the last two instants, where
+  !> these are two.
+  subroutine prepare_fluid(self, from, time)
+    class(draining_t), intent(inout) :: self
+    type(instant_t), intent(in) :: from
+    real(wp), intent(in) :: time
+    real(wp) :: weights(3)
+
+    ! Where the drive turns the rate jumps. What bodies that hardly yield make of that dies away in
+    ! a time that no step may resolve: a parabola would overshoot.
+    weights = rate_weights(time - from%time, merge(from%time - self%before%time, 0.0_wp, &
+      from%since_turn >= calming))
+    ! A Jacobian made for another length of steps says little of this one.
+    if (abs(log(weights(1)/self%made_for)) > other_length) then
+      self%frozen%factors%valid = .false.
+      self%made_for = weights(1)
+    end if
+    self%drainage%weight = weights(1)
+    self%drainage%earlier(1) = earlier(from, weights(2))
+    self%drainage%earlier(2) = earlier(self%before, weights(3))
+
+  contains
+
+    type(earlier_t) function earlier(at, weight)
+      type(instant_t), intent(in) :: at
+      real(wp), intent(in) :: weight
+
+      earlier%mesh = at%mesh
+      earlier%scale = at%state%scale
+      earlier%weight = weight
+      earlier%raised = self%raised(at%mesh, at%state)
+    end function earlier
+
+  end subroutine prepare_fluid
+
+  !> What the fluid does at the end of a step; what it takes in it.
+  subroutine remember_fluid(self, from, to)
+    class(draining_t), intent(in) :: self
+    type(instant_t), intent(in) :: from
+    type(instant_t), intent(inout) :: to
+    real(wp), dimension(size(to%state%gap)) :: pressure, rate
+    integer :: lowest
+
+    associate (grid => self%meshes%grid(to%mesh), c => to%state%scale)
+      pressure = self%fluid_pressure(to%mesh, to%state, rate)
+      lowest = minloc(pressure, 1)
+      to%suction = -pressure(lowest)
+      to%suction_at = c*grid%x(lowest)
+      to%power = -2*pi*c**2*sum(grid%weight*pressure*rate)
+    end associate
+    to%since_turn = from%since_turn + 1
+    to%dissipated = to%dissipated + (to%time - from%time)* &
+      merge(0.5_wp*(from%power + to%power), to%power, from%since_turn > 0)
+  end subroutine remember_fluid
+
+end module draining

@@ -1,0 +1,53 @@
+!> Bodies at one time.
+module time_instant
+  use kinds, only: wp
+  use shape, only: shape_t
+  use discretisation, only: discretisation_t
+  use contact_state, only: state_t
+  implicit none
+  private
+  public :: instant_t, extrapolate
+
+  !> Bodies at a time [s]: the position of the drive, D = H0 - compliance*load, the state; on the
+  !> material's mesh the memories (nodes, terms of `creep`) and the pressure. dissipated: what
+  !> dashpots and the fluid took in the step that led there. Of the fluid: the power [1/s] that it
+  !> takes, its largest suction and where that is (lateral units).
+  type :: instant_t
+    real(wp) :: time = 0, position = 0
+    integer :: mesh = 1
+    type(state_t) :: state
+    real(wp), allocatable :: memory(:, :), pressure(:)
+    !> What the kernel makes of them, so that a step has one product with it.
+    real(wp), allocatable :: memory_rise(:, :), pressure_rise(:)
+    real(wp) :: dissipated = 0, power = 0, suction = 0, suction_at = 0
+    !> Steps since the drive turned.
+    integer :: since_turn = 0
+  end type instant_t
+
+contains
+
+  !> The state that the line through two of a mesh leads to, so far beyond the later one:
+  !> deformations are on it, and the shape beneath, which is known, is not. A gap that would shrink
+  !> by much is not believed.
+  pure subroutine extrapolate(shape, grid, before, now, ahead, state)
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: before, now
+    real(wp), intent(in) :: ahead
+    type(state_t), intent(inout) :: state
+
+    state = now
+    state%scale = now%scale + ahead*(now%scale - before%scale)
+    state%h0 = now%h0 + ahead*(now%h0 - before%h0)
+    if (state%scale > 0.5_wp*now%scale) then
+      associate (n => grid%nodes, x => grid%x)
+        state%gap = (1 + ahead)*(now%gap - shape%height(now%scale*x(:n))) - &
+          ahead*(before%gap - shape%height(before%scale*x(:n))) + &
+          shape%height(state%scale*x(:n))
+      end associate
+      if (.not. any(state%gap < 0.7_wp*now%gap)) return
+    end if
+    state = now
+  end subroutine extrapolate
+
+end module time_instant
