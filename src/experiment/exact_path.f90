@@ -8,8 +8,8 @@ module exact_path
   use mesh_store, only: mesh_store_t
   use edge_locked, only: mesh_family_t, new_mesh_family
   use known_path, only: known_path_t
+  use mending, only: too_much
   use path_stepper, only: path_stepper_t
-  use refinement, only: trace_resolved, unresolved_from
   use experiment_request, only: request_t
   use result_errors, only: judge_t, begin_judging, judge_path_points
   implicit none
@@ -29,21 +29,20 @@ module exact_path
     type(mesh_family_t) :: meshes
     type(known_path_t) :: known
     type(judge_t) :: judge
-    real(wp) :: panel_tail = 0, worst = 0
+    real(wp) :: worst = 0
   end type tracing_t
 
 contains
 
-  !> Traces the path (`trace_resolved`) on steps%meshes; where it is shown and its folds and extrema
+  !> Traces the path on steps%meshes; where it is shown and its folds and extrema
   !> are not as exact as asked for, again on meshes of more digits, if these can help. The better
   !> path stays, and what is found along it can be judged. h0: law's lengths; store: of meshes.
-  subroutine trace_exactly(request, steps, h0_high, h0_low, listener, judge, panel_tail, store)
+  subroutine trace_exactly(request, steps, h0_high, h0_low, listener, judge, store)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout), target :: steps
     real(wp), intent(in) :: h0_high, h0_low
     class(listener_t), intent(inout) :: listener
     type(judge_t), intent(out) :: judge
-    real(wp), intent(out) :: panel_tail
     type(mesh_store_t), intent(inout), target, optional :: store
     type(tracing_t) :: before
     type(known_path_t) :: nothing
@@ -52,25 +51,23 @@ contains
 
     associate (accuracy => request%numerics%accuracy, cost => steps%cost)
       do round = 1, most_rounds
-        call trace_resolved(steps, h0_high, h0_low, allocated(request%path), request%reads_path(), &
-          accuracy*10.0_wp**(-further_digits*(round - 1)), listener, panel_tail)
+        call steps%know_path(h0_high, h0_low, allocated(request%path), request%reads_path(), &
+          listener, accuracy*10.0_wp**(-further_digits*(round - 1)))
         began = seconds()
         call begin_judging(judge, steps, h0_high, h0_low, store)
         worst = 0
         if (allocated(request%path)) call judge_path_points(judge, worst)
         cost%estimate_seconds = cost%estimate_seconds + seconds() - began
         if (round > 1 .and. (is_lost(steps%known) .or. .not. worst < before%worst)) then
-          call go_back(before, steps, judge, panel_tail)
+          call go_back(before, steps, judge)
           return
         end if
         if (.not. worst > accuracy .or. round == most_rounds) return
         if (round > 1 .and. worst > helped*before%worst) return
-        if (panel_tail > unresolved_from(steps%problem%law, steps%problem%shape, accuracy) &
-          .or. .not. digits_help(steps)) return
+        if (steps%known%left_out > too_much*accuracy .or. .not. digits_help(steps)) return
         before%meshes = steps%meshes
         before%known = steps%known
         before%judge = judge
-        before%panel_tail = panel_tail
         before%worst = worst
         steps%meshes = new_mesh_family(steps%problem, h0_high, h0_low, &
           before%meshes%digits + further_digits, store=store)
@@ -98,16 +95,14 @@ contains
   end function is_lost
 
   !> Makes the path traced before that of the steps again.
-  subroutine go_back(before, steps, judge, panel_tail)
+  subroutine go_back(before, steps, judge)
     type(tracing_t), intent(in) :: before
     class(path_stepper_t), intent(inout) :: steps
     type(judge_t), intent(inout) :: judge
-    real(wp), intent(out) :: panel_tail
 
     steps%meshes = before%meshes
     steps%known = before%known
     judge = before%judge
-    panel_tail = before%panel_tail
   end subroutine go_back
 
 end module exact_path

@@ -126,7 +126,8 @@ contains
     began = seconds()
     select type (steps)
     class is (path_stepper_t)
-      call trace_exactly(request, steps, high, low, observer, judge, outcome%panel_tail, store)
+      call trace_exactly(request, steps, high, low, observer, judge, store)
+      outcome%left_out = steps%known%left_out
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
       if (request%reads_path()) call read_path(request, steps, observer, outcome%readings)
     class is (unique_stepper_t)

@@ -26,8 +26,8 @@ module experiment_result
     logical :: differentiated = .true.
     !> Largest estimated relative error of what is reported.
     real(wp), allocatable :: error_estimate
-    !> Largest tail of the pressure on a panel of the path's meshes (`refinement`).
-    real(wp) :: panel_tail = 0
+    !> Largest part of the load that the nodes of the path's meshes leave out (`mending`).
+    real(wp) :: left_out = 0
     type(cost_t) :: cost
     integer :: nodes = 0
   end type experiment_result_t

@@ -48,19 +48,21 @@ contains
 
   !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
   !> h0_low; into_contact: until it is also on the mesh for contact; closely: with points enough for
-  !> a smooth curve. To be called before the first step. The listener hears how far it is.
-  subroutine know_path(self, h0_high, h0_low, into_contact, closely, listener)
+  !> a smooth curve; accuracy: see `trace`. To be called before the first step. The listener hears
+  !> how far it is.
+  subroutine know_path(self, h0_high, h0_low, into_contact, closely, listener, accuracy)
     class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0_high, h0_low
     logical, intent(in) :: into_contact, closely
     class(listener_t), intent(inout) :: listener
+    real(wp), intent(in), optional :: accuracy
     type(branch_point_t) :: position
     type(step_result_t) :: event
 
     call self%begin_afar(h0_high, position, event)
     if (.not. event%ending%early()) then
       call trace(self%equations_t, self%options, position%state, h0_low, into_contact, closely, &
-        listener, self%known)
+        listener, self%known, accuracy)
     else
       self%known%ending = event%ending
       allocate (self%known%piece(0))

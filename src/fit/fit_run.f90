@@ -14,7 +14,7 @@ module fit_run
   use noise, only: white_noise
   use far_samples, only: find_far, off_baseline
   use fit_starts, only: character_t, character_of, starts_like
-  use refinement, only: unresolved_from
+  use mending, only: too_much
   use path_model, only: path_model_t
   use classical_model, only: classical_model_t, theories
   use modelled_curve, only: modelled_curve_t
@@ -89,8 +89,7 @@ contains
     model%numerics%accuracy = of_trials*numerics%accuracy
     call starts_like(likely_characters(curve, problem), family, curve%unknown, start)
     call fit_curve(curve, model, start, .true., allocated(fit%noise), outcome%fitted)
-    outcome%resolved = model%panel_tail <= unresolved_from(problem%law, problem%shape, &
-      model%numerics%accuracy)
+    outcome%resolved = model%left_out <= too_much*model%numerics%accuracy
     outcome%curve = curve
     if (.not. outcome%fitted%has_curve) then
       outcome%trouble = 'with the values of the deck the path could not be solved as ' // &

@@ -22,7 +22,6 @@ module path_model
   use numerics_choice, only: choice_t, choose
   use path_demand, only: farthest_wanted
   use path_stepper, only: path_stepper_t
-  use refinement, only: trace_resolved
   use dimensionless_problem, only: contact_level_of
   use force_branch, only: branch_t
   use force_model, only: force_model_t, response_t, inward, outward
@@ -47,8 +46,8 @@ module path_model
     type(driven_t), private :: driven
     real(wp), private :: stiffness = 0, farthest = 0, largest = 0
     logical, private :: solved = .false.
-    !> What its meshes leave of the largest pressure between nodes (`refinement`).
-    real(wp) :: panel_tail = 0
+    !> The part of the load that its meshes leave out (`mending`).
+    real(wp) :: left_out = 0
   contains
     procedure :: respond
     procedure, private :: solve_trial
@@ -126,8 +125,8 @@ contains
     call prepare(self%steps, problem, chosen, self%numerics%accuracy)
     if (self%steps%options%method == 'mixing') self%steps%options%method = 'anderson'
     self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits, store=self%store)
-    call trace_resolved(self%steps, high, low, .true., .true., self%numerics%accuracy, silent, &
-      self%panel_tail)
+    call self%steps%know_path(high, low, .true., .true., silent, self%numerics%accuracy)
+    self%left_out = self%steps%known%left_out
     solver%options = self%steps%options
     call new_curve(self%steps%equations_t, self%steps%known, farthest_wanted(request, problem), &
       contact_level_of(problem), solver%curve, self%solved)

@@ -12,7 +12,7 @@ module edge_locked
   use discretisation, only: discretisation_t
   use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
   use mesh_store, only: mesh_store_t
-  use mesh_rule, only: approach_shape, contact_shape
+  use mesh_rule, only: approach_shape, contact_shape, is_narrow, rim_passed_at
   use law_panels, only: about_front, about_edge
   use seen_gaps, only: seen_gaps_t
   use step_front, only: front_leads, first_front, last_front
@@ -28,8 +28,8 @@ module edge_locked
 
   !> Largest ratio of the contact radii that one mesh serves: a mesh for wider bands has more nodes,
   !> and more bands have more meshes. Under a law that oscillates or has a step, short panels lie
-  !> wherever its gaps are at any radius of the band: of a step few, of oscillations many.
-  real(wp), parameter :: widest_band = 30, narrow_band = 2, narrowest_band = 1.5_wp
+  !> wherever its gaps are at any radius of the band.
+  real(wp), parameter :: widest_band = 30, narrow_band = 1.5_wp
   !> Part of the radius at which a front becomes sharp, from which on a mesh is locked to it.
   real(wp), parameter :: early = 0.25_wp
 
@@ -98,16 +98,16 @@ contains
         ! Where rounding hides the contact the path ends at its first fold.
         if (lost_in_rounding(problem, widest)) widest = widest_band*first
         if (front_leads(problem%law)) call add_bands(early*first_front(problem), &
-          last_front(problem), bands_for(problem%law, early*first_front(problem), &
+          last_front(problem), bands_for(problem, early*first_front(problem), &
           last_front(problem)), low, high)
         meshes%fronts = size(low)
-        call add_bands(first, widest, bands_for(problem%law, first, widest), low, high)
+        call add_bands(first, widest, bands_for(problem, first, widest), low, high)
       end associate
     end if
     allocate (meshes%grid(approach + size(low)), meshes%shape(approach + size(low)), &
       meshes%reach(2, approach + size(low)))
     allocate (meshes%waits(size(meshes%grid)), source=.false.)
-    if (meshes%traceable) meshes%waits(contact:) = problem%law%step_width > 0
+    if (meshes%traceable) meshes%waits(contact:) = is_narrow(problem)
     meshes%digits = digits
     meshes%passage = [low, widest]
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
@@ -159,15 +159,13 @@ contains
   end subroutine complete
 
   !> How many bands of equal ratio there are between two radii.
-  pure integer function bands_for(law, first, last) result(bands)
-    class(force_law_t), intent(in) :: law
+  pure integer function bands_for(problem, first, last) result(bands)
+    type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: first, last
 
     real(wp) :: ratio
 
-    ratio = widest_band
-    if (law%period > 0) ratio = narrow_band
-    if (law%step_width > 0) ratio = narrowest_band
+    ratio = merge(narrow_band, widest_band, is_narrow(problem))
     bands = ceiling(log(last/first)/log(ratio))
   end function bands_for
 
@@ -246,7 +244,7 @@ contains
 
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a part of the
   !> neck, and of the radius at which the axis of rigid bodies comes from most tension to rest.
-  !> Inside a front nothing is sharp before that.
+  !> Inside a front nothing is sharp before that; a flat face is to be passed before.
   pure real(wp) function passage_to_contact(problem) result(c)
     type(problem_t), intent(in) :: problem
 
@@ -258,6 +256,7 @@ contains
     if (problem%law%edge_gap > 0) &
       c = min(c, 0.25_wp*problem%shape%position_of( &
       0.5_wp*(problem%law%edge_gap - problem%law%rest_gap)))
+    c = max(c, rim_passed_at(problem))
   end function passage_to_contact
 
 end module edge_locked

@@ -4,16 +4,17 @@
 !> The pressure is tried over gaps as bodies have them: undeformed before contact; in contact the
 !> gap outside a JKR contact. Or, once there is a path, over the gaps seen on it. Panels in z on
 !> which the last Legendre coefficients of that pressure are not small get more nodes or are halved,
-!> whichever takes fewer.
+!> whichever takes fewer (`left_out`).
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
+  use force_law, only: force_law_t
   use discretisation, only: local_nodes_t, gauss_nodes
   use seen_gaps, only: seen_gaps_t
   use step_front, only: front_leads
   implicit none
   private
-  public :: fit_panels, nodes_on
+  public :: fit_panels, nodes_on, left_out
   public :: about_axis, about_front, about_edge
 
   !> What a mesh is mapped to: the axis, the front of a step, the contact edge.
@@ -21,9 +22,10 @@ module law_panels
 
   !> Nodes that a panel needs beside those in proportion to its length in z.
   real(wp), parameter :: more_nodes = 3
-  !> No panel shorter than twice this is halved; gaps on the axis, or radii, that are tried.
+  !> No panel shorter than twice this is halved; gaps on the axis, or radii, that are tried, and
+  !> where waves move past them.
   real(wp), parameter :: shortest = 0.01_wp
-  integer, parameter :: tried = 9
+  integer, parameter :: tried = 9, often = 33
   !> How many times the nodes are tried. A panel that needs no more than its halves would is not
   !> halved: waves want nodes, and steps short panels.
   real(wp), parameter :: times(*) = [1.0_wp, 1.3_wp, 1.7_wp, 2.2_wp, 2.8_wp, 3.6_wp]
@@ -40,31 +42,29 @@ contains
 
   !> Lengths in z and nodes of panels at positions centre + side*d sinh(z): those given, with
   !> `nodes_on` them or more, or halves of them. Radii go from low to high; `about`:
-  !> what is at the centre. digits: of load and h0, which go with the square of what a panel lacks
-  !> of the pressure, since nodes integrate polynomials of twice the degree; or with that itself,
-  !> where coefficients fall slowly. seen: gaps to try instead of those foreseen.
-  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, squared, &
+  !> what is at the centre. digits: of load and h0. seen: gaps to try instead of those foreseen.
+  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, &
     length, order, seen)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about, side, fewest
-    logical, intent(in) :: squared
     real(wp), intent(in) :: d, low, high, density, digits
     real(wp), allocatable, intent(inout) :: length(:)
     integer, allocatable, intent(out) :: order(:)
     type(seen_gaps_t), intent(in), optional :: seen
-    real(wp), allocatable :: given(:), parameter(:)
-    real(wp) :: most(1)
+    real(wp), allocatable :: given(:), parameter(:), load(:)
+    real(wp) :: centre
     integer :: worst, k
 
     worst = 1
-    most = 10.0_wp**(-digits)*abs(problem%law%pressure([problem%law%edge_gap]))
     if (present(seen)) then
       parameter = seen%radius
     else if (about == about_axis) then
       parameter = axis_gaps(problem)
     else
-      parameter = between(low, high)
+      parameter = between(low, high, tries(problem%law))
     end if
+    centre = merge(0.0_wp, 1.0_wp, about == about_axis)
+    load = [(load_of(k), k=1, size(parameter))]
     call move_alloc(length, given)
     allocate (length(0), order(0))
     do k = 1, size(given)
@@ -119,37 +119,91 @@ contains
       nodes = 0
     end function order_of
 
-    !> Whether the last two Legendre coefficients of the pressure on a panel, which count as the
-    !> area does on which it acts, are small. The gap that asked for more before is tried first.
+    !> Whether what the polynomial of the nodes lacks of the pressure on a panel is little, of the
+    !> load and of the gap around. The gap that asked for more before is tried first.
     logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
       type(local_nodes_t) :: local
-      real(wp) :: pressure(nodes), offset(nodes), left
+      real(wp), dimension(nodes) :: gap, pressure, offset
+      real(wp) :: ends(2)
       integer :: j, k
 
       is_resolved = .false.
       local = gauss_nodes(nodes)
       offset = side*d*sinh(z + z_length*local%node)
+      ends = centre + side*d*sinh(z + z_length*[0, 1])
+      if (side < 0) ends = [ends(2), ends(1)]
       do k = 0, size(parameter)
         j = merge(k, worst, k > 0)
+        gap = gap_of(j, offset)
+        pressure = problem%law%pressure(gap)
         associate (unit => merge(1.0_wp, parameter(j), about == about_axis))
-          if (present(seen)) then
-            pressure = problem%law%pressure(seen%gap(problem%shape, j, offset))
-          else
-            pressure = problem%law%pressure(gap_at(problem, about, parameter(j), offset, d))
-          end if
-          left = local%tail(pressure*(1 + (unit*offset)**2))
-          if (squared .and. left > 0) left = left*local%tail(pressure)/maxval(abs(pressure))
+          if (left_out(problem, local, unit*centre, unit*ends, unit*(centre + offset), &
+            pressure, load(j)) <= 10.0_wp**(-digits)) cycle
         end associate
-        if (left <= most(1)) cycle
         worst = j
         return
       end do
       is_resolved = .true.
     end function is_resolved
 
+    !> The gap of a try at offsets from the centre.
+    function gap_of(j, offset) result(gap)
+      integer, intent(in) :: j
+      real(wp), intent(in) :: offset(:)
+      real(wp) :: gap(size(offset))
+
+      if (present(seen)) then
+        gap = seen%gap(problem%shape, j, offset)
+      else
+        gap = gap_at(problem, about, parameter(j), offset, d)
+      end if
+    end function gap_of
+
+    !> What the load that is left out of a try is a part of: the adhesion, or before contact, where
+    !> waves have extrema of the load however small that is, the load of all of its pressure.
+    real(wp) function load_of(j) result(load)
+      integer, intent(in) :: j
+      integer, parameter :: points = 64
+      real(wp), dimension(points) :: z, offset
+      integer :: i
+
+      load = problem%law%adhesion
+      if (about /= about_axis .or. .not. problem%law%period > 0) return
+      z = sum(length)/points*[(i - 0.5_wp, i=1, points)]
+      offset = d*sinh(z)
+      load = min(load, &
+        sum(length)/points*sum(abs(problem%law%pressure(gap_of(j, offset)))*offset*d*cosh(z)))
+    end function load_of
+
   end subroutine fit_panels
+
+  !> The part of load and gap that the nodes of a panel leave out. It goes with the square of the
+  !> tail of the pressure, since nodes integrate polynomials of twice the degree; or with the tail
+  !> itself, where coefficients fall slowly: about kinks of the law or the shape. Panels for waves
+  !> are counted by the area that they are of; others, of which the front of a step may be
+  !> narrow and yet matter for the gap there, by that of all within them, as if that were one at
+  !> least. centre: radius of the mesh's; ends, r: of the panel and its nodes, where there are the
+  !> pressures; load: what it is a part of, but for 2 pi.
+  pure real(wp) function left_out(problem, local, centre, ends, r, pressure, load) result(left)
+    type(problem_t), intent(in) :: problem
+    type(local_nodes_t), intent(in) :: local
+    real(wp), intent(in) :: centre, ends(2), r(:), pressure(:), load
+    real(wp) :: tail, most(1)
+    logical :: smooth
+
+    tail = local%tail(pressure)
+    smooth = .not. (problem%law%has_kink .or. problem%shape%smooth_from() > 0)
+    if (problem%law%period > 0) then
+      left = (ends(2) - ends(1))*(1 + ends(2))*tail/max(load, tiny(load))
+    else
+      most = max(1.0_wp, maxval(abs(pressure)))
+      if (problem%law%edge_gap > 0) most = abs(problem%law%pressure([problem%law%edge_gap]))
+      left = local%tail(pressure*(1 + (r - centre)**2))/most(1)
+    end if
+    left = left*merge(min(1.0_wp, tail/max(maxval(abs(pressure)), tiny(1.0_wp))), 1.0_wp, smooth)
+  end function left_out
 
   !> Gaps on the axis that bodies have before contact: down to that of most tension, or where a step
   !> has a front before that, through the step.
@@ -162,14 +216,23 @@ contains
     associate (law => problem%law)
       from = law%edge_gap
       if (front_leads(law)) from = law%step_at
-      gap = between(from, max(calm_gap(problem), 2*from))
+      gap = between(from, max(calm_gap(problem), 2*from, merge(law%power_from, from, &
+        law%period > 0)), tries(law))
       if (front_leads(law)) gap = [gap, law%step_at + law%step_width*[(0.5_wp*k, k=-4, 6)]]
     end associate
   end function axis_gaps
 
-  !> Values to try from one to another, in equal ratios.
-  pure function between(from, to) result(values)
+  !> How many gaps or radii are tried: often where waves move past them.
+  pure integer function tries(law)
+    class(force_law_t), intent(in) :: law
+
+    tries = merge(often, tried, law%period > 0)
+  end function tries
+
+  !> So many values to try from one to another, in equal ratios.
+  pure function between(from, to, tried) result(values)
     real(wp), intent(in) :: from, to
+    integer, intent(in) :: tried
     real(wp) :: values(tried)
     integer :: k
 

@@ -16,10 +16,11 @@ module mesh_digits
   !> the fewest. And as long as there is a contact at all these are enough to tell folds apart.
   real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_others = 0.5_wp, enough_for_folds = 9
   !> More or less than for a path of the Lennard-Jones law: bodies that do not jump; laws with
-  !> lengths of their own; profiles, which feel every error of the edge's place, the more the
-  !> narrower the neck, for each decade of sigma; bodies with a kink, where the edge passes it.
-  real(wp), parameter :: without_jumps = -0.5_wp, for_lengths = 0.6_wp, for_profiles = 2, &
-    for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
+  !> lengths of their own, and those that oscillate; profiles, which feel every error of the edge's
+  !> place, the more the narrower the neck, for each decade of sigma; bodies with a kink, where the
+  !> edge passes it.
+  real(wp), parameter :: without_jumps = -0.5_wp, for_lengths = 0.6_wp, for_waves = 0.5_wp, &
+    for_profiles = 2, for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
   !> For each decade of how much wider contacts are than layers that yield unlike a half-space to
   !> waves of this many or fewer over the radius: at weak adhesion, and more for each decade of
   !> sigma.
@@ -48,6 +49,7 @@ contains
     if (sigma < onset) digits = digits + without_jumps
     if (.not. problem%law%of_paper) then
       digits = digits + for_lengths
+      if (problem%law%period > 0) digits = digits + for_waves
       least = fewest + for_lengths + for_folds_of_others*decades
     end if
     if (profiles) digits = digits + for_profiles + for_narrow_necks*decades

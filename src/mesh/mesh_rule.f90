@@ -13,7 +13,7 @@ module mesh_rule
   use mapped_mesh, only: mapped_shape_t
   implicit none
   private
-  public :: approach_shape, contact_shape
+  public :: approach_shape, contact_shape, is_narrow, rim_passed_at
 
   !> d over the smallest feature: errors change little from half of it to twice.
   real(wp), parameter :: finer = 0.5_wp
@@ -38,6 +38,11 @@ module mesh_rule
   !> which the rule was not fitted: what a polynomial lacks where the pressure changes shows on all
   !> of its panel, and far out that counts as the area does, though the pressure is small there.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp, longest = 4
+  !> Widths of the cohesive zone that a flat face has at most for its rim to be passed on a mesh
+  !> that stays where it is, and how far beyond the rim that goes (`rim_passed_at`).
+  real(wp), parameter :: widths_to_pass = 10, beyond_rim = 1.3_wp
+  !> Kinks of a shape between which panels end; more, as a table has, lie everywhere.
+  integer, parameter :: few = 4
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
   real(wp), parameter :: near_end = 100
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
@@ -50,6 +55,14 @@ module mesh_rule
   real(wp), parameter :: digits_of_broken = 4
 
 contains
+
+  !> Whether short panels lie wherever bodies have the gaps that the law marks, so that meshes serve
+  !> narrow bands of radii and wait for gaps that are seen.
+  pure logical function is_narrow(problem)
+    type(problem_t), intent(in) :: problem
+
+    is_narrow = problem%law%period > 0 .or. problem%law%step_width > 0
+  end function is_narrow
 
   !> Before contact, about the axis, for H0 up to h0_high. seen: gaps that bodies had.
   type(mapped_shape_t) function approach_shape(problem, h0_high, digits, seen) result(shape)
@@ -175,7 +188,6 @@ contains
     real(wp), intent(in) :: z_length, density, digits, low, high
     type(seen_gaps_t), intent(in), optional :: seen
     real(wp), allocatable :: lengths(:)
-    real(wp) :: smoothness
     integer, allocatable :: orders(:)
     integer :: panels, fewest
     logical :: broken
@@ -184,11 +196,10 @@ contains
     if (side > 0) broken = broken .or. end_matters(problem, digits, &
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0), high)
     fewest = ceiling(short_order + short_orders*digits)
-    smoothness = merge(min(digits, digits_of_broken), digits, broken)
     associate (law => problem%law)
-      if (law%period > 0 .or. law%has_kink .or. broken .or. problem%shape%exponent > 2) then
-        panels = ceiling(z_length/short)
-        lengths = spread(z_length/panels, 1, panels)
+      if (law%has_kink .or. broken .or. problem%shape%exponent > 2) then
+        lengths = short_panels(z_length)
+        if (about == about_axis .and. broken) lengths = ending_at_breaks(problem, shape%d, z_length)
       else
         lengths = [rung*ceiling(z_length/rung)]
         panels = merge(1, ceiling(lengths(1)/longest), law%of_paper)
@@ -197,11 +208,11 @@ contains
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
       end if
       ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known; and in
-      ! contact under a law with a step meshes wait for gaps that are seen.
+      ! contact under a law that marks gaps meshes wait for those that are seen.
       if (law%edge_gap > 0 .and. .not. law%of_paper .and. (present(seen) .or. about == about_axis &
-        .or. .not. (side < 0 .or. law%step_width > 0))) then
-        call fit_panels(problem, about, side, shape%d, low, high, density, fewest, smoothness, &
-          .not. (broken .or. law%has_kink), lengths, orders, seen)
+        .or. .not. (side < 0 .or. is_narrow(problem)))) then
+        call fit_panels(problem, about, side, shape%d, low, high, density, fewest, &
+          merge(min(digits, digits_of_broken), digits, broken), lengths, orders, seen)
       else
         orders = nodes_on(lengths, merge(1.0_wp, for_others, law%of_paper)*density, fewest)
       end if
@@ -215,6 +226,61 @@ contains
     shape%order = [shape%order, orders]
     shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
+
+  !> The radius up to which the contact edge is followed on a mesh that stays where it is, and so
+  !> has the kink at the rim of a flat face between its panels: somewhat beyond that, where the
+  !> cohesive zone is not so narrow that this would be dear. 0: none.
+  pure real(wp) function rim_passed_at(problem) result(radius)
+    type(problem_t), intent(in) :: problem
+
+    radius = problem%shape%smooth_from()
+    if (problem%shape%height(radius) > 0 .or. radius > widths_to_pass*cohesive_width(problem)) &
+      radius = 0
+    radius = beyond_rim*radius
+  end function rim_passed_at
+
+  !> Short panels over a length in z.
+  pure function short_panels(z_length) result(lengths)
+    real(wp), intent(in) :: z_length
+    real(wp), allocatable :: lengths(:)
+
+    associate (panels => ceiling(z_length/short))
+      lengths = spread(z_length/panels, 1, panels)
+    end associate
+  end function short_panels
+
+  !> Short panels that end where a derivative of the shape jumps; where that is at many places, as
+  !> of a table, they need not. None is wider than the cohesive zone as far as the edge comes.
+  pure function ending_at_breaks(problem, d, z_length) result(lengths)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: d, z_length
+    real(wp), allocatable :: lengths(:), long(:), breaks(:)
+    real(wp) :: from, z
+    integer :: i, parts
+
+    allocate (lengths(0))
+    from = 0
+    allocate (breaks(0))
+    if (allocated(problem%shape%breaks)) breaks = problem%shape%breaks
+    do i = 1, merge(size(breaks), 0, size(breaks) <= few)
+      z = asinh(breaks(i)/d)
+      if (.not. z < z_length) exit
+      lengths = [lengths, short_panels(z - from)]
+      from = z
+    end do
+    lengths = [lengths, short_panels(z_length - from)]
+    if (.not. rim_passed_at(problem) > 0) return
+    call move_alloc(lengths, long)
+    allocate (lengths(0))
+    from = 0
+    do i = 1, size(long)
+      parts = 1
+      if (d*sinh(from) < rim_passed_at(problem)) parts = ceiling( &
+        d*(sinh(from + long(i)) - sinh(from))/min(1.0_wp, cohesive_width(problem)))
+      lengths = [lengths, spread(long(i)/parts, 1, parts)]
+      from = from + long(i)
+    end do
+  end function ending_at_breaks
 
   !> Whether a mesh up to a radius holds the end of the bodies, and forces act there. contact: the
   !> radius of a contact, 0 before; without adhesion the gap around it is the smallest.

@@ -47,7 +47,9 @@ module continuation
   contains
     procedure :: follow_closely
     procedure :: begin_with
+    procedure :: forget
     procedure :: advance
+    procedure :: has_come_to_next
     procedure :: change_mesh
     procedure, private :: next_step
     procedure, private :: options_for
@@ -87,6 +89,16 @@ contains
     call add_with_tangent(equations, self%options_for(options), self%frozen, state, self%arc_t, &
       lost)
   end subroutine begin_with
+
+  !> Forgets its states and how long steps were.
+  pure subroutine forget(self)
+    class(continuation_t), intent(inout) :: self
+    type(arc_t) :: nothing
+
+    self%arc_t = nothing
+    self%step = first_step
+    self%frozen%factors%valid = .false.
+  end subroutine forget
 
   !> Adds a state to an arc of its mesh. lost: it has no tangent.
   subroutine add_with_tangent(equations, options, frozen, state, arc, lost)
@@ -185,6 +197,22 @@ contains
     end associate
   end function step_past_step
 
+  !> Whether the contact radius has crossed the passage to the next mesh, and the last state but one
+  !> is near that too.
+  pure logical function has_come_to_next(self, equations) result(come)
+    class(continuation_t), intent(in) :: self
+    type(equations_t), intent(in) :: equations
+
+    associate (meshes => equations%meshes)
+      come = self%held > 1 .and. equations%problem%law%edge_gap > 0 .and. &
+        self%mesh < size(meshes%grid)
+      if (come) come = radius_for(equations, self%mesh, self%mesh + 1, self%state(self%held)) >= &
+        meshes%passage(self%mesh)
+      if (come) come = radius_for(equations, self%mesh, self%mesh + 1, &
+        self%state(self%held - 1)) >= nearly_passed*meshes%passage(self%mesh)
+    end associate
+  end function has_come_to_next
+
   !> Passes to the next mesh once the contact radius has crossed the passage to it (to be called
   !> after each `advance`), taking the last two states along: what is between them is known on the
   !> next mesh too. That mesh must not be too coarse for the first of the two, and both meshes must
@@ -200,14 +228,7 @@ contains
     logical :: done
 
     lost = .false.
-    if (self%held < 2) return
-    associate (meshes => equations%meshes)
-      if (.not. equations%problem%law%edge_gap > 0 .or. self%mesh == size(meshes%grid)) return
-      if (radius_for(equations, self%mesh, self%mesh + 1, self%state(self%held)) < &
-        meshes%passage(self%mesh)) return
-      if (radius_for(equations, self%mesh, self%mesh + 1, self%state(self%held - 1)) < &
-        nearly_passed*meshes%passage(self%mesh)) return
-    end associate
+    if (.not. self%has_come_to_next(equations)) return
     next%mesh = self%mesh + 1
     if (equations%meshes%waits(next%mesh)) call lay_out(equations, self%mesh, next%mesh, &
       self%state(self%held))

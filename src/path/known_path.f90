@@ -4,15 +4,18 @@
 module known_path
   use kinds, only: wp
   use listener, only: listener_t
-  use contact_state, only: state_t
+  use contact_state, only: state_t, state_from
   use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
   use edge_locked, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
-  use path_coordinate, only: inward
+  use path_coordinate, only: path_control, coordinate_of, inward
   use continuation, only: continuation_t
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
-  use traced_path, only: traced_path_t, extend, collapsed
+  use traced_path, only: traced_path_t, extend, pass_on, collapsed
+  use mending, only: mender_t, new_mender, left_on_path
+  use anderson, only: solve_anderson
+  use frozen_jacobian, only: frozen_jacobian_t
   use reported, only: error_t, measure_t
   use solve_at_h0, only: neighbours_t, neighbours_of, solve_between
   implicit none
@@ -48,6 +51,8 @@ module known_path
     !> How the path ends; and whether in the fall of bodies that nothing keeps apart.
     type(ending_t) :: ending
     logical :: fallen = .false.
+    !> The largest part of the load that nodes leave out of its pressures, but of a fall.
+    real(wp) :: left_out = 0
   end type known_path_t
 
   !> Most points of a path before it is given up as going nowhere.
@@ -64,8 +69,10 @@ contains
 
   !> Traces the path from a state far from contact, on the mesh for the approach, until it is stable
   !> at h0_low; into_contact: until it is also on the mesh for contact; closely: with points enough
-  !> for a smooth curve (`path_curve`).
-  subroutine trace(equations, options, start, h0_low, into_contact, closely, listener, known)
+  !> for a smooth curve (`path_curve`). accuracy: where given, meshes that leave out too much of the
+  !> load for it are mended.
+  subroutine trace(equations, options, start, h0_low, into_contact, closely, listener, known, &
+    accuracy)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     type(state_t), intent(in) :: start
@@ -73,10 +80,14 @@ contains
     logical, intent(in) :: into_contact, closely
     class(listener_t), intent(inout) :: listener
     type(known_path_t), intent(inout) :: known
+    real(wp), intent(in), optional :: accuracy
     type(continuation_t) :: walker
+    type(mender_t) :: mender
     type(solver_options_t) :: for_path
     character(len=40) :: so_far
-    logical :: lost, blind, finished
+    logical :: lost, blind, finished, mended
+    type(ending_t) :: going_on
+    logical :: guarded
     integer :: steps, k
 
     ! Where rounding hides the contact the path is of use up to its first fold.
@@ -89,6 +100,8 @@ contains
     if (closely) call walker%follow_closely()
     call walker%begin_with(equations, for_path, start, approach, lost)
     if (lost) known%ending%cause = path_lost
+    guarded = present(accuracy) .and. .not. equations%problem%law%of_paper
+    if (guarded) mender = new_mender(accuracy, equations%meshes)
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, equations, for_path, lost)
       steps = steps + 1
@@ -96,6 +109,14 @@ contains
         write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
         call listener%hear(trim(so_far))
       end if
+      mended = .false.
+      if (guarded .and. .not. lost) then
+        if (walker%has_come_to_next(equations)) then
+          call mender%mend(equations, known%path, walker%mesh, .false., mended)
+          if (.not. mended) call mender%note(known%path, walker)
+        end if
+      end if
+      if (.not. (lost .or. mended)) call pass_on(known%path, walker, equations, for_path, lost)
       known%fallen = collapsed(equations%problem, known%path)
       lost = lost .or. known%path%held >= longest .or. astray(equations, known%path)
       if (lost) then
@@ -110,7 +131,15 @@ contains
           last%tangent%h0*inward(last%mesh) < 0 .and. &
           (equations%meshes%in_contact(last%mesh) .or. .not. into_contact)
       end associate
+      if (guarded .and. .not. mended .and. (finished .or. known%ending%early())) &
+        call mender%mend(equations, known%path, walker%mesh, lost, mended)
+      if (.not. mended) cycle
+      known%ending = going_on
+      finished = .false.
+      call go_back(mender, equations, for_path, start, known%path, walker, lost)
+      if (lost) known%ending%cause = path_lost
     end do
+    if (guarded .and. .not. known%fallen) known%left_out = left_on_path(equations, known%path)
     known%piece = pieces_of(known%path)
     allocate (known%inward(size(known%piece)), known%outward(size(known%piece)))
     do k = 1, size(known%piece)
@@ -118,6 +147,39 @@ contains
       call land(equations, options, known, k, .false., known%outward(k))
     end do
   end subroutine trace
+
+  !> Goes back to where the path came to a mesh that was made anew since, or to its beginning afar.
+  subroutine go_back(mender, equations, options, start, path, walker, lost)
+    type(mender_t), intent(in) :: mender
+    type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
+    type(state_t), intent(in) :: start
+    type(traced_path_t), intent(inout) :: path
+    type(continuation_t), intent(inout) :: walker
+    logical, intent(out) :: lost
+    type(frozen_jacobian_t) :: frozen
+    type(state_t) :: state
+    logical :: done
+
+    path = mender%path
+    if (path%held > 0) then
+      walker = mender%walker
+      call pass_on(path, walker, equations, options, lost)
+      return
+    end if
+    call walker%forget()
+    associate (problem => equations%problem, grid => equations%meshes%grid(approach))
+      state = state_from(grid%nodes)
+      state%h0 = start%h0
+      state%axis_gap = start%axis_gap
+      state%scale = start%scale
+      state%gap = start%h0 + problem%shape%height(start%scale*grid%x)
+      call solve_anderson(equations, options, frozen, &
+        path_control(problem, approach, coordinate_of(problem, approach, start)), state, done)
+    end associate
+    lost = .not. done
+    if (done) call walker%begin_with(equations, options, state, approach, lost)
+  end subroutine go_back
 
   !> Whether the contact is much larger than any that is expected: on a mesh that is too coarse
   !> folds were lost, and no state is taken for stable any more.

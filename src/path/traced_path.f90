@@ -23,7 +23,7 @@ module traced_path
   use continuation, only: continuation_t
   implicit none
   private
-  public :: traced_path_t, path_point_t, extend, collapsed, either_side
+  public :: traced_path_t, path_point_t, extend, pass_on, collapsed, either_side
 
   !> One equilibrium of the path.
   type :: path_point_t
@@ -167,10 +167,23 @@ contains
     mesh_between = max(self%point(i)%mesh, self%point(i + 1)%mesh)
   end function mesh_between
 
-  !> Advances the tracer by a step and appends the new point, and before it the extrema that have
-  !> been passed. A new path begins with the tracer's own newest state. lost: no step, however
-  !> small, converged.
+  !> Advances the tracer by a step and appends the new point. A new path begins with the tracer's
+  !> own newest state. lost: no step, however small, converged.
   subroutine extend(path, walker, equations, options, lost)
+    type(traced_path_t), intent(inout) :: path
+    type(continuation_t), intent(inout) :: walker
+    type(equations_t), intent(inout) :: equations
+    type(solver_options_t), intent(in) :: options
+    logical, intent(out) :: lost
+
+    if (path%held == 0) call append(path, walker)
+    call walker%advance(equations, options, lost)
+    if (.not. lost) call append(path, walker)
+  end subroutine extend
+
+  !> Lets the tracer pass to the next mesh if it has come there, and puts the extrema that have been
+  !> passed before the newest point. lost: a solve failed.
+  subroutine pass_on(path, walker, equations, options, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
     type(equations_t), intent(inout) :: equations
@@ -179,10 +192,6 @@ contains
     type(extremum_t), allocatable :: extrema(:)
     integer :: quantity, n, k
 
-    if (path%held == 0) call append(path, walker)
-    call walker%advance(equations, options, lost)
-    if (lost) return
-    call append(path, walker)
     call change_mesh(path, walker, equations, options, lost)
     do quantity = of_h0, of_load
       if (lost) return
@@ -194,7 +203,7 @@ contains
         call put(path, walker, quantity, extrema(k))
       end do
     end do
-  end subroutine extend
+  end subroutine pass_on
 
   !> Makes the tracer's newest state the last point.
   subroutine append(path, walker)

@@ -3,8 +3,8 @@
 module quality_warnings
   use kinds, only: wp
   use scene_groups, only: scene_t
+  use mending, only: too_much
   use experiment_result, only: experiment_result_t
-  use refinement, only: unresolved_from
   use summary, only: summary_t
   implicit none
   private
@@ -64,10 +64,10 @@ contains
         short_number(summary%number('worst_residual'))// &
         ' lengths of the force law, above the tolerance of '//short_number(tolerance))
     end associate
-    if (outcome%panel_tail > unresolved_from(scene%law, scene%shape, scene%numerics%accuracy)) &
+    if (outcome%left_out > too_much*scene%numerics%accuracy) &
       call summary%warn( &
-      'the mesh does not resolve the force law: '//short_number(outcome%panel_tail)// &
-      ' of the largest pressure is left between nodes; smoother forces are resolved')
+      'the mesh does not resolve the force law: '//short_number(outcome%left_out)// &
+      ' of the load is left out between nodes; smoother forces are resolved')
     if (.not. summary%has('error_estimate')) return
     estimate = summary%number('error_estimate')
     enough = clearly*scene%numerics%accuracy

@@ -214,3 +214,34 @@ def test_a_law_in_two_parts_costs_little_more_than_in_one(run, sigma):
     assert parts.summary["max_tension"] == pytest.approx(whole.summary["max_tension"], rel=1e-7)
     for cost in ("nodes", "factorisations", "operator_products"):
         assert parts.cost[cost] < 1.5 * whole.cost[cost]
+
+
+def test_the_edge_of_a_contact_passes_the_rim_of_a_punch(run):
+    """The kink at the rim lies between panels: no extremum is invented or off by more than said."""
+    asked = {
+        "bodies": {"radius": 1e-6, "stiffness": 1e9},
+        "shape": {"kind": "rounded_punch", "flat_radius": 60e-9},
+        "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
+        "equilibrium_path": {"h0_end": -2e-9},
+    }
+    found, truth = (run(deck(**asked, numerics={"accuracy": a})).summary for a in (1e-6, 1e-8))
+    assert "warnings" not in found
+    for key in ("folds_h0", "folds_load", "load_folds_h0", "load_folds_load"):
+        assert len(several(found[key])) == len(several(truth[key]))
+        for value, right, error, doubt in zip(*(
+            several(one) for one in (found[key], truth[key], found[key + "_error"],
+                                     truth[key + "_error"])
+        )):  # fmt: skip
+            assert abs(value - right) <= error + doubt
+
+
+def test_a_mesh_that_is_mended_does_not_have_the_path_traced_again(run):
+    """Waves are foreseen badly before contact; in contact meshes are laid out by what is seen."""
+    result = run(deck(
+        bodies={"radius": 5e-6, "young": 3e9, "poisson": 0.35},
+        van_der_waals={"hamaker": 6.5e-20}, born={"z0": 0.25e-9},
+        structural={"amplitude": 3e7, "period": 0.9e-9, "decay_length": 1e-9},
+        equilibrium_path={"h0_end": -4e-9}, numerics={"accuracy": 1e-6},
+    ))  # fmt: skip
+    check(result)
+    assert result.cost["factorisations"] < 1.7 * result.cost["states"]
