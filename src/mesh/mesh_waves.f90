@@ -29,9 +29,11 @@ module mesh_waves
   !> Places there are moved by waves that turn by less than this from node to node, and by all that
   !> turn less than this between the axis and them, each for a digit; smoothly from that part on.
   real(wp), parameter :: passing_place = 1.4_wp, crossing = 2.4_wp, from_of_place = 0.25_wp
-  !> Nodes of a panel of waves (`wave_rule`), at first and for each digit: they need not do for a
-  !> product of two that end in the same place, which is far out and has little pressure.
-  real(wp), parameter :: nodes_at_first = 6, nodes_a_digit = 0.8_wp
+  !> How far a wave turns over a panel of waves (`wave_rule`), and how many nodes that has, at first
+  !> and for each digit. They need not do for a product of two waves that end in one place, which
+  !> is far out and has little pressure: results move by a tenth of what they are uncertain by, or
+  !> less.
+  real(wp), parameter :: swing = 60, nodes_at_first = 14, nodes_a_digit = 1.5_wp
   !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave that turns by some angle
   !> over it is one of so many times the angle, to this and a few degrees more.
   real(wp), parameter :: degrees = 0.55_wp, more_degrees = 8
@@ -97,7 +99,7 @@ contains
       end associate
     end do
     where (x > 0) last_of = max(last_of, crossing*grid%digits/x)
-    call wave_rule(x, last_of, ceiling(nodes_at_first + nodes_a_digit*grid%digits), &
+    call wave_rule(x, last_of, swing, ceiling(nodes_at_first + nodes_a_digit*grid%digits), &
       self%range(2), self%range(1), last, k, weight)
     before = size(self%k)
     self%range(2) = last

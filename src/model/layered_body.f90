@@ -20,8 +20,10 @@ module layered_body
   !> Degree of L - 1 on a panel of waves, what may be left of its last coefficients, and how often a
   !> panel is halved.
   integer, parameter :: degree = 16, halvings = 60
-  !> Nodes of a panel of waves whose sums are to be exact (`wave_rule`).
-  integer, parameter :: wave_nodes = 20
+  !> How far a wave turns over a panel of waves whose sums are to be exact, and nodes of that
+  !> (`wave_rule`).
+  real(wp), parameter :: swing = 16
+  integer, parameter :: nodes = 20
   !> More panels than any layers need whose numbers are not too unlike (`layer_group`).
   integer, parameter :: most_panels = 1000
   real(wp), parameter :: resolved = 1.0e-13_wp
@@ -213,7 +215,7 @@ contains
     sums = 0
     if (self%plain) return
     range = self%wave_range()
-    call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], wave_nodes, 0.0_wp, range(1), &
+    call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], swing, nodes, 0.0_wp, range(1), &
       range(2), k, weight)
     weight = 2*weight*self%beside_half_space(k)
     allocate (left(size(k), size(x)), right(size(k), size(y)))
