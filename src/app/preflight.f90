@@ -48,7 +48,7 @@ contains
     call count_matrices(scene, bytes, nodes)
     if (allocated(scene%sweep)) then
       ! A sweep may be over what the mesh depends on: its last case stands for that.
-      call swept_scene(scene, scene%sweep%last(), last, error)
+      call swept_scene(scene, scene%sweep%names, scene%sweep%last(), last, error)
       if (.not. allocated(error)) then
         call count_matrices(last, more, most)
         bytes = max(bytes, more)

@@ -11,6 +11,7 @@ module simulation
   use resumable_stepper, only: resumable_stepper_t
   use scene_problem, only: problem_of
   use h0_schedule, only: states_planned
+  use drive_rates, only: rate_drive
   use sweeps, only: run_sweep
   use ranks, only: crew_t
   use preflight, only: check_room, large_results
@@ -210,6 +211,8 @@ contains
     call write_path_tables(problem, outcome, results)
     summary = summary_of(scene, problem, outcome)
     call recorder%warn(summary)
+    if (allocated(scene%sensitivity) .and. allocated(scene%drive)) &
+      call rate_drive(scene, results, summary)
     if (allocated(scene%sensitivity)) &
       call write_sensitivities(scene%sensitivity, problem, outcome, summary, results)
     cost = outcome%cost

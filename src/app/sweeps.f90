@@ -356,7 +356,7 @@ contains
     case%failure = ''
     ! What makes strings is done by one thread at a time: compiler note 4.
     !$omp critical (one_at_a_time)
-    call swept_scene(scene, case%values, variant, error)
+    call swept_scene(scene, scene%sweep%names, case%values, variant, error)
     !$omp end critical (one_at_a_time)
     call summary%set('converged', .false.)
     if (.not. allocated(error)) then

@@ -82,11 +82,12 @@ contains
     type(summary_t), intent(in) :: summary
     type(results_t), intent(inout) :: results
 
+    if (.not. (allocated(outcome%readings) .or. allocated(outcome%timed))) return
+    call results%begin_table('sensitivity.csv', sensitivity_columns)
+    call write_sensitivity(problem, sensitivity%varied, summary, outcome%readings, results)
+    call results%end_table()
     if (.not. allocated(outcome%readings)) return
     associate (readings => outcome%readings)
-      call results%begin_table('sensitivity.csv', sensitivity_columns)
-      call write_sensitivity(problem, sensitivity%varied, summary, readings, results)
-      call results%end_table()
       if (.not. allocated(readings%rate)) return
       call results%begin_table('curve_sensitivity.csv', curve_sensitivity_columns)
       call write_curve_sensitivity(problem, sensitivity%varied, readings, results)

@@ -40,15 +40,16 @@ module sensitivity_rows
 
 contains
 
-  !> Writes the rows of sensitivity.csv.
+  !> Writes the rows of sensitivity.csv; a drive in time has no readings.
   subroutine write_sensitivity(problem, varied, summary, readings, results)
     type(problem_t), intent(in) :: problem
     type(variation_t), intent(in) :: varied(:)
     type(summary_t), intent(in) :: summary
-    type(path_readings_t), intent(in) :: readings
+    type(path_readings_t), intent(in), optional :: readings
     type(results_t), intent(inout) :: results
 
     call write_of_summary(varied, summary, results)
+    if (.not. present(readings)) return
     if (allocated(readings%loaded)) call write_of_loaded(problem, varied, readings%loaded, results)
   end subroutine write_sensitivity
 

@@ -40,7 +40,8 @@ contains
     call summary%set('title', scene%title)
     call summary%set('converged', .true.)
     call describe_problem(scene, problem, summary)
-    if (allocated(scene%sensitivity)) call rate_description(scene, summary)
+    if (allocated(scene%sensitivity) .and. .not. allocated(scene%drive)) &
+      call rate_description(scene, summary)
     call judge_law(problem, summary)
     if (allocated(scene%classical)) call summarise_classical(problem, scene%classical, summary)
     if (allocated(scene%approximations)) call summarise_approximations(problem, summary)

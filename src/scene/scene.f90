@@ -87,9 +87,11 @@ contains
     if (.not. allocated(error)) call check_shape(scene, error)
   end subroutine make_scene
 
-  !> The scene, which has a sweep, with the sweep's keys set to `values` and without the sweep.
-  subroutine swept_scene(scene, values, variant, error)
+  !> The scene with keys, blank-separated names, set to `values`, and without the groups that ask
+  !> for such scenes.
+  subroutine swept_scene(scene, names, values, variant, error)
     type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: names
     real(wp), intent(in) :: values(:)
     type(scene_t), intent(out) :: variant
     type(failure_t), allocatable, intent(out) :: error
@@ -98,8 +100,9 @@ contains
 
     deck = scene%deck
     call deck%drop_group('sweep')
+    call deck%drop_group('sensitivity')
     do k = 1, size(values)
-      call set_number(deck, word_of(scene%sweep%names, k), values(k), error)
+      call set_number(deck, word_of(names, k), values(k), error)
       if (allocated(error)) return
     end do
     call make_scene(deck, variant, error)
@@ -180,7 +183,7 @@ contains
           values = [(merge(minval(sweep%axis(k)%values), maxval(sweep%axis(k)%values), i == 1), &
             k=1, size(sweep%axis))]
         end if
-        call swept_scene(scene, values, variant, trouble)
+        call swept_scene(scene, sweep%names, values, variant, trouble)
         if (.not. allocated(trouble)) cycle
         said = 'with '
         do k = 1, size(values)

@@ -1,6 +1,8 @@
 !> &sensitivity: parameters by which results are differentiated.
 module sensitivity_group
-  use failure, only: failure_t
+  use failure, only: failure_t, fail, bad_input
+  use text, only: lower, quoted, word_count, word_of
+  use deck_numbers, only: find_number
   use deck_keys, only: key_spec, group, names_key
   use variation, only: vary, to_report
   use scene_groups, only: scene_t
@@ -18,7 +20,7 @@ contains
 
     specs = [ &
       group('sensitivity', 'Derivatives of what is reported by numbers of bodies, shape and ' // &
-            'forces; needs &equilibrium_path.'), &
+            'forces; needs &equilibrium_path, or &drive.'), &
       names_key('sensitivity', 'parameters', 20, 'The numbers, as ''group.key'', of a list as ' // &
                 '''group.key(2)''.', required=.true.)]
   end function sensitivity_keys
@@ -33,6 +35,10 @@ contains
     integer :: i
 
     if (.not. scene%deck%has_group('sensitivity')) return
+    if (scene%deck%has_group('drive')) then
+      call take_for_drive(scene, error)
+      return
+    end if
     call check_path(scene, 'sensitivity', error)
     if (scene%deck%has_group('sweep')) call scene%deck%mistake('sensitivity', '', &
       'not together with &sweep, whose cases show no curve', error)
@@ -50,5 +56,44 @@ contains
     if (allocated(trouble)) &
       call scene%deck%mistake('sensitivity', 'parameters', trouble%message, error)
   end subroutine take_sensitivity
+
+  !> Of a drive in time, which is differentiated by whole runs: any number of its deck but those of
+  !> the numerics.
+  subroutine take_for_drive(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    type(failure_t), allocatable :: trouble
+    character(len=:), allocatable :: keys, name
+    integer :: i, row, term
+
+    associate (deck => scene%deck)
+      if (deck%has_group('sweep')) call deck%mistake('sensitivity', '', &
+        'not together with &sweep', error)
+      call deck%get('sensitivity', 'parameters', keys)
+      allocate (scene%sensitivity)
+      allocate (scene%sensitivity%varied(word_count(keys)))
+      do i = 1, word_count(keys)
+        name = lower(word_of(keys, i))
+        call find_number(deck, name, row, term, trouble)
+        if (.not. allocated(trouble)) then
+          scene%sensitivity%varied(i)%parameter%name = name
+          if (.not. allocated(deck%values(row)%reals) .or. index(name, 'numerics.') == 1) then
+            call fail(trouble, bad_input, quoted(name) // ' is no number on which results ' // &
+              'depend smoothly')
+          else
+            associate (value => deck%values(row)%reals(max(1, term)))
+              scene%sensitivity%varied(i)%parameter%value = value
+              if (.not. abs(value) > 0) call fail(trouble, bad_input, quoted(name) // &
+                ' is 0: it has no size of which a change would be a part')
+            end associate
+          end if
+        end if
+        if (allocated(trouble)) then
+          call deck%mistake('sensitivity', 'parameters', trouble%message, error)
+          return
+        end if
+      end do
+    end associate
+  end subroutine take_for_drive
 
 end module sensitivity_group

@@ -185,3 +185,33 @@ def test_rigid_bodies_have_the_drag_of_a_film_beside_their_force(run):
         drag = 6 * math.pi * 1e-3 * 1e-10 * 1e-6 / h0
         force = -1e-21 * 1e-5 / (6 * h0**2) * (1 - (0.2e-9 / h0) ** 6 / 4)
         np.testing.assert_allclose(load, sense * drag + force, rtol=1e-7)
+
+
+def test_derivatives_of_a_drive_keep_its_invariances(run):
+    names = ("force.hamaker", "bodies.stiffness", "viscoelastic.stiffness_relaxed",
+             "drive.velocity", "viscoelastic.retardation_time")
+    found = run(lennard_jones(
+        0.2, drive={"velocity": 8.0, "z_start": 20.0, "z_turn": -4.0}, numerics={"accuracy": 1e-4},
+        viscoelastic={"stiffness_relaxed": 0.25, "retardation_time": 1.0},
+        sensitivity={"parameters": list(names)}))
+    table = found.table("sensitivity.csv")
+    for key in ("max_tension", "energy_dissipated"):
+        of_key = table["quantity"] == key
+        rate = dict(zip(table["parameter"][of_key], table["logarithmic"][of_key]))
+        assert set(rate) == set(names)
+        # Strength and moduli in proportion change pressures alone, velocity and time only together.
+        assert sum(rate[name] for name in names[:3]) == pytest.approx(1, abs=5e-3)
+        assert rate["drive.velocity"] == pytest.approx(rate["viscoelastic.retardation_time"],
+                                                       abs=1e-6)
+
+
+@pytest.mark.parametrize("name, message", [
+    ("numerics.accuracy", "no number on which results depend"),
+    ("drive.dwell", "is 0"),
+    ("bodies.weight", "not a key"),
+])
+def test_what_a_drive_cannot_be_differentiated_by_is_named(run, name, message):
+    found = run(lennard_jones(
+        0.1, drive={"velocity": 8.0, "z_start": 20.0, "z_turn": 0.0, "dwell": 0.0},
+        sensitivity={"parameters": name}), status=2)
+    assert message in found.stderr
