@@ -9,7 +9,8 @@ module known_path
   use solver_options, only: solver_options_t
   use edge_locked, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
-  use path_coordinate, only: path_control, coordinate_of, inward
+  use path_coordinate, only: inward
+  use locked_meshes, only: h0_control
   use continuation, only: continuation_t
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
   use traced_path, only: traced_path_t, extend, pass_on, collapsed
@@ -174,8 +175,9 @@ contains
       state%axis_gap = start%axis_gap
       state%scale = start%scale
       state%gap = start%h0 + problem%shape%height(start%scale*grid%x)
-      call solve_anderson(equations, options, frozen, &
-        path_control(problem, approach, coordinate_of(problem, approach, start)), state, done)
+      ! At its h0, where an experiment may begin.
+      call solve_anderson(equations, options, frozen, h0_control(problem%shape, equations%meshes, &
+        approach, start%h0), state, done)
     end associate
     lost = .not. done
     if (done) call walker%begin_with(equations, options, state, approach, lost)

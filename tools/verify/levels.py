@@ -42,9 +42,9 @@ PLACED = 1e-6
 OF_RESIDUAL = 10
 # Decks of inputs/ that stop by the paper's rule, whose states rounding decides (./reproduce gives
 # their ranges), and those with grids so coarse that the edge of a contact is held until it slips:
-# rounding decides which slip is the last. Maps: thousands of paths such as others show alone. And a
-# drive whose steps are as long as differences of loads allow: rows are at other times.
-LEFT_OUT = ("_paper", "history_", "map_", "viscoelastic")
+# rounding decides which slip is the last. Maps: thousands of paths such as others show alone. And
+# drives, whose steps are as long as differences of loads allow: rows are at other times.
+LEFT_OUT = ("_paper", "history_", "map_", "viscoelastic", "drainage")
 # Not compared: what an iteration leaves, estimates, which are differences of numbers that agree to
 # many digits, and the resolution, which depends on which node is the nearest to the edge.
 ROUNDED = ("residual", "iterations", "_error", "_uncertainty", "_estimate", "spacing_over_neck")
