@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Renew the pictures of docs/rates.md and print its tables: some minutes.
 
-    .venv/bin/python tools/rates.py [drainage]
+    .venv/bin/python tools/rates.py [drainage | prices]
 
-With drainage: those of fluids alone.
+With drainage: those of fluids alone; with prices: what 1,000 steps cost, on a machine without other work.
 """
 
 import math
@@ -16,12 +16,13 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import pages  # noqa: E402
 
-sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap")]
+sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap", "tools/bench")]
 
 import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 
+import gauge  # noqa: E402
 import matplotlib.pyplot as plt  # noqa: E402
 import snapin  # noqa: E402
 
@@ -81,6 +82,25 @@ def print_orders():
             "|")
 
 
+def print_prices():
+    """What 1,000 steps of bodies ten times as stiff at once cost, in G: the least of several runs."""
+    unit = gauge.Gauge(lambda threads: os.environ | {"OMP_NUM_THREADS": str(threads)})
+    for sigma, start, step in ((0.2, 20.0, 0.006), (8.7, 40.0, 0.011)):
+        deck = {
+            "bodies": {"radius": 1.0, "stiffness": 1.0},
+            "force": {"law": "lennard_jones", "surface_energy": sigma / 10, "z0": 1.0},
+            "drive": {"velocity": 8.0, "z_start": start, "z_turn": -4.0, "time_step": step},
+            "viscoelastic": {"stiffness_relaxed": 0.1, "retardation_time": 1.0},
+            "numerics": {"accuracy": 1e-3}}
+        prices = []
+        for _ in range(7):
+            seconds = unit.pieces((400,), ("dgesv",))[0]["dgesv"]
+            found = snapin.run(deck)
+            steps = found.summary["time_steps"]
+            prices.append(1000 * found.cost["solve_seconds"] / seconds / steps)
+        print(f"| {sigma} | {steps} | {found.cost['nodes']} | {min(prices):.0f} |")
+
+
 # A bead of 10 um and a flat in a viscous liquid, SI units.
 BEAD = {
     "bodies": {"radius": 1e-5, "stiffness": 7e10},
@@ -137,6 +157,9 @@ def print_drained():
 
 
 def main():
+    if sys.argv[1:] == ["prices"]:
+        print_prices()
+        return
     if sys.argv[1:] != ["drainage"]:
         draw_cycles()
         print_orders()
