@@ -5,7 +5,7 @@ module reading_sensitivities
   use dimensionless_problem, only: problem_t
   use frozen_jacobian, only: frozen_jacobian_t
   use path_curve, only: no_mesh
-  use curve_states, only: curve_solver_t, curve_state_t, coordinate_at
+  use curve_states, only: curve_solver_t, curve_state_t
   use path_tangent, only: tangent_t
   use driven_pieces, only: drive_t
   use driven_cycle, only: jump_t
@@ -137,7 +137,7 @@ contains
       found = node%mesh /= no_mesh
     end associate
     if (.not. found) return
-    place%s = coordinate_at(solver%curve, state)
+    place%s = state%x
     call solver%equilibrium_at(finder%steps%equations_t, finder%steps%known, state, place%state, &
       along, found)
   end subroutine place_of

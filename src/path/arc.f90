@@ -12,7 +12,7 @@ module arc
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
   use edge_locked, only: approach
-  use path_coordinate, only: path_control, inward
+  use path_coordinate, only: path_control
   use path_tangent, only: tangent_t, tangent_at, scaled
   implicit none
   private
@@ -67,8 +67,8 @@ contains
 
     call tangent_at(equations, options, path_control(equations%problem, mesh, s), state, frozen, &
       tangent, found)
-    ! The control's value is exp(s) and a constant.
-    if (found) tangent = scaled(tangent, exp(s))
+    ! The control's value is exp(-s) and a constant on the approach, else exp(s).
+    if (found) tangent = scaled(tangent, merge(-exp(-s), exp(s), mesh == approach))
   end subroutine tangent_along
 
   !> The state at the coordinate s, with its tangent: guessed from those of the arc and corrected.
@@ -125,7 +125,7 @@ contains
     if (self%held == most_states .or. any(abs(self%coordinate(:self%held) - s) <= 0)) return
     if (.not. allocated(self%state)) &
       allocate (self%state(most_states), self%tangent(most_states))
-    place = count((self%coordinate(:self%held) - s)*inward(self%mesh) < 0) + 1
+    place = count(self%coordinate(:self%held) < s) + 1
     do j = self%held, place, -1
       self%coordinate(j + 1) = self%coordinate(j)
       self%state(j + 1) = self%state(j)

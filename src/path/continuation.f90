@@ -13,7 +13,7 @@ module continuation
   use edge_locked, only: approach
   use seen_gaps, only: seen_gaps_t
   use regridding, only: regrid
-  use path_coordinate, only: path_control, coordinate_of, inward
+  use path_coordinate, only: path_control, coordinate_of
   use path_tangent, only: tangent_t
   use arc, only: arc_t, tangent_along
   implicit none
@@ -131,7 +131,7 @@ contains
 
     lost = .false.
     do
-      s = self%coordinate(self%held) + inward(self%mesh)*self%next_step(equations)
+      s = self%coordinate(self%held) + self%next_step(equations)
       ! A step is so long that factors made before it are of no use.
       self%frozen%factors%valid = .false.
       call self%state_at(equations, self%options_for(options), self%frozen, s, state, tangent, &
@@ -175,7 +175,7 @@ contains
       do while (step > shortest_passage)
         if (radius_for(equations, self%mesh, self%mesh + 1, &
           self%guess(equations%problem%shape, meshes%grid(self%mesh), &
-          s + inward(self%mesh)*step)) <= passage) exit
+          s + step)) <= passage) exit
         step = 0.6_wp*step
       end do
     end associate
@@ -242,9 +242,8 @@ contains
         next, lost)
       if (lost) return
     end do
-    associate (here => self%tangent(self%held - 1), there => next%tangent(1), &
-      turned => inward(self%mesh)*inward(next%mesh))
-      if (.not. (turned*here%h0*there%h0 > 0 .and. turned*here%load*there%load > 0)) return
+    associate (here => self%tangent(self%held - 1), there => next%tangent(1))
+      if (.not. (here%h0*there%h0 > 0 .and. here%load*there%load > 0)) return
     end associate
     self%arc_t = next
     self%step = 0.5_wp*self%step

@@ -8,7 +8,6 @@ module curve_states
   use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
   use frozen_jacobian, only: frozen_jacobian_t
-  use path_coordinate, only: inward
   use path_tangent, only: tangent_t
   use solve_at_h0, only: neighbours_t, neighbours_of
   use known_path, only: known_path_t
@@ -17,7 +16,7 @@ module curve_states
   use path_curve, only: curve_t, no_mesh
   implicit none
   private
-  public :: curve_state_t, curve_solver_t, place_t, coordinate_at, reading_t, reading_of
+  public :: curve_state_t, curve_solver_t, place_t, reading_t, reading_of
 
   !> A place on a curve.
   type :: place_t
@@ -77,16 +76,6 @@ contains
     reading = reading_t(state%h0, state%load, state%axis_gap - state%h0, state%radius)
   end function reading_of
 
-  !> The path's coordinate (`continuation`) at a place that is on a mesh.
-  pure real(wp) function coordinate_at(curve, place) result(s)
-    type(curve_t), intent(in) :: curve
-    class(place_t), intent(in) :: place
-
-    associate (node => curve%begin_of(place%interval))
-      s = inward(node%mesh)*place%x
-    end associate
-  end function coordinate_at
-
   !> The equilibrium at a place that is on a mesh, with its tangent by the path's coordinate.
   subroutine equilibrium_at(self, equations, known, place, state, tangent, converged)
     class(curve_solver_t), intent(inout) :: self
@@ -101,8 +90,8 @@ contains
     associate (node => self%curve%begin_of(place%interval))
       near = neighbours_of(known%path, node%point)
     end associate
-    call near%exact_state_at(equations, self%options, self%frozen, &
-      coordinate_at(self%curve, place), state, tangent, converged)
+    call near%exact_state_at(equations, self%options, self%frozen, place%x, state, tangent, &
+      converged)
     self%solved = self%solved + 1
   end subroutine equilibrium_at
 
@@ -138,7 +127,7 @@ contains
       found%radius = radius_of_gap(problem%shape, self%curve%contact_gap, &
         equations%meshes%grid(node%mesh), state)
       call energy_of(equations, node%mesh, state, found%energy, found%uncertainty)
-      found%slopes = inward(node%mesh)*[tangent%h0, tangent%load]
+      found%slopes = [tangent%h0, tangent%load]
     end associate
   end subroutine state_of
 

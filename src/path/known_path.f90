@@ -9,7 +9,6 @@ module known_path
   use solver_options, only: solver_options_t
   use edge_locked, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
-  use path_coordinate, only: inward
   use locked_meshes, only: h0_control
   use continuation, only: continuation_t
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
@@ -129,7 +128,7 @@ contains
       end if
       associate (last => known%path%point(known%path%held))
         finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
-          last%tangent%h0*inward(last%mesh) < 0 .and. &
+          last%tangent%h0 < 0 .and. &
           (equations%meshes%in_contact(last%mesh) .or. .not. into_contact)
       end associate
       if (guarded .and. .not. mended .and. (finished .or. known%ending%early())) &

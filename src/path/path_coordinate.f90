@@ -1,6 +1,6 @@
-!> The coordinate s of the equilibrium path, in which it has no folds: before contact the logarithm
-!> of the gap on the axis, above nine tenths of the gap at rest, in contact of the contact radius
-!> (`edge_locked`).
+!> The coordinate s of the equilibrium path, in which it has no folds and which grows from afar
+!> inward: before contact minus the logarithm of the gap on the axis, above nine tenths of the gap at
+!> rest, in contact the logarithm of the contact radius (`edge_locked`).
 module path_coordinate
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -9,7 +9,7 @@ module path_coordinate
   use edge_locked, only: approach
   implicit none
   private
-  public :: path_control, coordinate_of, inward
+  public :: path_control, coordinate_of
 
 contains
 
@@ -23,7 +23,7 @@ contains
     control%mesh = mesh
     if (mesh == approach) then
       control%kind = at_axis_gap
-      control%value = exp(s) + 0.9_wp*problem%law%rest_gap
+      control%value = exp(-s) + 0.9_wp*problem%law%rest_gap
     else
       control%kind = at_edge_radius
       control%value = exp(s)
@@ -38,18 +38,10 @@ contains
 
     if (mesh == approach) then
       ! Nearer than nine tenths no state is on this mesh, but one may be asked about.
-      s = log(max(state%axis_gap - 0.9_wp*problem%law%rest_gap, tiny(1.0_wp)))
+      s = -log(max(state%axis_gap - 0.9_wp*problem%law%rest_gap, tiny(1.0_wp)))
     else
       s = log(state%scale)
     end if
   end function coordinate_of
-
-  !> The sign that makes the coordinate of a mesh grow from afar inward: the gap on the axis
-  !> shrinks, the contact radius grows.
-  elemental integer function inward(mesh)
-    integer, intent(in) :: mesh
-
-    inward = merge(-1, 1, mesh == approach)
-  end function inward
 
 end module path_coordinate

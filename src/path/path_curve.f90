@@ -7,7 +7,6 @@ module path_curve
   use interpolation, only: hermite_t, hermite_through
   use contact_state, only: radius_of_gap
   use equilibrium, only: equations_t
-  use path_coordinate, only: inward
   use arc, only: arc_t
   use known_path, only: known_path_t
   use undeformed, only: load_undeformed, load_slope_undeformed
@@ -22,8 +21,8 @@ module path_curve
   !> A neighbour nearer to an interval than this part of its width makes the polynomial worse.
   real(wp), parameter :: well_apart = 0.1_wp
 
-  !> An equilibrium of the path. x is the path's coordinate (`path_coordinate`) with the sign that
-  !> makes it grow from afar inward, for undeformed bodies -log(h0); slopes are by x.
+  !> An equilibrium of the path. x is the path's coordinate (`path_coordinate`), for undeformed
+  !> bodies -log(h0); slopes are by x.
   type :: curve_node_t
     integer :: mesh = no_mesh
     real(wp) :: x = 0, h0 = 0, load = 0, h0_slope = 0, load_slope = 0
@@ -123,8 +122,8 @@ contains
     call known%path%add_to(i, only)
     if (only%held == 0) return
     associate (state => only%state(1), tangent => only%tangent(1))
-      node = curve_node_t(mesh, inward(mesh)*only%coordinate(1), state%h0, state%load, &
-        inward(mesh)*tangent%h0, inward(mesh)*tangent%load, &
+      node = curve_node_t(mesh, only%coordinate(1), state%h0, state%load, &
+        tangent%h0, tangent%load, &
         radius_of_gap(equations%problem%shape, contact_gap, equations%meshes%grid(mesh), state), &
         state%axis_gap, i)
     end associate

@@ -11,7 +11,6 @@ module path_extremum
   use frozen_jacobian, only: frozen_jacobian_t
   use interpolation, only: hermite_t
   use root_finding, only: bracket_t, secant_root
-  use path_coordinate, only: inward
   use path_tangent, only: tangent_t
   use arc, only: arc_t, most_states, of_h0
   implicit none
@@ -214,7 +213,7 @@ contains
         call beside%add(s_before, found%state, found%tangent)
       end if
     end do
-    found%sense = merge(1, -1, slope_of(quantity, near%tangent(i))*inward(near%mesh) > 0)
+    found%sense = merge(1, -1, slope_of(quantity, near%tangent(i)) > 0)
 
   contains
 

@@ -17,7 +17,6 @@ module traced_path
   use edge_locked, only: approach
   use reported, only: error_t, measure_t
   use path_tangent, only: tangent_t
-  use path_coordinate, only: inward
   use arc, only: arc_t, of_h0, of_load
   use path_extremum, only: extremum_t, find_extrema
   use continuation, only: continuation_t
@@ -152,7 +151,7 @@ contains
     is_behind = .false.
     associate (point => self%point(i))
       if (point%mesh == mesh) then
-        is_behind = (point%coordinate - s)*inward(mesh) > 0
+        is_behind = point%coordinate > s
       else if (mesh == point%mesh + 1 .and. allocated(point%twin)) then
         is_behind = log(point%twin%scale) > s
       end if
@@ -288,7 +287,7 @@ contains
     call insert(path, place, point)
     if (quantity /= of_h0) return
     ! At a maximum of h0 its second derivative is negative.
-    change = merge(-1, 1, -found%sense*found%tangent%load*inward(walker%mesh) > 0)
+    change = merge(-1, 1, -found%sense*found%tangent%load > 0)
     path%point(place:path%held)%modes = path%point(place:path%held)%modes + change
   end subroutine put
 

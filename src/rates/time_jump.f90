@@ -7,7 +7,7 @@ module time_jump
   use contact_state, only: state_t
   use equilibrium, only: control_t, at_edge_radius
   use edge_locked, only: approach
-  use path_coordinate, only: path_control, coordinate_of, inward
+  use path_coordinate, only: path_control, coordinate_of
   use regridding, only: regrid
   use root_finding, only: root_search_t, new_root_search
   use continuation, only: radius_for
@@ -150,7 +150,7 @@ contains
     real(wp) :: to
 
     next = at
-    to = s + ds*inward(at%mesh)
+    to = s + ds
     if (last%mesh == at%mesh .and. abs(s - s_last) > 0) call extrapolate(steps%problem%shape, &
       steps%meshes%grid(at%mesh), last%state, at%state, (to - s)/(s - s_last), next%state)
     call solve_at(steps, to, next, found)
