@@ -6,7 +6,7 @@ module interpolation
   implicit none
   private
   public :: polynomial_weights, polynomial_slope, interpolated_maximum
-  public :: hermite_t, hermite_through, hermite_weights, most_hermite_nodes
+  public :: hermite_t, hermite_through, hermite_weights, most_hermite_nodes, find_nodes_about
 
   integer, parameter :: most_hermite_nodes = 4
 
@@ -100,6 +100,35 @@ contains
       of_value(j) = weight**2 - 2*own_slope*of_slope(j)
     end do
   end subroutine hermite_weights
+
+  !> The nodes (rising) whose polynomial tells about the interval from x(i) to the next: its ends,
+  !> with the nearest on either side that is well apart. (A neighbour nearer to an interval makes
+  !> its polynomial worse.)
+  pure subroutine find_nodes_about(x, i, nodes, n)
+    real(wp), intent(in) :: x(:)
+    integer, intent(in) :: i
+    integer, intent(out) :: nodes(most_hermite_nodes), n
+    real(wp), parameter :: well_apart = 0.1_wp
+    real(wp) :: least
+    integer :: j
+
+    n = 0
+    least = well_apart*(x(i + 1) - x(i))
+    do j = i - 1, 1, -1
+      if (x(i) - x(j) < least) cycle
+      n = 1
+      nodes(1) = j
+      exit
+    end do
+    nodes(n + 1:n + 2) = [i, i + 1]
+    n = n + 2
+    do j = i + 2, size(x)
+      if (x(j) - x(i + 1) < least) cycle
+      n = n + 1
+      nodes(n) = j
+      exit
+    end do
+  end subroutine find_nodes_about
 
   !> Hermite's polynomial with the given values and slopes at `at` (all different).
   pure type(hermite_t) function hermite_through(at, value, slope) result(polynomial)

@@ -5,6 +5,7 @@ module device
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use equilibrium, only: equations_t
+  use path_tangent, only: of_h0
   use known_path, only: known_path_t
   use curve_states, only: curve_solver_t, curve_state_t
   use driven_pieces, only: drive_t, driven_piece_t, find_pieces, state_driven
@@ -175,8 +176,8 @@ contains
         if (.not. (begin%h0 >= self%h0_end .and. end%h0 <= self%h0_end)) cycle
         ends = [begin%x, end%x]
       end associate
-      call self%solver%root_of(self%equations, self%known, i, [1.0_wp, 0.0_wp], ends(1), ends(2), &
-        there, self%h0_end)
+      call self%solver%state_where(self%equations, self%known, i, of_h0, self%h0_end, ends(1), &
+        ends(2), there)
       there_is = there_is .or. there%converged
       if (there%converged) at = max(at, drive%position(there))
       exit

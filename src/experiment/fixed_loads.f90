@@ -2,9 +2,9 @@
 module fixed_loads
   use kinds, only: wp
   use equilibrium, only: equations_t
+  use path_tangent, only: of_load
   use known_path, only: known_path_t
   use curve_states, only: curve_solver_t, curve_state_t
-  use curve_turns, only: find_turning_places
   implicit none
   private
   public :: loaded_state_t, find_loaded
@@ -16,8 +16,6 @@ module fixed_loads
     type(curve_state_t) :: state
     logical :: stable = .false.
   end type loaded_state_t
-
-  real(wp), parameter :: of_load(2) = [0.0_wp, 1.0_wp]
 
 contains
 
@@ -31,21 +29,25 @@ contains
     type(loaded_state_t), allocatable, intent(inout) :: list(:)
     logical, intent(inout) :: solved
     type(loaded_state_t) :: found
-    real(wp), allocatable :: edges(:), places(:), beyond(:)
+    type(curve_state_t), allocatable :: turns(:)
+    real(wp), allocatable :: edges(:), beyond(:)
     integer :: i, k
+    logical :: all_turns
 
     found%wanted = load
     do i = 1, size(solver%curve%interval)
+      call solver%find_turns(equations, known, i, of_load, turns, all_turns)
+      solved = solved .and. all_turns
       associate (begin => solver%curve%begin_of(i), end => solver%curve%end_of(i))
-        call find_turning_places(solver, equations, known, i, of_load, places)
-        edges = [begin%x, places, end%x]
+        edges = [begin%x, turns%x, end%x]
+        beyond = [begin%load, turns%load, end%load] - load
       end associate
-      beyond = [(solver%curve%value(i, of_load, edges(k)) - load, k=1, size(edges))]
       do k = 1, size(edges) - 1
         if ((beyond(k) < 0) .eqv. (beyond(k + 1) < 0)) cycle
-        call solver%root_of(equations, known, i, of_load, edges(k), edges(k + 1), found%state, load)
+        call solver%state_where(equations, known, i, of_load, load, edges(k), edges(k + 1), &
+          found%state)
         solved = solved .and. found%state%converged
-        if (.not. (found%state%converged .and. found%state%met)) cycle
+        if (.not. found%state%converged) cycle
         ! Inward h0 falls along what is stable at fixed h0.
         found%stable = found%state%modes == 0 .and. found%state%slopes(2) > 0
         list = [list, found]

@@ -6,8 +6,8 @@ module path_expansion
   use kinds, only: wp
   use contact_state, only: state_t
   use path_coordinate, only: path_control
-  use path_tangent, only: tangent_t
-  use arc, only: arc_t, tangent_along, of_h0, of_load
+  use path_tangent, only: tangent_t, of_h0, of_load
+  use arc, only: arc_t, tangent_along
   use potential_energy, only: energy_of
   use reported, only: measure_t
   use error_estimate, only: finer_t

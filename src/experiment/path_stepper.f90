@@ -13,7 +13,7 @@ module path_stepper
   use path_coordinate, only: coordinate_of
   use ending, only: fallen_before, beyond_path
   use traced_path, only: traced_path_t
-  use solve_at_h0, only: neighbours_t, neighbours_of, solve_between
+  use state_search, only: neighbours_t, neighbours_of, solve_at_h0
   use path_span, only: path_span_t, new_path_span
   use path_prediction, only: missed_t, expect
   use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
@@ -236,7 +236,7 @@ contains
 
     near = neighbours_of(self%known%path, i)
     mesh = near%mesh
-    call solve_between(self%equations_t, self%options, near, h0, s, state, converged)
+    call solve_at_h0(self%equations_t, self%options, near, h0, s, state, converged)
   end subroutine state_at_h0
 
 end module path_stepper

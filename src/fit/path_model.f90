@@ -10,6 +10,7 @@ module path_model
   use variation, only: variation_t, vary, to_search
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
+  use path_tangent, only: of_h0, of_load
   use path_curve, only: curve_t, new_curve
   use path_sensitivity, only: rate_t, rates_along
   use curve_states, only: curve_solver_t
@@ -200,7 +201,6 @@ contains
     subroutine add_end(side, x, width)
       integer, intent(in) :: side
       real(wp), intent(in) :: x, width
-      real(wp), parameter :: of_h0(2) = [1, 0], of_load(2) = [0, 1]
 
       branch%h0(side, n) = problem%law%separation_of(curve%value(i, of_h0, x))
       branch%h0(2 + side, n) = problem%length*width*curve%slope(i, of_h0, x)

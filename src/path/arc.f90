@@ -3,7 +3,7 @@
 module arc
   use kinds, only: wp
   use interpolation, only: polynomial_weights, hermite_weights, hermite_t, hermite_through, &
-    most_hermite_nodes
+    most_hermite_nodes, find_nodes_about
   use shape, only: shape_t
   use discretisation, only: discretisation_t
   use contact_state, only: state_t
@@ -16,15 +16,11 @@ module arc
   use path_tangent, only: tangent_t, tangent_at, scaled
   implicit none
   private
-  public :: arc_t, tangent_along, between, of_h0, of_load, most_states
+  public :: arc_t, tangent_along, between, most_states
 
   integer, parameter :: most_states = 8
-  !> What the path is asked about: h0 or the load.
-  integer, parameter :: of_h0 = 1, of_load = 2
   !> States that a state beyond an end is extrapolated from.
   integer, parameter :: extrapolated_from = 4
-  !> A neighbour nearer to an interval than this part of its width makes its polynomial worse.
-  real(wp), parameter :: well_apart = 0.1_wp
 
   !> Some states of the path on one mesh with their coordinates and tangents (by the coordinate), in
   !> order along it.
@@ -156,10 +152,8 @@ contains
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: s
     integer, intent(out) :: nodes(most_hermite_nodes), n
-    real(wp) :: least
     integer :: i, j
 
-    n = 0
     associate (x => self%coordinate, last => self%held)
       do i = 1, last - 1
         if ((x(i) - s)*(x(i + 1) - s) <= 0) exit
@@ -171,21 +165,7 @@ contains
         nodes(:n) = [(j, j=i, i - 1 + n)]
         return
       end if
-      least = well_apart*abs(x(i + 1) - x(i))
-      do j = i - 1, 1, -1
-        if (abs(x(j) - x(i)) < least) cycle
-        n = 1
-        nodes(1) = j
-        exit
-      end do
-      nodes(n + 1:n + 2) = [i, i + 1]
-      n = n + 2
-      do j = i + 2, last
-        if (abs(x(j) - x(i + 1)) < least) cycle
-        n = n + 1
-        nodes(n) = j
-        exit
-      end do
+      call find_nodes_about(x(:last), i, nodes, n)
     end associate
   end subroutine support
 
@@ -278,11 +258,10 @@ contains
     expected%pressure = 0
   end subroutine take_if_sound
 
-  !> The polynomial that h0 or load is about s.
-  pure type(hermite_t) function curve(self, quantity, s)
+  !> The polynomial that weights(1) h0 + weights(2) load is about s.
+  pure type(hermite_t) function curve(self, weights, s)
     class(arc_t), intent(in) :: self
-    integer, intent(in) :: quantity
-    real(wp), intent(in) :: s
+    real(wp), intent(in) :: weights(2), s
     real(wp), dimension(most_hermite_nodes) :: at, value, slope
     integer :: nodes(most_hermite_nodes), n, j
 
@@ -290,42 +269,39 @@ contains
     do j = 1, n
       associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
         at(j) = self%coordinate(nodes(j))
-        value(j) = merge(state%h0, state%load, quantity == of_h0)
-        slope(j) = merge(tangent%h0, tangent%load, quantity == of_h0)
+        value(j) = dot_product(weights, [state%h0, state%load])
+        slope(j) = tangent%of(weights)
       end associate
     end do
     curve = hermite_through(at(:n), value(:n), slope(:n))
   end function curve
 
-  !> h0 or load at s, as the arc lets expect it.
-  pure real(wp) function value(self, quantity, s)
+  !> Its value at s, as the arc lets expect it.
+  pure real(wp) function value(self, weights, s)
     class(arc_t), intent(in) :: self
-    integer, intent(in) :: quantity
-    real(wp), intent(in) :: s
+    real(wp), intent(in) :: weights(2), s
     type(hermite_t) :: about
 
-    about = self%curve(quantity, s)
+    about = self%curve(weights, s)
     value = about%value(s)
   end function value
 
   !> Its derivative by s.
-  pure real(wp) function slope(self, quantity, s)
+  pure real(wp) function slope(self, weights, s)
     class(arc_t), intent(in) :: self
-    integer, intent(in) :: quantity
-    real(wp), intent(in) :: s
+    real(wp), intent(in) :: weights(2), s
     type(hermite_t) :: about
 
-    about = self%curve(quantity, s)
+    about = self%curve(weights, s)
     slope = about%slope(s)
   end function slope
 
   !> Its second derivative by s; where a state is in the way, the mean of those on either side.
-  pure real(wp) function curvature(self, quantity, s)
+  pure real(wp) function curvature(self, weights, s)
     class(arc_t), intent(in) :: self
-    integer, intent(in) :: quantity
-    real(wp), intent(in) :: s
+    real(wp), intent(in) :: weights(2), s
 
-    curvature = (self%slope(quantity, s + nearby) - self%slope(quantity, s - nearby))/(2*nearby)
+    curvature = (self%slope(weights, s + nearby) - self%slope(weights, s - nearby))/(2*nearby)
   end function curvature
 
 end module arc

@@ -1,15 +1,15 @@
 !> Single equilibria of the path's curve: where a combination of h0 and load has a given value, or
-!> is an extremum. The curve says about where; the state is solved there, and its exact value and
-!> slopes correct the place until that is met.
+!> turns round.
 module curve_states
   use kinds, only: wp
-  use root_finding, only: bracket_t
+  use root_finding, only: root_search_t, new_root_search
   use contact_state, only: state_t, radius_of_gap
   use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
   use frozen_jacobian, only: frozen_jacobian_t
   use path_tangent, only: tangent_t
-  use solve_at_h0, only: neighbours_t, neighbours_of
+  use state_search, only: neighbours_t, neighbours_of, find_state
+  use path_extremum, only: extremum_t, find_extrema, may_turn
   use known_path, only: known_path_t
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
@@ -37,8 +37,6 @@ module curve_states
     real(wp) :: slopes(2) = 0, residual = 0
     integer :: modes = 0
     logical :: converged = .false.
-    !> Of a state that was looked for (`root_of`), whether it is where it should be.
-    logical :: met = .false.
     !> Derivatives of what is reported of it by each parameter of &sensitivity
     !> (`place_sensitivity`).
     real(wp), allocatable :: rate(:, :)
@@ -55,17 +53,14 @@ module curve_states
   contains
     procedure :: equilibrium_at
     procedure :: state_of
-    procedure :: root_of
+    procedure :: state_where
+    procedure :: find_turns
+    procedure, private :: tell
+    procedure, private :: undeformed_turns
   end type curve_solver_t
 
-  !> Corrections of a place, and the one (of x) below which it is found.
-  integer, parameter :: most_corrections = 12
-  real(wp), parameter :: found_at = 1.0e-12_wp
-  !> The correction (of x) that rounding may leave where the path is nearly flat. Where a load that
-  !> grows by orders of magnitude has no root, corrections are above 1e-3.
-  real(wp), parameter :: left_over = 1.0e-5_wp
-  !> Difference of x over which the polynomial's second derivative is taken.
-  real(wp), parameter :: apart = 1.0e-4_wp
+  !> Parts of an interval of undeformed bodies at whose ends the slope is looked at.
+  integer, parameter :: looks = 8
 
 contains
 
@@ -92,7 +87,6 @@ contains
     end associate
     call near%exact_state_at(equations, self%options, self%frozen, place%x, state, tangent, &
       converged)
-    self%solved = self%solved + 1
   end subroutine equilibrium_at
 
   !> What is reported of the equilibrium at a place.
@@ -118,81 +112,156 @@ contains
         found%converged = .true.
         return
       end if
-      call self%equilibrium_at(equations, known, place, state, tangent, found%converged)
-      found%h0 = state%h0
-      found%load = state%load
-      found%axis_gap = state%axis_gap
-      found%residual = state%residual
-      if (.not. found%converged) return
-      found%radius = radius_of_gap(problem%shape, self%curve%contact_gap, &
-        equations%meshes%grid(node%mesh), state)
-      call energy_of(equations, node%mesh, state, found%energy, found%uncertainty)
-      found%slopes = [tangent%h0, tangent%load]
     end associate
+    call self%equilibrium_at(equations, known, place, state, tangent, found%converged)
+    call self%tell(equations, place, state, tangent, found)
   end subroutine state_of
 
-  !> The equilibrium in interval i between x = from and x = to at which weights(1) h0 + weights(2)
-  !> load is `wanted` or, where that is absent, is an extremum. The curve has one between them;
-  !> found%met: so has the path.
-  subroutine root_of(self, equations, known, i, weights, from, to, found, wanted)
+  !> What is reported of a state that is on a mesh.
+  subroutine tell(self, equations, place, state, tangent, found)
+    class(curve_solver_t), intent(inout) :: self
+    type(equations_t), intent(in) :: equations
+    type(place_t), intent(in) :: place
+    type(state_t), intent(in) :: state
+    type(tangent_t), intent(in) :: tangent
+    type(curve_state_t), intent(inout) :: found
+
+    self%solved = self%solved + 1
+    found%interval = place%interval
+    found%x = place%x
+    found%modes = self%curve%interval(place%interval)%modes
+    found%h0 = state%h0
+    found%load = state%load
+    found%axis_gap = state%axis_gap
+    found%residual = state%residual
+    if (.not. found%converged) return
+    associate (node => self%curve%begin_of(place%interval))
+      found%radius = radius_of_gap(equations%problem%shape, self%curve%contact_gap, &
+        equations%meshes%grid(node%mesh), state)
+      call energy_of(equations, node%mesh, state, found%energy, found%uncertainty)
+    end associate
+    found%slopes = [tangent%h0, tangent%load]
+  end subroutine tell
+
+  !> The equilibrium in interval i between x = from and x = to, where D = weights(1) h0 + weights(2)
+  !> load goes one way, at which D is `wanted`.
+  subroutine state_where(self, equations, known, i, weights, wanted, from, to, found)
     class(curve_solver_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: i
-    real(wp), intent(in) :: weights(2), from, to
+    real(wp), intent(in) :: weights(2), wanted, from, to
     type(curve_state_t), intent(out) :: found
-    real(wp), intent(in), optional :: wanted
-    type(curve_state_t) :: trial
-    type(bracket_t) :: bracket
-    real(wp) :: x, missing, least, steepness
-    integer :: round
-    logical :: rising
+    type(neighbours_t) :: near
+    type(root_search_t) :: search
+    type(state_t) :: state
+    type(tangent_t) :: tangent
+    real(wp) :: x
 
-    bracket = bracket_t(from, to)
-    rising = on_curve(to) > on_curve(from)
-    do while (bracket%is_open())
-      call bracket%narrow((on_curve(bracket%middle()) < 0) .eqv. rising)
-    end do
-    x = bracket%middle()
-    least = huge(1.0_wp)
-    do round = 1, most_corrections
-      call self%state_of(equations, known, place_t(i, x), trial)
-      if (.not. trial%converged) exit
-      missing = missing_of(trial)
-      if (abs(missing) >= least) exit
-      least = abs(missing)
-      found = trial
-      steepness = (on_curve(x + apart) - on_curve(x - apart))/(2*apart)
-      if (present(wanted)) steepness = dot_product(weights, trial%slopes)
-      if (.not. abs(steepness) > tiny(1.0_wp)) exit
-      found%met = abs(missing/steepness) < left_over
-      x = min(max(x - missing/steepness, min(from, to)), max(from, to))
-      if (abs(x - trial%x) < found_at) exit
-    end do
-    found%modes = self%curve%interval(i)%modes
+    associate (node => self%curve%begin_of(i))
+      if (node%mesh == no_mesh) then
+        search = new_root_search(from, beyond(from), to, beyond(to))
+        do while (search%is_open())
+          x = search%place()
+          call search%note(x, beyond(x))
+        end do
+        call self%state_of(equations, known, place_t(i, search%root), found)
+        return
+      end if
+      near = neighbours_of(known%path, node%point)
+    end associate
+    near%ends = [from, to]
+    call find_state(equations, self%options, self%frozen, near, weights, wanted, x, state, &
+      tangent, found%converged)
+    call self%tell(equations, place_t(i, x), state, tangent, found)
 
   contains
 
-    pure real(wp) function on_curve(at)
+    !> By how much D of undeformed bodies is beyond what is wanted.
+    real(wp) function beyond(at)
       real(wp), intent(in) :: at
 
-      if (present(wanted)) then
-        on_curve = self%curve%value(i, weights, at) - wanted
-      else
-        on_curve = self%curve%slope(i, weights, at)
+      beyond = dot_product(weights, [exp(-at), load_undeformed(equations%problem, exp(-at))]) - &
+        wanted
+    end function beyond
+
+  end subroutine state_where
+
+  !> The equilibria inside interval i at which D turns round, in order. solved = .false.: not all
+  !> were solved.
+  subroutine find_turns(self, equations, known, i, weights, turns, solved)
+    class(curve_solver_t), intent(inout) :: self
+    type(equations_t), intent(inout) :: equations
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: i
+    real(wp), intent(in) :: weights(2)
+    type(curve_state_t), allocatable, intent(out) :: turns(:)
+    logical, intent(out) :: solved
+    type(neighbours_t) :: near
+    type(extremum_t), allocatable :: extrema(:)
+    integer :: k
+
+    solved = .true.
+    associate (begin => self%curve%begin_of(i), end => self%curve%end_of(i))
+      if (begin%mesh == no_mesh) then
+        turns = self%undeformed_turns(equations, known, i, weights)
+        return
       end if
-    end function on_curve
+      allocate (turns(0))
+      if (.not. may_turn(self%curve%polynomial(i, weights), [begin%x, end%x], &
+        [dot_product(weights, [begin%h0_slope, begin%load_slope]), &
+        dot_product(weights, [end%h0_slope, end%load_slope])])) return
+      near = neighbours_of(known%path, begin%point)
+    end associate
+    call find_extrema(equations, self%options, near%arc_t, &
+      findloc(near%coordinate(:near%held), near%ends(1), 1), weights, extrema, solved)
+    solved = .not. solved
+    deallocate (turns)
+    allocate (turns(size(extrema)))
+    do k = 1, size(extrema)
+      turns(k)%converged = .true.
+      call self%tell(equations, place_t(i, extrema(k)%coordinate), extrema(k)%state, &
+        extrema(k)%tangent, turns(k))
+    end do
+  end subroutine find_turns
 
-    pure real(wp) function missing_of(state)
-      type(curve_state_t), intent(in) :: state
+  !> The same of bodies that do not deform.
+  function undeformed_turns(self, equations, known, i, weights) result(turns)
+    class(curve_solver_t), intent(inout) :: self
+    type(equations_t), intent(inout) :: equations
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: i
+    real(wp), intent(in) :: weights(2)
+    type(curve_state_t), allocatable :: turns(:)
+    type(curve_state_t) :: turn
+    type(root_search_t) :: search
+    real(wp) :: x(0:looks), at
+    integer :: k
 
-      if (present(wanted)) then
-        missing_of = dot_product(weights, [state%h0, state%load]) - wanted
-      else
-        missing_of = dot_product(weights, state%slopes)
-      end if
-    end function missing_of
+    allocate (turns(0))
+    associate (begin => self%curve%begin_of(i), end => self%curve%end_of(i))
+      x = [(begin%x + (end%x - begin%x)*k/looks, k=0, looks)]
+    end associate
+    do k = 1, looks
+      if ((slope(x(k - 1)) < 0) .eqv. (slope(x(k)) < 0)) cycle
+      search = new_root_search(x(k - 1), slope(x(k - 1)), x(k), slope(x(k)))
+      do while (search%is_open())
+        at = search%place()
+        call search%note(at, slope(at))
+      end do
+      call self%state_of(equations, known, place_t(i, search%root), turn)
+      turns = [turns, turn]
+    end do
 
-  end subroutine root_of
+  contains
+
+    !> The derivative of D by h0.
+    real(wp) function slope(at)
+      real(wp), intent(in) :: at
+
+      slope = dot_product(weights, [1.0_wp, load_slope_undeformed(equations%problem, exp(-at))])
+    end function slope
+
+  end function undeformed_turns
 
 end module curve_states

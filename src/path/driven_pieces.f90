@@ -11,12 +11,11 @@ module driven_pieces
   use known_path, only: known_path_t
   use path_curve, only: curve_t
   use curve_states, only: curve_solver_t, curve_state_t, place_t
-  use stable_stretches, only: edge_t, stretch_t, find_stretches
   implicit none
   private
   public :: drive_t, driven_piece_t, find_pieces, state_driven, through_spring
 
-  !> Weights of h0 and load in D.
+  !> Weights of h0 and load in D (`path_tangent`).
   type :: drive_t
     real(wp) :: weights(2) = [1.0_wp, 0.0_wp]
   contains
@@ -108,8 +107,8 @@ contains
     if (i == to%interval) high = to%x
   end subroutine clip
 
-  !> The stable pieces of a path under a drive, from afar inward; whole = .false.: a state at the
-  !> end of one was not solved, and it is left out.
+  !> The stable pieces of a path under a drive, from afar inward, which end where stability does, or
+  !> what is known of the path; whole = .false.: a state was not solved, and a piece is left out.
   subroutine find_pieces(solver, equations, known, drive, pieces, whole)
     type(curve_solver_t), intent(inout) :: solver
     type(equations_t), intent(inout) :: equations
@@ -117,38 +116,81 @@ contains
     type(drive_t), intent(in) :: drive
     type(driven_piece_t), allocatable, intent(out) :: pieces(:)
     logical, intent(out) :: whole
-    type(stretch_t), allocatable :: stretches(:)
     type(driven_piece_t) :: piece
-    integer :: i
+    type(curve_state_t), allocatable :: turns(:)
+    integer :: i, k, n
+    logical :: open, stable, solved
 
     allocate (pieces(0))
     whole = .true.
-    call find_stretches(solver, equations, known, drive%weights, stretches)
-    do i = 1, size(stretches)
-      piece%first_turns = stretches(i)%first_turns
-      piece%last_turns = stretches(i)%last_turns
-      call solve_edge(stretches(i)%first, piece%first)
-      call solve_edge(stretches(i)%last, piece%last)
+    open = .false.
+    n = size(solver%curve%interval)
+    do i = 1, n
+      if (solver%curve%interval(i)%modes > 0) then
+        ! A fold in h0: the path is no longer stable however stiff the spring is.
+        if (open) call close_piece(end_of(i - 1), .true.)
+        open = .false.
+        cycle
+      end if
+      call solver%find_turns(equations, known, i, drive%weights, turns, solved)
+      whole = whole .and. solved
+      associate (begin => solver%curve%begin_of(i))
+        stable = dot_product(drive%weights, [begin%h0_slope, begin%load_slope]) < 0
+        if (stable .neqv. open) then
+          if (open) call close_piece(state_at(i, begin%x), .true.)
+          if (stable) call open_piece(state_at(i, begin%x), i > 1)
+        end if
+      end associate
+      do k = 1, size(turns)
+        if (open) then
+          call close_piece(turns(k), .true.)
+        else
+          call open_piece(turns(k), .true.)
+        end if
+      end do
+    end do
+    if (open) call close_piece(end_of(n), .false.)
+
+  contains
+
+    subroutine open_piece(state, turns)
+      type(curve_state_t), intent(in) :: state
+      logical, intent(in) :: turns
+
+      open = .true.
+      piece%first = state
+      piece%first_turns = turns
+    end subroutine open_piece
+
+    subroutine close_piece(state, turns)
+      type(curve_state_t), intent(in) :: state
+      logical, intent(in) :: turns
+
+      open = .false.
+      piece%last = state
+      piece%last_turns = turns
       if (piece%first%converged .and. piece%last%converged) then
         pieces = [pieces, piece]
       else
         whole = .false.
       end if
-    end do
+    end subroutine close_piece
 
-  contains
+    !> The state at the end of interval j.
+    type(curve_state_t) function end_of(j)
+      integer, intent(in) :: j
 
-    subroutine solve_edge(edge, state)
-      type(edge_t), intent(in) :: edge
-      type(curve_state_t), intent(out) :: state
+      associate (end => solver%curve%end_of(j))
+        end_of = state_at(j, end%x)
+      end associate
+    end function end_of
 
-      if (edge%turns) then
-        call solver%root_of(equations, known, edge%interval, drive%weights, edge%x - edge%width, &
-          edge%x + edge%width, state)
-      else
-        call solver%state_of(equations, known, place_t(edge%interval, edge%x), state)
-      end if
-    end subroutine solve_edge
+    type(curve_state_t) function state_at(j, x)
+      integer, intent(in) :: j
+      real(wp), intent(in) :: x
+
+      call solver%state_of(equations, known, place_t(j, x), state_at)
+    end function state_at
 
   end subroutine find_pieces
 
@@ -169,7 +211,7 @@ contains
       if (i == piece%last%interval) exit
       if (solver%curve%value(i, drive%weights, high) <= wanted) exit
     end do
-    call solver%root_of(equations, known, i, drive%weights, low, high, state, wanted)
+    call solver%state_where(equations, known, i, drive%weights, wanted, low, high, state)
   end subroutine state_driven
 
 end module driven_pieces

@@ -17,7 +17,7 @@ module known_path
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
   use reported, only: error_t, measure_t
-  use solve_at_h0, only: neighbours_t, neighbours_of, solve_between
+  use state_search, only: neighbours_t, neighbours_of, solve_at_h0
   implicit none
   private
   public :: known_path_t, landing_t, trace, interval_at, lowest_point, landing_over
@@ -275,7 +275,7 @@ contains
     if (landing%piece == 0) return
     near = neighbours_of(known%path, interval_at(known, landing%piece, h0))
     landing%mesh = near%mesh
-    call solve_between(equations, options, near, h0, landing%coordinate, landing%state, &
+    call solve_at_h0(equations, options, near, h0, landing%coordinate, landing%state, &
       landing%converged)
   end subroutine land
 

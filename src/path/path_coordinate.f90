@@ -1,6 +1,6 @@
 !> The coordinate s of the equilibrium path, in which it has no folds and which grows from afar
-!> inward: before contact minus the logarithm of the gap on the axis, above nine tenths of the gap at
-!> rest, in contact the logarithm of the contact radius (`edge_locked`).
+!> inward: before contact minus the logarithm of the gap on the axis, above nine tenths of the gap
+!> at rest, in contact the logarithm of the contact radius (`edge_locked`).
 module path_coordinate
   use kinds, only: wp
   use dimensionless_problem, only: problem_t

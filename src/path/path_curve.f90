@@ -4,7 +4,7 @@
 !> path something happens, and the state there is then solved (`curve_states`).
 module path_curve
   use kinds, only: wp
-  use interpolation, only: hermite_t, hermite_through
+  use interpolation, only: hermite_t, hermite_through, most_hermite_nodes, find_nodes_about
   use contact_state, only: radius_of_gap
   use equilibrium, only: equations_t
   use arc, only: arc_t
@@ -18,8 +18,6 @@ module path_curve
   integer, parameter :: no_mesh = 0
   !> Ratio of h0 between such nodes.
   real(wp), parameter :: outer_ratio = 1.12_wp
-  !> A neighbour nearer to an interval than this part of its width makes the polynomial worse.
-  real(wp), parameter :: well_apart = 0.1_wp
 
   !> An equilibrium of the path. x is the path's coordinate (`path_coordinate`), for undeformed
   !> bodies -log(h0); slopes are by x.
@@ -49,7 +47,7 @@ module path_curve
     procedure :: begin_of
     procedure :: end_of
     procedure :: support
-    procedure, private :: polynomial
+    procedure :: polynomial
   end type curve_t
 
 contains
@@ -169,25 +167,18 @@ contains
     class(curve_t), intent(in) :: self
     integer, intent(in) :: i
     integer, allocatable :: nodes(:)
-    real(wp) :: least
-    integer :: j
+    integer :: about(most_hermite_nodes), first, last, n
 
-    associate (left => self%interval(i)%left)
-      nodes = [left, left + 1]
-      least = well_apart*(self%node(left + 1)%x - self%node(left)%x)
-      do j = left - 1, max(1, left - 3), -1
-        if (self%node(j)%mesh /= self%node(left)%mesh) exit
-        if (self%node(left)%x - self%node(j)%x < least) cycle
-        nodes = [j, nodes]
-        exit
+    associate (left => self%interval(i)%left, mesh => self%node%mesh)
+      do first = left, max(2, left - 2), -1
+        if (mesh(first - 1) /= mesh(left)) exit
       end do
-      do j = left + 2, min(size(self%node), left + 4)
-        if (self%node(j)%mesh /= self%node(left)%mesh) exit
-        if (self%node(j)%x - self%node(left + 1)%x < least) cycle
-        nodes = [nodes, j]
-        exit
+      do last = left + 1, min(size(mesh), left + 4) - 1
+        if (mesh(last + 1) /= mesh(left)) exit
       end do
+      call find_nodes_about(self%node(first:last)%x, left + 1 - first, about, n)
     end associate
+    nodes = first - 1 + about(:n)
   end function support
 
   !> The node at which an interval begins, and the one at which it ends.

@@ -1,8 +1,8 @@
-!> Extrema of h0 or of the load between neighbouring states of the equilibrium path. The slopes of
-!> the states, which are exact, and the curve through them show them: one where the slopes have
-!> opposite signs, and where they have the same, perhaps two. Near the adhesion strength at which
-!> jumps begin two folds are so close that steps pass over both; wherever the curve leaves a doubt,
-!> a state is solved and joins it.
+!> Extrema of h0, the load or a combination of both between neighbouring states of the equilibrium
+!> path. The slopes of the states, which are exact, and the curve through them show them: one where
+!> the slopes have opposite signs, and where they have the same, perhaps two. Near the adhesion
+!> strength at which jumps begin two folds are so close that steps pass over both; wherever the
+!> curve leaves a doubt, a state is solved and joins it.
 module path_extremum
   use kinds, only: wp
   use contact_state, only: state_t
@@ -12,10 +12,10 @@ module path_extremum
   use interpolation, only: hermite_t
   use root_finding, only: bracket_t, secant_root
   use path_tangent, only: tangent_t
-  use arc, only: arc_t, most_states, of_h0
+  use arc, only: arc_t, most_states
   implicit none
   private
-  public :: extremum_t, find_extrema
+  public :: extremum_t, find_extrema, may_turn
 
   !> Places of an interval at which the curve's slope is looked at; part of the mean slope to which
   !> it has to fall somewhere for two extrema to be looked for; of the slope's own error, how much
@@ -43,13 +43,14 @@ module path_extremum
 
 contains
 
-  !> The extrema of h0 or load between the last two states of an arc, in order. lost: a solve
-  !> failed.
-  subroutine find_extrema(equations, options, arc, quantity, extrema, lost)
+  !> The extrema of weights(1) h0 + weights(2) load between state `first` of an arc and the next, in
+  !> order. lost: a solve failed.
+  subroutine find_extrema(equations, options, arc, first, weights, extrema, lost)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     type(arc_t), intent(in) :: arc
-    integer, intent(in) :: quantity
+    integer, intent(in) :: first
+    real(wp), intent(in) :: weights(2)
     type(extremum_t), allocatable, intent(out) :: extrema(:)
     logical, intent(out) :: lost
     type(arc_t) :: near
@@ -58,81 +59,102 @@ contains
     type(state_t) :: state
     type(tangent_t) :: tangent
     real(wp) :: s, expected, error
-    integer :: i
+    integer :: i, added
     logical :: turns, doubt, solved
 
     allocate (extrema(0))
     lost = .false.
     error = huge(1.0_wp)
-    i = arc%held - 1
-    if (i < 1) return
+    i = first
+    if (i < 1 .or. i >= arc%held) return
     ! Of most intervals nothing is to be told, and no copy is made.
-    call look(arc, quantity, i, error, turns, doubt, s)
+    call look_at(arc)
     if (.not. (turns .or. doubt)) return
     near = arc
-    do while (i < near%held)
-      call look(near, quantity, i, error, turns, doubt, s)
+    added = 0
+    do while (i <= first + added)
+      call look_at(near)
       if (doubt .and. near%held < most_states) then
-        expected = near%slope(quantity, s)
+        expected = near%slope(weights, s)
         call near%exact_state_at(equations, options, frozen, s, state, tangent, solved)
         lost = .not. solved
         if (lost) return
-        error = abs(slope_of(quantity, tangent) - expected)
+        error = abs(tangent%of(weights) - expected)
         call near%add(s, state, tangent)
+        added = added + 1
         cycle
       end if
       if (turns) then
-        call polish(equations, options, near, i, quantity, found, lost)
+        call polish(equations, options, near, i, weights, found, lost)
         if (lost) return
         extrema = [extrema, found]
       end if
       i = i + 1
     end do
+
+  contains
+
+    subroutine look_at(near)
+      type(arc_t), intent(in) :: near
+
+      associate (x => near%coordinate(i:i + 1))
+        call look(near%curve(weights, x(1) + 0.5_wp*(x(2) - x(1))), x, &
+          [near%tangent(i)%of(weights), near%tangent(i + 1)%of(weights)], error, turns, doubt, s)
+      end associate
+    end subroutine look_at
+
   end subroutine find_extrema
 
-  !> What is between state i of an arc and the next: `turns`, an extremum; `doubt`, perhaps two
-  !> more, which a state at s would show. error: of the curve's slope; huge where it is not known.
-  pure subroutine look(near, quantity, i, error, turns, doubt, s)
-    type(arc_t), intent(in) :: near
-    integer, intent(in) :: quantity, i
-    real(wp), intent(in) :: error
+  !> Whether there may be extrema between two neighbouring states, at the places x, of what has
+  !> these slopes there; curve: the polynomial between.
+  pure logical function may_turn(curve, x, slopes)
+    type(hermite_t), intent(in) :: curve
+    real(wp), intent(in) :: x(2), slopes(2)
+    real(wp) :: s
+    logical :: turns, doubt
+
+    call look(curve, x, slopes, huge(1.0_wp), turns, doubt, s)
+    may_turn = turns .or. doubt
+  end function may_turn
+
+  !> What is between two neighbouring states at the places x, where a curve has slopes that are
+  !> exact at these: `turns`, an extremum; `doubt`, perhaps two more, which a state at s would show.
+  !> error: of the curve's slope; huge where it is not known.
+  pure subroutine look(curve, x, ends, error, turns, doubt, s)
+    type(hermite_t), intent(in) :: curve
+    real(wp), intent(in) :: x(2), ends(2), error
     logical, intent(out) :: turns, doubt
     real(wp), intent(out) :: s
-    type(hermite_t) :: curve
     real(wp) :: course, mean, least, slope, step
     integer :: k
 
-    associate (x => near%coordinate(i:i + 1), ends => slope_of(quantity, near%tangent(i:i + 1)))
-      turns = ends(1)*ends(2) < 0
-      doubt = .false.
-      ! In the sense of its course the slope is above zero but between two extrema; where the ends
-      ! differ, up to the first and, turned round, beyond it.
-      course = sign(1.0_wp, ends(1))
-      step = (x(2) - x(1))/places
-      curve = near%curve(quantity, x(1) + 0.5_wp*(x(2) - x(1)))
-      mean = abs(curve%value(x(2)) - curve%value(x(1)))/abs(x(2) - x(1))
-      least = merge(0.0_wp, minval(abs(ends)), turns)
-      s = x(minloc(abs(ends), 1))
-      do k = 1, places - 1
-        slope = course*curve%slope(x(1) + k*step)
-        if (turns .and. slope < 0 .and. course*ends(1) > 0) then
-          course = -course
-          slope = -slope
-        end if
-        if (.not. slope < least) cycle
-        least = slope
-        s = x(1) + k*step
-      end do
-      if (turns) then
-        doubt = least < 0
-        return
+    turns = ends(1)*ends(2) < 0
+    doubt = .false.
+    ! In the sense of its course the slope is above zero but between two extrema; where the ends
+    ! differ, up to the first and, turned round, beyond it.
+    course = sign(1.0_wp, ends(1))
+    step = (x(2) - x(1))/places
+    mean = abs(curve%value(x(2)) - curve%value(x(1)))/(x(2) - x(1))
+    least = merge(0.0_wp, minval(abs(ends)), turns)
+    s = x(minloc(abs(ends), 1))
+    do k = 1, places - 1
+      slope = course*curve%slope(x(1) + k*step)
+      if (turns .and. slope < 0 .and. course*ends(1) > 0) then
+        course = -course
+        slope = -slope
       end if
-      if (.not. least < suspicious*mean) return
-      call descend(curve, course, [max(s - abs(step), minval(x)), &
-        min(s + abs(step), maxval(x))], s, least)
-      doubt = minval(abs(s - x)) > at_end*abs(x(2) - x(1)) .and. &
-        (least/doubtful < error .or. .not. error < huge(1.0_wp))
-    end associate
+      if (.not. slope < least) cycle
+      least = slope
+      s = x(1) + k*step
+    end do
+    if (turns) then
+      doubt = least < 0
+      return
+    end if
+    if (.not. least < suspicious*mean) return
+    call descend(curve, course, [max(s - step, x(1)), min(s + step, x(2))], s, least)
+    doubt = minval(abs(s - x)) > at_end*(x(2) - x(1)) .and. &
+      (least/doubtful < error .or. .not. error < huge(1.0_wp))
   end subroutine look
 
   !> The least slope of the curve in the sense of its course, and its place, between two places.
@@ -156,11 +178,12 @@ contains
   !> The extremum between state i of an arc and the next: a root of the exact slope, begun at that
   !> of the curve and found by secants, and by bisection where these do not come nearer, as under a
   !> force that changes by orders of magnitude.
-  subroutine polish(equations, options, near, i, quantity, found, lost)
+  subroutine polish(equations, options, near, i, weights, found, lost)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
     type(arc_t), intent(in) :: near
-    integer, intent(in) :: i, quantity
+    integer, intent(in) :: i
+    real(wp), intent(in) :: weights(2)
     type(extremum_t), intent(out) :: found
     logical, intent(out) :: lost
     type(bracket_t) :: bracket
@@ -174,10 +197,10 @@ contains
     logical :: solved, rising
 
     associate (x => near%coordinate(i:i + 1))
-      rising = slope_of(quantity, near%tangent(merge(i, i + 1, x(1) < x(2)))) > 0
-      bracket = bracket_t(minval(x), maxval(x))
-      width = abs(x(2) - x(1))
-      curve = near%curve(quantity, x(1) + 0.5_wp*(x(2) - x(1)))
+      rising = near%tangent(i)%of(weights) > 0
+      bracket = bracket_t(x(1), x(2))
+      width = x(2) - x(1)
+      curve = near%curve(weights, x(1) + 0.5_wp*(x(2) - x(1)))
     end associate
     s = root_of_curve()
     beside = near
@@ -188,7 +211,7 @@ contains
       lost = .not. solved
       if (lost) return
       tried%coordinate = s
-      slope = slope_of(quantity, tried%tangent)
+      slope = tried%tangent%of(weights)
       call bracket%narrow((slope > 0) .eqv. rising, s)
       if (.not. abs(slope) < least) then
         if (abs(s - found%coordinate) < rounding_rules) exit
@@ -213,7 +236,7 @@ contains
         call beside%add(s_before, found%state, found%tangent)
       end if
     end do
-    found%sense = merge(1, -1, slope_of(quantity, near%tangent(i)) > 0)
+    found%sense = merge(1, -1, near%tangent(i)%of(weights) > 0)
 
   contains
 
@@ -228,13 +251,5 @@ contains
     end function root_of_curve
 
   end subroutine polish
-
-  !> The derivative of h0 or load by the path's coordinate.
-  elemental real(wp) function slope_of(quantity, tangent)
-    integer, intent(in) :: quantity
-    type(tangent_t), intent(in) :: tangent
-
-    slope_of = merge(tangent%h0, tangent%load, quantity == of_h0)
-  end function slope_of
 
 end module path_extremum

@@ -7,8 +7,8 @@ module path_span
   use shape, only: shape_t
   use discretisation, only: discretisation_t
   use contact_state, only: state_t
-  use arc, only: of_h0, of_load
-  use solve_at_h0, only: neighbours_t, neighbours_of, coordinate_at_h0
+  use path_tangent, only: of_h0, of_load
+  use state_search, only: neighbours_t, neighbours_of, coordinate_where
   use traced_path, only: traced_path_t
   implicit none
   private
@@ -35,16 +35,14 @@ contains
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     type(path_span_t) :: span
-    real(wp) :: middle
 
     span%near = neighbours_of(path, i)
     span%point = i
     span%mesh = span%near%mesh
-    span%ends = span%near%coordinate(span%near%lower:span%near%lower + 1)
-    middle = 0.5_wp*sum(span%ends)
-    call span%near%support(middle, span%nodes, span%held)
-    span%h0 = span%near%curve(of_h0, middle)
-    span%load = span%near%curve(of_load, middle)
+    span%ends = span%near%ends
+    call span%near%support(0.5_wp*sum(span%ends), span%nodes, span%held)
+    span%h0 = span%near%curve_there(of_h0)
+    span%load = span%near%curve_there(of_load)
   end function new_path_span
 
   !> Where between the ends H0 has a value; from: a place nearby, if one is known.
@@ -53,7 +51,7 @@ contains
     real(wp), intent(in) :: h0
     real(wp), intent(in), optional :: from
 
-    s = coordinate_at_h0(self%near, self%h0, h0, from)
+    s = coordinate_where(self%h0, self%ends, h0, from)
   end function at_h0
 
   !> The state that is expected at the coordinate s, beyond the ends too; grid: its mesh.

@@ -12,12 +12,18 @@ module path_tangent
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   implicit none
   private
-  public :: tangent_t, tangent_at, scaled
+  public :: tangent_t, tangent_at, scaled, of_h0, of_load
+
+  !> Weights of h0 and the load in what the path is asked about: D = weights(1) h0 + weights(2)
+  !> load, which is h0 itself, the load, or what drives bodies through a spring (`driven_pieces`).
+  real(wp), parameter :: of_h0(2) = [1, 0], of_load(2) = [0, 1]
 
   !> Derivatives of a state: of its gaps (nodes), H0, scale, the gap on the axis and the load.
   type :: tangent_t
     real(wp), allocatable :: gap(:)
     real(wp) :: h0 = 0, scale = 0, axis_gap = 0, load = 0
+  contains
+    procedure :: of
   end type tangent_t
 
   !> The last correction of a tangent over the error that is left, at most: the next would be
@@ -27,6 +33,14 @@ module path_tangent
   integer, parameter :: most_corrections = 12
 
 contains
+
+  !> The derivative of weights(1) h0 + weights(2) load.
+  pure real(wp) function of(self, weights)
+    class(tangent_t), intent(in) :: self
+    real(wp), intent(in) :: weights(2)
+
+    of = dot_product(weights, [self%h0, self%load])
+  end function of
 
   !> The derivatives by the value of the control at an equilibrium under it, with the relative error
   !> of the options; found = .false. where the Jacobian is singular. Factors that are too far from

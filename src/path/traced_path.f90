@@ -16,8 +16,8 @@ module traced_path
   use solver_options, only: solver_options_t
   use edge_locked, only: approach
   use reported, only: error_t, measure_t
-  use path_tangent, only: tangent_t
-  use arc, only: arc_t, of_h0, of_load
+  use path_tangent, only: tangent_t, of_h0, of_load
+  use arc, only: arc_t
   use path_extremum, only: extremum_t, find_extrema
   use continuation, only: continuation_t
   implicit none
@@ -189,17 +189,20 @@ contains
     type(solver_options_t), intent(in) :: options
     logical, intent(out) :: lost
     type(extremum_t), allocatable :: extrema(:)
-    integer :: quantity, n, k
+    logical :: folds
+    integer :: pass, n, k
 
     call change_mesh(path, walker, equations, options, lost)
-    do quantity = of_h0, of_load
+    do pass = 1, 2
+      folds = pass == 1
       if (lost) return
       n = walker%held
-      if (quantity == of_load .and. .not. any(abs(walker%state(max(1, n - 1):n)%load) > &
+      if (.not. folds .and. .not. any(abs(walker%state(max(1, n - 1):n)%load) > &
         no_load*equations%problem%law%adhesion)) cycle
-      call find_extrema(equations, options, walker%arc_t, quantity, extrema, lost)
+      call find_extrema(equations, options, walker%arc_t, n - 1, merge(of_h0, of_load, folds), &
+        extrema, lost)
       do k = 1, size(extrema)
-        call put(path, walker, quantity, extrema(k))
+        call put(path, walker, folds, extrema(k))
       end do
     end do
   end subroutine pass_on
@@ -261,11 +264,12 @@ contains
     deallocate (point%twin, point%twin_tangent)
   end subroutine replace_by_twin
 
-  !> Puts an extremum among the last points, by its coordinate on the walker's mesh.
-  subroutine put(path, walker, quantity, found)
+  !> Puts an extremum, of h0 (a fold) or of the load, among the last points, by its coordinate on
+  !> the walker's mesh.
+  subroutine put(path, walker, fold, found)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(in) :: walker
-    integer, intent(in) :: quantity
+    logical, intent(in) :: fold
     type(extremum_t), intent(in) :: found
     type(path_point_t) :: point
     integer :: place, change
@@ -281,11 +285,11 @@ contains
     point%tangent = found%tangent
     point%mesh = walker%mesh
     point%coordinate = found%coordinate
-    point%fold = quantity == of_h0
-    point%load_extremum = quantity == of_load
+    point%fold = fold
+    point%load_extremum = .not. fold
     point%modes = path%point(place - 1)%modes
     call insert(path, place, point)
-    if (quantity /= of_h0) return
+    if (.not. fold) return
     ! At a maximum of h0 its second derivative is negative.
     change = merge(-1, 1, -found%sense*found%tangent%load > 0)
     path%point(place:path%held)%modes = path%point(place:path%held)%modes + change
