@@ -15,6 +15,8 @@ module power
 
   type, extends(shape_t) :: power_t
     real(wp), private :: kappa = 2
+    !> n where that is a whole number, else 0: products are quicker than powers.
+    integer, private :: whole = 0
   contains
     procedure :: height
     procedure :: slope
@@ -84,6 +86,7 @@ contains
     this%radius = exp(log_radius)
     this%exponent = n
     this%growth = n
+    if (.not. abs(n - nint(n)) > 0) this%whole = nint(n)
     this%kappa = sqrt(pi)*gamma(n/2 + 1)/gamma((n + 1)/2)
     allocate (shape, source=this)
   end subroutine take_power
@@ -93,7 +96,11 @@ contains
     real(wp), intent(in) :: r
     real(wp) :: value
 
-    value = 0.5_wp*r**self%exponent
+    if (self%whole > 0) then
+      value = 0.5_wp*r**self%whole
+    else
+      value = 0.5_wp*r**self%exponent
+    end if
   end function height
 
   elemental function slope(self, r) result(value)
@@ -101,7 +108,11 @@ contains
     real(wp), intent(in) :: r
     real(wp) :: value
 
-    value = 0.5_wp*self%exponent*r**(self%exponent - 1)
+    if (self%whole > 0) then
+      value = 0.5_wp*self%whole*r**(self%whole - 1)
+    else
+      value = 0.5_wp*self%exponent*r**(self%exponent - 1)
+    end if
   end function slope
 
   elemental real(wp) function position_of(self, height) result(r)
