@@ -115,31 +115,35 @@ contains
     end do
     wave(:, before + 1:) = transpose(rows)
     do p = 1, size(grid%panel)
-      call add_spectrum(self%bessel, grid, p, k, spectrum(:, before + 1:))
+      associate (own => first_node - 1 + grid%first(p) - 1 + &
+        [(i, i=1, size(grid%local(grid%which(p))%node))])
+        call add_spectrum(self%bessel, grid, p, k, &
+          count(k <= from_of_place*minval(last_of(own))), rows(:, own), spectrum(:, before + 1:))
+      end associate
     end do
     call move_alloc(wave, self%wave)
     call move_alloc(spectrum, self%spectrum)
   end subroutine add
 
-  !> What the polynomials of a panel have of the waves, in order. Its own nodes do for the longest;
-  !> for others it is cut into pieces, each about as wide as it is far from the mesh's centre, and
+  !> What the polynomials of a panel have of the waves, in order. Its own nodes do for the longest,
+  !> of which `whole` are at the nodes what `wave`, (waves, nodes), says; for others it is cut into pieces, each about as wide as it is far from the mesh's centre, and
   !> these are given the more nodes the shorter the waves are.
-  subroutine add_spectrum(bessel, grid, p, k, spectrum)
+  subroutine add_spectrum(bessel, grid, p, k, whole, wave, spectrum)
     type(bessel_t), intent(in) :: bessel
     type(discretisation_t), intent(in) :: grid
-    integer, intent(in) :: p
-    real(wp), intent(in) :: k(:)
+    integer, intent(in) :: p, whole
+    real(wp), intent(in) :: k(:), wave(:, :)
     real(wp), intent(inout) :: spectrum(:, :)
-    real(wp) :: whole(size(k))
     integer :: j, own, piece, pieces
 
     associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
       own = 0
       if (panel%kind /= algebraic_map .and. size(local%node) > hat) &
-        own = count(nodes_for(grid, p, [0.0_wp, 1.0_wp], k) <= size(local%node))
-      do j = grid%first(p), grid%first(p) + size(local%node) - 1
-        call bessel%j0(grid%x(j)*k(:own), whole(:own))
-        spectrum(j, :own) = grid%weight(j)*whole(:own)
+        own = min(whole, count(nodes_for(grid, p, [0.0_wp, 1.0_wp], k) <= size(local%node)))
+      do j = 1, size(local%node)
+        associate (row => grid%first(p) - 1 + j)
+          spectrum(row, :own) = grid%weight(row)*wave(:own, j)
+        end associate
       end do
       pieces = max(1, ceiling(panel%z_length))
       do piece = 1, pieces
