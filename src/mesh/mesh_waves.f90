@@ -126,8 +126,9 @@ contains
   end subroutine add
 
   !> What the polynomials of a panel have of the waves, in order. Its own nodes do for the longest,
-  !> of which `whole` are at the nodes what `wave`, (waves, nodes), says; for others it is cut into pieces, each about as wide as it is far from the mesh's centre, and
-  !> these are given the more nodes the shorter the waves are.
+  !> of which `whole` are at the nodes what `wave`, (waves, nodes), says; for others it is cut into
+  !> pieces, each about as wide as it is far from the mesh's centre, and these are given the more
+  !> nodes the shorter the waves are.
   subroutine add_spectrum(bessel, grid, p, k, whole, wave, spectrum)
     type(bessel_t), intent(in) :: bessel
     type(discretisation_t), intent(in) :: grid
