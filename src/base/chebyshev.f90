@@ -4,7 +4,7 @@ module chebyshev
   implicit none
   private
   public :: chebyshev_points, chebyshev_series, series_value, series_slope, series_integral, &
-    power_series
+    power_series, power_value
 
 contains
 
@@ -103,5 +103,23 @@ contains
       power = power + coefficient(k)*now
     end do
   end function power_series
+
+  !> A series of powers at x: those of even and of odd order at once, for neither waits for the other.
+  pure real(wp) function power_value(power, x) result(value)
+    real(wp), intent(in) :: power(0:), x
+    real(wp) :: square, odd
+    integer :: k
+
+    square = x**2
+    value = 0
+    odd = 0
+    do k = ubound(power, 1)/2, 0, -1
+      value = value*square + power(2*k)
+    end do
+    do k = (ubound(power, 1) - 1)/2, 0, -1
+      odd = odd*square + power(2*k + 1)
+    end do
+    value = value + x*odd
+  end function power_value
 
 end module chebyshev

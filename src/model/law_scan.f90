@@ -34,7 +34,7 @@ contains
   !> Fills in adhesion, work, edge_gap, rest_gap and range of a law that has not set its range.
   subroutine find_scales(law)
     class(force_law_t), intent(inout) :: law
-    real(wp), allocatable :: gap(:), pressure(:)
+    real(wp), allocatable :: gap(:), pressure(:), slope(:)
     real(wp) :: largest
     integer :: i, rest
 
@@ -48,6 +48,7 @@ contains
     i = findloc(abs(pressure) > vanished, .true., 1, back=.true.)
     gap = gap(:i)
     pressure = pressure(:i)
+    slope = law%slope(gap)
     rest = next_zero(pressure, 1, falling=.true.)
     largest = 1
     if (rest > 0) then
@@ -57,7 +58,7 @@ contains
       i = next_zero(pressure, rest + 1, falling=.false.)
       if (i > 0) law%adhesion = law%work + &
         energy_at(law, zero_between(law, gap(i), gap(i + 1), of_slope=.false.))
-      i = next_zero(law%slope(gap), rest, falling=.false.)
+      i = next_zero(slope, rest, falling=.false.)
       if (i > 0) then
         law%edge_gap = zero_between(law, gap(i), gap(i + 1), of_slope=.true.)
         largest = -pressure_at(law, law%edge_gap)
@@ -68,7 +69,7 @@ contains
       law%work = law%adhesion
     end if
     if (law%tail_power < huge(1.0_wp)) then
-      i = findloc(abs(gap*law%slope(gap) + law%tail_power*pressure) > settled*abs(pressure), &
+      i = findloc(abs(gap*slope + law%tail_power*pressure) > settled*abs(pressure), &
         .true., 1, back=.true.)
       if (i > 0) law%power_from = gap(i)
     end if

@@ -5,8 +5,9 @@
 !> series, exactly, as the slope is its derivative.
 module layer_table
   use kinds, only: wp
-  use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
-    series_integral
+  use chebyshev, only: chebyshev_points, chebyshev_series, series_slope, series_integral, &
+    power_series, power_value
+  use interpolation, only: polynomial_weights
   use poisson_boltzmann, only: surface_t, gap_state_t, far_amplitude, far_state, solve_gap
   implicit none
   private
@@ -27,8 +28,8 @@ module layer_table
   !> The ratio of u over a panel, in logarithms: at first and at most, and at least.
   real(wp), parameter :: longest = 8, shortest = 0.02_wp
 
-  !> Panels from the smallest u on, which begin at `first` and end at `last`; columns are series in
-  !> the panel's [-1, 1]. Energies are those from the panel's first u to infinity.
+  !> Panels from the smallest u on, which begin at `first` and end at `last`; columns are series of
+  !> powers in the panel's [-1, 1]. Energies are those from the panel's first u to infinity.
   type :: layer_table_t
     private
     real(wp), allocatable :: first(:), last(:)
@@ -37,13 +38,14 @@ module layer_table
     procedure :: value
   end type layer_table_t
 
-  !> The last two gaps that were solved, from which the next is extrapolated; their number, and the
+  !> The last gaps that were solved, from which the next is extrapolated; their number, and the
   !> largest pressure met, without its sign.
+  integer, parameter :: most = 4
   type :: trail_t
     integer :: length = 0
     real(wp) :: largest = 0
-    real(wp) :: u(2) = 0
-    type(gap_state_t) :: state(2)
+    real(wp) :: u(most) = 0
+    type(gap_state_t) :: state(most)
   end type trail_t
 
 contains
@@ -101,30 +103,31 @@ contains
         state = next_state(surface, u(i), trail)
         call solve_gap(surface, u_at(u(i)), state, solved)
         if (.not. solved) return
-        trail = trail_t(min(trail%length + 1, 2), max(trail%largest, abs(state%pressure)), &
-          [u(i), trail%u(1)], [state, trail%state(1)])
+        trail = trail_t(min(trail%length + 1, most), max(trail%largest, abs(state%pressure)), &
+          [u(i), trail%u(:most - 1)], [state, trail%state(:most - 1)])
       end if
       q(i) = trail%state(1)%pressure*sinh(u_at(u(i)))
     end do
     series = chebyshev_series(q)
   end subroutine solve_panel
 
-  !> Where to begin at u: extrapolated from what was solved, to first order.
+  !> Where to begin at u: extrapolated from what was solved.
   pure type(gap_state_t) function next_state(surface, u, trail) result(state)
     type(surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: u
     type(trail_t), intent(in) :: trail
 
-    associate (known => trail%state)
-      select case (trail%length)
-      case (0)
-        state = far_state(surface, u_at(u))
-      case (1)
-        state%t = known(1)%t*u/trail%u(1)
-      case default
-        state%t = known(1)%t + (known(1)%t - known(2)%t)*(u - trail%u(1))/(trail%u(1) - trail%u(2))
-      end select
-    end associate
+    select case (trail%length)
+    case (0)
+      state = far_state(surface, u_at(u))
+    case (1)
+      state%t = trail%state(1)%t*u/trail%u(1)
+    case default
+      associate (weight => polynomial_weights(trail%u(:trail%length), u))
+        state%t = [sum(weight*trail%state(:trail%length)%t(1)), &
+          sum(weight*trail%state(:trail%length)%t(2))]
+      end associate
+    end select
   end function next_state
 
   !> Adds a panel after those there are; before the first q is `limit`.
@@ -137,12 +140,13 @@ contains
     n = size(table%first)
     integral = series_integral(series)*(last - first)/2
     if (n == 0) integral(0) = integral(0) + limit*first
-    if (n > 0) integral(0) = integral(0) + series_value(table%energy(:, n), 1.0_wp)
+    if (n > 0) integral(0) = integral(0) + sum(table%energy(:, n))
     table%first = [table%first, first]
     table%last = [table%last, last]
-    table%q = reshape([table%q, series], [degree + 1, n + 1])
-    table%slope = reshape([table%slope, series_slope(series)*2/(last - first)], [degree + 1, n + 1])
-    table%energy = reshape([table%energy, integral], [degree + 2, n + 1])
+    table%q = reshape([table%q, power_series(series)], [degree + 1, n + 1])
+    table%slope = reshape([table%slope, power_series(series_slope(series)*2/(last - first))], &
+      [degree + 1, n + 1])
+    table%energy = reshape([table%energy, power_series(integral)], [degree + 2, n + 1])
   end subroutine append
 
   !> Pressure, slope or energy (`quantity`) at a gap in Debye lengths, from `nearest_gap` on.
@@ -150,22 +154,33 @@ contains
     class(layer_table_t), intent(in) :: self
     integer, intent(in) :: quantity
     real(wp), intent(in) :: gap
-    real(wp) :: u, x
+    real(wp) :: u, x, e, inverse, cotangent
     integer :: i
 
-    u = u_at(gap)
+    ! u, 1/sinh and coth of the gap, from one function and a logarithm.
+    if (gap < 1) then
+      e = tanh(gap/2)
+      u = -log(e)
+      inverse = 0.5_wp*(1 - e)*(1 + e)/e
+      cotangent = 0.5_wp*(1 + e**2)/e
+    else
+      e = exp(-gap)
+      u = 2*atanh(e)
+      inverse = 2*e/((1 - e)*(1 + e))
+      cotangent = (1 + e**2)/((1 - e)*(1 + e))
+    end if
     i = max(count(self%first <= u), 1)
     ! Beyond the table q is its limit, that of the first point.
     x = max(-1.0_wp, 2*(u - self%first(i))/(self%last(i) - self%first(i)) - 1)
-    value = series_value(self%q(:, i), x)
+    value = power_value(self%q(:, i), x)
     select case (quantity)
     case (of_pressure)
-      value = value/sinh(gap)
+      value = value*inverse
     case (of_slope)
-      value = -value*cosh(gap)/sinh(gap)**2
-      if (u >= self%first(i)) value = value - series_value(self%slope(:, i), x)/sinh(gap)**2
+      value = -value*cotangent*inverse
+      if (u >= self%first(i)) value = value - power_value(self%slope(:, i), x)*inverse**2
     case default
-      value = series_value(self%energy(:, i), x) - value*max(0.0_wp, self%first(i) - u)
+      value = power_value(self%energy(:, i), x) - value*max(0.0_wp, self%first(i) - u)
     end select
   end function value
 

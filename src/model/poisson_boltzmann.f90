@@ -59,22 +59,26 @@ contains
     real(wp), intent(in) :: gap
     type(gap_state_t), intent(inout) :: state
     logical, intent(out) :: solved
-    !> Increment of the differences relative to the unknowns, and the last step: with differences of
-    !> that quality one more has the accuracy of rounding.
-    real(wp), parameter :: increment = 1.0e-7_wp, last_step = 1.0e-9_wp
+    !> Increment of the differences relative to the unknowns; by how much a step must make what is
+    !> left smaller for differences to serve once more; and the last step with new ones and with those
+    !> of an earlier step, after which there is only rounding.
+    real(wp), parameter :: increment = 1.0e-7_wp, gain = 1.0e-3_wp, last_step = 1.0e-9_wp, &
+      last_with_old = 1.0e-12_wp
     !> A t that is less than so much of the other counts as that much.
     real(wp), parameter :: negligible = 1.0e-3_wp
     integer, parameter :: most_steps = 60, most_halvings = 20
     real(wp) :: r(2), trial(2), jacobian(2, 2), step(2), t(2), scale, unit
     integer :: i, k
+    logical :: renew
 
     solved = .false.
+    renew = .true.
     t = state%t
     unit = maxval(abs([pressure_at(surface(1), t(1)), pressure_at(surface(2), t(2))]))
     r = residual(t)
     do i = 1, most_steps
       scale = maxval(abs(t))
-      do k = 1, 2
+      do k = 1, merge(2, 0, renew)
         trial = t
         trial(k) = t(k) + increment*max(abs(t(k)), negligible*scale)
         jacobian(:, k) = (residual(trial) - r)/(trial(k) - t(k))
@@ -83,13 +87,15 @@ contains
         r(1)*jacobian(2, 1) - r(2)*jacobian(1, 1)]/ &
         (jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))
       if (.not. all(abs(step) < huge(step))) return
-      solved = all(abs(step) <= last_step*max(abs(t), negligible*scale))
+      solved = all(abs(step) <= merge(last_step, last_with_old, renew)* &
+        max(abs(t), negligible*scale))
       do k = 1, most_halvings
         trial = residual(t + step)
         if (solved .or. norm2(trial) < norm2(r)) exit
         step = step/2
       end do
       t = t + step
+      renew = norm2(trial) > gain*norm2(r)
       r = trial
       if (solved) exit
     end do
