@@ -1,12 +1,12 @@
 !> Bodies of bonded layers. Their surfaces yield to a wave k by L(k) of what half-spaces of the top
 !> layers do (`layered_surface`). L - 1 falls as exp(-2 k thickness) with the thickness of the top
-!> layer; it is tabulated once, as Chebyshev series on panels of k.
+!> layer; it is tabulated once, as series of powers on panels of k.
 module layered_body
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use linear_algebra, only: multiply_transposed
-  use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
-    series_integral
+  use chebyshev, only: chebyshev_points, chebyshev_series, series_slope, series_integral, &
+    power_series, power_value
   use wave_quadrature, only: wave_rule
   use elastic_body, only: elastic_body_t, half_space_t
   use layered_surface, only: layered_surface_t
@@ -59,7 +59,7 @@ contains
   type(layered_body_t) function new_layered_body(surface, part) result(body)
     type(layered_surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: part(2)
-    real(wp) :: last, first, before, series(0:degree), whole(0:degree + 1)
+    real(wp) :: last, first, before, largest, series(0:degree), whole(0:degree + 1)
     integer :: i, halved
 
     body%surface = surface
@@ -67,6 +67,7 @@ contains
     allocate (body%ends(1), body%series(0:degree, 0), body%slope(0:degree, 0), &
       body%whole(0:degree + 1, 0))
     before = 0
+    largest = 0
     body%ends = 0
     body%thinnest = huge(last)
     do i = 1, 2
@@ -81,18 +82,20 @@ contains
         if (maxval(abs(series(degree - 1:))) <= resolved*max(1.0_wp, maxval(abs(series)))) exit
       end do
       body%ends = [body%ends, merge(last, first + (last - first)/2**halved, halved == 0)]
-      body%series = reshape([body%series, series], [degree + 1, size(body%ends) - 1])
-      body%slope = reshape([body%slope, series_slope(series)*2/ &
-        (body%ends(size(body%ends)) - first)], [degree + 1, size(body%ends) - 1])
+      largest = max(largest, maxval(abs(series)))
+      body%series = reshape([body%series, power_series(series)], &
+        [degree + 1, size(body%ends) - 1])
+      body%slope = reshape([body%slope, power_series(series_slope(series)*2/ &
+        (body%ends(size(body%ends)) - first))], [degree + 1, size(body%ends) - 1])
       whole = series_integral(series)*(body%ends(size(body%ends)) - first)/2
       whole(0) = whole(0) + before
-      before = series_value(whole, 1.0_wp)
-      body%whole = reshape([body%whole, whole], [degree + 2, size(body%ends) - 1])
+      before = sum(whole)
+      body%whole = reshape([body%whole, power_series(whole)], [degree + 2, size(body%ends) - 1])
     end do
-    body%plain = maxval(abs(body%series)) <= resolved
+    body%plain = largest <= resolved
     ! Without an end of the series no state may converge.
     if (body%ends(size(body%ends)) < last) body%series = ieee_value(last, ieee_quiet_nan)
-    body%bottom = 1 + series_value(body%series(:, 1), -1.0_wp)
+    body%bottom = 1 + power_value(body%series(:, 1), -1.0_wp)
 
   contains
 
@@ -190,7 +193,7 @@ contains
       do while (k(i) > ends(panel + 1))
         panel = panel + 1
       end do
-      value(i) = series_value(series(:, panel), &
+      value(i) = power_value(series(:, panel), &
         2*(k(i) - ends(panel))/(ends(panel + 1) - ends(panel)) - 1)
     end do
   end function on_panels
