@@ -31,8 +31,8 @@ module law_panels
   real(wp), parameter :: times(*) = [1.0_wp, 1.3_wp, 1.7_wp, 2.2_wp, 2.8_wp, 3.6_wp]
 
   !> Of what a panel leaves out about a kink of the law, load and h0 at extrema feel less than a
-  !> tenth: panels are laid out for so many times the error that they may have there.
-  real(wp), parameter :: hardly_felt = 10
+  !> third: panels are laid out for so many times the error that they may have there.
+  real(wp), parameter :: hardly_felt = 3
 
 contains
 

@@ -60,8 +60,8 @@ contains
     type(gap_state_t), intent(inout) :: state
     logical, intent(out) :: solved
     !> Increment of the differences relative to the unknowns; by how much a step must make what is
-    !> left smaller for differences to serve once more; and the last step with new ones and with those
-    !> of an earlier step, after which there is only rounding.
+    !> left smaller for differences to serve once more; and the last step with new ones and with
+    !> those of an earlier step, after which there is only rounding.
     real(wp), parameter :: increment = 1.0e-7_wp, gain = 1.0e-3_wp, last_step = 1.0e-9_wp, &
       last_with_old = 1.0e-12_wp
     !> A t that is less than so much of the other counts as that much.

@@ -15,4 +15,5 @@ EXAMPLES = [path for path in sorted((Path(__file__).parents[2] / "inputs/example
 def test_an_example_runs_to_its_end(snapin, deck, tmp_path):
     done = snapin(deck, "--into", tmp_path / "results", timeout=HANG)
     assert done.returncode == 0, done.stderr
+    assert "above the accuracy" not in done.stderr
     assert f90nml.read(tmp_path / "results/summary.nml")["summary"]["converged"]
