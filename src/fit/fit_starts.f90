@@ -17,10 +17,10 @@ module fit_starts
     real(wp) :: work = 0, stiffness = 0, range = 0
   end type character_t
 
-  !> Steps of Newton's method, and of its differences; how far from the deck's value a start may be,
-  !> as a logarithm; starts that differ by less are one.
+  !> Steps of the secant method, the last of which is so small, and of its first differences; how far
+  !> from the deck's value a start may be, as a logarithm; starts that differ by less are one.
   integer, parameter :: steps = 6
-  real(wp), parameter :: change = 1.0e-3_wp, farthest = 4.5_wp, alike = 0.05_wp
+  real(wp), parameter :: near = 0.01_wp, change = 1.0e-3_wp, farthest = 4.5_wp, alike = 0.05_wp
   !> What of a step is not worth moving an unknown for that has hardly an effect.
   real(wp), parameter :: damping = 1.0e-4_wp
 
@@ -44,14 +44,25 @@ contains
     class(problem_family_t), intent(in) :: family
     type(unknown_t), intent(in) :: unknown(:)
     real(wp), allocatable, intent(out) :: start(:, :)
-    real(wp) :: value(size(unknown))
+    real(wp), dimension(size(unknown)) :: value, varied
+    real(wp) :: own(3), other(3), by(3, size(unknown))
     logical :: found, new
     integer :: i, k, n
 
     n = size(unknown)
     start = reshape(unknown%value, [n, 1])
+    call traits(family, unknown, unknown%value, own, found)
+    if (.not. found) return
+    by = 0
+    do k = 1, n
+      if (unknown(k)%role /= of_model .or. .not. unknown(k)%in_log) cycle
+      varied = unknown%value
+      varied(k) = varied(k)*exp(change)
+      call traits(family, unknown, varied, other, found)
+      if (found) by(:, k) = (other - own)/change
+    end do
     do i = 1, size(wanted)
-      call move_to(wanted(i), family, unknown, value, found)
+      call move_to(wanted(i), family, unknown, own, by, value, found)
       if (.not. found) cycle
       new = .true.
       do k = 1, size(start, 2)
@@ -61,31 +72,25 @@ contains
     end do
   end subroutine starts_like
 
-  !> The values nearest to the deck's, in their logarithms, whose problem has a character.
-  subroutine move_to(wanted, family, unknown, value, found)
+  !> The values nearest to the deck's, in their logarithms, whose problem has a character. own: the
+  !> traits of the deck's, and by: their derivatives, which steps renew (Broyden, 1965).
+  subroutine move_to(wanted, family, unknown, own, by, value, found)
     type(character_t), intent(in) :: wanted
     class(problem_family_t), intent(in) :: family
     type(unknown_t), intent(in) :: unknown(:)
+    real(wp), intent(in) :: own(3), by(:, :)
     real(wp), intent(out) :: value(:)
     logical, intent(out) :: found
     type(factorisation_t) :: square
-    real(wp) :: now(3), next(3), missing(3), by(3, size(unknown)), varied(size(unknown)), low, high
+    real(wp) :: now(3), next(3), missing(3), slope(3, size(unknown)), step(size(unknown)), low, high
     integer :: i, k
 
     value = unknown%value
+    now = own
+    slope = by
     do i = 1, steps
-      call traits(family, unknown, value, now, found)
-      if (.not. found) return
       missing = logarithms(wanted) - now
-      by = 0
-      do k = 1, size(unknown)
-        if (unknown(k)%role /= of_model .or. .not. unknown(k)%in_log) cycle
-        varied = value
-        varied(k) = value(k)*exp(change)
-        call traits(family, unknown, varied, next, found)
-        if (found) by(:, k) = (next - now)/change
-      end do
-      square%lu = matmul(by, transpose(by))
+      square%lu = matmul(slope, transpose(slope))
       do k = 1, 3
         square%lu(k, k) = square%lu(k, k) + damping
       end do
@@ -93,15 +98,24 @@ contains
       found = square%valid
       if (.not. found) return
       call solve(square, missing)
-      value = value*exp(max(-2.0_wp, min(2.0_wp, matmul(missing, by))))
+      step = max(-2.0_wp, min(2.0_wp, matmul(missing, slope)))
       do k = 1, size(unknown)
         if (.not. unknown(k)%in_log) cycle
         low = unknown(k)%value*exp(-farthest)
         high = unknown(k)%value*exp(farthest)
         if (allocated(unknown(k)%lower)) low = max(low, unknown(k)%lower)
         if (allocated(unknown(k)%upper)) high = min(high, unknown(k)%upper)
-        value(k) = max(low, min(high, value(k)))
+        step(k) = log(max(low, min(high, value(k)*exp(step(k))))/value(k))
       end do
+      value = value*exp(step)
+      if (maxval(abs(step)) <= near) return
+      call traits(family, unknown, value, next, found)
+      if (.not. found) return
+      do k = 1, 3
+        slope(k, :) = slope(k, :) + &
+          (next(k) - now(k) - dot_product(slope(k, :), step))*step/sum(step**2)
+      end do
+      now = next
     end do
   end subroutine move_to
 
