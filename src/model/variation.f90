@@ -45,10 +45,14 @@ contains
     integer :: shift, k
 
     varied%parameter = family%parameter(i)
-    allocate (varied%problem(2*aside + 1))
+    allocate (varied%problem(0))
     do shift = 0, 2
-      varied%offset = step(aside)*varied%parameter%scale*[(k + aside*merge(-1, shift, shift == 2), &
-        k=-aside, aside)]
+      varied%offset = [(real(k + aside*merge(-1, shift, shift == 2), wp), k=-aside, aside)]
+      ! Between two sides the problem in hand has no weight.
+      if (shift == 0) varied%offset = pack(varied%offset, abs(varied%offset) > 0)
+      varied%offset = step(aside)*varied%parameter%scale*varied%offset
+      deallocate (varied%problem)
+      allocate (varied%problem(size(varied%offset)))
       do k = 1, size(varied%offset)
         value = family%parameter%value
         value(i) = value(i) + varied%offset(k)
@@ -85,7 +89,7 @@ contains
       one = 0
       one(k) = 1
       varied%weight(k) = polynomial_slope(varied%offset, one, 0.0_wp)
-      if (k > 1 .and. k < size(one)) varied%coarser(k) = &
+      if (size(one) > 3 .and. k > 1 .and. k < size(one)) varied%coarser(k) = &
         polynomial_slope(varied%offset(2:size(one) - 1), one(2:size(one) - 1), 0.0_wp)
     end do
   end subroutine find_rule
