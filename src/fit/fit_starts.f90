@@ -17,8 +17,8 @@ module fit_starts
     real(wp) :: work = 0, stiffness = 0, range = 0
   end type character_t
 
-  !> Steps of the secant method, the last of which is so small, and of its first differences; how far
-  !> from the deck's value a start may be, as a logarithm; starts that differ by less are one.
+  !> Steps of the secant method, the last of which is so small, and of its first differences; how
+  !> far from the deck's value a start may be, as a logarithm; starts that differ by less are one.
   integer, parameter :: steps = 6
   real(wp), parameter :: near = 0.01_wp, change = 1.0e-3_wp, farthest = 4.5_wp, alike = 0.05_wp
   !> What of a step is not worth moving an unknown for that has hardly an effect.

@@ -3,12 +3,15 @@
 !> decades of u and is constant far away, but for terms like u ln u. On panels of u it is a
 !> Chebyshev series. Since du = -dh/sinh h, the energy is the integral of q over u: that of the
 !> series, exactly, as the slope is its derivative.
+!>
+!> Few panels are solved, but u is dear. What is read are polynomials of the gap itself: on an
+!> eighth of a factor of two pressure, slope and energy times exp(h) are as smooth as powers.
 module layer_table
   use kinds, only: wp
-  use chebyshev, only: chebyshev_points, chebyshev_series, series_slope, series_integral, &
-    power_series, power_value
+  use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
+    series_integral, power_series
   use interpolation, only: polynomial_weights
-  use poisson_boltzmann, only: surface_t, gap_state_t, far_amplitude, far_state, solve_gap
+  use poisson_boltzmann, only: surface_t, gap_state_t, far_state, solve_gap
   implicit none
   private
   public :: layer_table_t, new_layer_table, nearest_gap, of_pressure, of_slope, of_energy
@@ -16,27 +19,45 @@ module layer_table
   !> What is read.
   integer, parameter :: of_pressure = 1, of_slope = 2, of_energy = 3
 
-  !> Smallest gap of the table, in Debye lengths. Even the 1 um of pure water makes that smaller
-  !> than an atom by a factor of a hundred.
-  real(wp), parameter :: nearest_gap = 1.0e-6_wp
+  !> Exponents of the first and the last factor of two of the table.
+  integer, parameter :: first_octave = -19, last_octave = 6
+  !> Smallest gap of the table, in Debye lengths, 1e-6. Even the 1 um of pure water makes that
+  !> smaller than an atom by a factor of a hundred.
+  real(wp), parameter :: nearest_gap = 2.0_wp**(first_octave - 1)
   !> Gap beyond which q is its limit to rounding: u ln u is 1e-16 there.
   real(wp), parameter :: farthest_gap = 40
+  !> The largest gap on a piece.
+  real(wp), parameter :: last_gap = 2.0_wp**last_octave*(1 - epsilon(1.0_wp))
+  !> Degree on a piece, the least and the largest number of pieces of a factor of two: powers of the
+  !> gap, seen from 17 half-widths away, leave 34**-10 of themselves. What the last coefficient may
+  !> be of the pressure, for the next to be less by 30.
+  integer, parameter :: piece_degree = 9, fewest = 8, finest = 64
+  real(wp), parameter :: last_part = 1.0e-12_wp
   !> Degree of a series, and the most that its last two coefficients may be of the pressure; so much
   !> is left to the rounding of the quadratures.
   integer, parameter :: degree = 18
   real(wp), parameter :: resolved = 1.0e-13_wp, tolerated = 1.0e-11_wp
   !> The ratio of u over a panel, in logarithms: at first and at most, and at least.
   real(wp), parameter :: longest = 8, shortest = 0.02_wp
+  !> Over the ratio that would just be resolved, that of the next panel, and of one that was not.
+  real(wp), parameter :: careful = 0.9_wp
 
-  !> Panels from the smallest u on, which begin at `first` and end at `last`; columns are series of
-  !> powers in the panel's [-1, 1]. Energies are those from the panel's first u to infinity.
+  !> power(:, piece, quantity): coefficients of the powers of the place on a piece, from -1 to 1;
+  !> parts: pieces of a factor of two.
   type :: layer_table_t
     private
-    real(wp), allocatable :: first(:), last(:)
-    real(wp), allocatable :: q(:, :), slope(:, :), energy(:, :)
+    integer :: parts = fewest
+    real(wp), allocatable :: power(:, :, :)
   contains
     procedure :: value
   end type layer_table_t
+
+  !> Panels from the smallest u on, which begin at `first` and end at `last`; columns are series in
+  !> the panel's [-1, 1]. Energies are those from the panel's first u to infinity.
+  type :: panels_t
+    real(wp), allocatable :: first(:), last(:)
+    real(wp), allocatable :: q(:, :), slope(:, :), energy(:, :)
+  end type panels_t
 
   !> The last gaps that were solved, from which the next is extrapolated; their number, and the
   !> largest pressure met, without its sign.
@@ -56,11 +77,12 @@ contains
     type(surface_t), intent(in) :: surface(2)
     type(layer_table_t), intent(out) :: table
     logical, intent(out) :: solved
+    type(panels_t) :: panels
     type(trail_t) :: trail, trial
-    real(wp) :: first, last, span, series(0:degree), rest
+    real(wp) :: first, last, span, series(0:degree), rest, better
 
-    allocate (table%first(0), table%last(0))
-    allocate (table%q(0:degree, 0), table%slope(0:degree, 0), table%energy(0:degree + 1, 0))
+    allocate (panels%first(0), panels%last(0))
+    allocate (panels%q(0:degree, 0), panels%slope(0:degree, 0), panels%energy(0:degree + 1, 0))
     first = u_at(farthest_gap)
     span = longest
     do while (first < u_at(nearest_gap))
@@ -71,16 +93,25 @@ contains
       ! Where the pressure vanishes, so much of the largest counts.
       if (solved) rest = maxval(abs(series(degree - 1:)))/ &
         max(maxval(abs(series)), trial%largest*sinh(u_at(last)))
+      better = careful*(resolved/max(rest, tiny(rest)))**(1.0_wp/degree)
       if (.not. rest <= resolved .and. span > shortest) then
-        span = span/2
+        span = span*max(better, 0.5_wp)
         cycle
       end if
       solved = rest <= tolerated
       if (.not. solved) return
       trail = trial
-      call append(table, first, last, series, far_amplitude(surface)/2)
+      call append(panels, first, last, series)
       first = last
-      span = min(1.5_wp*span, longest)
+      span = min(span*max(0.5_wp, min(better, 2.0_wp)), longest)
+    end do
+    do
+      call tabulate(panels, table)
+      associate (power => abs(table%power(:, :, of_pressure)))
+        if (all(power(piece_degree + 1, :) <= last_part*2**(piece_degree - 1)*maxval(power, 1)) &
+          .or. table%parts == finest) exit
+      end associate
+      table%parts = 2*table%parts
     end do
   end subroutine new_layer_table
 
@@ -130,58 +161,99 @@ contains
     end select
   end function next_state
 
-  !> Adds a panel after those there are; before the first q is `limit`.
-  pure subroutine append(table, first, last, series, limit)
-    type(layer_table_t), intent(inout) :: table
-    real(wp), intent(in) :: first, last, series(0:degree), limit
+  !> Adds a panel after those there are; before the first q is what it is there.
+  pure subroutine append(panels, first, last, series)
+    type(panels_t), intent(inout) :: panels
+    real(wp), intent(in) :: first, last, series(0:degree)
     real(wp) :: integral(0:degree + 1)
     integer :: n
 
-    n = size(table%first)
+    n = size(panels%first)
     integral = series_integral(series)*(last - first)/2
-    if (n == 0) integral(0) = integral(0) + limit*first
-    if (n > 0) integral(0) = integral(0) + sum(table%energy(:, n))
-    table%first = [table%first, first]
-    table%last = [table%last, last]
-    table%q = reshape([table%q, power_series(series)], [degree + 1, n + 1])
-    table%slope = reshape([table%slope, power_series(series_slope(series)*2/(last - first))], &
+    if (n == 0) integral(0) = integral(0) + first*series_value(series, -1.0_wp)
+    if (n > 0) integral(0) = integral(0) + series_value(panels%energy(:, n), 1.0_wp)
+    panels%first = [panels%first, first]
+    panels%last = [panels%last, last]
+    panels%q = reshape([panels%q, series], [degree + 1, n + 1])
+    panels%slope = reshape([panels%slope, series_slope(series)*2/(last - first)], &
       [degree + 1, n + 1])
-    table%energy = reshape([table%energy, power_series(integral)], [degree + 2, n + 1])
+    panels%energy = reshape([panels%energy, integral], [degree + 2, n + 1])
   end subroutine append
 
-  !> Pressure, slope or energy (`quantity`) at a gap in Debye lengths, from `nearest_gap` on.
-  pure real(wp) function value(self, quantity, gap)
-    class(layer_table_t), intent(in) :: self
-    integer, intent(in) :: quantity
+  !> Pressure, slope and energy at a gap, from the panels.
+  pure function solved_at(panels, gap) result(value)
+    type(panels_t), intent(in) :: panels
     real(wp), intent(in) :: gap
-    real(wp) :: u, x, e, inverse, cotangent
+    real(wp) :: value(3)
+    real(wp) :: u, x, q
     integer :: i
 
-    ! u, 1/sinh and coth of the gap, from one function and a logarithm.
-    if (gap < 1) then
-      e = tanh(gap/2)
-      u = -log(e)
-      inverse = 0.5_wp*(1 - e)*(1 + e)/e
-      cotangent = 0.5_wp*(1 + e**2)/e
-    else
-      e = exp(-gap)
-      u = 2*atanh(e)
-      inverse = 2*e/((1 - e)*(1 + e))
-      cotangent = (1 + e**2)/((1 - e)*(1 + e))
-    end if
-    i = max(count(self%first <= u), 1)
-    ! Beyond the table q is its limit, that of the first point.
-    x = max(-1.0_wp, 2*(u - self%first(i))/(self%last(i) - self%first(i)) - 1)
-    value = power_value(self%q(:, i), x)
-    select case (quantity)
-    case (of_pressure)
-      value = value*inverse
-    case (of_slope)
-      value = -value*cotangent*inverse
-      if (u >= self%first(i)) value = value - power_value(self%slope(:, i), x)*inverse**2
-    case default
-      value = power_value(self%energy(:, i), x) - value*max(0.0_wp, self%first(i) - u)
-    end select
+    u = u_at(gap)
+    i = max(count(panels%first <= u), 1)
+    ! Beyond the panels q is its limit, that of the first point.
+    x = max(-1.0_wp, 2*(u - panels%first(i))/(panels%last(i) - panels%first(i)) - 1)
+    q = series_value(panels%q(:, i), x)
+    value(of_pressure) = q/sinh(gap)
+    value(of_slope) = -q*cosh(gap)
+    if (u >= panels%first(i)) value(of_slope) = value(of_slope) - &
+      series_value(panels%slope(:, i), x)
+    value(of_slope) = value(of_slope)/sinh(gap)**2
+    value(of_energy) = q*u
+    if (u >= panels%first(i)) value(of_energy) = series_value(panels%energy(:, i), x)
+  end function solved_at
+
+  !> The polynomials that are read.
+  pure subroutine tabulate(panels, table)
+    type(panels_t), intent(in) :: panels
+    type(layer_table_t), intent(inout) :: table
+    real(wp), dimension(0:piece_degree, 0:piece_degree) :: one, series, powers
+    real(wp) :: point(0:piece_degree), sample(0:piece_degree, 3), gap
+    integer :: octave, part, piece, k
+
+    one = 0
+    do k = 0, piece_degree
+      one(k, k) = 1
+      series(:, k) = chebyshev_series(one(:, k))
+      powers(:, k) = power_series(one(:, k))
+    end do
+    point = chebyshev_points(piece_degree)
+    if (allocated(table%power)) deallocate (table%power)
+    allocate (table%power(0:piece_degree, table%parts*(last_octave - first_octave + 1), 3))
+    piece = 0
+    do octave = first_octave, last_octave
+      do part = 0, table%parts - 1
+        piece = piece + 1
+        do k = 0, piece_degree
+          gap = 2.0_wp**(octave - 1)*(1 + (part + (1 + point(k))/2)/table%parts)
+          sample(k, :) = exp(gap)*solved_at(panels, gap)
+        end do
+        ! One after the other: coefficients of a series fall, so that those of powers round little.
+        table%power(:, piece, :) = matmul(powers, matmul(series, sample))
+      end do
+    end do
+  end subroutine tabulate
+
+  !> Pressure, slope or energy (`quantity`) at gaps in Debye lengths, from `nearest_gap` on.
+  pure function value(self, quantity, gap)
+    class(layer_table_t), intent(in) :: self
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+    real(wp) :: near, x
+    integer :: i, k, piece
+
+    do i = 1, size(gap)
+      ! Beyond the last piece it is the limit that is met there.
+      near = min(gap(i), last_gap)
+      x = self%parts*(2*fraction(near) - 1)
+      piece = self%parts*(exponent(near) - first_octave) + int(x) + 1
+      x = 2*(x - int(x)) - 1
+      value(i) = self%power(piece_degree, piece, quantity)
+      do k = piece_degree - 1, 0, -1
+        value(i) = value(i)*x + self%power(k, piece, quantity)
+      end do
+    end do
+    value = value*exp(-gap)
   end function value
 
   !> u = -ln tanh(gap/2), to all digits near and far. The function is its own inverse.

@@ -17,7 +17,7 @@ module poisson_boltzmann
   use elliptic, only: carlson_rf
   implicit none
   private
-  public :: surface_t, gap_state_t, far_amplitude, far_state, solve_gap
+  public :: surface_t, gap_state_t, far_state, solve_gap
 
   !> One surface: reduced potential alone, and regulation from 0 to 1.
   type :: surface_t
@@ -30,13 +30,6 @@ module poisson_boltzmann
   end type gap_state_t
 
 contains
-
-  !> The limit of P exp(gap) far away, 32 tanh(y1/4) tanh(y2/4).
-  pure real(wp) function far_amplitude(surface) result(amplitude)
-    type(surface_t), intent(in) :: surface(2)
-
-    amplitude = 32*product(tanh(surface%potential/4))
-  end function far_amplitude
 
   !> The state at a large gap, to first order in exp(-gap). The first surface is the one of higher
   !> potential, which is not 0.
@@ -54,50 +47,60 @@ contains
   end function far_state
 
   !> Newton's iteration from a state near by to that at `gap`; `solved` says whether it came there.
+  !> The derivatives are differences, renewed by what the steps show of them (Broyden, 1965) as long
+  !> as these gain.
   pure subroutine solve_gap(surface, gap, state, solved)
     type(surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: gap
     type(gap_state_t), intent(inout) :: state
     logical, intent(out) :: solved
-    !> Increment of the differences relative to the unknowns; by how much a step must make what is
-    !> left smaller for differences to serve once more; and the last step with new ones and with
-    !> those of an earlier step, after which there is only rounding.
-    real(wp), parameter :: increment = 1.0e-7_wp, gain = 1.0e-3_wp, last_step = 1.0e-9_wp, &
-      last_with_old = 1.0e-12_wp
+    !> Increment of the differences relative to the unknowns, which is their error too; gain of a
+    !> step, without which differences are taken again; and what a step may leave, relative to the
+    !> unknowns: its own length times the error of its derivatives.
+    real(wp), parameter :: increment = 1.0e-7_wp, gain = 0.1_wp, rounding = 1.0e-16_wp
     !> A t that is less than so much of the other counts as that much.
     real(wp), parameter :: negligible = 1.0e-3_wp
     integer, parameter :: most_steps = 60, most_halvings = 20
-    real(wp) :: r(2), trial(2), jacobian(2, 2), step(2), t(2), scale, unit
+    real(wp) :: r(2), trial(2), jacobian(2, 2), step(2), t(2), scale(2), unit, off, last
+    logical :: gains
     integer :: i, k
-    logical :: renew
 
     solved = .false.
-    renew = .true.
+    gains = .false.
+    last = 1
     t = state%t
     unit = maxval(abs([pressure_at(surface(1), t(1)), pressure_at(surface(2), t(2))]))
     r = residual(t)
     do i = 1, most_steps
-      scale = maxval(abs(t))
-      do k = 1, merge(2, 0, renew)
-        trial = t
-        trial(k) = t(k) + increment*max(abs(t(k)), negligible*scale)
-        jacobian(:, k) = (residual(trial) - r)/(trial(k) - t(k))
-      end do
+      scale = max(abs(t), negligible*maxval(abs(t)))
+      if (.not. gains) then
+        do k = 1, 2
+          trial = t
+          trial(k) = t(k) + increment*scale(k)
+          jacobian(:, k) = (residual(trial) - r)/(trial(k) - t(k))
+        end do
+      end if
       step = [r(2)*jacobian(1, 2) - r(1)*jacobian(2, 2), &
         r(1)*jacobian(2, 1) - r(2)*jacobian(1, 1)]/ &
         (jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))
       if (.not. all(abs(step) < huge(step))) return
-      solved = all(abs(step) <= merge(last_step, last_with_old, renew)* &
-        max(abs(t), negligible*scale))
+      off = maxval(abs(step)/scale)
+      solved = off*merge(off/last, increment, gains) <= rounding
+      if (solved) then
+        t = t + step
+        exit
+      end if
       do k = 1, most_halvings
         trial = residual(t + step)
-        if (solved .or. norm2(trial) < norm2(r)) exit
+        if (norm2(trial) < norm2(r)) exit
         step = step/2
       end do
       t = t + step
-      renew = norm2(trial) > gain*norm2(r)
+      last = maxval(abs(step)/scale)
+      gains = norm2(trial) < gain*norm2(r)
+      jacobian = jacobian + spread(trial - r - matmul(jacobian, step), 2, 2)* &
+        spread(step/scale**2/sum((step/scale)**2), 1, 2)
       r = trial
-      if (solved) exit
     end do
     state%t = t
     ! The surface of lower potential has less rounding in it.

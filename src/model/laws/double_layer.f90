@@ -191,24 +191,22 @@ contains
     class(double_layer_t), intent(in) :: self
     integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), all_values(3)
-    real(wp) :: h
+    real(wp) :: value(size(gap)), h(size(gap)), all_values(3)
     integer :: i
 
-    do i = 1, size(gap)
-      h = max(self%smallest_gap, min(gap(i), largest_gap))
-      select case (self%model)
-      case (linear)
-        all_values = self%scale*linear_values(self%surface, h)
+    h = max(self%smallest_gap, min(gap, largest_gap))
+    select case (self%model)
+    case (linear)
+      do i = 1, size(h)
+        all_values = self%scale*linear_values(self%surface, h(i))
         value(i) = all_values(quantity)
-      case (superposition)
-        value(i) = product(tanh(self%surface%potential/4))/ &
-          tanh(self%surface(1)%potential/4)**2*exp(-h)
-        if (quantity == of_slope) value(i) = -value(i)
-      case default
-        value(i) = self%scale*self%table%value(quantity, h)
-      end select
-    end do
+      end do
+    case (superposition)
+      value = product(tanh(self%surface%potential/4))/tanh(self%surface(1)%potential/4)**2*exp(-h)
+      if (quantity == of_slope) value = -value
+    case default
+      value = self%scale*self%table%value(quantity, h)
+    end select
   end function values
 
   pure function pressure(self, gap) result(value)
