@@ -3,19 +3,21 @@
 module curve_fit
   use kinds, only: wp
   use linear_algebra, only: singular_values
-  use fit_request, only: unknown_t, of_contact_point
+  use fit_request, only: unknown_t, of_contact_point, free_of, value_by_fitted
   use least_squares, only: minimise
-  use unknowns, only: free_of, value_by_fitted
   use force_model, only: force_model_t
   use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t
-  use contact_starts, only: find_starts
+  use root_finding, only: bracket_t
+  use noise, only: white_noise
   use second_look, only: look_again
   use lack_of_fit, only: lack_t, lack_in
   implicit none
   private
   public :: fitted_t, fit_curve
 
+  !> Contact points that are tried, samples for each, and sections by which the best are refined.
+  integer, parameter :: tried = 160, samples = 250, sections = 25
   !> Contact points that are kept of a candidate; searches from the best of all; how many of what
   !> they find are followed up, and how often the data are looked at again each time.
   integer, parameter :: most_points = 2, most_fits = 8, most_looks = 3, most_rounds = 8
@@ -25,7 +27,7 @@ module curve_fit
   real(wp), parameter :: same = 1.0e-4_wp, apart = 0.02_wp
 
   !> What a fit found. value and its standard deviation in the unit of each key; the same of the
-  !> fitted number (`unknowns`), of which the errors are symmetric; correlation of these.
+  !> fitted number (`fit_request`), of which the errors are symmetric; correlation of these.
   !> identifiable: the least singular value of their Jacobian with columns of length 1: 1 where the
   !> data tell all apart, 0 where they do not tell some. effect: by how many standard deviations of
   !> all data together a change of the fitted number by 1 is seen.
@@ -97,7 +99,7 @@ contains
     logical, allocatable, intent(out) :: found(:)
     integer :: i, k, freedom
 
-    freedom = residuals%rows() - size(value, 1) - residuals%curve%data%baseline%unknowns()
+    freedom = residuals%rows() - size(value, 1) - residuals%curve%data%baseline_numbers()
     allocate (left(size(cost)), source=huge(1.0_wp))
     allocate (found(size(cost)), source=.false.)
     do i = 1, min(most_fits, size(cost))
@@ -127,36 +129,102 @@ contains
     end do
   end subroutine settle
 
-  !> Values to start from, with the sums of squares there.
+  !> Values to start from, with the sums of squares there: `start`, each with the contact points at
+  !> which it leaves least.
   subroutine find_candidates(residuals, start, value, cost)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: start(:, :)
     real(wp), allocatable, intent(out) :: value(:, :), cost(:)
-    real(wp), allocatable :: points(:), costs(:), residual(:)
-    real(wp) :: trial(size(start, 1))
+    type(curve_residuals_t) :: few
+    real(wp), allocatable :: points(:), costs(:)
+    real(wp) :: trial(size(start, 1)), ends(2)
     logical :: found
     integer :: i, k, role
 
     allocate (value(size(start, 1), 0), cost(0))
     role = findloc(residuals%curve%unknown%role, of_contact_point, 1)
+    few = residuals
+    few%curve%data%noise = white_noise(residuals%curve%data%noise%deviation)
+    call few%curve%data%take(max(1, size(few%curve%data%measured%z)/samples))
     do i = 1, size(start, 2)
       trial = start(:, i)
-      if (role > 0) then
-        call find_starts(residuals, trial, most_points, points, costs, found)
-      else
-        residual = [(0.0_wp, k=1, residuals%rows())]
-        call residuals%residuals_of(trial, residual, found)
-        points = [0.0_wp]
-        costs = [sum(residual**2)]
+      if (role == 0) then
+        call add(cost_of(residuals, trial))
+        cycle
       end if
+      call few%curve%reach(trial, ends, found)
       if (.not. found) cycle
-      do k = 1, size(points)
-        if (role > 0) trial(role) = points(k)
-        value = reshape([value, trial], [size(trial), size(value, 2) + 1])
-        cost = [cost, costs(k)]
+      call lowest_points(few, trial, role, ends, points, costs)
+      do k = 1, min(most_points, size(points))
+        trial(role) = points(minloc(costs, 1))
+        call add(minval(costs))
+        costs(minloc(costs, 1)) = huge(costs)
       end do
     end do
+
+  contains
+
+    !> The trial as a candidate, if the model has a curve there.
+    subroutine add(left)
+      real(wp), intent(in) :: left
+
+      if (.not. left < huge(left)) return
+      value = reshape([value, trial], [size(trial), size(value, 2) + 1])
+      cost = [cost, left]
+    end subroutine add
+
   end subroutine find_candidates
+
+  !> Contact points between two ends, which are number `role` of the unknowns, where the sum of
+  !> squares is lowest, and the sums there. Moving the curve along needs no new solution, so that
+  !> many are tried.
+  subroutine lowest_points(residuals, value, role, ends, points, costs)
+    type(curve_residuals_t), intent(inout) :: residuals
+    real(wp), intent(in) :: value(:), ends(2)
+    integer, intent(in) :: role
+    real(wp), allocatable, intent(out) :: points(:), costs(:)
+    type(bracket_t) :: bracket
+    real(wp) :: at(0:tried + 1), cost(0:tried + 1), golden(2)
+    integer :: i, k
+
+    allocate (points(0), costs(0))
+    at = [(ends(1) + (ends(2) - ends(1))*(i - 1)/(tried - 1), i=0, tried + 1)]
+    cost = [(cost_at(at(i)), i=0, tried + 1)]
+    do i = 1, tried
+      if (.not. (cost(i) <= cost(i - 1) .and. cost(i) < cost(i + 1))) cycle
+      bracket = bracket_t(at(i - 1), at(i + 1))
+      do k = 1, sections
+        golden = bracket%golden_points()
+        call bracket%keep_larger([-cost_at(golden(1)), -cost_at(golden(2))])
+      end do
+      points = [points, bracket%middle()]
+      costs = [costs, cost_at(bracket%middle())]
+    end do
+
+  contains
+
+    real(wp) function cost_at(contact_point)
+      real(wp), intent(in) :: contact_point
+      real(wp) :: trial(size(value))
+
+      trial = value
+      trial(role) = contact_point
+      cost_at = cost_of(residuals, trial)
+    end function cost_at
+
+  end subroutine lowest_points
+
+  !> The sum of squares; huge where the model has no curve.
+  real(wp) function cost_of(residuals, value) result(cost)
+    type(curve_residuals_t), intent(inout) :: residuals
+    real(wp), intent(in) :: value(:)
+    real(wp) :: residual(residuals%rows())
+    logical :: found
+
+    call residuals%residuals_of(value, residual, found)
+    cost = huge(cost)
+    if (found) cost = sum(residual**2)
+  end function cost_of
 
   !> Moves values to where the sum of squares, `left`, is least.
   subroutine search(residuals, value, left, found)
@@ -199,10 +267,10 @@ contains
     fitted%found = fitted%found .and. found
     if (.not. found) return
     fitted%chi_squared = sum(residual**2)
-    fitted%freedom = size(residual) - n - residuals%curve%data%baseline%unknowns()
+    fitted%freedom = size(residual) - n - residuals%curve%data%baseline_numbers()
     associate (data => residuals%curve%data)
       fitted%lack = lack_in(residual(:size(data%sample)), 3*data%way(data%sample) + &
-        data%side(data%sample), size(data%sample) - n - data%baseline%unknowns(), &
+        data%side(data%sample), size(data%sample) - n - data%baseline_numbers(), &
         data%noise)
     end associate
     do j = 1, n

@@ -1,14 +1,13 @@
 !> What a model leaves of a measured curve (`modelled_curve`), in standard deviations. Baselines and
 !> slope enter linearly: the residuals are what is left when the best ones are taken off (variable
-!> projection; Golub and Pereyra, 1973; `baseline`). Samples are made white first. Where a jump
+!> projection; Golub and Pereyra, 1973; `fit_samples`). Samples are made white first. Where a jump
 !> starts is a datum of its own, and so is what is known of an unknown before; no sample within a
 !> jump counts.
 module curve_residuals
   use kinds, only: wp
-  use fit_request, only: unknown_t
+  use fit_request, only: unknown_t, value_of, value_by_free, value_by_fitted, fitted_of
   use least_squares, only: residuals_t
   use modelled_curve, only: modelled_curve_t
-  use unknowns, only: value_of, value_by_free, value_by_fitted, fitted_of
   implicit none
   private
   public :: curve_residuals_t

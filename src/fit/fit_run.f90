@@ -52,7 +52,7 @@ module fit_run
   real(wp), parameter :: of_trials = 1.0_wp
   !> Over the largest signal, up to which the model is wanted: for a trial that is too soft.
   real(wp), parameter :: beyond = 1.2_wp
-  !> An unknown whose fitted number (`unknowns`) changes by 1 is seen by this many standard
+  !> An unknown whose fitted number (`fit_request`) changes by 1 is seen by this many standard
   !> deviations of all data, or it has no effect.
   real(wp), parameter :: least_effect = 0.1_wp
   !> Stiffnesses over the deck's from which theories start, and ranges of the force from which the

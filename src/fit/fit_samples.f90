@@ -1,11 +1,14 @@
 !> The samples of a measured curve that a fit counts: which side of a jump each is on, and how what
 !> is left of them is made white and freed of its baseline.
+!>
+!> The baseline is a constant for each way, and a slope of both. The unknowns of a model do not
+!> change what it is made of, so that the best one is taken off residuals and their derivatives by
+!> the same projection.
 module fit_samples
   use kinds, only: wp
   use measured_curve, only: measured_t
   use measured_jumps, only: measured_jump_t
   use noise, only: noise_t, whiten
-  use baseline, only: baseline_t, new_baseline
   use force_model, only: inward, outward
   implicit none
   private
@@ -17,9 +20,12 @@ module fit_samples
     type(measured_jump_t) :: jump(2)
     !> The samples that count. Of all: the way, the side of its jump (`load_on`), and the run.
     integer, allocatable :: sample(:), way(:), side(:), run(:)
-    type(baseline_t) :: baseline
+    !> The baseline's columns for all samples; for those that count, white, as an orthonormal basis
+    !> and the triangle that leads from it to them.
+    real(wp), allocatable, private :: column(:, :), basis(:, :), triangle(:, :)
   contains
     procedure :: take
+    procedure :: baseline_numbers
     procedure :: clean
     procedure :: baseline_under
   end type fit_samples_t
@@ -56,10 +62,58 @@ contains
           (counts(i) .neqv. counts(i - 1))) self%run(i) = self%run(i - 1) + 1
       end do
       self%sample = pack([(i, i=1, n)], counts .and. [(mod(i, every) == 0, i=1, n)])
-      self%baseline = new_baseline(data%z, data%inward, self%sample, self%run(self%sample), &
-        self%noise)
+      call set_baseline(self)
     end associate
   end subroutine take
+
+  !> The columns of the baseline.
+  pure subroutine set_baseline(self)
+    type(fit_samples_t), intent(inout) :: self
+    real(wp), allocatable :: column(:, :)
+    integer :: n, ways
+
+    associate (z => self%measured%z, inward => self%measured%inward)
+      n = size(z)
+      ways = merge(2, 1, any(inward) .and. .not. all(inward))
+      allocate (column(n, ways + 1))
+      column(:, 1) = merge(1.0_wp, 0.0_wp, inward .eqv. inward(1))
+      column(:, ways) = merge(1.0_wp, 0.0_wp, inward .eqv. inward(n))
+      column(:, ways + 1) = z - sum(z)/n
+      column(:, ways + 1) = column(:, ways + 1)/maxval(abs(column(:, ways + 1)))
+    end associate
+    self%basis = column(self%sample, :)
+    call move_alloc(column, self%column)
+    call whiten(self%noise, self%run(self%sample), self%basis)
+    call orthonormalise(self%basis, self%triangle)
+  end subroutine set_baseline
+
+  !> Gram and Schmidt, twice, so that rounding does not count: a = q r.
+  pure subroutine orthonormalise(q, r)
+    real(wp), intent(inout) :: q(:, :)
+    real(wp), allocatable, intent(out) :: r(:, :)
+    real(wp) :: part
+    integer :: i, j, pass
+
+    allocate (r(size(q, 2), size(q, 2)), source=0.0_wp)
+    do j = 1, size(q, 2)
+      do pass = 1, 2
+        do i = 1, j - 1
+          part = dot_product(q(:, i), q(:, j))
+          q(:, j) = q(:, j) - part*q(:, i)
+          r(i, j) = r(i, j) + part
+        end do
+      end do
+      r(j, j) = norm2(q(:, j))
+      q(:, j) = q(:, j)/r(j, j)
+    end do
+  end subroutine orthonormalise
+
+  !> How many numbers the baseline has.
+  pure integer function baseline_numbers(self)
+    class(fit_samples_t), intent(in) :: self
+
+    baseline_numbers = size(self%column, 2)
+  end function baseline_numbers
 
   !> Makes columns of numbers, one a sample that counts, white, and takes their baseline off.
   pure subroutine clean(self, column)
@@ -67,7 +121,7 @@ contains
     real(wp), intent(inout) :: column(:, :)
 
     call whiten(self%noise, self%run(self%sample), column)
-    call self%baseline%take_off(column)
+    column = column - matmul(self%basis, matmul(transpose(self%basis), column))
   end subroutine clean
 
   !> The baseline, at all samples, that leaves least of a signal without force.
@@ -75,11 +129,18 @@ contains
     class(fit_samples_t), intent(in) :: self
     real(wp), intent(in) :: signal(:)
     real(wp) :: line(size(signal))
-    real(wp) :: left(size(self%sample), 1)
+    real(wp) :: left(size(self%sample), 1), part(size(self%column, 2))
+    integer :: i
 
     left(:, 1) = signal(self%sample)
     call whiten(self%noise, self%run(self%sample), left)
-    line = self%baseline%of(left(:, 1))
+    part = matmul(left(:, 1), self%basis)
+    associate (r => self%triangle)
+      do i = size(part), 1, -1
+        part(i) = (part(i) - dot_product(r(i, i + 1:), part(i + 1:)))/r(i, i)
+      end do
+    end associate
+    line = matmul(self%column, part)
   end function baseline_under
 
 end module fit_samples

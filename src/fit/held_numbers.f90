@@ -4,8 +4,8 @@
 !> score test; Rao, 1948). It needs no other fit, and sees what bends all samples a little.
 module held_numbers
   use kinds, only: wp
-  use fit_request, only: measurement_t, unknown_t, of_model, &
-    of_contact_point, of_sensitivity, of_spring
+  use fit_request, only: measurement_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
+    of_spring, value_by_fitted
   use failure, only: failure_t
   use problem_family, only: problem_family_t
   use variation, only: variation_t, vary, to_search
@@ -13,7 +13,6 @@ module held_numbers
   use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t
   use path_model, only: path_model_t
-  use unknowns, only: value_by_fitted
   use lack_of_fit, only: hardly_ever
   implicit none
   private

@@ -4,8 +4,7 @@ module second_look
   use kinds, only: wp
   use noise, only: noise_t, noise_of, noise_of_steps, median_of, normal_median
   use outliers, only: stand_apart
-  use measured_jumps, only: measured_jump_t
-  use jump_places, only: likely_jump
+  use measured_jumps, only: measured_jump_t, likely_jump
   use modelled_curve, only: modelled_curve_t
   implicit none
   private
