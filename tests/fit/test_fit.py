@@ -9,16 +9,18 @@ from support.measured import (
     BODIES,
     CONTACT_POINT,
     LENNARD_JONES,
+    POINT,
     SPRING,
+    STIFFNESS,
+    STRENGTH,
     Branches,
+    branches,  # noqa: F401
     fit_deck,
     run,
     states_of_device,
     write,
 )
 
-POINT = "measurement.contact_point"
-STRENGTH, STIFFNESS = "force.hamaker", "bodies.stiffness"
 # A noise that data without any are said to have, so that the sum of squares has a scale.
 FINE = {"noise": 1e-13}
 BASELINE, SLOPE = 2e-10, 1e-3
@@ -41,6 +43,12 @@ SCENES = {
             "hydration": {"energy": 2e-3, "decay_length": 3e-10},
         },
         {"van_der_waals.hamaker": 1e-19, STIFFNESS: 1e10},
+    ),
+    "double layer": (
+        {"bodies": {"radius": 50e-9, "stiffness": 1e10},
+         "van_der_waals": {"hamaker": 1e-19}, "born": {"z0": 3e-10},
+         "double_layer": {"potential": 0.05, "regulation": 0.4, "debye_length": 2e-9}},
+        {"double_layer.potential": 0.05, "double_layer.debye_length": 2e-9},
     ),
     "power": (
         {"bodies": {"stiffness": 1e10},
@@ -100,11 +108,6 @@ def exact(tmp_path_factory):
         return files[name]
 
     return file_of
-
-
-@pytest.fixture(scope="module")
-def branches():
-    return Branches(LENNARD_JONES)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -193,12 +196,24 @@ def test_errors_and_correlations_are_those_of_differences_between_curves(branche
         correlation, abs=2e-3)
 
 
+def rows(between, point, *columns):
+    """Text of a table, other than `write` makes it."""
+    return "".join(between.join((f"{a:.12e}", f"{b:.12e}", str(c))).replace(".", point) + "\n"
+                   for a, b, c in zip(*columns))
+
+
 def test_conventions_do_not_matter(branches, tmp_path):
-    """z that grows or falls, force of either sign, volts, columns by number: the same."""
+    """z that grows or falls, force of either sign, volts, columns by number, other units, tables
+    as numpy writes them and with commas in numbers: the same."""
     z, force, segment = branches.measure(300, noise=2e-12)
     plain = write(tmp_path / "a.csv", z, force, segment)
     keys = [STRENGTH, STIFFNESS, POINT]
     first = run(fit_deck(LENNARD_JONES, plain, keys))
+
+    def table(name, text):
+        (tmp_path / name).write_text(text)
+        return str(tmp_path / name)
+
     others = {
         "grows": (write(tmp_path / "b.csv", -z, force, segment), {}),
         "minus": (write(tmp_path / "c.csv", z, -force, segment),
@@ -207,14 +222,21 @@ def test_conventions_do_not_matter(branches, tmp_path):
                   {"sensitivity": 5e-8}),
         "numbers": (plain, {"columns": ["1", "2", "3"]}),
         "no segments": (write(tmp_path / "e.csv", z, force), {"columns": ["z", "force"]}),
+        "units": (write(tmp_path / "f.csv", z * 1e9, force * 1e9, segment),
+                  {"units": ["nm", "nN"]}),
+        "numpy": (table("g.csv", "# z force segment\n" + rows(" ", ".", z, force, segment)), {}),
+        "semicolons": (table("h.csv", "z;force;segment\n" + rows(";", ",", z, force, segment)), {}),
     }
     for name, (file, measurement) in others.items():
         found = run(fit_deck(LENNARD_JONES, file, keys, measurement=measurement))
+        # The same numbers in the same columns; of others rounding may go another way.
+        rel = 1e-6 if name in ("units", "numpy", "semicolons") else 1e-5
         for key in (STRENGTH, STIFFNESS):
-            assert values_of(found)[key] == pytest.approx(values_of(first)[key], rel=1e-5), name
+            assert values_of(found)[key] == pytest.approx(values_of(first)[key], rel=rel), name
         sign = -1 if name == "grows" else 1
-        # A hundredth of its standard error.
-        assert values_of(found)[POINT] == pytest.approx(sign * values_of(first)[POINT], abs=1e-14)
+        # At most a hundredth of its standard error.
+        assert values_of(found)[POINT] == pytest.approx(sign * values_of(first)[POINT],
+                                                        abs=1e-9 * rel)
 
 
 @pytest.mark.parametrize("segment", ["approach", "retreat"])

@@ -4,18 +4,20 @@ off, little baseline, models that are wrong."""
 import numpy as np
 import pytest
 import snapin
-from support.measured import LENNARD_JONES, Branches, fit_deck, run, write
+from support.measured import (
+    LENNARD_JONES,
+    POINT,
+    STIFFNESS,
+    STRENGTH,
+    branches,  # noqa: F401
+    fit_deck,
+    run,
+    write,
+)
 
-POINT = "measurement.contact_point"
-STRENGTH, STIFFNESS = "force.hamaker", "bodies.stiffness"
 TRUTH = {STRENGTH: 1e-19, STIFFNESS: 1e10, POINT: 0.0}
 # Three hundredths of the pull-off; the spring changes by a fifth of it from sample to sample.
 NOISE, SAMPLES = 2e-10, 1500
-
-
-@pytest.fixture(scope="module")
-def branches():
-    return Branches(LENNARD_JONES)
 
 
 def started(strength=1.0, stiffness=1.0, **force):
@@ -107,46 +109,6 @@ def test_the_summary_speaks_of_the_answer_and_intervals_are_wider_at_95(branches
         assert result.summary[key] == fit[key][0]
     wide, narrow = ((np.array(fit[f"upper_{p}"]) - fit[f"lower_{p}"])[2] for p in (95, 68))
     assert wide == pytest.approx(1.96 * narrow, rel=1e-3)
-
-
-FORMS = {
-    "numpy": (lambda z, f, s: "# z force segment\n" + rows(z, f, s, " ", "."), {}),
-    "semicolons": (lambda z, f, s: "z;force;segment\n" + rows(z, f, s, ";", ","), {}),
-    "units": (lambda z, f, s: "z,force,segment\n" + rows(z * 1e9, f * 1e9, s, ",", "."),
-              {"units": ["nm", "nN"]}),
-}
-
-
-def rows(z, force, segment, between, point):
-    return "".join(between.join((f"{a:.12e}", f"{b:.12e}", str(c))).replace(".", point) + "\n"
-                   for a, b, c in zip(z, force, segment))
-
-
-@pytest.mark.parametrize("form", FORMS)
-def test_files_as_others_write_them_are_the_same_curve(branches, tmp_path, form):
-    z, force, segment = branches.measure(300, 2e-11, seed=1)
-    text, keys = FORMS[form]
-    file = tmp_path / "other.csv"
-    file.write_text(text(z, force, segment))
-    result = run(fit_deck(started(), str(file), list(TRUTH), measurement=keys))
-    plain = fitted(tmp_path, (z, force, segment), started())
-    assert result.fitted["fit"]["estimate"] == pytest.approx(
-        plain.fitted["fit"]["estimate"], rel=1e-6, abs=1e-15)
-
-
-MISTAKES = {
-    "exchanged columns": (lambda z, f, s: (f, z, s), "columns exchanged"),
-    "exchanged segments": (lambda z, f, s: (z, f, 1 - s), "approach and retreat are exchanged"),
-    "reversed rows": (lambda z, f, s: (z[::-1], f[::-1], s), "go backwards"),
-    "nanometres": (lambda z, f, s: (1e9 * z, 1e9 * f, s), "say units"),
-}
-
-
-@pytest.mark.parametrize("mistake", MISTAKES)
-def test_mistakes_in_files_are_named(branches, tmp_path, mistake):
-    change, said = MISTAKES[mistake]
-    with pytest.raises(snapin.SnapinError, match=said):
-        fitted(tmp_path, change(*branches.measure(300, 2e-11, seed=1)), started())
 
 
 def test_a_baseline_as_steep_as_the_contact_is_no_exchange(branches, tmp_path):

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 import snapin
-from support.measured import LENNARD_JONES, Branches, fit_deck, run, write
+from support.measured import (
+    LENNARD_JONES,
+    POINT,
+    STRENGTH,
+    branches,  # noqa: F401
+    fit_deck,
+    run,
+    write,
+)
 from support.scenes import deck
-
-POINT = "measurement.contact_point"
-STRENGTH = "force.hamaker"
-
-
-@pytest.fixture(scope="module")
-def branches():
-    return Branches(LENNARD_JONES)
 
 
 def flat(rng, z):
@@ -26,6 +26,11 @@ BAD_DATA = {
     "segments": (lambda z, f, s, rng: (z, f, 2 + s), "neither 0, approach, nor 1, retreat"),
     "same way": (lambda z, f, s, rng: (np.append(z[:300], z[:300]), np.append(f[:300], f[:300]), s),
                  "z goes the same way"),
+    "exchanged columns": (lambda z, f, s, rng: (f, z, s), "columns exchanged"),
+    "exchanged segments": (lambda z, f, s, rng: (z, f, 1 - s),
+                           "approach and retreat are exchanged"),
+    "reversed rows": (lambda z, f, s, rng: (z[::-1], f[::-1], s), "go backwards"),
+    "nanometres": (lambda z, f, s, rng: (1e9 * z, 1e9 * f, s), "say units"),
 }
 
 

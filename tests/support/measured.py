@@ -4,12 +4,16 @@ device, at even steps of the base, or by a closed form."""
 import warnings
 
 import numpy as np
+import pytest
 import snapin
 
 BODIES = {"radius": 50e-9, "stiffness": 1e10}
 LENNARD_JONES = {"bodies": BODIES, "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 3e-10}}
 SPRING = 1.2
 CONTACT_POINT = 3e-6
+# Unknowns of most fits.
+POINT = "measurement.contact_point"
+STRENGTH, STIFFNESS = "force.hamaker", "bodies.stiffness"
 
 
 def states_of_device(groups, spring=SPRING, start=40e-9, h0_end=-2e-9):
@@ -66,6 +70,12 @@ class Branches:
         segment = np.repeat([0, 1], n)
         force = np.concatenate([self.force(z[:n], True), self.force(z[n:], False)])
         return z, force + noise * rng.standard_normal(2 * n), segment
+
+
+@pytest.fixture(scope="session")
+def branches():
+    """Those of the Lennard-Jones scene, for tests that import it."""
+    return Branches(LENNARD_JONES)
 
 
 def _hermite(at, x, y):
