@@ -47,9 +47,6 @@ module fit_run
 
   !> A signal whose noise is smaller than this part of it is one that was computed.
   real(wp), parameter :: least_noise = 1.0e-9_wp
-  !> Over the deck's accuracy, that of the paths of trials: these are compared with each other, on
-  !> meshes that may differ, and a search among them has to see less than what is reported.
-  real(wp), parameter :: of_trials = 1.0_wp
   !> Over the largest signal, up to which the model is wanted: for a trial that is too soft.
   real(wp), parameter :: beyond = 1.2_wp
   !> An unknown whose fitted number (`fit_request`) changes by 1 is seen by this many standard
@@ -86,7 +83,6 @@ contains
     call listener%hear('fitting the path')
     allocate (model%family, source=family)
     model%numerics = numerics
-    model%numerics%accuracy = of_trials*numerics%accuracy
     call starts_like(likely_characters(curve, problem), family, curve%unknown, start)
     call fit_curve(curve, model, start, .true., allocated(fit%noise), outcome%fitted)
     outcome%resolved = model%left_out <= too_much*model%numerics%accuracy

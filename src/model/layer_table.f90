@@ -243,8 +243,10 @@ contains
     integer :: i, k, piece
 
     do i = 1, size(gap)
-      ! Beyond the last piece it is the limit that is met there.
-      near = min(gap(i), last_gap)
+      ! Beyond the last piece it is the limit that is met there. What is no number has a piece too,
+      ! and stays none by the exponential.
+      near = last_gap
+      if (gap(i) < last_gap) near = gap(i)
       x = self%parts*(2*fraction(near) - 1)
       piece = self%parts*(exponent(near) - first_octave) + int(x) + 1
       x = 2*(x - int(x)) - 1
