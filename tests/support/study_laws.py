@@ -66,12 +66,15 @@ class Deviation(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """A scene with its deviations, how many numbers were as good as the truth, what is wrong."""
+    """A scene with its deviations, how many numbers were as good as the truth, what is wrong; of the
+    run at the accuracy asked for how long it took, infinite if too long, and what it warned of."""
 
     scene: Scene
     deviations: list
     unknown: int
     wrong: list
+    seconds: float = math.inf
+    warnings: tuple = ()
 
 
 def lennard_jones(rng, **more):
@@ -223,7 +226,8 @@ def run(scene, name, groups):
     path = scene.folder / "results" / name / "summary.nml"
     if not path.exists():
         return {}, f"status {done.returncode}: {done.stderr.strip()[-200:]}"
-    summary = f90nml.read(path)["summary"]
+    results = f90nml.read(path)
+    summary = {**results["summary"], "wall_seconds": results["cost"]["wall_seconds"]}
     said = " | ".join(several(summary.get("warnings", [])))
     return summary, f"status {done.returncode}: {said[:200]}" if done.returncode else ""
 
@@ -231,11 +235,13 @@ def run(scene, name, groups):
 def judged(scene, law, found, truth):
     """Numbers of a run beside those of the truth, or why there is nothing to compare."""
     (mine, trouble), (theirs, doubt) = found, truth
+    cost = {"seconds": mine.get("wall_seconds", math.inf),
+            "warnings": tuple(several(mine.get("warnings", [])))}
     # Without a truth nothing can be said, nor of what this machine has no time for.
     if doubt or trouble.startswith("more than"):
-        return Finding(scene, [], 0, [])
+        return Finding(scene, [], 0, [], **cost)
     if trouble:
-        return Finding(scene, [], 0, [trouble])
+        return Finding(scene, [], 0, [trouble], **cost)
     loads = (*several(theirs.get("max_tension", 0.0)), theirs.get("end_load", 0.0))
     load = max(map(abs, loads))
     deviations, wrong, unknown = [], [], 0
@@ -254,7 +260,7 @@ def judged(scene, law, found, truth):
                 deviations.append(Deviation(key, b, abs(a - b), allowed))
             else:
                 unknown += 1
-    return Finding(scene, deviations, unknown, wrong)
+    return Finding(scene, deviations, unknown, wrong, **cost)
 
 
 def of_number(summary, key, i, size):
@@ -269,6 +275,11 @@ def of_number(summary, key, i, size):
 def is_bad(finding):
     """Something is missing, invented or failed, or an error is larger than its estimate."""
     return finding.wrong or any(one.ratio > 1 for one in finding.deviations)
+
+
+def is_warned(finding):
+    """Whether a run says that it is not as exact as it was asked to be."""
+    return any("resolve" in said or "error" in said for said in finding.warnings)
 
 
 def table(findings):
@@ -291,6 +302,11 @@ def table(findings):
     compared = sum(bool(f.deviations) or f.unknown > 0 for f in findings)
     lines.append(f"scenes {len(findings)}, compared {compared}; "
                  f"numbers as good as the truth {unknown}")  # fmt: skip
+    seconds = [f.seconds for f in findings]
+    lines.append(f"seconds: median {np.median(seconds):.2g}, 99 % "
+                 f"{np.quantile(seconds, 0.99, method='higher'):.2g}, largest {max(seconds):.2g}; "
+                 f"with a warning on the mesh or the error {sum(map(is_warned, findings))}, lost "
+                 f"{sum(bool(f.wrong) for f in findings)}")  # fmt: skip
     lines += offenders(findings)
     return lines
 
