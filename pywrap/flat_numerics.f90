@@ -1,5 +1,5 @@
 !> The numerics as f2py can see them: linear algebra, kernel, quadrature, product integration,
-!> meshes and one state of equilibrium. Conventions as in `flat_deck`.
+!> turns of a curve, meshes and one state of equilibrium. Conventions as in `flat_deck`.
 !>
 !> A mesh is described by its kind, its centre, lengths and orders: 'panels' has lengths from the
 !> centre to the ends of panels, and orders(1) nodes on each; 'uniform' ends at the last length and
@@ -11,7 +11,7 @@ module flat_numerics
   implicit none
   private
   public :: linear_solution, kernel_values, gauss_rule, panel_integrals
-  public :: mesh_nodes, mesh_matrix, mesh_interpolation
+  public :: mesh_nodes, mesh_matrix, mesh_interpolation, turning_intervals
   public :: equilibrium_state
 
 contains
@@ -54,6 +54,24 @@ contains
     log_weight = logarithm_weights(x, weight)
     barycentric = barycentric_weights(x)
   end subroutine gauss_rule
+
+  !> Whether a curve with these values and slopes at rising places may turn between one of them and
+  !> the next: 1 if so.
+  subroutine turning_intervals(x, value, slope, turns, n)
+    use path_extremum, only: may_turn
+    use interpolation, only: hermite_through
+    integer(c_int), intent(in) :: n
+    real(c_double), intent(in) :: x(n), value(n), slope(n)
+    integer(c_int), intent(out) :: turns(n - 1)
+    integer :: i
+
+    do i = 1, n - 1
+      associate (both => slope(i:i + 1))
+        turns(i) = merge(1, 0, may_turn(hermite_through(x(i:i + 1), value(i:i + 1), both), &
+          x(i:i + 1), both))
+      end associate
+    end do
+  end subroutine turning_intervals
 
   !> weights(j, i): integral of k(r, t) L_j(t) t dt over the panel of offsets [left, right] from the
   !> centre, r = centre + target(i), L_j the Lagrange polynomials on the nodes `node` of [0, 1].

@@ -30,6 +30,7 @@ from .numerics import (
     law_numbers,
     panel_mesh,
     panel_weights,
+    turning_intervals,
     uniform_mesh,
 )
 from .results import Result, read_results
@@ -69,5 +70,6 @@ __all__ = [
     "read_results",
     "run",
     "slow_deformation",
+    "turning_intervals",
     "uniform_mesh",
 ]

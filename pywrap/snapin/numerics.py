@@ -79,6 +79,16 @@ def gauss_rule(points):
     return GaussRule(*_flat.gauss_rule(count("points", points, 1, _LARGEST_ORDER)))
 
 
+def turning_intervals(x, value, slope):
+    """Return for each interval of a curve whether it may turn there (src/path/path_extremum.f90).
+
+    `x` rises; `value` and `slope` are the curve's at `x`.
+    """
+    x = ascending("x", x, 2)
+    value, slope = as_long_as("value", value, x.size), as_long_as("slope", slope, x.size)
+    return _flat.turning_intervals(x, value, slope) > 0
+
+
 def panel_weights(node, target, left, right, *, centre=0.0):
     """Return the integrals of k(r, t) L_j(t) t dt over the panel of offsets [left, right].
 

@@ -31,6 +31,9 @@ module driven_pieces
     logical :: first_turns = .false., last_turns = .false.
   end type driven_piece_t
 
+  !> The part of itself by which D falls at least over a piece: where a turn is a state of the path
+  !> on two meshes, rounding leaves pieces over which it hardly does.
+  real(wp), parameter :: least_fall = 1.0e-9_wp
   !> Nodes of the rule that integrates over an interval.
   integer, parameter :: rule = 8
 
@@ -169,10 +172,11 @@ contains
       open = .false.
       piece%last = state
       piece%last_turns = turns
-      if (piece%first%converged .and. piece%last%converged) then
-        pieces = [pieces, piece]
-      else
+      if (.not. (piece%first%converged .and. piece%last%converged)) then
         whole = .false.
+      else if (drive%position(piece%first) - drive%position(piece%last) > least_fall* &
+        dot_product(abs(drive%weights), abs([state%h0, state%load]))) then
+        pieces = [pieces, piece]
       end if
     end subroutine close_piece
 

@@ -128,18 +128,19 @@ contains
     real(wp) :: course, mean, least, slope, step
     integer :: k
 
-    turns = ends(1)*ends(2) < 0
+    ! A slope of zero counts as one above: an extremum that is a state is in one interval of two.
+    turns = (ends(1) < 0) .neqv. (ends(2) < 0)
     doubt = .false.
     ! In the sense of its course the slope is above zero but between two extrema; where the ends
     ! differ, up to the first and, turned round, beyond it.
-    course = sign(1.0_wp, ends(1))
+    course = merge(-1.0_wp, 1.0_wp, ends(1) < 0)
     step = (x(2) - x(1))/places
     mean = abs(curve%value(x(2)) - curve%value(x(1)))/(x(2) - x(1))
     least = merge(0.0_wp, minval(abs(ends)), turns)
     s = x(minloc(abs(ends), 1))
     do k = 1, places - 1
       slope = course*curve%slope(x(1) + k*step)
-      if (turns .and. slope < 0 .and. course*ends(1) > 0) then
+      if (turns .and. slope < 0 .and. (course < 0 .eqv. ends(1) < 0)) then
         course = -course
         slope = -slope
       end if
@@ -197,7 +198,7 @@ contains
     logical :: solved, rising
 
     associate (x => near%coordinate(i:i + 1))
-      rising = near%tangent(i)%of(weights) > 0
+      rising = .not. near%tangent(i)%of(weights) < 0
       bracket = bracket_t(x(1), x(2))
       width = x(2) - x(1)
       curve = near%curve(weights, x(1) + 0.5_wp*(x(2) - x(1)))
@@ -212,7 +213,7 @@ contains
       if (lost) return
       tried%coordinate = s
       slope = tried%tangent%of(weights)
-      call bracket%narrow((slope > 0) .eqv. rising, s)
+      call bracket%narrow((slope < 0) .neqv. rising, s)
       if (.not. abs(slope) < least) then
         if (abs(s - found%coordinate) < rounding_rules) exit
         s = bracket%middle()
@@ -236,7 +237,7 @@ contains
         call beside%add(s_before, found%state, found%tangent)
       end if
     end do
-    found%sense = merge(1, -1, near%tangent(i)%of(weights) > 0)
+    found%sense = merge(1, -1, rising)
 
   contains
 
@@ -245,7 +246,7 @@ contains
 
       halves = bracket
       do while (halves%is_open() .and. abs(halves%high - halves%low) > root_tolerance)
-        call halves%narrow((curve%slope(halves%middle()) > 0) .eqv. rising)
+        call halves%narrow((curve%slope(halves%middle()) < 0) .neqv. rising)
       end do
       root = halves%middle()
     end function root_of_curve

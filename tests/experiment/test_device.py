@@ -140,6 +140,14 @@ def test_a_dead_load_lets_go_at_the_largest_tension_and_nothing_catches_the_bodi
     assert "no stable state is known" in found.warnings[0]
 
 
+def test_every_dead_load_lets_go_at_the_largest_tension(run):
+    # The turn is a state of the path: rounding alone decides in which interval it lies.
+    for sigma in np.random.default_rng(5).uniform(0.01, 10.0, 20):
+        found = run(springs(float(sigma), [0], accuracy=1e-4))
+        assert -numbers(found, "jump_out_load")[0] == pytest.approx(
+            found.summary["max_tension"], rel=1e-8), sigma
+
+
 def test_bodies_that_nothing_keeps_apart_jump_in_for_good(run):
     found = run(lennard_jones(0.87, part="attractive", equilibrium_path={"h0_end": -2.0},
                               device={"stiffness": [1.0]}))

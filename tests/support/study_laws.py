@@ -66,8 +66,8 @@ class Deviation(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """A scene with its deviations, how many numbers were as good as the truth, what is wrong; of the
-    run at the accuracy asked for how long it took, infinite if too long, and what it warned of."""
+    """A scene with its deviations, how many numbers were as good as the truth, what is wrong; of
+    the run at the accuracy asked for how long it took, infinite if too long, and its warnings."""
 
     scene: Scene
     deviations: list

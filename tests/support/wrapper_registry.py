@@ -161,6 +161,12 @@ REGISTRY = {
     "slow_deformation": entry(
         snapin.slow_deformation, gap=(VECTOR, RISING + 3), **SCENE, form=(NAME, "closed_form")
     ),
+    "turning_intervals": entry(
+        snapin.turning_intervals,
+        x=(VECTOR, RISING),
+        value=(PAIRED, RISING),
+        slope=(PAIRED, RISING - 1),
+    ),
     "uniform_mesh": entry(snapin.uniform_mesh, nodes=(COUNT, 9), extent=(POSITIVE, 3.0)),
     "Mesh": entry(
         numerics.Mesh, kind=(NAME, "panels"), centre=(SCALAR, 1.0), ends=(VECTOR, RISING),
