@@ -18,27 +18,26 @@ contains
   !> has an error of 1e-12 with 20 nodes, by 60 with 48; where x matters less and less as k grows,
   !> fewer do.
   pure subroutine wave_rule(x, sharpest, swing, nodes, start, first, last, k, weight)
-    real(wp), intent(in) :: x(:), sharpest(:), swing, start, first, last
-    integer, intent(in) :: nodes
+    real(wp), intent(in) :: x(:), sharpest(:), swing, nodes(2), start, first, last
     real(wp), allocatable, intent(out) :: k(:), weight(:)
-    real(wp), allocatable :: ends(:)
-    real(wp) :: node(nodes), part(nodes), from, to
-    integer :: i
+    real(wp), allocatable :: node(:), part(:)
+    real(wp) :: from, to, turned
+    integer :: n, i
 
-    allocate (ends(1))
-    ends = start
-    do while (ends(size(ends)) < last)
-      from = ends(size(ends))
-      to = min(last, merge(ratio*from, first, from > 0), from + swing/maxval(x, sharpest > from))
-      ends = [ends, to]
-    end do
-    call gauss_legendre(node, part)
-    allocate (k(nodes*(size(ends) - 1)), weight(nodes*(size(ends) - 1)))
-    do i = 1, size(ends) - 1
-      associate (length => ends(i + 1) - ends(i), all => nodes*(i - 1))
-        k(all + 1:all + nodes) = ends(i) + length*node
-        weight(all + 1:all + nodes) = length*part
+    allocate (k(0), weight(0))
+    to = start
+    do while (to < last)
+      from = to
+      associate (widest => maxval(x, sharpest > from))
+        to = min(last, merge(ratio*from, first, from > 0), from + swing/widest)
+        turned = (to - from)*widest/swing
       end associate
+      n = ceiling(nodes(1) + turned*(nodes(2) - nodes(1)))
+      node = [(0.0_wp, i=1, n)]
+      part = node
+      call gauss_legendre(node, part)
+      k = [k, from + (to - from)*node]
+      weight = [weight, (to - from)*part]
     end do
   end subroutine wave_rule
 

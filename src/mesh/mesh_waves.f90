@@ -33,7 +33,7 @@ module mesh_waves
   !> and for each digit. They need not do for a product of two waves that end in one place, which
   !> is far out and has little pressure: results move by a tenth of what they are uncertain by, or
   !> less.
-  real(wp), parameter :: swing = 60, nodes_at_first = 14, nodes_a_digit = 1.5_wp
+  real(wp), parameter :: swing = 60, nodes_at_first(2) = [4, 14], nodes_a_digit(2) = [0.8_wp, 1.5_wp]
   !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave that turns by some angle
   !> over it is one of so many times the angle, to this and a few degrees more.
   real(wp), parameter :: degrees = 0.55_wp, more_degrees = 8
@@ -99,7 +99,7 @@ contains
       end associate
     end do
     where (x > 0) last_of = max(last_of, crossing*grid%digits/x)
-    call wave_rule(x, last_of, swing, ceiling(nodes_at_first + nodes_a_digit*grid%digits), &
+    call wave_rule(x, last_of, swing, nodes_at_first + nodes_a_digit*grid%digits, &
       self%range(2), self%range(1), last, k, weight)
     before = size(self%k)
     self%range(2) = last

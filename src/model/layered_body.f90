@@ -23,7 +23,7 @@ module layered_body
   !> How far a wave turns over a panel of waves whose sums are to be exact, and nodes of that
   !> (`wave_rule`).
   real(wp), parameter :: swing = 16
-  integer, parameter :: nodes = 20
+  real(wp), parameter :: nodes(2) = 20
   !> More panels than any layers need whose numbers are not too unlike (`layer_group`).
   integer, parameter :: most_panels = 1000
   real(wp), parameter :: resolved = 1.0e-13_wp
