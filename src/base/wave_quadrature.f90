@@ -13,10 +13,10 @@ module wave_quadrature
 contains
 
   !> Nodes in order from `start` to `last`, and weights. sharpest: up to where each x matters. The
-  !> function is a polynomial of low degree up to `first` and between k and 3 k. Over a panel of
-  !> `nodes` no x turns its wave by more than `swing`: a product of two waves that both turn by 16
-  !> has an error of 1e-12 with 20 nodes, by 60 with 48; where x matters less and less as k grows,
-  !> fewer do.
+  !> function is a polynomial of low degree up to `first` and between k and 3 k. Over a panel no x
+  !> turns its wave by more than `swing`. It has nodes(2) where one turns by that, nodes(1) where
+  !> none turns, and in proportion between: a product of two waves that both turn by 16 has an error
+  !> of 1e-12 with 20 nodes, by 60 with 48; where x matters less and less as k grows, fewer do.
   pure subroutine wave_rule(x, sharpest, swing, nodes, start, first, last, k, weight)
     real(wp), intent(in) :: x(:), sharpest(:), swing, nodes(2), start, first, last
     real(wp), allocatable, intent(out) :: k(:), weight(:)

@@ -20,7 +20,7 @@ module layered_body
   !> Degree of L - 1 on a panel of waves, what may be left of its last coefficients, and how often a
   !> panel is halved.
   integer, parameter :: degree = 16, halvings = 60
-  !> How far a wave turns over a panel of waves whose sums are to be exact, and nodes of that
+  !> How far a wave turns over a panel of waves whose sums are to be exact, and nodes of panels
   !> (`wave_rule`).
   real(wp), parameter :: swing = 16
   real(wp), parameter :: nodes(2) = 20
@@ -96,6 +96,8 @@ contains
     ! Without an end of the series no state may converge.
     if (body%ends(size(body%ends)) < last) body%series = ieee_value(last, ieee_quiet_nan)
     body%bottom = 1 + power_value(body%series(:, 1), -1.0_wp)
+    ! On a rigid base what is left is rounding.
+    if (body%bottom < resolved) body%bottom = 0
 
   contains
 

@@ -81,6 +81,17 @@ def test_paths_over_coats_thirty_times_thinner_are_as_exact_as_asked_for(solve, 
     assert asked["error_estimate"] < 1e-6
     for key in ("max_tension", "end_load"):
         assert asked[key] == pytest.approx(finer[key], rel=1e-6, abs=1e-6 * finer["max_tension"])
+    assert ("bottom_modulus" in asked) == (ratio > 0)
+
+
+@pytest.mark.parametrize("sigma", [1, 25])
+def test_errors_of_a_thin_coat_a_hundred_times_as_stiff_hold(solve, sigma):
+    layer = (0.03 * (9 * math.pi * sigma) ** (1 / 3), 100.0, 0.3, 0.3, 1.0)
+    asked, finer = (solve(layered(layer, sigma, accuracy=accuracy,
+                                  equilibrium_path={"h0_end": -2.0})).summary
+                    for accuracy in (1e-6, 1e-9))
+    for key in ("max_tension", "jump_out_load", "end_load"):
+        assert abs(asked[key] - finer[key]) < 3 * asked[f"{key}_error"] + 1e-8 * abs(finer[key])
 
 
 @pytest.mark.parametrize("pieces", [1, 3])
