@@ -25,8 +25,9 @@ module mesh_digits
   !> waves of this many or fewer over the radius: at weak adhesion, and more for each decade of
   !> sigma.
   real(wp), parameter :: for_layers = 0.4_wp, for_necks_in_layers = 1.2_wp, waves_in_layer = 32
-  !> The same for each decade of what such a contact yields more or less than on a half-space.
-  real(wp), parameter :: for_unlike = 0.1_wp, for_necks_in_unlike = 0.1_wp
+  !> The same for each decade of what such a contact yields more or less than on a half-space, and
+  !> for each of both where it yields more.
+  real(wp), parameter :: for_unlike = 0.1_wp, for_necks_in_unlike = 0.1_wp, for_softer = 0.4_wp
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; what is more
   !> there, the factor in sigma up to which that is felt, and the part of it, logarithmically, in
   !> which the two folds are so near each other that coarse meshes lose them.
@@ -39,7 +40,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
     logical, intent(in) :: profiles
-    real(wp) :: sigma, decades, least, left, away
+    real(wp) :: sigma, decades, least, left, away, wider, softer
 
     sigma = adhesion_strength(problem)
     decades = log10(1 + sigma)
@@ -54,11 +55,13 @@ contains
     end if
     if (profiles) digits = digits + for_profiles + for_narrow_necks*decades
     if (problem%shape%smooth_from() > 0) digits = digits + for_kinks
-    if (.not. problem%body%is_homogeneous()) digits = digits + &
-      (for_layers + for_necks_in_layers*decades)* &
-      log10(hypot(1.0_wp, widest*maxval(problem%body%wave_range())/waves_in_layer)) + &
-      (for_unlike + for_necks_in_unlike*decades)* &
-      abs(log10(coupling_over(problem, widest)/problem%coupling))
+    if (.not. problem%body%is_homogeneous()) then
+      wider = log10(hypot(1.0_wp, widest*maxval(problem%body%wave_range())/waves_in_layer))
+      softer = log10(coupling_over(problem, widest)/problem%coupling)
+      digits = digits + (for_layers + for_necks_in_layers*decades)*wider + &
+        (for_unlike + for_necks_in_unlike*decades)*abs(softer) + &
+        for_softer*wider*max(0.0_wp, softer)
+    end if
     away = abs(log(max(sigma, tiny(1.0_wp))/onset))/log(about_onset)
     digits = digits + at_onset*max(0.0_wp, min(1.0_wp, 1.5_wp*(1 - away)))
     if (away < near_onset) least = max(least, enough_for_folds)
