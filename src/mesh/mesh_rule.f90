@@ -41,6 +41,8 @@ module mesh_rule
   !> Widths of the cohesive zone that a flat face has at most for its rim to be passed on a mesh
   !> that stays where it is, and how far beyond the rim that goes (`rim_passed_at`).
   real(wp), parameter :: widths_to_pass = 10, beyond_rim = 1.3_wp
+  !> Length there of panels in widths of the cohesive zone at most.
+  real(wp), parameter :: short_at_rim = 0.7_wp
   !> Kinks of a shape between which panels end; more, as a table has, lie everywhere.
   integer, parameter :: few = 4
   !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
@@ -192,7 +194,8 @@ contains
     integer :: panels, fewest
     logical :: broken
 
-    broken = problem%shape%smooth_from() > 0
+    ! Around a contact that is wider than where its shape has kinks there are none.
+    broken = problem%shape%smooth_from() > merge(low, 0.0_wp, side > 0 .and. about == about_edge)
     if (side > 0) broken = broken .or. end_matters(problem, digits, &
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0), high)
     fewest = ceiling(short_order + short_orders*digits)
@@ -250,7 +253,7 @@ contains
   end function short_panels
 
   !> Short panels that end where a derivative of the shape jumps; where that is at many places, as
-  !> of a table, they need not. None is wider than the cohesive zone as far as the edge comes.
+  !> of a table, they need not. Where the edge passes they are short.
   pure function ending_at_breaks(problem, d, z_length) result(lengths)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: d, z_length
@@ -276,7 +279,7 @@ contains
     do i = 1, size(long)
       parts = 1
       if (d*sinh(from) < rim_passed_at(problem)) parts = ceiling( &
-        d*(sinh(from + long(i)) - sinh(from))/min(1.0_wp, cohesive_width(problem)))
+        d*(sinh(from + long(i)) - sinh(from))/(short_at_rim*min(1.0_wp, cohesive_width(problem))))
       lengths = [lengths, spread(long(i)/parts, 1, parts)]
       from = from + long(i)
     end do
