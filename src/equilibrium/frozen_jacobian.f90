@@ -20,6 +20,7 @@ module frozen_jacobian
     integer :: renewals = 0
   contains
     procedure :: serves
+    procedure :: forget
   end type frozen_jacobian_t
 
 contains
@@ -34,6 +35,13 @@ contains
       self%control%mesh == control%mesh
     if (serves) serves = size(self%factors%lu, 1) == unknowns
   end function serves
+
+  !> Has the next state make factors of its own: those in hand are too far from it.
+  pure subroutine forget(self)
+    class(frozen_jacobian_t), intent(inout) :: self
+
+    self%factors%valid = .false.
+  end subroutine forget
 
   !> Takes the Jacobian at a state for the present one. frozen%factors%valid: whether it is regular.
   subroutine freeze(equations, control, state, frozen)

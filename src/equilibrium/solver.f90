@@ -16,6 +16,7 @@ module solver
     type(frozen_jacobian_t) :: frozen
   contains
     procedure :: solve
+    procedure :: correct
   end type solver_t
 
 contains
@@ -32,12 +33,27 @@ contains
     case ('mixing')
       call solve_mixing(self%equations_t, self%options, control, state, converged)
     case ('newton')
-      self%frozen%factors%valid = .false.
-      call solve_anderson(self%equations_t, newton_of(self%options), self%frozen, control, state, &
-        converged)
+      call self%frozen%forget()
+      call self%correct(control, state, converged, newton_of(self%options))
     case default
-      call solve_anderson(self%equations_t, self%options, self%frozen, control, state, converged)
+      call self%correct(control, state, converged)
     end select
   end subroutine solve
+
+  !> From a state nearby to the equilibrium at `control`, by the accelerated iteration whatever the
+  !> method is. options: where they are not its own.
+  subroutine correct(self, control, state, converged, options)
+    class(solver_t), intent(inout) :: self
+    type(control_t), intent(in) :: control
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: converged
+    type(solver_options_t), intent(in), optional :: options
+
+    if (present(options)) then
+      call solve_anderson(self%equations_t, options, self%frozen, control, state, converged)
+    else
+      call solve_anderson(self%equations_t, self%options, self%frozen, control, state, converged)
+    end if
+  end subroutine correct
 
 end module solver

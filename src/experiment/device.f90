@@ -4,10 +4,11 @@
 module device
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
-  use equilibrium, only: equations_t
+  use interpolation, only: hermite_t
+  use solver, only: solver_t
   use path_tangent, only: of_h0
-  use known_path, only: known_path_t
-  use curve_states, only: curve_solver_t, curve_state_t
+  use traced_path, only: traced_path_t
+  use curve_states, only: curve_state_t, state_where
   use driven_pieces, only: drive_t, driven_piece_t, find_pieces, state_driven
   use driven_cycle, only: driven_t, leg_t, jump_t
   implicit none
@@ -17,9 +18,8 @@ module device
   !> Bodies on their way: what solves their states, where they are to go from and to, and the piece
   !> and the state that they are in.
   type :: travel_t
-    type(curve_solver_t), pointer :: solver => null()
-    type(equations_t), pointer :: equations => null()
-    type(known_path_t), pointer :: known => null()
+    class(solver_t), pointer :: solver => null()
+    type(traced_path_t), pointer :: path => null()
     real(wp) :: h0_end = 0
     real(wp), allocatable :: start, finish
     integer :: piece = 1
@@ -37,10 +37,9 @@ contains
 
   !> Drives the bodies from afar, or from `start`, to `finish` or, where that is absent, to the
   !> innermost piece at h0_end, and back. Positions are those of the drive (`driven_pieces`).
-  subroutine drive_bodies(solver, equations, known, drive, h0_end, start, finish, driven)
-    type(curve_solver_t), intent(inout), target :: solver
-    type(equations_t), intent(inout), target :: equations
-    type(known_path_t), intent(in), target :: known
+  subroutine drive_bodies(solver, path, drive, h0_end, start, finish, driven)
+    class(solver_t), intent(inout), target :: solver
+    type(traced_path_t), intent(in), target :: path
     type(drive_t), intent(in) :: drive
     real(wp), intent(in) :: h0_end
     real(wp), allocatable, intent(in) :: start, finish
@@ -52,11 +51,10 @@ contains
     driven%drive = drive
     driven%energy_lost = ieee_value(1.0_wp, ieee_quiet_nan)
     driven%cycle_energy = driven%energy_lost
-    call find_pieces(solver, equations, known, drive, driven%piece, driven%solved)
+    call find_pieces(solver, path, drive, driven%piece, driven%solved)
     if (size(driven%piece) == 0) return
     travel%solver => solver
-    travel%equations => equations
-    travel%known => known
+    travel%path => path
     travel%h0_end = h0_end
     if (allocated(start)) travel%start = start
     if (allocated(finish)) travel%finish = finish
@@ -68,7 +66,7 @@ contains
     driven%uncertainty = sum(driven%jump%uncertainty)
     driven%caught = all(driven%jump%landed)
     if (travel%piece == outermost .and. driven%caught .and. driven%solved) &
-      driven%cycle_energy = driven%area(solver%curve)
+      driven%cycle_energy = driven%area(path)
   end subroutine drive_bodies
 
   !> Takes the outermost stable state, or that at the position to start from.
@@ -124,8 +122,8 @@ contains
     real(wp), intent(in) :: position
     type(driven_t), intent(inout) :: driven
 
-    call state_driven(self%solver, self%equations, self%known, driven%drive, &
-      driven%piece(self%piece), position, self%state)
+    call state_driven(self%solver, self%path, driven%drive, driven%piece(self%piece), position, &
+      self%state)
     driven%solved = driven%solved .and. self%state%converged
   end subroutine move_to
 
@@ -166,18 +164,17 @@ contains
     real(wp), intent(out) :: at
     logical, intent(out) :: there_is
     type(curve_state_t) :: there
+    type(hermite_t) :: h0
     real(wp) :: ends(2)
     integer :: i
 
     at = drive%position(piece%last)
     there_is = .not. piece%last_turns
     do i = piece%last%interval, piece%first%interval, -1
-      associate (begin => self%solver%curve%begin_of(i), end => self%solver%curve%end_of(i))
-        if (.not. (begin%h0 >= self%h0_end .and. end%h0 <= self%h0_end)) cycle
-        ends = [begin%x, end%x]
-      end associate
-      call self%solver%state_where(self%equations, self%known, i, of_h0, self%h0_end, ends(1), &
-        ends(2), there)
+      if (.not. self%path%joins(i)) cycle
+      call self%path%curve_between(i, of_h0, h0, ends)
+      if (.not. (h0%value(ends(1)) >= self%h0_end .and. h0%value(ends(2)) <= self%h0_end)) cycle
+      call state_where(self%solver, self%path, i, of_h0, self%h0_end, ends(1), ends(2), there)
       there_is = there_is .or. there%converged
       if (there%converged) at = max(at, drive%position(there))
       exit
@@ -199,7 +196,7 @@ contains
     k = piece_with(driven%piece, driven%drive, driven%drive%position(self%state), &
       self%piece + sense, sense)
     if (k == 0) return
-    call state_driven(self%solver, self%equations, self%known, driven%drive, driven%piece(k), &
+    call state_driven(self%solver, self%path, driven%drive, driven%piece(k), &
       driven%drive%position(self%state), jump%after)
     jump%landed = jump%after%converged
     driven%solved = driven%solved .and. jump%landed

@@ -2,7 +2,8 @@
 !> between these, and the energy that is lost (`device`).
 module driven_cycle
   use kinds, only: wp
-  use path_curve, only: curve_t, curve_node_t
+  use path_curve, only: curve_node_t
+  use traced_path, only: traced_path_t
   use curve_states, only: curve_state_t
   use driven_pieces, only: drive_t, driven_piece_t
   implicit none
@@ -48,19 +49,16 @@ module driven_cycle
 
 contains
 
-  !> The nodes of the curve that a leg passes, in the order of the leg.
-  pure function nodes_on(curve, leg) result(nodes)
-    type(curve_t), intent(in) :: curve
+  !> The nodes of the path that a leg passes, in the order of the leg.
+  pure function nodes_on(all_nodes, leg) result(nodes)
+    type(curve_node_t), intent(in) :: all_nodes(:)
     type(leg_t), intent(in) :: leg
     type(curve_node_t), allocatable :: nodes(:)
-    integer :: i, first, last
 
-    first = min(leg%from%interval, leg%to%interval)
-    last = max(leg%from%interval, leg%to%interval)
-    allocate (nodes(last - first))
-    do i = first + 1, last
-      nodes(i - first) = curve%begin_of(i)
-    end do
+    associate (ends => [leg%from%interval, leg%to%interval])
+      nodes = pack(all_nodes, all_nodes%shown .and. all_nodes%point > minval(ends) .and. &
+        all_nodes%point <= maxval(ends))
+    end associate
     if (.not. leg%inward) nodes = nodes(size(nodes):1:-1)
   end function nodes_on
 
@@ -75,18 +73,18 @@ contains
   end function jumps_after
 
   !> The energy put in along all legs: minus the integral of the conjugate over the position.
-  pure real(wp) function area(self, curve)
+  pure real(wp) function area(self, path)
     class(driven_t), intent(in) :: self
-    type(curve_t), intent(in) :: curve
+    type(traced_path_t), intent(in) :: path
     integer :: i
 
     area = 0
     do i = 1, size(self%leg)
       associate (leg => self%leg(i))
         if (leg%inward) then
-          area = area - self%drive%work_between(curve, leg%from, leg%to)
+          area = area - self%drive%work_between(path, leg%from, leg%to)
         else
-          area = area + self%drive%work_between(curve, leg%to, leg%from)
+          area = area + self%drive%work_between(path, leg%to, leg%from)
         end if
       end associate
     end do

@@ -11,6 +11,7 @@ module exact_path
   use mending, only: too_much
   use path_stepper, only: path_stepper_t
   use experiment_request, only: request_t
+  use path_demand, only: farthest_wanted
   use result_errors, only: judge_t, begin_judging, judge_path_points
   implicit none
   private
@@ -46,13 +47,15 @@ contains
     type(mesh_store_t), intent(inout), target, optional :: store
     type(tracing_t) :: before
     type(known_path_t) :: nothing
+    real(wp), allocatable :: farthest
     real(wp) :: worst, began
     integer :: round
 
+    if (request%reads_path()) farthest = farthest_wanted(request, steps%problem)
     associate (accuracy => request%numerics%accuracy, cost => steps%cost)
       do round = 1, most_rounds
-        call steps%know_path(h0_high, h0_low, allocated(request%path), request%reads_path(), &
-          listener, accuracy*10.0_wp**(-further_digits*(round - 1)))
+        call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, &
+          accuracy*10.0_wp**(-further_digits*(round - 1)))
         began = seconds()
         call begin_judging(judge, steps, h0_high, h0_low, store)
         worst = 0

@@ -90,7 +90,7 @@ contains
     end if
     expected = moved_with_edge(self%problem, self%meshes%grid(1), position, h0)
     ! A factorisation from before the edge moved across a good part of the neck does not serve.
-    if (change(position%state, expected) > large_change) self%frozen%factors%valid = .false.
+    if (change(position%state, expected) > large_change) call self%frozen%forget()
   end function expected_at
 
   !> Takes the position along its branch towards h0, which one step did not reach. arrived: there

@@ -142,9 +142,9 @@ contains
     newton = newton_of(self%options)
     newton%most_iterations = newton_iterations
     state = before
-    self%frozen%factors%valid = .false.
+    call self%frozen%forget()
     call solve_anderson(self%equations_t, newton, self%frozen, control_t(value=h0), state, goes_on)
-    self%frozen%factors%valid = .false.
+    call self%frozen%forget()
     goes_on = goes_on .and. change(before, state) <= jump
   end function goes_on
 
@@ -163,7 +163,7 @@ contains
       return
     end if
     call relax(self%equations_t, self%options, control_t(value=h0), state, event%converged)
-    self%frozen%factors%valid = .false.
+    call self%frozen%forget()
   end subroutine land
 
   !> Whether bodies that came from one state to the other by relaxation stayed in contact:

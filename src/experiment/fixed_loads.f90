@@ -1,10 +1,11 @@
 !> All equilibria under given loads, stable or not, wherever they are on the path.
 module fixed_loads
   use kinds, only: wp
-  use equilibrium, only: equations_t
+  use interpolation, only: hermite_t
+  use solver, only: solver_t
   use path_tangent, only: of_load
-  use known_path, only: known_path_t
-  use curve_states, only: curve_solver_t, curve_state_t
+  use traced_path, only: traced_path_t
+  use curve_states, only: curve_state_t, state_where, find_turns
   implicit none
   private
   public :: loaded_state_t, find_loaded
@@ -21,31 +22,31 @@ contains
 
   !> Adds the equilibria under a load in the order of the path, from afar inward. solved = .false.:
   !> one was not found.
-  subroutine find_loaded(solver, equations, known, load, list, solved)
-    type(curve_solver_t), intent(inout) :: solver
-    type(equations_t), intent(inout) :: equations
-    type(known_path_t), intent(in) :: known
+  subroutine find_loaded(solver, path, load, list, solved)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
     real(wp), intent(in) :: load
     type(loaded_state_t), allocatable, intent(inout) :: list(:)
     logical, intent(inout) :: solved
     type(loaded_state_t) :: found
     type(curve_state_t), allocatable :: turns(:)
+    type(hermite_t) :: curve
+    real(wp) :: ends(2)
     real(wp), allocatable :: edges(:), beyond(:)
     integer :: i, k
     logical :: all_turns
 
     found%wanted = load
-    do i = 1, size(solver%curve%interval)
-      call solver%find_turns(equations, known, i, of_load, turns, all_turns)
+    do i = 1, path%last - 1
+      if (.not. path%joins(i)) cycle
+      call find_turns(solver, path, i, of_load, turns, all_turns)
       solved = solved .and. all_turns
-      associate (begin => solver%curve%begin_of(i), end => solver%curve%end_of(i))
-        edges = [begin%x, turns%x, end%x]
-        beyond = [begin%load, turns%load, end%load] - load
-      end associate
+      call path%curve_between(i, of_load, curve, ends)
+      edges = [ends(1), turns%x, ends(2)]
+      beyond = [curve%value(ends(1)), turns%load, curve%value(ends(2))] - load
       do k = 1, size(edges) - 1
         if ((beyond(k) < 0) .eqv. (beyond(k + 1) < 0)) cycle
-        call solver%state_where(equations, known, i, of_load, load, edges(k), edges(k + 1), &
-          found%state)
+        call state_where(solver, path, i, of_load, load, edges(k), edges(k + 1), found%state)
         solved = solved .and. found%state%converged
         if (.not. found%state%converged) cycle
         ! Inward h0 falls along what is stable at fixed h0.

@@ -4,7 +4,6 @@
 module path
   use kinds, only: wp
   use dimensionless_problem, only: spacing_over_neck
-  use frozen_jacobian, only: frozen_jacobian_t
   use traced_path, only: traced_path_t
   use ending, only: ending_t, state_lost
   use known_path, only: known_path_t, interval_at
@@ -48,7 +47,6 @@ contains
     real(wp), intent(in), optional :: h0_start
     type(row_t) :: row
     type(row_t), allocatable :: between(:)
-    type(frozen_jacobian_t) :: frozen
     real(wp) :: until, widest
     integer :: i, k, first, last
     logical :: ends_between
@@ -56,7 +54,7 @@ contains
     allocate (path%fold(0), path%extremum(0), path%unstable_after(0), path%profile(0))
     path%fallen = steps%known%fallen
     if (.not. path%fallen) path%ending = steps%known%ending
-    first = 1
+    first = steps%known%path%undeformed + 1
     if (present(h0_start)) first = first_crossing(steps%known%path, h0_start)
     call find_end(steps%known, h0_end, last, ends_between)
     if (last < first) return
@@ -70,7 +68,7 @@ contains
       if (i == last .and. .not. ends_between) exit
       until = h0_end
       if (i < last) until = steps%known%path%point(i + 1)%state%h0
-      call rows_between(steps, i, row%state%h0, until, widest, profiles, frozen, between)
+      call rows_between(steps, i, row%state%h0, until, widest, profiles, between)
       do k = 1, size(between)
         call take(steps, between(k), observer, path)
       end do
@@ -89,7 +87,7 @@ contains
     type(traced_path_t), intent(in) :: path
     real(wp), intent(in) :: h0
 
-    do i = 1, path%held - 1
+    do i = path%undeformed + 1, path%held - 1
       if (path%point(i)%state%h0 >= h0 .and. path%point(i + 1)%state%h0 <= h0) return
     end do
     i = path%held + 1

@@ -6,8 +6,8 @@ module path_expansion
   use kinds, only: wp
   use contact_state, only: state_t
   use path_coordinate, only: path_control
-  use path_tangent, only: tangent_t, of_h0, of_load
-  use arc, only: arc_t, tangent_along
+  use path_tangent, only: tangent_t, tangent_along, of_h0, of_load
+  use arc, only: arc_t
   use potential_energy, only: energy_of
   use reported, only: measure_t
   use error_estimate, only: finer_t
@@ -62,7 +62,7 @@ contains
     logical, intent(out) :: found
     integer :: move
 
-    fine%frozen%factors%valid = .false.
+    call fine%frozen%forget()
     do move = 1, most_moves
       call expand(fine, mesh, near, found)
       if (.not. found) return
@@ -84,8 +84,7 @@ contains
     real(wp) :: uncertainty
 
     call solve_fine(fine, mesh, near%s, near%state, found)
-    if (found) call tangent_along(fine%equations_t, fine%options, mesh, near%s, near%state, &
-      fine%frozen, tangent, found)
+    if (found) call tangent_along(fine%solver_t, mesh, near%s, near%state, tangent, found)
     if (.not. found) return
     near%h0 = parabola_t(near%state%h0, tangent%h0, near%h0%curvature)
     near%load = parabola_t(near%state%load, tangent%load, near%load%curvature)

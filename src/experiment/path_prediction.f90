@@ -2,9 +2,8 @@
 !> much that missed the states before.
 module path_prediction
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
+  use solver, only: solver_t
   use interpolation, only: polynomial_weights
-  use discretisation, only: discretisation_t
   use contact_state, only: state_t
   use path_coordinate, only: coordinate_of
   use path_span, only: path_span_t
@@ -43,9 +42,8 @@ contains
 
   !> The state that is expected at h0, where the span has the coordinate s: that of the span, and by
   !> how much it missed the last states, extrapolated.
-  subroutine expect(problem, grid, span, missed, h0, s, position, state)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
+  subroutine expect(solver, span, missed, h0, s, position, state)
+    class(solver_t), intent(in) :: solver
     type(path_span_t), intent(in) :: span
     type(missed_t), intent(inout) :: missed
     real(wp), intent(in) :: h0, s
@@ -54,7 +52,7 @@ contains
     real(wp) :: weight(memory), place
     integer :: k, first, round
 
-    call missed%follow(problem, grid, span, position)
+    call missed%follow(solver, span, position)
     first = missed%first_of_use(span, s)
     place = s
     ! The correction depends on the place, and the place on the correction: two rounds settle both.
@@ -62,10 +60,10 @@ contains
       do round = 1, 2
         weight(first:missed%held) = polynomial_weights(missed%at(first:missed%held), place)
         place = span%at_h0(h0 - dot_product(weight(first:missed%held), &
-          missed%h0(first:missed%held)), place)
+          missed%h0(first:missed%held)))
       end do
     end if
-    call span%guess(problem%shape, grid, place, state)
+    call span%expected(solver, place, state)
     do k = first, missed%held
       state%gap = state%gap + weight(k)*missed%gap(:, k)
       state%scale = state%scale + weight(k)*missed%scale(k)
@@ -73,10 +71,9 @@ contains
   end subroutine expect
 
   !> Brings it to the position's past; a state that it has already keeps what was found.
-  subroutine follow(self, problem, grid, span, position)
+  subroutine follow(self, solver, span, position)
     class(missed_t), intent(inout) :: self
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
+    class(solver_t), intent(in) :: solver
     type(path_span_t), intent(in) :: span
     type(branch_point_t), intent(in) :: position
     type(state_t) :: guessed
@@ -109,8 +106,8 @@ contains
       end if
       if (j == 0) then
         associate (past => position%past(k))
-          self%at(k) = coordinate_of(problem, span%mesh, past)
-          call span%guess(problem%shape, grid, self%at(k), guessed)
+          self%at(k) = coordinate_of(solver%problem, span%mesh, past)
+          call span%expected(solver, self%at(k), guessed)
           self%h0(k) = past%h0 - guessed%h0
           self%scale(k) = past%scale - guessed%scale
           self%gap(:, k) = past%gap - guessed%gap

@@ -3,8 +3,6 @@
 module path_rows
   use kinds, only: wp
   use contact_state, only: state_t
-  use anderson, only: solve_anderson
-  use frozen_jacobian, only: frozen_jacobian_t
   use path_coordinate, only: path_control
   use path_span, only: path_span_t, new_path_span
   use straight_lines, only: places_between
@@ -49,11 +47,10 @@ contains
   !> The rows between point i and the next, inside the range of h0 from one value to another, in
   !> order: profiles that are asked for, and the rows for the curve; of these such as do not
   !> converge are left out, for the curve can do without. widest: contact radius, lateral units.
-  subroutine rows_between(steps, i, from, until, widest, profiles, frozen, rows)
+  subroutine rows_between(steps, i, from, until, widest, profiles, rows)
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
     real(wp), intent(in) :: from, until, widest, profiles(:)
-    type(frozen_jacobian_t), intent(inout) :: frozen
     type(row_t), allocatable, intent(out) :: rows(:)
     type(path_span_t) :: span
     real(wp), allocatable :: stops(:), stop_at(:), places(:)
@@ -64,7 +61,7 @@ contains
     stops = pack(profiles, (profiles - from)*(profiles - until) < 0)
     stop_at = [(span%at_h0(stops(k)), k=1, size(stops))]
     begin = span%at_h0(from)
-    places = places_between(steps%equations_t, span, begin, span%at_h0(until), widest)
+    places = places_between(steps%solver_t, span, begin, span%at_h0(until), widest)
     places = along([stop_at, places], begin)
     allocate (rows(size(places)))
     do k = 1, size(places)
@@ -73,7 +70,7 @@ contains
         rows(k) = row_at_h0(steps, i, stops(stop))
         rows(k)%profile = .true.
       else
-        rows(k) = row_for_curve(steps, i, span, places(k), frozen)
+        rows(k) = row_for_curve(steps, i, span, places(k))
       end if
     end do
     if (.not. all(rows%converged .or. rows%profile)) &
@@ -82,20 +79,18 @@ contains
 
   !> The row at the coordinate s of the span after point i, as the path predicts it and, where that
   !> is not an equilibrium to the tolerance, corrected.
-  function row_for_curve(steps, i, span, s, frozen) result(row)
+  function row_for_curve(steps, i, span, s) result(row)
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
     type(path_span_t), intent(in) :: span
     real(wp), intent(in) :: s
-    type(frozen_jacobian_t), intent(inout) :: frozen
     type(row_t) :: row
 
     row%for_curve = .true.
     row%modes = steps%known%path%point(i)%modes
     row%mesh = span%mesh
-    call span%guess(steps%problem%shape, steps%meshes%grid(span%mesh), s, row%state)
-    call solve_anderson(steps%equations_t, steps%options, frozen, &
-      path_control(steps%problem, span%mesh, s), row%state, row%converged)
+    call span%expected(steps%solver_t, s, row%state)
+    call steps%correct(path_control(steps%problem, span%mesh, s), row%state, row%converged)
   end function row_for_curve
 
   !> Values by their distance from `start`, all on one side of it.

@@ -13,7 +13,6 @@ module path_stepper
   use path_coordinate, only: coordinate_of
   use ending, only: fallen_before, beyond_path
   use traced_path, only: traced_path_t
-  use state_search, only: neighbours_t, neighbours_of, solve_at_h0
   use path_span, only: path_span_t, new_path_span
   use path_prediction, only: missed_t, expect
   use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
@@ -47,27 +46,27 @@ module path_stepper
 contains
 
   !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
-  !> h0_low; into_contact: until it is also on the mesh for contact; closely: with points enough for
-  !> a smooth curve; accuracy: see `trace`. To be called before the first step. The listener hears
-  !> how far it is.
-  subroutine know_path(self, h0_high, h0_low, into_contact, closely, listener, accuracy)
+  !> h0_low; into_contact: until it is also on the mesh for contact; farthest: see `trace`, where
+  !> given, closely, so that the points make a smooth curve; accuracy: see `trace`. To be called
+  !> before the first step. The listener hears how far it is.
+  subroutine know_path(self, h0_high, h0_low, into_contact, listener, farthest, accuracy)
     class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0_high, h0_low
-    logical, intent(in) :: into_contact, closely
+    logical, intent(in) :: into_contact
     class(listener_t), intent(inout) :: listener
-    real(wp), intent(in), optional :: accuracy
+    real(wp), intent(in), optional :: farthest, accuracy
     type(branch_point_t) :: position
     type(step_result_t) :: event
 
     call self%begin_afar(h0_high, position, event)
     if (.not. event%ending%early()) then
-      call trace(self%equations_t, self%options, position%state, h0_low, into_contact, closely, &
-        listener, self%known, accuracy)
+      call trace(self%solver_t, position%state, h0_low, into_contact, listener, self%known, &
+        farthest, accuracy)
     else
       self%known%ending = event%ending
       allocate (self%known%piece(0))
     end if
-    self%frozen%factors%valid = .false.
+    call self%frozen%forget()
     self%span%point = 0
   end subroutine know_path
 
@@ -188,14 +187,9 @@ contains
     end if
     mesh = self%span%mesh
     associate (ends => self%span%ends)
-      if (position%number > 0 .and. position%mesh == mesh) then
-        s = self%span%at_h0(h0, coordinate_of(self%problem, mesh, position%state))
-      else
-        s = self%span%at_h0(h0)
-      end if
+      s = self%span%at_h0(h0)
       if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
-        call expect(self%problem, self%meshes%grid(self%span%mesh), self%span, self%missed, h0, s, &
-          position, state)
+        call expect(self%solver_t, self%span, self%missed, h0, s, position, state)
         call self%attempt(h0, state, mesh, event)
         if (event%converged) then
           s = coordinate_of(self%problem, mesh, state)
@@ -231,12 +225,12 @@ contains
     integer, intent(out) :: mesh
     type(state_t), intent(out) :: state
     logical, intent(out) :: converged
-    type(neighbours_t) :: near
+    type(path_span_t) :: span
     real(wp) :: s
 
-    near = neighbours_of(self%known%path, i)
-    mesh = near%mesh
-    call solve_at_h0(self%equations_t, self%options, near, h0, s, state, converged)
+    span = new_path_span(self%known%path, i)
+    mesh = span%mesh
+    call span%solve_at_h0(self%solver_t, h0, s, state, converged)
   end subroutine state_at_h0
 
 end module path_stepper

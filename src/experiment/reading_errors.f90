@@ -7,13 +7,14 @@ module reading_errors
   use listener, only: listener_t
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
-  use curve_states, only: curve_state_t, curve_solver_t, reading_t, reading_of
+  use curve_states, only: curve_state_t, reading_t, reading_of
   use path_curve, only: curve_node_t
   use driven_pieces, only: state_driven
   use driven_cycle, only: driven_t, leg_t, nodes_on
   use fixed_loads, only: loaded_state_t
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
+  use path_demand, only: farthest_wanted
   use path_stepper, only: path_stepper_t
   use path_readings, only: path_readings_t, read_path
   use result_errors, only: judge_t, more_digits
@@ -47,7 +48,8 @@ contains
     finer%options = steps%options
     finer%meshes = new_mesh_family(steps%problem, high, low, steps%meshes%digits + more_digits, &
       store=store, coarser=steps%meshes)
-    call finer%know_path(high, low, allocated(request%path), .true., listener)
+    call finer%know_path(high, low, allocated(request%path), listener, &
+      farthest_wanted(request, steps%problem))
     call read_path(request, finer, listener, fine)
     associate (own => outcome%readings)
       own%margin = judge%fine%margin
@@ -174,7 +176,6 @@ contains
     type(path_readings_t), intent(in) :: fine
     type(path_readings_t), intent(inout) :: own
     real(wp), intent(inout) :: largest
-    type(curve_solver_t) :: solver
     type(curve_node_t), allocatable :: nodes(:)
     real(wp) :: scale
     integer :: i, k, place
@@ -189,11 +190,9 @@ contains
       largest = max(largest, 1.0_wp)
       return
     end if
-    solver%options = finer%options
-    solver%curve = fine%curve
     scale = 0
     do i = 1, size(own%prescribed%leg)
-      nodes = nodes_on(own%curve, own%prescribed%leg(i))
+      nodes = nodes_on(own%node, own%prescribed%leg(i))
       if (size(nodes) < 2) cycle
       scale = max(scale, maxval(abs(nodes%load)))
       do k = 1, table_places
@@ -233,8 +232,7 @@ contains
       load = 0
       associate (piece => fine%prescribed%piece(fine%prescribed%leg(leg)%piece))
         if (.not. (h0 < piece%first%h0 .and. h0 > piece%last%h0)) return
-        call state_driven(solver, finer%equations_t, finer%known, fine%prescribed%drive, piece, &
-          h0, state)
+        call state_driven(finer%solver_t, finer%known%path, fine%prescribed%drive, piece, h0, state)
       end associate
       at = state%converged
       load = state%load

@@ -4,8 +4,8 @@ module reading_sensitivities
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use frozen_jacobian, only: frozen_jacobian_t
-  use path_curve, only: no_mesh
-  use curve_states, only: curve_solver_t, curve_state_t
+  use traced_path, only: no_mesh
+  use curve_states, only: curve_state_t, equilibrium_at
   use path_tangent, only: tangent_t
   use driven_pieces, only: drive_t
   use driven_cycle, only: jump_t
@@ -28,26 +28,23 @@ contains
   subroutine rate_readings(finder, readings)
     type(finder_t), intent(inout) :: finder
     type(path_readings_t), intent(inout) :: readings
-    type(curve_solver_t) :: solver
     logical :: found
     integer :: i, k
 
     if (.not. readings%solved) return
-    solver%curve = readings%curve
-    solver%options = finder%steps%options
-    call rates_along(finder%steps%equations_t, finder%steps%known, readings%curve, &
+    call rates_along(finder%steps%equations_t, finder%steps%known%path, readings%node, &
       finder%varied(2:), readings%rate, found)
     finder%whole = finder%whole .and. found
     if (allocated(readings%device)) then
       do i = 1, size(readings%device)
         do k = 1, size(readings%device(i)%jump)
-          call rate_jump(finder, solver, readings%device(i)%drive, readings%device(i)%jump(k))
+          call rate_jump(finder, readings%device(i)%drive, readings%device(i)%jump(k))
         end do
       end do
     end if
     if (.not. allocated(readings%loaded)) return
     do i = 1, size(readings%loaded)
-      call rate_state(finder, solver, load_alone, [(0.0_wp, k=2, size(finder%varied))], &
+      call rate_state(finder, load_alone, [(0.0_wp, k=2, size(finder%varied))], &
         readings%loaded(i)%state)
     end do
   end subroutine rate_readings
@@ -63,26 +60,24 @@ contains
   end function weights_of
 
   !> Of a jump: where it starts, where it lands at the same position of the drive, what it loses.
-  subroutine rate_jump(finder, solver, drive, jump)
+  subroutine rate_jump(finder, drive, jump)
     type(finder_t), intent(inout) :: finder
-    type(curve_solver_t), intent(inout) :: solver
     type(drive_t), intent(in) :: drive
     type(jump_t), intent(inout) :: jump
     real(wp) :: weights(2)
 
     weights = weights_of(finder%steps%problem, drive)
-    call rate_start(finder, solver, drive, weights, jump%before)
+    call rate_start(finder, drive, weights, jump%before)
     if (.not. (allocated(jump%before%rate) .and. jump%landed)) return
-    call rate_state(finder, solver, weights, matmul(weights, jump%before%rate(:2, :)), jump%after)
+    call rate_state(finder, weights, matmul(weights, jump%before%rate(:2, :)), jump%after)
     if (.not. allocated(jump%after%rate)) return
     jump%energy_rate = energy_rates(finder%steps%problem, weights, jump%before) - &
       energy_rates(finder%steps%problem, weights, jump%after)
   end subroutine rate_jump
 
   !> Of where a jump starts: where the drive's position turns round or, before it does, h0.
-  subroutine rate_start(finder, solver, drive, weights, state)
+  subroutine rate_start(finder, drive, weights, state)
     type(finder_t), intent(inout) :: finder
-    type(curve_solver_t), intent(inout) :: solver
     type(drive_t), intent(in) :: drive
     real(wp), intent(in) :: weights(2)
     type(curve_state_t), intent(inout) :: state
@@ -91,17 +86,16 @@ contains
 
     of_drive = abs(dot_product(drive%weights, state%slopes)) <= &
       turning*sum(abs(drive%weights*state%slopes))
-    call place_of(finder, solver, state, place, found)
-    if (found) call at_extremum(finder%steps%equations_t, solver%options, place, &
+    call place_of(finder, state, place, found)
+    if (found) call at_extremum(finder%steps%equations_t, finder%steps%options, place, &
       merge(weights, h0_alone, of_drive), &
       apart_at(finder%steps%known%path, place%mesh, place%s), finder%varied, state%rate, found)
     finder%whole = finder%whole .and. found
   end subroutine rate_start
 
   !> Of a state at which weights(1) h0 + weights(2) load changes as `wanted` says.
-  subroutine rate_state(finder, solver, weights, wanted, state)
+  subroutine rate_state(finder, weights, wanted, state)
     type(finder_t), intent(inout) :: finder
-    type(curve_solver_t), intent(inout) :: solver
     real(wp), intent(in) :: weights(2), wanted(:)
     type(curve_state_t), intent(inout) :: state
     type(frozen_jacobian_t) :: frozen
@@ -109,13 +103,11 @@ contains
     type(local_t) :: local
     logical :: found
 
-    associate (node => solver%curve%begin_of(state%interval))
-      found = node%mesh == no_mesh
-    end associate
+    found = finder%steps%known%path%point(state%interval)%mesh == no_mesh
     if (found) then
       local = local_undeformed(finder%steps%problem, state%h0, finder%varied)
     else
-      call place_of(finder, solver, state, place, found)
+      call place_of(finder, state, place, found)
       if (found) &
         call find_local(finder%steps%equations_t, place, frozen, finder%varied, local, found)
     end if
@@ -124,22 +116,20 @@ contains
   end subroutine rate_state
 
   !> A state of the curve with its gaps, which it does not keep.
-  subroutine place_of(finder, solver, state, place, found)
+  subroutine place_of(finder, state, place, found)
     type(finder_t), intent(inout) :: finder
-    type(curve_solver_t), intent(inout) :: solver
     type(curve_state_t), intent(in) :: state
     type(place_on_path_t), intent(out) :: place
     logical, intent(out) :: found
     type(tangent_t) :: along
 
-    associate (node => solver%curve%begin_of(state%interval))
-      place%mesh = node%mesh
-      found = node%mesh /= no_mesh
+    associate (path => finder%steps%known%path)
+      place%mesh = path%mesh_between(state%interval)
+      found = place%mesh /= no_mesh
+      if (.not. found) return
+      place%s = state%x
+      call equilibrium_at(finder%steps%solver_t, path, state, place%state, along, found)
     end associate
-    if (.not. found) return
-    place%s = state%x
-    call solver%equilibrium_at(finder%steps%equations_t, finder%steps%known, state, place%state, &
-      along, found)
   end subroutine place_of
 
   !> Derivatives of the energy of bodies and spring, or dead load (`driven_pieces`).

@@ -183,7 +183,7 @@ contains
         if (meshes%waits(k)) call meshes%renew(k, meshes%shape_for(relaxed, k))
       end do
       if (allocated(steps%drainage)) call steps%drainage%lay_out(meshes%grid)
-      steps%frozen%factors%valid = .false.
+      call steps%frozen%forget()
       steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
       if (.not. allocated(request%creep)) return
       numerics = request%numerics

@@ -76,7 +76,7 @@ contains
       next = position%state%h0 + step
       if (abs(h0 - position%state%h0) <= 1.5_wp*abs(step)) next = h0
       state = self%guess(next, position)
-      self%frozen%factors%valid = .false.
+      call self%frozen%forget()
       call self%attempt(next, state, position%mesh, event)
       if (event%converged) then
         call remember(position, state, position%mesh, .false.)

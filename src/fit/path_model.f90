@@ -3,7 +3,7 @@
 module path_model
   use kinds, only: wp
   use failure, only: failure_t
-  use interpolation, only: polynomial_weights
+  use interpolation, only: hermite_t, polynomial_weights
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
   use problem_family, only: problem_family_t
@@ -11,9 +11,9 @@ module path_model
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
   use path_tangent, only: of_h0, of_load
-  use path_curve, only: curve_t, new_curve
+  use traced_path, only: traced_path_t
+  use path_curve, only: curve_node_t, nodes_of
   use path_sensitivity, only: rate_t, rates_along
-  use curve_states, only: curve_solver_t
   use driven_pieces, only: driven_piece_t, through_spring
   use driven_cycle, only: driven_t
   use device, only: drive_bodies
@@ -23,15 +23,14 @@ module path_model
   use numerics_choice, only: choice_t, choose
   use path_demand, only: farthest_wanted
   use path_stepper, only: path_stepper_t
-  use dimensionless_problem, only: contact_level_of
   use force_branch, only: branch_t
   use force_model, only: force_model_t, response_t, inward, outward
   implicit none
   private
   public :: path_model_t
 
-  !> Panels of a branch for each interval of the path's curve: between its points the curve is a
-  !> polynomial of the seventh degree, on a panel a cubic.
+  !> Panels of a branch for each interval of the path: between its points the curve is a polynomial
+  !> of the seventh degree, on a panel a cubic.
   integer, parameter :: panels = 8
 
   type, extends(force_model_t) :: path_model_t
@@ -43,7 +42,7 @@ module path_model
     !> The trial that was solved last, at these values.
     real(wp), allocatable, private :: value(:)
     type(path_stepper_t), private :: steps
-    type(curve_t), private :: curve
+    type(curve_node_t), allocatable, private :: node(:)
     type(driven_t), private :: driven
     real(wp), private :: stiffness = 0, farthest = 0, largest = 0
     logical, private :: solved = .false.
@@ -69,13 +68,13 @@ contains
       call self%solve_trial(value, stiffness, farthest, largest)
     found = self%solved
     if (.not. found) return
-    allocate (rate(merge(size(value), 0, with_rates), size(self%curve%node)))
+    allocate (rate(merge(size(value), 0, with_rates), size(self%node)))
     if (size(rate) > 0) call find_rates(self, rate, found)
     if (.not. found) return
     allocate (response%branch(size(self%driven%piece)))
     do i = 1, size(response%branch)
-      call make_branch(self%steps%problem, self%curve, self%driven%piece(i), rate, &
-        response%branch(i))
+      call make_branch(self%steps%problem, self%steps%known%path, self%node, &
+        self%driven%piece(i), rate, response%branch(i))
       call response%branch(i)%close(stiffness)
     end do
     call find_ways(self%steps%problem, self%driven, response)
@@ -100,7 +99,6 @@ contains
     type(request_t) :: request
     type(problem_t) :: problem
     type(choice_t) :: chosen
-    type(curve_solver_t) :: solver
     type(listener_t) :: silent
     type(failure_t), allocatable :: error
     real(wp), allocatable :: anywhere
@@ -126,15 +124,13 @@ contains
     call prepare(self%steps, problem, chosen, self%numerics%accuracy)
     if (self%steps%options%method == 'mixing') self%steps%options%method = 'anderson'
     self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits, store=self%store)
-    call self%steps%know_path(high, low, .true., .true., silent, self%numerics%accuracy)
+    call self%steps%know_path(high, low, .true., silent, farthest_wanted(request, problem), &
+      self%numerics%accuracy)
     self%left_out = self%steps%known%left_out
-    solver%options = self%steps%options
-    call new_curve(self%steps%equations_t, self%steps%known, farthest_wanted(request, problem), &
-      contact_level_of(problem), solver%curve, self%solved)
-    if (.not. self%solved) return
-    call drive_bodies(solver, self%steps%equations_t, self%steps%known, &
+    if (.not. self%steps%known%path%held > 1) return
+    self%node = nodes_of(self%steps%solver_t, self%steps%known%path)
+    call drive_bodies(self%steps%solver_t, self%steps%known%path, &
       through_spring(stiffness*problem%length/problem%load), low, anywhere, anywhere, self%driven)
-    self%curve = solver%curve
     self%solved = self%driven%solved .and. self%driven%caught .and. size(self%driven%leg) > 1
   end subroutine solve_trial
 
@@ -155,37 +151,41 @@ contains
       call vary(self%family, i, to_search, varied(i), error)
       found = found .and. .not. allocated(error)
     end do
-    if (found) call rates_along(self%steps%equations_t, self%steps%known, self%curve, varied, &
+    if (found) call rates_along(self%steps%equations_t, self%steps%known%path, self%node, varied, &
       all_rates, found)
     if (found) rate = all_rates
   end subroutine find_rates
 
-  !> A stable piece of the curve as panels, SI units; rate(unknown, node) of the curve.
-  subroutine make_branch(problem, curve, piece, rate, branch)
+  !> A stable piece of the path as panels, SI units; rate(unknown, node) at its nodes.
+  subroutine make_branch(problem, path, nodes, piece, rate, branch)
     type(problem_t), intent(in) :: problem
-    type(curve_t), intent(in) :: curve
+    type(traced_path_t), intent(in) :: path
+    type(curve_node_t), intent(in) :: nodes(:)
     type(driven_piece_t), intent(in) :: piece
     type(rate_t), intent(in) :: rate(:, :)
     type(branch_t), intent(out) :: branch
+    type(hermite_t) :: h0, load
+    integer, allocatable :: near(:)
     integer :: i, k, n
-    real(wp) :: low, high
+    real(wp) :: ends(2)
 
     n = panels*(piece%last%interval - piece%first%interval + 1)
     allocate (branch%h0(4, n), branch%load(4, n), branch%h0_rate(size(rate, 1), 2, n), &
       branch%load_rate(size(rate, 1), 2, n))
     n = 0
     do i = piece%first%interval, piece%last%interval
-      associate (begin => curve%begin_of(i), end => curve%end_of(i))
-        low = begin%x
-        high = end%x
-      end associate
-      if (i == piece%first%interval) low = piece%first%x
-      if (i == piece%last%interval) high = piece%last%x
-      if (.not. high > low) cycle
+      if (.not. path%joins(i)) cycle
+      call path%curve_between(i, of_h0, h0, ends)
+      call path%curve_between(i, of_load, load, ends, near)
+      near = [(findloc(nodes%point == near(k) .and. nodes%mesh == path%mesh_between(i), .true., 1), &
+        k=1, size(near))]
+      if (i == piece%first%interval) ends(1) = piece%first%x
+      if (i == piece%last%interval) ends(2) = piece%last%x
+      if (.not. ends(2) > ends(1)) cycle
       do k = 1, panels
         n = n + 1
-        call add_end(1, low + (high - low)*(k - 1)/panels, (high - low)/panels)
-        call add_end(2, low + (high - low)*k/panels, (high - low)/panels)
+        call add_end(1, ends(1) + (ends(2) - ends(1))*(k - 1)/panels, (ends(2) - ends(1))/panels)
+        call add_end(2, ends(1) + (ends(2) - ends(1))*k/panels, (ends(2) - ends(1))/panels)
       end do
     end do
     branch%h0 = branch%h0(:, :n)
@@ -202,16 +202,14 @@ contains
       integer, intent(in) :: side
       real(wp), intent(in) :: x, width
 
-      branch%h0(side, n) = problem%law%separation_of(curve%value(i, of_h0, x))
-      branch%h0(2 + side, n) = problem%length*width*curve%slope(i, of_h0, x)
-      branch%load(side, n) = problem%load*curve%value(i, of_load, x)
-      branch%load(2 + side, n) = problem%load*width*curve%slope(i, of_load, x)
+      branch%h0(side, n) = problem%law%separation_of(h0%value(x))
+      branch%h0(2 + side, n) = problem%length*width*h0%slope(x)
+      branch%load(side, n) = problem%load*load%value(x)
+      branch%load(2 + side, n) = problem%load*width*load%slope(x)
       if (size(rate, 1) == 0) return
-      associate (near => curve%support(i))
-        associate (weight => polynomial_weights(curve%node(near)%x, x))
-          branch%h0_rate(:, side, n) = matmul(rate(:, near)%h0, weight)
-          branch%load_rate(:, side, n) = matmul(rate(:, near)%load, weight)
-        end associate
+      associate (weight => polynomial_weights(nodes(near)%x, x))
+        branch%h0_rate(:, side, n) = matmul(rate(:, near)%h0, weight)
+        branch%load_rate(:, side, n) = matmul(rate(:, near)%load, weight)
       end associate
     end subroutine add_end
 

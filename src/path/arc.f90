@@ -7,16 +7,14 @@ module arc
   use shape, only: shape_t
   use discretisation, only: discretisation_t
   use contact_state, only: state_t
-  use equilibrium, only: equations_t
-  use solver_options, only: solver_options_t, tightened
-  use anderson, only: solve_anderson
-  use frozen_jacobian, only: frozen_jacobian_t
+  use solver, only: solver_t
+  use solver_options, only: tightened
   use edge_locked, only: approach
   use path_coordinate, only: path_control
-  use path_tangent, only: tangent_t, tangent_at, scaled
+  use path_tangent, only: tangent_t, tangent_along
   implicit none
   private
-  public :: arc_t, tangent_along, between, most_states
+  public :: arc_t, between, most_states
 
   integer, parameter :: most_states = 8
   !> States that a state beyond an end is extrapolated from.
@@ -40,7 +38,6 @@ module arc
     procedure :: slope
     procedure :: curvature
     procedure :: state_at
-    procedure :: exact_state_at
     procedure :: support
   end type arc_t
 
@@ -49,65 +46,35 @@ module arc
 
 contains
 
-  !> Derivatives by the coordinate s at the equilibrium there; found = .false. where the Jacobian is
-  !> singular.
-  subroutine tangent_along(equations, options, mesh, s, state, frozen, tangent, found)
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: s
-    type(state_t), intent(in) :: state
-    type(frozen_jacobian_t), intent(inout) :: frozen
-    type(tangent_t), intent(out) :: tangent
-    logical, intent(out) :: found
-
-    call tangent_at(equations, options, path_control(equations%problem, mesh, s), state, frozen, &
-      tangent, found)
-    ! The control's value is exp(-s) and a constant on the approach, else exp(s).
-    if (found) tangent = scaled(tangent, merge(-exp(-s), exp(s), mesh == approach))
-  end subroutine tangent_along
-
-  !> The state at the coordinate s, with its tangent: guessed from those of the arc and corrected.
-  !> miss: the largest change of a gap that corrected the guess, relative or in the law's lengths.
-  subroutine state_at(self, equations, options, frozen, s, state, tangent, converged, miss)
+  !> The state at the coordinate s, with its tangent: guessed from those of the arc and corrected,
+  !> to rounding or, where that is not reached, to the tolerance of the options, so that not only
+  !> its load but its place on the path is exact. slope_error: where neither that nor the tangent
+  !> need be. miss: the largest change of a gap that corrected the guess, relative or in the law's
+  !> lengths.
+  subroutine state_at(self, solver, s, state, tangent, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
-    type(frozen_jacobian_t), intent(inout) :: frozen
+    class(solver_t), intent(inout) :: solver
     real(wp), intent(in) :: s
     type(state_t), intent(out) :: state
     type(tangent_t), intent(out) :: tangent
     logical, intent(out) :: converged
+    real(wp), intent(in), optional :: slope_error
     real(wp), intent(out), optional :: miss
     real(wp), allocatable :: guessed(:)
 
-    associate (grid => equations%meshes%grid(self%mesh))
-      state = self%guess(equations%problem%shape, grid, s)
-    end associate
+    state = self%guess(solver%problem%shape, solver%meshes%grid(self%mesh), s)
     guessed = state%gap
-    call solve_anderson(equations, options, frozen, path_control(equations%problem, self%mesh, s), &
-      state, converged)
+    associate (control => path_control(solver%problem, self%mesh, s))
+      if (present(slope_error)) then
+        call solver%correct(control, state, converged)
+      else
+        call solver%correct(control, state, converged, tightened(solver%options))
+        converged = converged .or. state%residual <= solver%options%tolerance
+      end if
+    end associate
     if (present(miss)) miss = maxval(abs(state%gap - guessed)/(1 + abs(guessed)))
-    if (converged) call tangent_along(equations, options, self%mesh, s, state, frozen, tangent, &
-      converged)
+    if (converged) call tangent_along(solver, self%mesh, s, state, tangent, converged, slope_error)
   end subroutine state_at
-
-  !> The same to rounding or, where that is not reached, to the tolerance of the options: for states
-  !> whose place on the path, not only whose load, must be exact.
-  subroutine exact_state_at(self, equations, options, frozen, s, state, tangent, converged)
-    class(arc_t), intent(in) :: self
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
-    type(frozen_jacobian_t), intent(inout) :: frozen
-    real(wp), intent(in) :: s
-    type(state_t), intent(out) :: state
-    type(tangent_t), intent(out) :: tangent
-    logical, intent(out) :: converged
-
-    call self%state_at(equations, tightened(options), frozen, s, state, tangent, converged)
-    if (converged .or. .not. state%residual <= options%tolerance) return
-    call tangent_along(equations, options, self%mesh, s, state, frozen, tangent, converged)
-  end subroutine exact_state_at
 
   !> Puts a state in its place, in the order of the arc; where there is no room, or it is one of the
   !> arc already, nothing is done.

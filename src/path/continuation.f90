@@ -7,15 +7,13 @@ module continuation
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t, radius_of_gap
   use equilibrium, only: equations_t
-  use solver_options, only: solver_options_t
-  use anderson, only: solve_anderson
-  use frozen_jacobian, only: frozen_jacobian_t
+  use solver, only: solver_t
   use edge_locked, only: approach
   use seen_gaps, only: seen_gaps_t
   use regridding, only: regrid
   use path_coordinate, only: path_control, coordinate_of
-  use path_tangent, only: tangent_t
-  use arc, only: arc_t, tangent_along
+  use path_tangent, only: tangent_t, tangent_along
+  use arc, only: arc_t
   implicit none
   private
   public :: continuation_t, radius_for
@@ -43,7 +41,6 @@ module continuation
   type, extends(arc_t) :: continuation_t
     real(wp) :: step = first_step, longest_step = longest_step, wanted_miss = wanted_miss, &
       slope_error = slope_error
-    type(frozen_jacobian_t) :: frozen
   contains
     procedure :: follow_closely
     procedure :: begin_with
@@ -52,7 +49,6 @@ module continuation
     procedure :: has_come_to_next
     procedure :: change_mesh
     procedure, private :: next_step
-    procedure, private :: options_for
     procedure, private :: step_past_step
   end type continuation_t
 
@@ -67,27 +63,16 @@ contains
     self%slope_error = 0
   end subroutine follow_closely
 
-  !> The options by which the next state is solved.
-  pure type(solver_options_t) function options_for(self, options) result(own)
-    class(continuation_t), intent(in) :: self
-    type(solver_options_t), intent(in) :: options
-
-    own = options
-    own%slope_error = max(options%slope_error, self%slope_error)
-  end function options_for
-
   !> Begins with an equilibrium on a mesh. lost: it has no tangent.
-  subroutine begin_with(self, equations, options, state, mesh, lost)
+  subroutine begin_with(self, solver, state, mesh, lost)
     class(continuation_t), intent(inout) :: self
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
+    class(solver_t), intent(inout) :: solver
     type(state_t), intent(in) :: state
     integer, intent(in) :: mesh
     logical, intent(out) :: lost
 
     self%mesh = mesh
-    call add_with_tangent(equations, self%options_for(options), self%frozen, state, self%arc_t, &
-      lost)
+    call add_with_tangent(solver, self%slope_error, state, self%arc_t, lost)
   end subroutine begin_with
 
   !> Forgets its states and how long steps were.
@@ -97,14 +82,12 @@ contains
 
     self%arc_t = nothing
     self%step = first_step
-    self%frozen%factors%valid = .false.
   end subroutine forget
 
   !> Adds a state to an arc of its mesh. lost: it has no tangent.
-  subroutine add_with_tangent(equations, options, frozen, state, arc, lost)
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
-    type(frozen_jacobian_t), intent(inout) :: frozen
+  subroutine add_with_tangent(solver, slope_error, state, arc, lost)
+    class(solver_t), intent(inout) :: solver
+    real(wp), intent(in) :: slope_error
     type(state_t), intent(in) :: state
     type(arc_t), intent(inout) :: arc
     logical, intent(out) :: lost
@@ -112,17 +95,16 @@ contains
     real(wp) :: s
     logical :: found
 
-    s = coordinate_of(equations%problem, arc%mesh, state)
-    call tangent_along(equations, options, arc%mesh, s, state, frozen, tangent, found)
+    s = coordinate_of(solver%problem, arc%mesh, state)
+    call tangent_along(solver, arc%mesh, s, state, tangent, found, slope_error)
     lost = .not. found
     if (found) call arc%add(s, state, tangent)
   end subroutine add_with_tangent
 
   !> The next state of the path, on the same mesh. lost: no step, however small, converged.
-  subroutine advance(self, equations, options, lost)
+  subroutine advance(self, solver, lost)
     class(continuation_t), intent(inout) :: self
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
+    class(solver_t), intent(inout) :: solver
     logical, intent(out) :: lost
     type(state_t) :: state
     type(tangent_t) :: tangent
@@ -131,13 +113,12 @@ contains
 
     lost = .false.
     do
-      s = self%coordinate(self%held) + self%next_step(equations)
+      s = self%coordinate(self%held) + self%next_step(solver%equations_t)
       ! A step is so long that factors made before it are of no use.
-      self%frozen%factors%valid = .false.
-      call self%state_at(equations, self%options_for(options), self%frozen, s, state, tangent, &
-        converged, miss)
+      call solver%frozen%forget()
+      call self%state_at(solver, s, state, tangent, converged, self%slope_error, miss)
       if (converged) exit
-      equations%cost%rejected_steps = equations%cost%rejected_steps + 1
+      solver%cost%rejected_steps = solver%cost%rejected_steps + 1
       self%step = shrinkage*self%step
       lost = self%step < shortest_step
       if (lost) return
@@ -217,10 +198,9 @@ contains
   !> after each `advance`), taking the last two states along: what is between them is known on the
   !> next mesh too. That mesh must not be too coarse for the first of the two, and both meshes must
   !> agree there on which way h0 and load go, or an extremum would be seen twice or not at all.
-  subroutine change_mesh(self, equations, options, lost)
+  subroutine change_mesh(self, solver, lost)
     class(continuation_t), intent(inout) :: self
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
+    class(solver_t), intent(inout) :: solver
     logical, intent(out) :: lost
     type(arc_t) :: next
     type(state_t) :: state
@@ -228,18 +208,17 @@ contains
     logical :: done
 
     lost = .false.
-    if (.not. self%has_come_to_next(equations)) return
+    if (.not. self%has_come_to_next(solver%equations_t)) return
     next%mesh = self%mesh + 1
-    if (equations%meshes%waits(next%mesh)) call lay_out(equations, self%mesh, next%mesh, &
+    if (solver%meshes%waits(next%mesh)) call lay_out(solver%equations_t, self%mesh, next%mesh, &
       self%state(self%held))
     do j = self%held - 1, self%held
       state = self%state(j)
       ! The two are a step apart.
-      self%frozen%factors%valid = .false.
-      call move_to_mesh(equations, options, self%frozen, self%mesh, next%mesh, state, done)
+      call solver%frozen%forget()
+      call move_to_mesh(solver, self%mesh, next%mesh, state, done)
       lost = .not. done
-      if (done) call add_with_tangent(equations, self%options_for(options), self%frozen, state, &
-        next, lost)
+      if (done) call add_with_tangent(solver, self%slope_error, state, next, lost)
       if (lost) return
     end do
     associate (here => self%tangent(self%held - 1), there => next%tangent(1))
@@ -268,22 +247,19 @@ contains
 
   !> Solves a state of one mesh again on the other, at the same contact radius or axis gap.
   !> done = .false. where it has no contact edge to lock to, or did not converge.
-  subroutine move_to_mesh(equations, options, frozen, from, to, state, done)
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
-    type(frozen_jacobian_t), intent(inout) :: frozen
+  subroutine move_to_mesh(solver, from, to, state, done)
+    class(solver_t), intent(inout) :: solver
     integer, intent(in) :: from, to
     type(state_t), intent(inout) :: state
     logical, intent(out) :: done
     real(wp) :: c
 
-    associate (problem => equations%problem, meshes => equations%meshes)
-      c = radius_for(equations, from, to, state)
-      done = c > 0
-      if (.not. done) return
-      state = regrid(problem%shape, state, meshes%grid(from), meshes%grid(to), c)
-      call solve_anderson(equations, options, frozen, &
-        path_control(problem, to, coordinate_of(problem, to, state)), state, done)
+    c = radius_for(solver%equations_t, from, to, state)
+    done = c > 0
+    if (.not. done) return
+    associate (problem => solver%problem, grid => solver%meshes%grid)
+      state = regrid(problem%shape, state, grid(from), grid(to), c)
+      call solver%correct(path_control(problem, to, coordinate_of(problem, to, state)), state, done)
     end associate
   end subroutine move_to_mesh
 

@@ -1,24 +1,24 @@
-!> Single equilibria of the path's curve: where a combination of h0 and load has a given value, or
-!> turns round.
+!> Single equilibria of the path: at a place, where Q = weights(1) h0 + weights(2) load has a value or
+!> turns round, on the path's meshes or, farther out, of bodies that do not deform.
 module curve_states
   use kinds, only: wp
+  use dimensionless_problem, only: problem_t, contact_level_of
+  use interpolation, only: hermite_t
   use root_finding, only: root_search_t, new_root_search
   use contact_state, only: state_t, radius_of_gap
-  use equilibrium, only: equations_t
-  use solver_options, only: solver_options_t
-  use frozen_jacobian, only: frozen_jacobian_t
+  use solver, only: solver_t
   use path_tangent, only: tangent_t
-  use state_search, only: neighbours_t, neighbours_of, find_state
-  use path_extremum, only: extremum_t, find_extrema, may_turn
-  use known_path, only: known_path_t
+  use path_search, only: found_t, find_extrema, find_place, may_turn
+  use traced_path, only: traced_path_t, no_mesh
+  use path_span, only: path_span_t, new_path_span
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
-  use path_curve, only: curve_t, no_mesh
   implicit none
   private
-  public :: curve_state_t, curve_solver_t, place_t, reading_t, reading_of
+  public :: curve_state_t, place_t, reading_t, reading_of, state_of, state_where, find_turns, &
+    equilibrium_at
 
-  !> A place on a curve.
+  !> A place between point `interval` of a path and the next, at the path's coordinate x.
   type :: place_t
     integer :: interval = 0
     real(wp) :: x = 0
@@ -29,9 +29,9 @@ module curve_states
     real(wp) :: h0 = 0, load = 0, displacement = 0, radius = 0
   end type reading_t
 
-  !> A solved equilibrium at a place: h0, load, gap on the axis, energy in the units of
+  !> An equilibrium at a place: h0, load, gap on the axis, energy in the units of
   !> `dimensionless_problem`, derivatives of h0 and load by x, modes unstable at fixed h0.
-  !> radius: of the given gap, lateral units; what rounding leaves of the energy.
+  !> radius: of the contact, lateral units; what rounding leaves of the energy.
   type, extends(place_t) :: curve_state_t
     real(wp) :: h0 = 0, load = 0, axis_gap = 0, radius = 0, energy = 0, uncertainty = 0
     real(wp) :: slopes(2) = 0, residual = 0
@@ -43,21 +43,6 @@ module curve_states
     !> What is reported at the same place of a path on finer meshes (`reading_errors`).
     type(reading_t), allocatable :: fine
   end type curve_state_t
-
-  !> A curve, and what solves states on it.
-  type :: curve_solver_t
-    type(curve_t) :: curve
-    type(solver_options_t) :: options
-    type(frozen_jacobian_t) :: frozen
-    integer :: solved = 0
-  contains
-    procedure :: equilibrium_at
-    procedure :: state_of
-    procedure :: state_where
-    procedure :: find_turns
-    procedure, private :: tell
-    procedure, private :: undeformed_turns
-  end type curve_solver_t
 
   !> Parts of an interval of undeformed bodies at whose ends the slope is looked at.
   integer, parameter :: looks = 8
@@ -72,166 +57,167 @@ contains
   end function reading_of
 
   !> The equilibrium at a place that is on a mesh, with its tangent by the path's coordinate.
-  subroutine equilibrium_at(self, equations, known, place, state, tangent, converged)
-    class(curve_solver_t), intent(inout) :: self
-    type(equations_t), intent(inout) :: equations
-    type(known_path_t), intent(in) :: known
+  subroutine equilibrium_at(solver, path, place, state, tangent, converged)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
     class(place_t), intent(in) :: place
     type(state_t), intent(out) :: state
     type(tangent_t), intent(out) :: tangent
     logical, intent(out) :: converged
-    type(neighbours_t) :: near
+    type(path_span_t) :: span
+    integer :: k
 
-    associate (node => self%curve%begin_of(place%interval))
-      near = neighbours_of(known%path, node%point)
-    end associate
-    call near%exact_state_at(equations, self%options, self%frozen, place%x, state, tangent, &
-      converged)
+    span = new_path_span(path, place%interval)
+    k = findloc(span%coordinate(:span%held), place%x, 1)
+    converged = k > 0
+    if (converged) then
+      state = span%state(k)
+      tangent = span%tangent(k)
+    else
+      call span%state_at(solver, place%x, state, tangent, converged)
+      solver%cost%states = solver%cost%states + 1
+    end if
   end subroutine equilibrium_at
 
   !> What is reported of the equilibrium at a place.
-  subroutine state_of(self, equations, known, place, found)
-    class(curve_solver_t), intent(inout) :: self
-    type(equations_t), intent(inout) :: equations
-    type(known_path_t), intent(in) :: known
+  subroutine state_of(solver, path, place, found)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
     type(place_t), intent(in) :: place
     type(curve_state_t), intent(out) :: found
     type(state_t) :: state
     type(tangent_t) :: tangent
+    logical :: converged
 
-    found%interval = place%interval
-    found%x = place%x
-    associate (node => self%curve%begin_of(place%interval), problem => equations%problem)
-      found%modes = self%curve%interval(place%interval)%modes
-      if (node%mesh == no_mesh) then
-        found%h0 = exp(-place%x)
-        found%load = load_undeformed(problem, found%h0)
-        found%axis_gap = found%h0
-        found%energy = energy_undeformed(problem, found%h0)
-        found%slopes = -found%h0*[1.0_wp, load_slope_undeformed(problem, found%h0)]
-        found%converged = .true.
-        return
-      end if
-    end associate
-    call self%equilibrium_at(equations, known, place, state, tangent, found%converged)
-    call self%tell(equations, place, state, tangent, found)
+    if (path%point(place%interval)%mesh == no_mesh) then
+      found = undeformed_at(solver%problem, place)
+    else
+      call equilibrium_at(solver, path, place, state, tangent, converged)
+      found = told(solver, path, place, state, tangent, converged)
+    end if
   end subroutine state_of
 
+  !> Bodies that do not deform, at a place.
+  pure type(curve_state_t) function undeformed_at(problem, place) result(state)
+    type(problem_t), intent(in) :: problem
+    type(place_t), intent(in) :: place
+
+    state%interval = place%interval
+    state%x = place%x
+    state%h0 = exp(-place%x)
+    state%load = load_undeformed(problem, state%h0)
+    state%axis_gap = state%h0
+    state%energy = energy_undeformed(problem, state%h0)
+    state%slopes = -state%h0*[1.0_wp, load_slope_undeformed(problem, state%h0)]
+    state%converged = .true.
+  end function undeformed_at
+
   !> What is reported of a state that is on a mesh.
-  subroutine tell(self, equations, place, state, tangent, found)
-    class(curve_solver_t), intent(inout) :: self
-    type(equations_t), intent(in) :: equations
+  type(curve_state_t) function told(solver, path, place, state, tangent, converged) result(found)
+    class(solver_t), intent(in) :: solver
+    type(traced_path_t), intent(in) :: path
     type(place_t), intent(in) :: place
     type(state_t), intent(in) :: state
     type(tangent_t), intent(in) :: tangent
-    type(curve_state_t), intent(inout) :: found
+    logical, intent(in) :: converged
 
-    self%solved = self%solved + 1
     found%interval = place%interval
     found%x = place%x
-    found%modes = self%curve%interval(place%interval)%modes
+    found%modes = path%point(place%interval)%modes
+    found%converged = converged
+    if (.not. converged) return
     found%h0 = state%h0
     found%load = state%load
     found%axis_gap = state%axis_gap
     found%residual = state%residual
-    if (.not. found%converged) return
-    associate (node => self%curve%begin_of(place%interval))
-      found%radius = radius_of_gap(equations%problem%shape, self%curve%contact_gap, &
-        equations%meshes%grid(node%mesh), state)
-      call energy_of(equations, node%mesh, state, found%energy, found%uncertainty)
-    end associate
     found%slopes = [tangent%h0, tangent%load]
-  end subroutine tell
+    associate (mesh => path%mesh_between(place%interval))
+      found%radius = radius_of_gap(solver%problem%shape, contact_level_of(solver%problem), &
+        solver%meshes%grid(mesh), state)
+      call energy_of(solver%equations_t, mesh, state, found%energy, found%uncertainty)
+    end associate
+  end function told
 
-  !> The equilibrium in interval i between x = from and x = to, where D = weights(1) h0 + weights(2)
-  !> load goes one way, at which D is `wanted`.
-  subroutine state_where(self, equations, known, i, weights, wanted, from, to, found)
-    class(curve_solver_t), intent(inout) :: self
-    type(equations_t), intent(inout) :: equations
-    type(known_path_t), intent(in) :: known
+  !> The equilibrium in interval i between x = from and x = to, where Q goes one way, at which Q is
+  !> `wanted`.
+  subroutine state_where(solver, path, i, weights, wanted, from, to, state)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2), wanted, from, to
-    type(curve_state_t), intent(out) :: found
-    type(neighbours_t) :: near
+    type(curve_state_t), intent(out) :: state
+    type(path_span_t) :: span
+    type(found_t) :: found
     type(root_search_t) :: search
-    type(state_t) :: state
-    type(tangent_t) :: tangent
     real(wp) :: x
+    logical :: done
 
-    associate (node => self%curve%begin_of(i))
-      if (node%mesh == no_mesh) then
-        search = new_root_search(from, beyond(from), to, beyond(to))
-        do while (search%is_open())
-          x = search%place()
-          call search%note(x, beyond(x))
-        end do
-        call self%state_of(equations, known, place_t(i, search%root), found)
-        return
-      end if
-      near = neighbours_of(known%path, node%point)
-    end associate
-    near%ends = [from, to]
-    call find_state(equations, self%options, self%frozen, near, weights, wanted, x, state, &
-      tangent, found%converged)
-    call self%tell(equations, place_t(i, x), state, tangent, found)
+    if (path%point(i)%mesh == no_mesh) then
+      search = new_root_search(from, beyond(from), to, beyond(to))
+      do while (search%is_open())
+        x = search%place()
+        call search%note(x, beyond(x))
+      end do
+      state = undeformed_at(solver%problem, place_t(i, search%root))
+      return
+    end if
+    span = new_path_span(path, i)
+    call find_place(solver, span%arc_t, [from, to], weights, found, done, wanted)
+    solver%cost%states = solver%cost%states + 1
+    state = told(solver, path, place_t(i, found%coordinate), found%state, found%tangent, done)
 
   contains
 
-    !> By how much D of undeformed bodies is beyond what is wanted.
+    !> By how much Q of undeformed bodies is beyond what is wanted.
     real(wp) function beyond(at)
       real(wp), intent(in) :: at
 
-      beyond = dot_product(weights, [exp(-at), load_undeformed(equations%problem, exp(-at))]) - &
-        wanted
+      beyond = dot_product(weights, [exp(-at), load_undeformed(solver%problem, exp(-at))]) - wanted
     end function beyond
 
   end subroutine state_where
 
-  !> The equilibria inside interval i at which D turns round, in order. solved = .false.: not all
+  !> The equilibria inside interval i at which Q turns round, in order. solved = .false.: not all
   !> were solved.
-  subroutine find_turns(self, equations, known, i, weights, turns, solved)
-    class(curve_solver_t), intent(inout) :: self
-    type(equations_t), intent(inout) :: equations
-    type(known_path_t), intent(in) :: known
+  subroutine find_turns(solver, path, i, weights, turns, solved)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2)
     type(curve_state_t), allocatable, intent(out) :: turns(:)
     logical, intent(out) :: solved
-    type(neighbours_t) :: near
-    type(extremum_t), allocatable :: extrema(:)
+    type(path_span_t) :: span
+    type(found_t), allocatable :: extrema(:)
+    type(hermite_t) :: curve
+    real(wp) :: ends(2)
     integer :: k
+    logical :: lost
 
     solved = .true.
-    associate (begin => self%curve%begin_of(i), end => self%curve%end_of(i))
-      if (begin%mesh == no_mesh) then
-        turns = self%undeformed_turns(equations, known, i, weights)
-        return
-      end if
-      allocate (turns(0))
-      if (.not. may_turn(self%curve%polynomial(i, weights), [begin%x, end%x], &
-        [dot_product(weights, [begin%h0_slope, begin%load_slope]), &
-        dot_product(weights, [end%h0_slope, end%load_slope])])) return
-      near = neighbours_of(known%path, begin%point)
-    end associate
-    call find_extrema(equations, self%options, near%arc_t, &
-      findloc(near%coordinate(:near%held), near%ends(1), 1), weights, extrema, solved)
-    solved = .not. solved
+    call path%curve_between(i, weights, curve, ends)
+    if (path%point(i)%mesh == no_mesh) then
+      turns = undeformed_turns(solver%problem, i, ends, weights)
+      return
+    end if
+    allocate (turns(0))
+    if (.not. may_turn(curve, ends)) return
+    span = new_path_span(path, i)
+    call find_extrema(solver, span%arc_t, span%ends, weights, extrema, lost)
+    solved = .not. lost
     deallocate (turns)
     allocate (turns(size(extrema)))
+    solver%cost%states = solver%cost%states + size(extrema)
     do k = 1, size(extrema)
-      turns(k)%converged = .true.
-      call self%tell(equations, place_t(i, extrema(k)%coordinate), extrema(k)%state, &
-        extrema(k)%tangent, turns(k))
+      turns(k) = told(solver, path, place_t(i, extrema(k)%coordinate), extrema(k)%state, &
+        extrema(k)%tangent, .true.)
     end do
   end subroutine find_turns
 
-  !> The same of bodies that do not deform.
-  function undeformed_turns(self, equations, known, i, weights) result(turns)
-    class(curve_solver_t), intent(inout) :: self
-    type(equations_t), intent(inout) :: equations
-    type(known_path_t), intent(in) :: known
+  !> The same of bodies that do not deform, between two places.
+  function undeformed_turns(problem, i, ends, weights) result(turns)
+    type(problem_t), intent(in) :: problem
     integer, intent(in) :: i
-    real(wp), intent(in) :: weights(2)
+    real(wp), intent(in) :: ends(2), weights(2)
     type(curve_state_t), allocatable :: turns(:)
     type(curve_state_t) :: turn
     type(root_search_t) :: search
@@ -239,9 +225,7 @@ contains
     integer :: k
 
     allocate (turns(0))
-    associate (begin => self%curve%begin_of(i), end => self%curve%end_of(i))
-      x = [(begin%x + (end%x - begin%x)*k/looks, k=0, looks)]
-    end associate
+    x = [(ends(1) + (ends(2) - ends(1))*k/looks, k=0, looks)]
     do k = 1, looks
       if ((slope(x(k - 1)) < 0) .eqv. (slope(x(k)) < 0)) cycle
       search = new_root_search(x(k - 1), slope(x(k - 1)), x(k), slope(x(k)))
@@ -249,17 +233,17 @@ contains
         at = search%place()
         call search%note(at, slope(at))
       end do
-      call self%state_of(equations, known, place_t(i, search%root), turn)
+      turn = undeformed_at(problem, place_t(i, search%root))
       turns = [turns, turn]
     end do
 
   contains
 
-    !> The derivative of D by h0.
+    !> The derivative of Q by h0.
     real(wp) function slope(at)
       real(wp), intent(in) :: at
 
-      slope = dot_product(weights, [1.0_wp, load_slope_undeformed(equations%problem, exp(-at))])
+      slope = dot_product(weights, [1.0_wp, load_slope_undeformed(problem, exp(-at))])
     end function slope
 
   end function undeformed_turns

@@ -7,10 +7,10 @@
 module driven_pieces
   use kinds, only: wp
   use quadrature, only: gauss_legendre
-  use equilibrium, only: equations_t
-  use known_path, only: known_path_t
-  use path_curve, only: curve_t
-  use curve_states, only: curve_solver_t, curve_state_t, place_t
+  use interpolation, only: hermite_t
+  use solver, only: solver_t
+  use traced_path, only: traced_path_t
+  use curve_states, only: curve_state_t, place_t, state_of, state_where, find_turns
   implicit none
   private
   public :: drive_t, driven_piece_t, find_pieces, state_driven, through_spring
@@ -75,101 +75,104 @@ contains
 
   !> The integral of the conjugate (the load; for a dead load h0) over D from one place to another
   !> farther in.
-  pure real(wp) function work_between(self, curve, from, to) result(work)
+  pure real(wp) function work_between(self, path, from, to) result(work)
     class(drive_t), intent(in) :: self
-    type(curve_t), intent(in) :: curve
+    type(traced_path_t), intent(in) :: path
     class(place_t), intent(in) :: from, to
-    real(wp) :: node(rule), weight(rule), conjugate(2), low, high, x
+    type(hermite_t) :: force, driven
+    real(wp) :: node(rule), weight(rule), ends(2), x
     integer :: i, k
 
-    conjugate = merge([0.0_wp, 1.0_wp], [1.0_wp, 0.0_wp], self%weights(1) > 0)
     call gauss_legendre(node, weight)
     work = 0
     do i = from%interval, to%interval
-      call clip(curve, i, from, to, low, high)
+      if (.not. path%joins(i)) cycle
+      call path%curve_between(i, merge([0.0_wp, 1.0_wp], [1.0_wp, 0.0_wp], self%weights(1) > 0), &
+        force, ends)
+      call path%curve_between(i, self%weights, driven, ends)
+      ends = part_of(ends, i, from, to)
       do k = 1, rule
-        x = low + (high - low)*node(k)
-        work = work + (high - low)*weight(k)*curve%value(i, conjugate, x)* &
-          curve%slope(i, self%weights, x)
+        x = ends(1) + (ends(2) - ends(1))*node(k)
+        work = work + (ends(2) - ends(1))*weight(k)*force%value(x)*driven%slope(x)
       end do
     end do
   end function work_between
 
-  !> The part of interval i between two places.
-  pure subroutine clip(curve, i, from, to, low, high)
-    type(curve_t), intent(in) :: curve
+  !> The part of interval i, from ends(1) to ends(2), that is between two places.
+  pure function part_of(ends, i, from, to) result(part)
+    real(wp), intent(in) :: ends(2)
     integer, intent(in) :: i
     class(place_t), intent(in) :: from, to
-    real(wp), intent(out) :: low, high
+    real(wp) :: part(2)
 
-    associate (begin => curve%begin_of(i), end => curve%end_of(i))
-      low = begin%x
-      high = end%x
-    end associate
-    if (i == from%interval) low = from%x
-    if (i == to%interval) high = to%x
-  end subroutine clip
+    part = ends
+    if (i == from%interval) part(1) = from%x
+    if (i == to%interval) part(2) = to%x
+  end function part_of
 
   !> The stable pieces of a path under a drive, from afar inward, which end where stability does, or
   !> what is known of the path; whole = .false.: a state was not solved, and a piece is left out.
-  subroutine find_pieces(solver, equations, known, drive, pieces, whole)
-    type(curve_solver_t), intent(inout) :: solver
-    type(equations_t), intent(inout) :: equations
-    type(known_path_t), intent(in) :: known
+  subroutine find_pieces(solver, path, drive, pieces, whole)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
     type(drive_t), intent(in) :: drive
     type(driven_piece_t), allocatable, intent(out) :: pieces(:)
     logical, intent(out) :: whole
     type(driven_piece_t) :: piece
+    type(curve_state_t) :: state
     type(curve_state_t), allocatable :: turns(:)
-    integer :: i, k, n
+    type(hermite_t) :: curve
+    type(place_t) :: before
+    real(wp), allocatable :: x(:)
+    real(wp) :: ends(2)
+    integer :: i, k
     logical :: open, stable, solved
 
     allocate (pieces(0))
     whole = .true.
     open = .false.
-    n = size(solver%curve%interval)
-    do i = 1, n
-      if (solver%curve%interval(i)%modes > 0) then
-        ! A fold in h0: the path is no longer stable however stiff the spring is.
-        if (open) call close_piece(end_of(i - 1), .true.)
-        open = .false.
-        cycle
+    do i = 1, path%last - 1
+      if (.not. path%joins(i)) cycle
+      ! Where a mode is unstable at fixed h0, the path is not stable however stiff the spring is.
+      stable = path%point(i)%modes == 0
+      if (.not. (stable .or. open)) cycle
+      call path%curve_between(i, drive%weights, curve, ends)
+      if (allocated(turns)) deallocate (turns)
+      allocate (turns(0))
+      if (stable) then
+        call find_turns(solver, path, i, drive%weights, turns, solved)
+        whole = whole .and. solved
       end if
-      call solver%find_turns(equations, known, i, drive%weights, turns, solved)
-      whole = whole .and. solved
-      associate (begin => solver%curve%begin_of(i))
-        stable = dot_product(drive%weights, [begin%h0_slope, begin%load_slope]) < 0
-        if (stable .neqv. open) then
-          if (open) call close_piece(state_at(i, begin%x), .true.)
-          if (stable) call open_piece(state_at(i, begin%x), i > 1)
-        end if
-      end associate
-      do k = 1, size(turns)
-        if (open) then
-          call close_piece(turns(k), .true.)
+      x = [ends(1), turns%x, ends(2)]
+      do k = 1, size(x) - 1
+        stable = path%point(i)%modes == 0 .and. curve%value(x(k + 1)) < curve%value(x(k))
+        if (stable .eqv. open) cycle
+        if (k > 1) then
+          state = turns(k - 1)
         else
-          call open_piece(turns(k), .true.)
+          if (stable) before = place_t(i, ends(1))
+          call state_of(solver, path, before, state)
         end if
+        if (stable) then
+          piece%first = state
+          piece%first_turns = i > 1 .or. k > 1
+        else
+          call close_piece(.true.)
+        end if
+        open = stable
       end do
+      before = place_t(i, ends(2))
     end do
-    if (open) call close_piece(end_of(n), .false.)
+    if (.not. open) return
+    call state_of(solver, path, before, state)
+    call close_piece(.false.)
 
   contains
 
-    subroutine open_piece(state, turns)
-      type(curve_state_t), intent(in) :: state
+    !> Ends the piece in the state.
+    subroutine close_piece(turns)
       logical, intent(in) :: turns
 
-      open = .true.
-      piece%first = state
-      piece%first_turns = turns
-    end subroutine open_piece
-
-    subroutine close_piece(state, turns)
-      type(curve_state_t), intent(in) :: state
-      logical, intent(in) :: turns
-
-      open = .false.
       piece%last = state
       piece%last_turns = turns
       if (.not. (piece%first%converged .and. piece%last%converged)) then
@@ -180,42 +183,28 @@ contains
       end if
     end subroutine close_piece
 
-    !> The state at the end of interval j.
-    type(curve_state_t) function end_of(j)
-      integer, intent(in) :: j
-
-      associate (end => solver%curve%end_of(j))
-        end_of = state_at(j, end%x)
-      end associate
-    end function end_of
-
-    type(curve_state_t) function state_at(j, x)
-      integer, intent(in) :: j
-      real(wp), intent(in) :: x
-
-      call solver%state_of(equations, known, place_t(j, x), state_at)
-    end function state_at
-
   end subroutine find_pieces
 
   !> The state of a piece at which D has a value between those at its ends.
-  subroutine state_driven(solver, equations, known, drive, piece, wanted, state)
-    type(curve_solver_t), intent(inout) :: solver
-    type(equations_t), intent(inout) :: equations
-    type(known_path_t), intent(in) :: known
+  subroutine state_driven(solver, path, drive, piece, wanted, state)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
     type(drive_t), intent(in) :: drive
     type(driven_piece_t), intent(in) :: piece
     real(wp), intent(in) :: wanted
     type(curve_state_t), intent(out) :: state
-    real(wp) :: low, high
+    type(hermite_t) :: curve
+    real(wp) :: ends(2)
     integer :: i
 
     do i = piece%first%interval, piece%last%interval
-      call clip(solver%curve, i, piece%first, piece%last, low, high)
-      if (i == piece%last%interval) exit
-      if (solver%curve%value(i, drive%weights, high) <= wanted) exit
+      if (.not. path%joins(i)) cycle
+      call path%curve_between(i, drive%weights, curve, ends)
+      ends = part_of(ends, i, piece%first, piece%last)
+      if (curve%value(ends(2)) <= wanted) exit
     end do
-    call solver%state_where(equations, known, i, drive%weights, wanted, low, high, state)
+    call state_where(solver, path, min(i, piece%last%interval), drive%weights, wanted, ends(1), &
+      ends(2), state)
   end subroutine state_driven
 
 end module driven_pieces

@@ -6,6 +6,7 @@ module known_path
   use listener, only: listener_t
   use contact_state, only: state_t, state_from
   use equilibrium, only: equations_t
+  use solver, only: solver_t
   use solver_options, only: solver_options_t
   use edge_locked, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
@@ -14,10 +15,8 @@ module known_path
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
   use traced_path, only: traced_path_t, extend, pass_on, collapsed
   use mending, only: mender_t, new_mender, left_on_path
-  use anderson, only: solve_anderson
-  use frozen_jacobian, only: frozen_jacobian_t
   use reported, only: error_t, measure_t
-  use state_search, only: neighbours_t, neighbours_of, solve_at_h0
+  use path_span, only: path_span_t, new_path_span
   implicit none
   private
   public :: known_path_t, landing_t, trace, interval_at, lowest_point, landing_over
@@ -68,22 +67,20 @@ module known_path
 contains
 
   !> Traces the path from a state far from contact, on the mesh for the approach, until it is stable
-  !> at h0_low; into_contact: until it is also on the mesh for contact; closely: with points enough
-  !> for a smooth curve (`path_curve`). accuracy: where given, meshes that leave out too much of the
-  !> load for it are mended.
-  subroutine trace(equations, options, start, h0_low, into_contact, closely, listener, known, &
-    accuracy)
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
+  !> at h0_low; into_contact: until it is also on the mesh for contact. farthest: where given, points
+  !> are enough for a smooth curve, and from there to the start bodies are undeformed. accuracy: where
+  !> given, meshes that leave out too much of the load for it are mended.
+  subroutine trace(solver, start, h0_low, into_contact, listener, known, farthest, accuracy)
+    class(solver_t), intent(inout) :: solver
     type(state_t), intent(in) :: start
     real(wp), intent(in) :: h0_low
-    logical, intent(in) :: into_contact, closely
+    logical, intent(in) :: into_contact
     class(listener_t), intent(inout) :: listener
     type(known_path_t), intent(inout) :: known
-    real(wp), intent(in), optional :: accuracy
+    real(wp), intent(in), optional :: farthest, accuracy
     type(continuation_t) :: walker
     type(mender_t) :: mender
-    type(solver_options_t) :: for_path
+    type(solver_options_t) :: own
     character(len=40) :: so_far
     logical :: lost, blind, finished, mended
     type(ending_t) :: going_on
@@ -91,19 +88,19 @@ contains
     integer :: steps, k
 
     ! Where rounding hides the contact the path is of use up to its first fold.
-    blind = lost_in_rounding(equations%problem, &
-      largest_radius(equations%problem, h0_low, equations%meshes%level))
-    for_path = options
-    for_path%tolerance = min(options%tolerance, path_tolerance)
+    blind = lost_in_rounding(solver%problem, &
+      largest_radius(solver%problem, h0_low, solver%meshes%level))
+    own = solver%options
+    solver%options%tolerance = min(own%tolerance, path_tolerance)
     finished = .false.
     steps = 0
-    if (closely) call walker%follow_closely()
-    call walker%begin_with(equations, for_path, start, approach, lost)
+    if (present(farthest)) call walker%follow_closely()
+    call walker%begin_with(solver, start, approach, lost)
     if (lost) known%ending%cause = path_lost
-    guarded = present(accuracy) .and. .not. equations%problem%law%of_paper
-    if (guarded) mender = new_mender(accuracy, equations%meshes)
+    guarded = present(accuracy) .and. .not. solver%problem%law%of_paper
+    if (guarded) mender = new_mender(accuracy, solver%meshes)
     do while (.not. (known%ending%early() .or. finished))
-      call extend(known%path, walker, equations, for_path, lost)
+      call extend(known%path, walker, solver, lost)
       steps = steps + 1
       if (mod(steps, steps_a_message) == 0) then
         write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
@@ -111,14 +108,14 @@ contains
       end if
       mended = .false.
       if (guarded .and. .not. lost) then
-        if (walker%has_come_to_next(equations)) then
-          call mender%mend(equations, known%path, walker%mesh, .false., mended)
+        if (walker%has_come_to_next(solver%equations_t)) then
+          call mender%mend(solver%equations_t, known%path, walker%mesh, .false., mended)
           if (.not. mended) call mender%note(known%path, walker)
         end if
       end if
-      if (.not. (lost .or. mended)) call pass_on(known%path, walker, equations, for_path, lost)
-      known%fallen = collapsed(equations%problem, known%path)
-      lost = lost .or. known%path%held >= longest .or. astray(equations, known%path)
+      if (.not. (lost .or. mended)) call pass_on(known%path, walker, solver, lost)
+      known%fallen = collapsed(solver%problem, known%path)
+      lost = lost .or. known%path%held >= longest .or. astray(solver%equations_t, known%path)
       if (lost) then
         known%ending%cause = path_lost
       else if (known%fallen) then
@@ -129,57 +126,61 @@ contains
       associate (last => known%path%point(known%path%held))
         finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
           last%tangent%h0 < 0 .and. &
-          (equations%meshes%in_contact(last%mesh) .or. .not. into_contact)
+          (solver%meshes%in_contact(last%mesh) .or. .not. into_contact)
       end associate
       if (guarded .and. .not. mended .and. (finished .or. known%ending%early())) &
-        call mender%mend(equations, known%path, walker%mesh, lost, mended)
+        call mender%mend(solver%equations_t, known%path, walker%mesh, lost, mended)
       if (.not. mended) cycle
       known%ending = going_on
       finished = .false.
-      call go_back(mender, equations, for_path, start, known%path, walker, lost)
+      call go_back(mender, solver, start, known%path, walker, lost)
       if (lost) known%ending%cause = path_lost
     end do
-    if (guarded .and. .not. known%fallen) known%left_out = left_on_path(equations, known%path)
+    solver%options = own
+    if (guarded .and. .not. known%fallen) &
+      known%left_out = left_on_path(solver%equations_t, known%path)
+    if (present(farthest)) call known%path%begin_undeformed(solver%problem, farthest)
     known%piece = pieces_of(known%path)
+    ! What is behind the last stable piece was traced only to find its end.
+    known%path%last = known%path%held
+    if (size(known%piece) > 0) known%path%last = known%piece(size(known%piece))%last
     allocate (known%inward(size(known%piece)), known%outward(size(known%piece)))
     do k = 1, size(known%piece)
-      call land(equations, options, known, k, .true., known%inward(k))
-      call land(equations, options, known, k, .false., known%outward(k))
+      call land(solver, known, k, .true., known%inward(k))
+      call land(solver, known, k, .false., known%outward(k))
     end do
   end subroutine trace
 
   !> Goes back to where the path came to a mesh that was made anew since, or to its beginning afar.
-  subroutine go_back(mender, equations, options, start, path, walker, lost)
+  subroutine go_back(mender, solver, start, path, walker, lost)
     type(mender_t), intent(in) :: mender
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
+    class(solver_t), intent(inout) :: solver
     type(state_t), intent(in) :: start
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
     logical, intent(out) :: lost
-    type(frozen_jacobian_t) :: frozen
     type(state_t) :: state
     logical :: done
 
     path = mender%path
     if (path%held > 0) then
       walker = mender%walker
-      call pass_on(path, walker, equations, options, lost)
+      call pass_on(path, walker, solver, lost)
       return
     end if
     call walker%forget()
-    associate (problem => equations%problem, grid => equations%meshes%grid(approach))
+    call solver%frozen%forget()
+    associate (problem => solver%problem, grid => solver%meshes%grid(approach))
       state = state_from(grid%nodes)
       state%h0 = start%h0
       state%axis_gap = start%axis_gap
       state%scale = start%scale
       state%gap = start%h0 + problem%shape%height(start%scale*grid%x)
       ! At its h0, where an experiment may begin.
-      call solve_anderson(equations, options, frozen, h0_control(problem%shape, equations%meshes, &
-        approach, start%h0), state, done)
+      call solver%correct(h0_control(problem%shape, solver%meshes, approach, start%h0), state, done)
     end associate
     lost = .not. done
-    if (done) call walker%begin_with(equations, options, state, approach, lost)
+    if (done) call walker%begin_with(solver, state, approach, lost)
   end subroutine go_back
 
   !> Whether the contact is much larger than any that is expected: on a mesh that is too coarse
@@ -202,7 +203,7 @@ contains
     integer :: i
 
     allocate (pieces(0))
-    i = 1
+    i = path%undeformed + 1
     do while (i < path%held)
       if (path%point(i)%modes > 0) then
         i = i + 1
@@ -256,14 +257,13 @@ contains
   end function interval_at
 
   !> Where the bodies land that leave a piece over the fold at its inner or outer end.
-  subroutine land(equations, options, known, from, inward, landing)
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
+  subroutine land(solver, known, from, inward, landing)
+    class(solver_t), intent(inout) :: solver
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: from
     logical, intent(in) :: inward
     type(landing_t), intent(out) :: landing
-    type(neighbours_t) :: near
+    type(path_span_t) :: span
     real(wp) :: h0
 
     associate (left => known%piece(from))
@@ -273,10 +273,9 @@ contains
     h0 = known%path%point(landing%fold)%state%h0
     landing%piece = piece_containing(known%piece, from, inward, h0)
     if (landing%piece == 0) return
-    near = neighbours_of(known%path, interval_at(known, landing%piece, h0))
-    landing%mesh = near%mesh
-    call solve_at_h0(equations, options, near, h0, landing%coordinate, landing%state, &
-      landing%converged)
+    span = new_path_span(known%path, interval_at(known, landing%piece, h0))
+    landing%mesh = span%mesh
+    call span%solve_at_h0(solver, h0, landing%coordinate, landing%state, landing%converged)
   end subroutine land
 
   !> The landing over a fold: inward(k) or outward(k), with inside telling which; k = 0 where the

@@ -6,8 +6,8 @@ module path_sensitivity
   use dimensionless_problem, only: problem_t
   use equilibrium, only: equations_t
   use frozen_jacobian, only: frozen_jacobian_t
-  use known_path, only: known_path_t
-  use path_curve, only: curve_t, curve_node_t, no_mesh
+  use traced_path, only: traced_path_t, no_mesh
+  use path_curve, only: curve_node_t
   use undeformed, only: load_undeformed
   use variation, only: variation_t
   use state_sensitivity, only: change_t, place_on_path_t, differentiate
@@ -23,12 +23,12 @@ module path_sensitivity
 
 contains
 
-  !> rate(i, j): by parameter i at node j of the curve, at fixed x. found = .false.: at some node
+  !> rate(i, j): by parameter i at node j of the path, at fixed x. found = .false.: at some node
   !> they do not exist.
-  subroutine rates_along(equations, known, curve, varied, rate, found)
+  subroutine rates_along(equations, path, nodes, varied, rate, found)
     type(equations_t), intent(inout) :: equations
-    type(known_path_t), intent(in) :: known
-    type(curve_t), intent(in) :: curve
+    type(traced_path_t), intent(in) :: path
+    type(curve_node_t), intent(in) :: nodes(:)
     type(variation_t), intent(in) :: varied(:)
     type(rate_t), allocatable, intent(out) :: rate(:, :)
     logical, intent(out) :: found
@@ -37,10 +37,10 @@ contains
     type(place_on_path_t) :: place
     integer :: i, j
 
-    allocate (rate(size(varied), size(curve%node)))
+    allocate (rate(size(varied), size(nodes)))
     found = .true.
-    do j = 1, size(curve%node)
-      associate (node => curve%node(j))
+    do j = 1, size(nodes)
+      associate (node => nodes(j))
         if (node%mesh == no_mesh) then
           do i = 1, size(varied)
             rate(i, j) = rate_undeformed(equations, varied(i), node%h0)
@@ -48,7 +48,7 @@ contains
           cycle
         end if
         place%mesh = node%mesh
-        call known%path%seen_on(node%point, node%mesh, place%state, place%s, found)
+        call path%seen_on(node%point, node%mesh, place%state, place%s, found)
         if (found) call differentiate(equations, place, frozen, varied, change, found)
         if (.not. found) return
         do i = 1, size(varied)

@@ -4,29 +4,36 @@
 module path_span
   use kinds, only: wp
   use interpolation, only: hermite_t, most_hermite_nodes
-  use shape, only: shape_t
-  use discretisation, only: discretisation_t
   use contact_state, only: state_t
+  use equilibrium, only: control_t, holds, residual_floor, at_h0_with_edge
+  use solver, only: solver_t
+  use edge_locked, only: contact
+  use path_coordinate, only: coordinate_of
   use path_tangent, only: of_h0, of_load
-  use state_search, only: neighbours_t, neighbours_of, coordinate_where
-  use traced_path, only: traced_path_t
+  use arc, only: arc_t
+  use path_search, only: found_t, find_place, place_on
+  use traced_path, only: traced_path_t, either_side
   implicit none
   private
   public :: path_span_t, new_path_span
 
-  type :: path_span_t
-    !> The points: this and the next; 0 before there are any. Their mesh, and coordinates there.
-    integer :: point = 0, mesh = 1
+  !> The arc of the points about it; its own are this and the next, 0 before there are any, at the
+  !> coordinates `ends`.
+  type, extends(arc_t) :: path_span_t
+    integer :: point = 0
     real(wp) :: ends(2) = 0
-    type(neighbours_t), private :: near
-    type(hermite_t), private :: h0, load
-    !> Those of the neighbours that the polynomial fits.
-    integer, private :: nodes(most_hermite_nodes) = 0, held = 0
+    type(hermite_t), private :: h0_curve, load_curve
+    !> The states of the arc that the polynomial fits.
+    integer, private :: nodes(most_hermite_nodes) = 0, fitted = 0
   contains
     procedure :: at_h0
-    procedure :: guess
+    procedure :: expected
     procedure :: h0_and_load
+    procedure :: solve_at_h0
   end type path_span_t
+
+  !> Change of the coordinate over which a state is the same one but for rounding.
+  real(wp), parameter :: same_place = 1.0e-8_wp
 
 contains
 
@@ -35,35 +42,39 @@ contains
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     type(path_span_t) :: span
+    integer :: j
+    real(wp) :: middle
 
-    span%near = neighbours_of(path, i)
     span%point = i
-    span%mesh = span%near%mesh
-    span%ends = span%near%ends
-    call span%near%support(0.5_wp*sum(span%ends), span%nodes, span%held)
-    span%h0 = span%near%curve_there(of_h0)
-    span%load = span%near%curve_there(of_load)
+    span%mesh = path%mesh_between(i)
+    do j = max(1, i - either_side), min(path%held, i + 1 + either_side)
+      call path%add_to(j, span)
+      if (j == i .or. j == i + 1) span%ends(j + 1 - i) = span%coordinate(span%held)
+    end do
+    middle = 0.5_wp*sum(span%ends)
+    call span%support(middle, span%nodes, span%fitted)
+    span%h0_curve = span%curve(of_h0, middle)
+    span%load_curve = span%curve(of_load, middle)
   end function new_path_span
 
-  !> Where between the ends H0 has a value; from: a place nearby, if one is known.
-  pure real(wp) function at_h0(self, h0, from) result(s)
+  !> Where between the ends H0 is expected to have a value.
+  pure real(wp) function at_h0(self, h0) result(s)
     class(path_span_t), intent(in) :: self
     real(wp), intent(in) :: h0
-    real(wp), intent(in), optional :: from
 
-    s = coordinate_where(self%h0, self%ends, h0, from)
+    s = place_on(self%h0_curve, self%ends, h0)
   end function at_h0
 
-  !> The state that is expected at the coordinate s, beyond the ends too; grid: its mesh.
-  pure subroutine guess(self, shape, grid, s, state)
+  !> The state that is expected at the coordinate s, beyond the ends too.
+  pure subroutine expected(self, solver, s, state)
     class(path_span_t), intent(in) :: self
-    class(shape_t), intent(in) :: shape
-    type(discretisation_t), intent(in) :: grid
+    class(solver_t), intent(in) :: solver
     real(wp), intent(in) :: s
     type(state_t), intent(inout) :: state
 
-    call self%near%guess_from(shape, grid, self%nodes(:self%held), s, state)
-  end subroutine guess
+    call self%guess_from(solver%problem%shape, solver%meshes%grid(self%mesh), &
+      self%nodes(:self%fitted), s, state)
+  end subroutine expected
 
   !> H0 and load that are expected at s.
   pure function h0_and_load(self, s) result(values)
@@ -71,7 +82,48 @@ contains
     real(wp), intent(in) :: s
     real(wp) :: values(2)
 
-    values = [self%h0%value(s), self%load%value(s)]
+    values = [self%h0_curve%value(s), self%load_curve%value(s)]
   end function h0_and_load
+
+  !> The state at h0, however near a fold, and its coordinate s.
+  subroutine solve_at_h0(self, solver, h0, s, state, converged)
+    class(path_span_t), intent(in) :: self
+    class(solver_t), intent(inout) :: solver
+    real(wp), intent(in) :: h0
+    real(wp), intent(out) :: s
+    type(state_t), intent(out) :: state
+    logical, intent(out) :: converged
+    type(found_t) :: found
+
+    call find_place(solver, self%arc_t, self%ends, of_h0, found, converged, h0)
+    s = found%coordinate
+    state = found%state
+    if (abs(state%h0 - h0) > max(solver%options%tolerance, residual_floor(solver%problem, state))) &
+      call finish_at_h0(solver, self%mesh, h0, s, state)
+    ! What is left of the way is rounding; the equations at h0 itself are off by it.
+    state%residual = max(state%residual, abs(state%h0 - h0))
+    converged = holds(solver%problem, solver%options%tolerance, state)
+    state%h0 = h0
+  end subroutine solve_at_h0
+
+  !> Where the contact is wide and far from a fold, h0 changes by more than the tolerance with the
+  !> last digit of the coordinate; there it can be prescribed.
+  subroutine finish_at_h0(solver, mesh, h0, s, state)
+    class(solver_t), intent(inout) :: solver
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: h0, s
+    type(state_t), intent(inout) :: state
+    type(control_t) :: control
+    type(state_t) :: trial
+    logical :: arrived
+
+    control%value = h0
+    control%mesh = mesh
+    if (mesh >= contact) control%kind = at_h0_with_edge
+    trial = state
+    call solver%correct(control, trial, arrived)
+    if (arrived .and. abs(coordinate_of(solver%problem, mesh, trial) - s) < same_place) &
+      state = trial
+  end subroutine finish_at_h0
 
 end module path_span

@@ -6,13 +6,15 @@ module path_tangent
   use beyond_mesh, only: load_slope_beyond
   use contact_state, only: state_t, load_reach, gap_at_end
   use equilibrium, only: control_t, equations_t, at_axis_gap, at_edge_radius
+  use solver, only: solver_t
+  use edge_locked, only: approach
+  use path_coordinate, only: path_control
   use jacobian, only: control_derivative, jacobian_times
-  use solver_options, only: solver_options_t
   use linear_algebra, only: solve
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   implicit none
   private
-  public :: tangent_t, tangent_at, scaled, of_h0, of_load
+  public :: tangent_t, tangent_along, of_h0, of_load
 
   !> Weights of h0 and the load in what the path is asked about: D = weights(1) h0 + weights(2)
   !> load, which is h0 itself, the load, or what drives bodies through a spring (`driven_pieces`).
@@ -42,14 +44,33 @@ contains
     of = dot_product(weights, [self%h0, self%load])
   end function of
 
-  !> The derivatives by the value of the control at an equilibrium under it, with the relative error
-  !> of the options; found = .false. where the Jacobian is singular. Factors that are too far from
-  !> those of the state are renewed.
-  subroutine tangent_at(equations, options, control, state, frozen, tangent, found)
+  !> The derivatives by the coordinate s at the equilibrium there, with a relative error that may be
+  !> larger than that of the options; found = .false. where the Jacobian is singular.
+  subroutine tangent_along(solver, mesh, s, state, tangent, found, error)
+    class(solver_t), intent(inout) :: solver
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    type(state_t), intent(in) :: state
+    type(tangent_t), intent(out) :: tangent
+    logical, intent(out) :: found
+    real(wp), intent(in), optional :: error
+    real(wp) :: allowed
+
+    allowed = solver%options%slope_error
+    if (present(error)) allowed = max(allowed, error)
+    call tangent_at(solver%equations_t, path_control(solver%problem, mesh, s), state, allowed, &
+      solver%frozen, tangent, found)
+    ! The control's value is exp(-s) and a constant on the approach, else exp(s).
+    if (found) call scale(tangent, merge(-exp(-s), exp(s), mesh == approach))
+  end subroutine tangent_along
+
+  !> The derivatives by the value of the control. Factors that are too far from those of the state
+  !> are renewed.
+  subroutine tangent_at(equations, control, state, error, frozen, tangent, found)
     type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
+    real(wp), intent(in) :: error
     type(frozen_jacobian_t), intent(inout) :: frozen
     type(tangent_t), intent(out) :: tangent
     logical, intent(out) :: found
@@ -59,8 +80,7 @@ contains
     n = size(state%gap)
     right = -control_derivative(equations, control, state)
     found = frozen%serves(control, size(right))
-    if (found) call refine(equations, options%slope_error, control, state, frozen, right, &
-      dz, found)
+    if (found) call refine(equations, error, control, state, frozen, right, dz, found)
     if (.not. found) then
       call freeze(equations, control, state, frozen)
       found = frozen%factors%valid
@@ -147,18 +167,17 @@ contains
     end associate
   end function load_slope
 
-  !> A tangent by another measure of the way: times the derivative of the control's value by it.
-  pure function scaled(tangent, rate) result(by_other)
-    type(tangent_t), intent(in) :: tangent
+  !> Makes a tangent one by another measure of the way: times the derivative of the control's value
+  !> by it.
+  pure subroutine scale(tangent, rate)
+    type(tangent_t), intent(inout) :: tangent
     real(wp), intent(in) :: rate
-    type(tangent_t) :: by_other
 
-    by_other = tangent
-    by_other%gap = rate*tangent%gap
-    by_other%h0 = rate*tangent%h0
-    by_other%scale = rate*tangent%scale
-    by_other%axis_gap = rate*tangent%axis_gap
-    by_other%load = rate*tangent%load
-  end function scaled
+    tangent%gap = rate*tangent%gap
+    tangent%h0 = rate*tangent%h0
+    tangent%scale = rate*tangent%scale
+    tangent%axis_gap = rate*tangent%axis_gap
+    tangent%load = rate*tangent%load
+  end subroutine scale
 
 end module path_tangent

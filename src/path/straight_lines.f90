@@ -4,7 +4,8 @@ module straight_lines
   use kinds, only: wp
   use dimensionless_problem, only: contact_level_of
   use contact_state, only: state_t, radius_of_gap
-  use equilibrium, only: equations_t, control_t, at_axis_gap
+  use equilibrium, only: control_t, at_axis_gap
+  use solver, only: solver_t
   use path_coordinate, only: path_control
   use path_span, only: path_span_t
   implicit none
@@ -21,8 +22,8 @@ contains
 
   !> Coordinates of a span between `from` and `to`, in order. Equal parts will do: each is as far
   !> from its line as the square of its length. widest: contact radius, lateral units.
-  pure function places_between(equations, span, from, to, widest) result(places)
-    type(equations_t), intent(in) :: equations
+  pure function places_between(solver, span, from, to, widest) result(places)
+    class(solver_t), intent(in) :: solver
     type(path_span_t), intent(in) :: span
     real(wp), intent(in) :: from, to, widest
     real(wp), allocatable :: places(:)
@@ -55,16 +56,15 @@ contains
       type(control_t) :: control
       type(state_t) :: state
 
-      control = path_control(equations%problem, span%mesh, s)
+      control = path_control(solver%problem, span%mesh, s)
       values = [span%h0_and_load(s), control%value]
       if (control%kind /= at_axis_gap) return
       values(3) = 0
-      if (control%value >= contact_level_of(equations%problem)) return
-      associate (shape => equations%problem%shape, grid => equations%meshes%grid(span%mesh))
-        call span%guess(shape, grid, s, state)
-        state%axis_gap = control%value
-        values(3) = radius_of_gap(shape, contact_level_of(equations%problem), grid, state)
-      end associate
+      if (control%value >= contact_level_of(solver%problem)) return
+      call span%expected(solver, s, state)
+      state%axis_gap = control%value
+      values(3) = radius_of_gap(solver%problem%shape, contact_level_of(solver%problem), &
+        solver%meshes%grid(span%mesh), state)
     end function seen_at
 
   end function places_between

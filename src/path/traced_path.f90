@@ -11,18 +11,19 @@
 module traced_path
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
+  use interpolation, only: hermite_t, hermite_through, most_hermite_nodes, find_nodes_about
   use contact_state, only: state_t
-  use equilibrium, only: equations_t
-  use solver_options, only: solver_options_t
+  use undeformed, only: load_undeformed, load_slope_undeformed
+  use solver, only: solver_t
   use edge_locked, only: approach
   use reported, only: error_t, measure_t
   use path_tangent, only: tangent_t, of_h0, of_load
   use arc, only: arc_t
-  use path_extremum, only: extremum_t, find_extrema
+  use path_search, only: found_t, find_extrema
   use continuation, only: continuation_t
   implicit none
   private
-  public :: traced_path_t, path_point_t, extend, pass_on, collapsed, either_side
+  public :: traced_path_t, path_point_t, extend, pass_on, collapsed, either_side, no_mesh
 
   !> One equilibrium of the path.
   type :: path_point_t
@@ -48,7 +49,14 @@ module traced_path
   type :: traced_path_t
     integer :: held = 0
     type(path_point_t), allocatable :: point(:)
+    !> How many points, the first ones, are of undeformed bodies; and the last before which the path
+    !> is of use: the end of the last stable piece.
+    integer :: undeformed = 0, last = 0
   contains
+    procedure :: begin_undeformed
+    procedure :: joins
+    procedure :: curve_between
+    procedure, private :: look
     procedure :: modes_at
     procedure :: add_to
     procedure :: seen_on
@@ -57,6 +65,10 @@ module traced_path
     procedure :: mesh_between
   end type traced_path_t
 
+  !> What undeformed bodies are on in place of a mesh; their coordinate is -log(h0). Ratio of h0
+  !> between such points.
+  integer, parameter :: no_mesh = 0
+  real(wp), parameter :: outer_ratio = 1.12_wp
   !> Points on either side of a piece of the path that tell about it: of folds and extrema one may
   !> be too near to tell anything.
   integer, parameter :: either_side = 2
@@ -84,6 +96,106 @@ contains
     if (first > 0) scale = path%point(first)%state%axis_gap
     collapsed = path%point(path%held)%state%axis_gap < collapse*scale
   end function collapsed
+
+  !> Puts undeformed bodies from h0 = `farthest` inward before the first point, if that is nearer.
+  subroutine begin_undeformed(self, problem, farthest)
+    class(traced_path_t), intent(inout) :: self
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: farthest
+    type(path_point_t), allocatable :: all_points(:)
+    integer :: i, n
+
+    if (self%held == 0) return
+    associate (h0 => self%point(1)%state%h0)
+      if (.not. farthest > h0) return
+      n = ceiling(log(farthest/h0)/log(outer_ratio))
+      allocate (all_points(n + 1 + self%held))
+      all_points(n + 2:) = self%point(:self%held)
+      do i = 0, n
+        associate (point => all_points(i + 1))
+          point%mesh = no_mesh
+          point%state%h0 = h0*(farthest/h0)**(1 - real(i, wp)/n)
+          point%state%load = load_undeformed(problem, point%state%h0)
+          point%state%axis_gap = point%state%h0
+          point%coordinate = -log(point%state%h0)
+          point%tangent%h0 = -point%state%h0
+          point%tangent%load = -point%state%h0*load_slope_undeformed(problem, point%state%h0)
+        end associate
+      end do
+    end associate
+    call move_alloc(all_points, self%point)
+    self%undeformed = n + 1
+    self%held = self%held + self%undeformed
+  end subroutine begin_undeformed
+
+  !> Whether the path leads from point i to the next: from the last point of undeformed bodies it
+  !> goes on at the next point, which is the same place.
+  pure logical function joins(self, i)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: i
+
+    joins = i /= self%undeformed
+  end function joins
+
+  !> The polynomial that weights(1) h0 + weights(2) load is between point i and the next, the
+  !> coordinates of these, and the points that it fits.
+  pure subroutine curve_between(self, i, weights, curve, ends, fitted)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: i
+    real(wp), intent(in) :: weights(2)
+    type(hermite_t), intent(out) :: curve
+    real(wp), intent(out) :: ends(2)
+    integer, allocatable, intent(out), optional :: fitted(:)
+    real(wp), dimension(2 + 2*either_side) :: at, value, slope
+    real(wp) :: s, numbers(2)
+    logical :: there
+    integer :: point_of(2 + 2*either_side), nodes(most_hermite_nodes), j, n, held, first
+
+    held = 0
+    first = 1
+    do j = max(1, i - either_side), min(self%held, i + 1 + either_side)
+      call self%look(j, self%mesh_between(i), weights, s, numbers, there)
+      there = there .and. .not. any(abs(at(:held) - s) <= 0)
+      if (there) then
+        held = held + 1
+        point_of(held) = j
+        at(held) = s
+        value(held) = numbers(1)
+        slope(held) = numbers(2)
+      end if
+      if (j == i) first = held
+    end do
+    ends = at(first:first + 1)
+    call find_nodes_about(at(:held), first, nodes, n)
+    curve = hermite_through(at(nodes(:n)), value(nodes(:n)), slope(nodes(:n)))
+    if (present(fitted)) fitted = point_of(nodes(:n))
+  end subroutine curve_between
+
+  !> The coordinate of the i-th point on a mesh, and weights(1) h0 + weights(2) load there with its
+  !> derivative; there = .false. if that does not know it.
+  pure subroutine look(self, i, mesh, weights, s, numbers, there)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: i, mesh
+    real(wp), intent(in) :: weights(2)
+    real(wp), intent(out) :: s, numbers(2)
+    logical, intent(out) :: there
+
+    s = 0
+    numbers = 0
+    associate (point => self%point(i))
+      there = point%mesh == mesh
+      if (there) then
+        s = point%coordinate
+        numbers = [dot_product(weights, [point%state%h0, point%state%load]), &
+          point%tangent%of(weights)]
+      else if (mesh == point%mesh + 1 .and. allocated(point%twin)) then
+        there = .true.
+        s = log(point%twin%scale)
+        numbers = [dot_product(weights, [point%twin%h0, point%twin%load]), &
+          point%twin_tangent%of(weights)]
+      end if
+    end associate
+  end subroutine look
 
   !> Unstable modes of the i-th point; a fold has those of its more unstable side.
   pure integer function modes_at(self, i)
@@ -168,39 +280,38 @@ contains
 
   !> Advances the tracer by a step and appends the new point. A new path begins with the tracer's
   !> own newest state. lost: no step, however small, converged.
-  subroutine extend(path, walker, equations, options, lost)
+  subroutine extend(path, walker, solver, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
+    class(solver_t), intent(inout) :: solver
     logical, intent(out) :: lost
 
     if (path%held == 0) call append(path, walker)
-    call walker%advance(equations, options, lost)
+    call walker%advance(solver, lost)
     if (.not. lost) call append(path, walker)
   end subroutine extend
 
   !> Lets the tracer pass to the next mesh if it has come there, and puts the extrema that have been
   !> passed before the newest point. lost: a solve failed.
-  subroutine pass_on(path, walker, equations, options, lost)
+  subroutine pass_on(path, walker, solver, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
+    class(solver_t), intent(inout) :: solver
     logical, intent(out) :: lost
-    type(extremum_t), allocatable :: extrema(:)
+    type(found_t), allocatable :: extrema(:)
     logical :: folds
     integer :: pass, n, k
 
-    call change_mesh(path, walker, equations, options, lost)
+    call change_mesh(path, walker, solver, lost)
     do pass = 1, 2
       folds = pass == 1
       if (lost) return
       n = walker%held
       if (.not. folds .and. .not. any(abs(walker%state(max(1, n - 1):n)%load) > &
-        no_load*equations%problem%law%adhesion)) cycle
-      call find_extrema(equations, options, walker%arc_t, n - 1, merge(of_h0, of_load, folds), &
-        extrema, lost)
+        no_load*solver%problem%law%adhesion)) cycle
+      if (n < 2) return
+      call find_extrema(solver, walker%arc_t, walker%coordinate(n - 1:n), &
+        merge(of_h0, of_load, folds), extrema, lost)
       do k = 1, size(extrema)
         call put(path, walker, folds, extrema(k))
       end do
@@ -222,18 +333,17 @@ contains
   end subroutine append
 
   !> Lets the tracer change its mesh, and keeps what it took along as twins.
-  subroutine change_mesh(path, walker, equations, options, lost)
+  subroutine change_mesh(path, walker, solver, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
-    type(equations_t), intent(inout) :: equations
-    type(solver_options_t), intent(in) :: options
+    class(solver_t), intent(inout) :: solver
     logical, intent(out) :: lost
     real(wp) :: before(2)
     integer :: mesh, i, k
 
     mesh = walker%mesh
     before = walker%coordinate(walker%held - 1:walker%held)
-    call walker%change_mesh(equations, options, lost)
+    call walker%change_mesh(solver, lost)
     if (lost .or. walker%mesh == mesh) return
     do k = 1, 2
       do i = path%held, 1, -1
@@ -270,7 +380,7 @@ contains
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(in) :: walker
     logical, intent(in) :: fold
-    type(extremum_t), intent(in) :: found
+    type(found_t), intent(in) :: found
     type(path_point_t) :: point
     integer :: place, change
 

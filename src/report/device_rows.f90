@@ -4,7 +4,7 @@ module device_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use path_curve, only: curve_t, curve_node_t
+  use path_curve, only: curve_node_t
   use curve_states, only: curve_state_t
   use driven_pieces, only: drive_t
   use driven_cycle, only: driven_t, leg_t, jump_t, nodes_on
@@ -55,7 +55,7 @@ contains
     integer :: i, k
 
     do i = 1, size(readings%device)
-      associate (driven => readings%device(i), curve => readings%curve)
+      associate (driven => readings%device(i))
         call add_path(driven)
         do k = 1, size(driven%leg)
           call add_leg(driven, driven%leg(k))
@@ -68,16 +68,14 @@ contains
     !> The whole path.
     subroutine add_path(driven)
       type(driven_t), intent(in) :: driven
-      type(curve_node_t) :: node
-      integer :: j, n, modes
+      integer :: j
 
-      n = size(readings%curve%interval)
-      do j = 1, n + 1
-        node = readings%curve%begin_of(min(j, n))
-        if (j > n) node = readings%curve%end_of(n)
-        modes = maxval(readings%curve%interval(max(1, j - 1):min(j, n))%modes)
-        call add(driven, 'path', node%h0, node%load, node%radius, modes == 0 .and. &
-          dot_product(driven%drive%weights, [node%h0_slope, node%load_slope]) < 0)
+      do j = 1, size(readings%node)
+        associate (node => readings%node(j))
+          if (node%shown) call add(driven, 'path', node%h0, node%load, node%radius, &
+            node%modes == 0 .and. &
+            dot_product(driven%drive%weights, [node%h0_slope, node%load_slope]) < 0)
+        end associate
       end do
     end subroutine add_path
 
@@ -91,7 +89,7 @@ contains
 
       direction = direction_of(leg%inward)
       call add(driven, direction, leg%from%h0, leg%from%load, leg%from%radius, .true.)
-      nodes = nodes_on(readings%curve, leg)
+      nodes = nodes_on(readings%node, leg)
       do j = 1, size(nodes)
         call add(driven, direction, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, .true.)
       end do

@@ -136,7 +136,7 @@ contains
       pack(readings%device%stiffness, readings%device%stiffness <= huge(1.0_wp))]
     do j = 1, size(varied)
       do k = 1, size(stiffness)
-        do i = 1, size(readings%curve%node)
+        do i = 1, size(readings%node)
           call add(i, j, stiffness(k))
         end do
       end do
@@ -150,7 +150,7 @@ contains
       type(rate_t) :: rate
       real(wp) :: weights(2), terms(2), z
 
-      associate (node => readings%curve%node(i), drive => through_spring(stiffness))
+      associate (node => readings%node(i), drive => through_spring(stiffness))
         weights = drive%weights
         terms = weights*[node%h0_slope*problem%length, node%load_slope*problem%load]
         rate = held(problem, node, readings%rate(j, i), weights)

@@ -40,7 +40,7 @@ contains
         associate (leg => driven%leg(i))
           call add(leg%inward, leg%from%h0, leg%from%load, leg%from%radius, leg%from%slopes, &
             .false.)
-          nodes = nodes_on(readings%curve, leg)
+          nodes = nodes_on(readings%node, leg)
           do j = 1, size(nodes)
             call add(leg%inward, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, &
               [nodes(j)%h0_slope, nodes(j)%load_slope], .false.)

@@ -1,0 +1,329 @@
+!> Finds equilibria between two places of an arc of the path: where Q = weights(1) h0 + weights(2)
+!> load turns round, and where it has a value. The states of the arc have exact slopes, and the
+!> curve through them says where to look; the state there is solved and tells how far it is from
+!> what is looked for. In the path's coordinate there is no fold, and every state converges.
+!>
+!> Extrema show where the slopes have opposite signs and, perhaps two, where they have the same.
+!> Near the adhesion strength at which jumps begin two folds are so close that steps pass over both;
+!> wherever the curve leaves a doubt, a state is solved and joins the arc.
+module path_search
+  use kinds, only: wp
+  use contact_state, only: state_t
+  use solver, only: solver_t
+  use interpolation, only: hermite_t
+  use root_finding, only: bracket_t, root_search_t, new_root_search, resolution
+  use path_tangent, only: tangent_t
+  use arc, only: arc_t, most_states
+  implicit none
+  private
+  public :: found_t, find_extrema, may_turn, find_place, place_on
+
+  !> Places of an interval at which the curve's slope is looked at; part of the mean slope to which
+  !> it has to fall somewhere for two extrema to be looked for; of the slope's own error, how much
+  !> leaves a doubt.
+  integer, parameter :: places = 16
+  real(wp), parameter :: suspicious = 0.15_wp, doubtful = 2
+  !> Steps of the search for the least slope; part of an interval that is its end.
+  integer, parameter :: golden_steps = 30
+  real(wp), parameter :: at_end = 1.0e-5_wp
+  !> States that a search solves at most; the change of place below which rounding may keep the miss
+  !> from falling; and the part of the interval over which the curve tells how its slope changes.
+  integer, parameter :: most_rounds = 60
+  real(wp), parameter :: rounding_rules = 1.0e-6_wp, a_little = 1.0e-4_wp
+  !> How near to a wanted value a state has to be, relative or in the law's lengths: rounding
+  !> leaves no more. The correction of the coordinate that is left under a load, which rounding
+  !> shows in; and the one that may be left where a round was lost.
+  real(wp), parameter :: near_enough = 2.0e-13_wp, found_at = 1.0e-12_wp, left_over = 1.0e-5_wp
+
+  !> What was found on one of the meshes: its place on the path, its state and tangent; by how much
+  !> Q is beyond the value, or its slope beyond zero; of an extremum, 1 for a maximum along the way
+  !> inward, -1 for a minimum.
+  type :: found_t
+    real(wp) :: coordinate = 0
+    type(state_t) :: state
+    type(tangent_t) :: tangent
+    real(wp) :: miss = huge(1.0_wp)
+    integer :: sense = 1
+  end type found_t
+
+contains
+
+  !> The extrema of Q between two neighbouring states of an arc, those at the coordinates `ends`, in
+  !> order. lost: a solve failed.
+  subroutine find_extrema(solver, arc, ends, weights, extrema, lost)
+    class(solver_t), intent(inout) :: solver
+    type(arc_t), intent(in) :: arc
+    real(wp), intent(in) :: ends(2), weights(2)
+    type(found_t), allocatable, intent(out) :: extrema(:)
+    logical, intent(out) :: lost
+    type(arc_t) :: near
+    type(found_t) :: found
+    real(wp) :: s, expected, error
+    integer :: i
+    logical :: turns, doubt, done
+
+    allocate (extrema(0))
+    lost = .false.
+    error = huge(1.0_wp)
+    i = findloc(arc%coordinate(:arc%held), ends(1), 1)
+    ! Of most intervals nothing is to be told, and no copy is made.
+    call look_at(arc)
+    if (.not. (turns .or. doubt)) return
+    near = arc
+    call solver%frozen%forget()
+    do while (near%coordinate(i) < ends(2))
+      call look_at(near)
+      if (doubt .and. near%held < most_states) then
+        expected = near%slope(weights, s)
+        call near%state_at(solver, s, found%state, found%tangent, done)
+        lost = .not. done
+        if (lost) return
+        error = abs(found%tangent%of(weights) - expected)
+        call near%add(s, found%state, found%tangent)
+        cycle
+      end if
+      if (turns) then
+        call find_place(solver, near, near%coordinate(i:i + 1), weights, found, done)
+        lost = .not. done
+        if (lost) return
+        extrema = [extrema, found]
+      end if
+      i = i + 1
+    end do
+
+  contains
+
+    subroutine look_at(near)
+      type(arc_t), intent(in) :: near
+
+      associate (x => near%coordinate(i:i + 1))
+        call look(near%curve(weights, x(1) + 0.5_wp*(x(2) - x(1))), x, &
+          [near%tangent(i)%of(weights), near%tangent(i + 1)%of(weights)], error, turns, doubt, s)
+      end associate
+    end subroutine look_at
+
+  end subroutine find_extrema
+
+  !> Whether there may be extrema between two neighbouring states, at the places x; curve: the
+  !> polynomial between.
+  pure logical function may_turn(curve, x)
+    type(hermite_t), intent(in) :: curve
+    real(wp), intent(in) :: x(2)
+    real(wp) :: s
+    logical :: turns, doubt
+
+    call look(curve, x, [curve%slope(x(1)), curve%slope(x(2))], huge(1.0_wp), turns, doubt, s)
+    may_turn = turns .or. doubt
+  end function may_turn
+
+  !> What is between two neighbouring states at the places x, where a curve has slopes that are
+  !> exact at these: `turns`, an extremum; `doubt`, perhaps two more, which a state at s would show.
+  !> error: of the curve's slope; huge where it is not known.
+  pure subroutine look(curve, x, ends, error, turns, doubt, s)
+    type(hermite_t), intent(in) :: curve
+    real(wp), intent(in) :: x(2), ends(2), error
+    logical, intent(out) :: turns, doubt
+    real(wp), intent(out) :: s
+    real(wp) :: course, mean, least, slope, step
+    integer :: k
+
+    ! A slope of zero counts as one above: an extremum that is a state is in one interval of two.
+    turns = (ends(1) < 0) .neqv. (ends(2) < 0)
+    doubt = .false.
+    ! In the sense of its course the slope is above zero but between two extrema; where the ends
+    ! differ, up to the first and, turned round, beyond it.
+    course = merge(-1.0_wp, 1.0_wp, ends(1) < 0)
+    step = (x(2) - x(1))/places
+    mean = abs(curve%value(x(2)) - curve%value(x(1)))/(x(2) - x(1))
+    least = merge(0.0_wp, minval(abs(ends)), turns)
+    s = x(minloc(abs(ends), 1))
+    do k = 1, places - 1
+      slope = course*curve%slope(x(1) + k*step)
+      if (turns .and. slope < 0 .and. (course < 0 .eqv. ends(1) < 0)) then
+        course = -course
+        slope = -slope
+      end if
+      if (.not. slope < least) cycle
+      least = slope
+      s = x(1) + k*step
+    end do
+    if (turns) then
+      doubt = least < 0
+      return
+    end if
+    if (.not. least < suspicious*mean) return
+    call descend(curve, course, [max(s - step, x(1)), min(s + step, x(2))], s, least)
+    doubt = minval(abs(s - x)) > at_end*(x(2) - x(1)) .and. &
+      (least/doubtful < error .or. .not. error < huge(1.0_wp))
+  end subroutine look
+
+  !> The least slope of the curve in the sense of its course, and its place, between two places.
+  pure subroutine descend(curve, course, ends, s, least)
+    type(hermite_t), intent(in) :: curve
+    real(wp), intent(in) :: course, ends(2)
+    real(wp), intent(out) :: s, least
+    type(bracket_t) :: bracket
+    integer :: step
+
+    bracket = bracket_t(ends(1), ends(2))
+    do step = 1, golden_steps
+      associate (points => bracket%golden_points())
+        call bracket%keep_larger(-course*[curve%slope(points(1)), curve%slope(points(2))])
+      end associate
+    end do
+    s = bracket%middle()
+    least = course*curve%slope(s)
+  end subroutine descend
+
+  !> The state between two places at which Q, which goes one way there, has the value `wanted` or,
+  !> where none is wanted, its one extremum. Newton's steps lead there: the slope of Q is exact at a
+  !> state, and how it changes is told by the last two states. Steps that lead nowhere, as under a
+  !> force that changes by orders of magnitude, are halvings. A value outside, which is what
+  !> rounding may ask for, is at the nearer end. done = .false.: there is no such state, or a solve
+  !> failed.
+  subroutine find_place(solver, arc, ends, weights, found, done, wanted)
+    class(solver_t), intent(inout) :: solver
+    type(arc_t), intent(in) :: arc
+    real(wp), intent(in) :: ends(2), weights(2)
+    type(found_t), intent(out) :: found
+    logical, intent(out) :: done
+    real(wp), intent(in), optional :: wanted
+    type(arc_t) :: near
+    type(bracket_t) :: bracket
+    type(hermite_t) :: curve
+    type(found_t) :: tried
+    real(wp) :: s, rate, least_change
+    integer :: round, k, j
+    logical :: rising, solved
+
+    near = arc
+    curve = near%curve(weights, 0.5_wp*sum(ends))
+    bracket = bracket_t(ends(1), ends(2))
+    if (present(wanted)) then
+      rising = curve%value(ends(1)) < wanted
+      least_change = 4*resolution(maxval(abs(ends)))
+      do k = 1, 2
+        j = findloc(near%coordinate(:near%held), ends(k), 1)
+        if (j == 0) cycle
+        tried = found_t(ends(k), near%state(j), near%tangent(j))
+        tried%miss = miss_of(tried)
+        if (abs(tried%miss) < abs(found%miss)) found = tried
+      end do
+    else
+      j = findloc(near%coordinate(:near%held), ends(1), 1)
+      rising = near%tangent(j)%of(weights) < 0
+      least_change = solver%options%place_error
+    end if
+    s = place_on(curve, ends, wanted)
+    solved = .true.
+    ! Factors made where the curve has what is looked for serve all corrections.
+    call solver%frozen%forget()
+    do round = 1, most_rounds
+      if (is_there(found)) exit
+      call near%state_at(solver, s, tried%state, tried%tangent, solved)
+      if (.not. solved) exit
+      tried%coordinate = s
+      tried%miss = miss_of(tried)
+      call bracket%narrow((tried%miss < 0) .eqv. rising, s)
+      call join(near, s, tried%state, tried%tangent)
+      if (.not. abs(tried%miss) < abs(found%miss)) then
+        if (abs(s - found%coordinate) < rounding_rules) exit
+        s = bracket%middle()
+        cycle
+      end if
+      if (present(wanted)) then
+        rate = tried%tangent%of(weights)
+      else if (found%miss < huge(1.0_wp)) then
+        rate = (tried%miss - found%miss)/(s - found%coordinate)
+      else
+        associate (beside => a_little*(ends(2) - ends(1)))
+          rate = (curve%slope(s + beside) - curve%slope(s))/beside
+        end associate
+      end if
+      found = tried
+      if (.not. abs(rate) > tiny(rate)) exit
+      s = bracket%within(s - found%miss/rate)
+      if (abs(s - found%coordinate) < least_change) exit
+    end do
+    found%sense = merge(-1, 1, rising)
+    done = solved
+    if (present(wanted)) done = is_there(found, left_over)
+
+  contains
+
+    pure real(wp) function miss_of(tried) result(miss)
+      type(found_t), intent(in) :: tried
+
+      if (present(wanted)) then
+        miss = dot_product(weights, [tried%state%h0, tried%state%load]) - wanted
+      else
+        miss = tried%tangent%of(weights)
+      end if
+    end function miss_of
+
+    !> Whether Q of a state is what is wanted, but for what rounding leaves or, where that is given,
+    !> a change of the coordinate.
+    pure logical function is_there(near, change) result(there)
+      type(found_t), intent(in) :: near
+      real(wp), intent(in), optional :: change
+      real(wp) :: least
+
+      there = present(wanted) .and. abs(near%miss) < huge(1.0_wp)
+      if (.not. there) return
+      associate (w => abs(weights), slope => abs(near%tangent%of(weights)))
+        least = near_enough*(w(1)*max(1.0_wp, abs(near%state%h0)) + w(2)*abs(near%state%load))
+        if (w(2) > 0) least = max(least, found_at*slope)
+        if (present(change)) least = max(least, change*slope)
+      end associate
+      there = abs(near%miss) <= least
+    end function is_there
+
+  end subroutine find_place
+
+  !> Where between two places a curve has the value `wanted` or, where none is wanted, turns round;
+  !> if it does neither, the end that is nearer to that.
+  pure real(wp) function place_on(curve, ends, wanted) result(s)
+    type(hermite_t), intent(in) :: curve
+    real(wp), intent(in) :: ends(2)
+    real(wp), intent(in), optional :: wanted
+    type(root_search_t) :: search
+
+    search = new_root_search(ends(1), miss(ends(1)), ends(2), miss(ends(2)))
+    do while (search%is_open())
+      s = search%place()
+      call search%note(s, miss(s))
+    end do
+    s = search%root
+
+  contains
+
+    pure real(wp) function miss(s)
+      real(wp), intent(in) :: s
+
+      if (present(wanted)) then
+        miss = curve%value(s) - wanted
+      else
+        miss = curve%slope(s)
+      end if
+    end function miss
+
+  end function place_on
+
+  !> Adds a state to an arc. The farthest makes room.
+  subroutine join(near, s, state, tangent)
+    type(arc_t), intent(inout) :: near
+    real(wp), intent(in) :: s
+    type(state_t), intent(in) :: state
+    type(tangent_t), intent(in) :: tangent
+
+    if (near%held == most_states) then
+      if (s - near%coordinate(1) > near%coordinate(near%held) - s) then
+        call near%drop_first()
+      else
+        near%held = near%held - 1
+      end if
+    end if
+    call near%add(s, state, tangent)
+  end subroutine join
+
+end module path_search
