@@ -59,7 +59,7 @@ contains
 
     now%z = unknowns_of(control, state)
     allocate (now%g(size(now%z)))
-    frozen%factors%valid = frozen%serves(control, size(now%z))
+    frozen%factors%valid = frozen%serves(control, size(now%z)) .and. options%patience > 1
     converged = .false.
     do iteration = 1, options%most_iterations
       call residual(equations, control, now%z, now%g, state)

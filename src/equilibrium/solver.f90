@@ -2,7 +2,7 @@
 module solver
   use contact_state, only: state_t
   use equilibrium, only: control_t, equations_t
-  use solver_options, only: solver_options_t, newton_of
+  use solver_options, only: solver_options_t
   use mixing, only: solve_mixing
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
@@ -20,7 +20,7 @@ module solver
 
 contains
 
-  !> From `state` to the equilibrium at `control` by options%method. converged: the residual is
+  !> From `state` to the equilibrium at `control`. converged: the residual is
   !> within options%tolerance, or for mixing the chosen stopping rule is met.
   subroutine solve(self, control, state, converged)
     class(solver_t), intent(inout) :: self
@@ -28,16 +28,11 @@ contains
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
 
-    select case (self%options%method)
-    case ('mixing')
+    if (self%options%mixing) then
       call solve_mixing(self%equations_t, self%options, control, state, converged)
-    case ('newton')
-      self%frozen%factors%valid = .false.
-      call solve_anderson(self%equations_t, newton_of(self%options), self%frozen, control, state, &
-        converged)
-    case default
+    else
       call solve_anderson(self%equations_t, self%options, self%frozen, control, state, converged)
-    end select
+    end if
   end subroutine solve
 
 end module solver

@@ -1,4 +1,4 @@
-!> What the three iterations (mixing, Anderson, Newton) are told.
+!> What the iterations are told.
 module solver_options
   use kinds, only: wp
   implicit none
@@ -9,8 +9,9 @@ module solver_options
   real(wp), parameter :: tight_tolerance = 1.0e-12_wp
 
   type :: solver_options_t
-    !> 'mixing', 'anderson' or 'newton'.
-    character(len=8) :: method = 'anderson'
+    !> Whether the iteration is the paper's mixing, which has no derivatives, or Anderson
+    !> acceleration; of that Newton's method is a kind (`newton_of`).
+    logical :: mixing = .false.
     !> Largest acceptable residual, in the law's lengths.
     real(wp) :: tolerance = 1.0e-8_wp
     !> Previous steps that Anderson acceleration combines.
