@@ -1,4 +1,4 @@
-!> A problem on its meshes with an iteration that solves it: from state to state.
+!> A problem on its meshes with the iteration that solves it, state after state.
 module solver
   use contact_state, only: state_t
   use equilibrium, only: control_t, equations_t
@@ -12,7 +12,7 @@ module solver
 
   type, extends(equations_t) :: solver_t
     type(solver_options_t) :: options
-    !> What one state leaves for the next.
+    !> The factors that one state leaves for the next.
     type(frozen_jacobian_t) :: frozen
   contains
     procedure :: solve
