@@ -147,7 +147,7 @@ contains
     use contact_state, only: state_t, state_from
     use equilibrium, only: control_t, at_h0
     use solver, only: solver_t
-    use solver_options, only: solver_options_t
+    use solver_options, only: solver_options_t, newton_of
     character(len=*), intent(in) :: deck, kind, method
     integer(c_int), intent(in) :: nodes, l, m, orders(m)
     integer(c_int), intent(in) :: most_iterations, depth, patience, stop_on_change
@@ -169,9 +169,10 @@ contains
     this%problem%coupling = coupling
     allocate (this%meshes%grid(1))
     this%meshes%grid(1) = mesh_of(kind, centre, lengths, orders, map, .true.)
-    this%options = solver_options_t(method=method, tolerance=tolerance, depth=depth, &
+    this%options = solver_options_t(mixing=method == 'mixing', tolerance=tolerance, depth=depth, &
       patience=patience, most_iterations=most_iterations, mixing_limit=mixing_limit, &
       stop_on_change=stop_on_change /= 0, displacement_tolerance=displacement_tolerance)
+    if (method == 'newton') this%options = newton_of(this%options)
     state = state_from(this%meshes%grid(1)%nodes)
     state%gap = start
     call this%solve(control_t(kind=at_h0, value=h0, scale=scale), state, met)

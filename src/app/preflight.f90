@@ -101,7 +101,7 @@ contains
     call range_of(scene, problem, low, high)
     chosen = choose(scene%numerics, problem, low, allocated(scene%profiles))
     entries = 0
-    if (allocated(scene%path) .or. chosen%grid == 'edge_locked') then
+    if (allocated(scene%path) .or. .not. chosen%is_fixed()) then
       meshes = new_mesh_family(problem, high, low, chosen%digits, shape_only=.true.)
       nodes = maxval(meshes%grid%nodes)
       ! Kernels, one factorisation and another for a fold, and about half as much again on the finer
@@ -109,11 +109,11 @@ contains
       entries = 2.6_wp*sum(real(meshes%grid%nodes, wp)**2) + 3.6_wp*real(nodes, wp)**2
       if (scene%has_eigenvalues()) entries = entries + eigenvalue_matrices*real(nodes, wp)**2
     end if
-    if (chosen%grid /= 'edge_locked') then
+    if (chosen%is_fixed()) then
       nodes = max(nodes, chosen%nodes)
       other = companion(chosen)
       ! The kernel, the factors in use, and those with which a jump is followed.
-      matrices = merge(1, 3, chosen%options%method == 'mixing')
+      matrices = merge(1, 3, chosen%options%mixing)
       if (scene%has_eigenvalues()) matrices = matrices + eigenvalue_matrices
       entries = max(entries, matrices*real(chosen%nodes, wp)**2 + 2*real(other%nodes, wp)**2)
     end if

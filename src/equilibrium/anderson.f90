@@ -24,9 +24,9 @@ module anderson
     real(wp), allocatable :: z_before(:), f_before(:)
   end type history_t
 
-  !> Where an iteration is: the unknowns, their residual, minus the plain step from them and the
-  !> step that was made; the unknowns with the shortest plain step so far, and those with the least
-  !> residual; the lengths of the last step and of the shortest, and the least residual.
+  !> An iteration: the unknowns z, their residual g, minus the plain step f and the step made; the
+  !> unknowns with the shortest plain step and those with the least residual; the lengths of the
+  !> last and of the shortest plain step, and the least residual.
   type :: iterate_t
     real(wp), allocatable :: z(:), g(:), f(:), step(:), z_best(:), z_least(:)
     real(wp) :: length = huge(1.0_wp), shortest = huge(1.0_wp), least = huge(1.0_wp)
@@ -34,12 +34,12 @@ module anderson
     type(history_t) :: history
   end type iterate_t
 
-  !> Iterations that a state takes anyway; and unknowns for each iteration beyond these that a
-  !> factorisation serves before it is renewed: that takes as long as they do.
+  !> Iterations that every state takes. A factorisation is renewed once the iterations beyond these
+  !> have cost as much as a new one: one iteration for each so many unknowns.
   integer, parameter :: few_iterations = 2, unknowns_an_iteration = 20
   !> Steps rejected before a solution is given up.
   integer, parameter :: most_rejections = 4
-  !> Length of a plain step, over the tolerance, that is the last.
+  !> A plain step of this length, over the tolerance, is the last one.
   real(wp), parameter :: few_roundings = 10
 
 contains
@@ -59,7 +59,7 @@ contains
 
     now%z = unknowns_of(control, state)
     allocate (now%g(size(now%z)))
-    frozen%factors%valid = frozen%serves(control, size(now%z))
+    frozen%factors%valid = frozen%serves(control, size(now%z)) .and. options%patience > 1
     converged = .false.
     do iteration = 1, options%most_iterations
       call residual(equations, control, now%z, now%g, state)
@@ -84,13 +84,13 @@ contains
     end do
     if (.not. converged .and. now%least < state%residual) &
       call residual(equations, control, now%z_least, now%g, state)
-    ! The next state is better off with a new one.
+    ! After slow convergence the next state starts with a new factorisation.
     frozen%excess = frozen%excess + max(0, state%iterations - few_iterations)
     if (unknowns_an_iteration*frozen%excess > size(now%z)) frozen%factors%valid = .false.
   end subroutine solve_anderson
 
-  !> Makes the last plain step. Over a short step in time a fluid multiplies roundings of gaps in
-  !> the residual, not in the step that this asks for, which is then what counts.
+  !> Makes the last plain step. In a short step of time a fluid multiplies the rounding of gaps in
+  !> the residual but not in the plain step, whose length then counts as the residual.
   subroutine finish(equations, control, state, now)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -102,7 +102,7 @@ contains
     state%residual = min(state%residual, now%length)
   end subroutine finish
 
-  !> A factorisation at the present state; what was learnt with the old one is forgotten.
+  !> Factorises the Jacobian at the present state and forgets the history.
   subroutine renew(equations, control, state, frozen, now)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -168,8 +168,8 @@ contains
     now%z = now%z + now%step
     now%since_renewal = now%since_renewal + 1
     if (control%kind /= at_h0_with_edge) return
-    ! The shape of the bodies is not linear in the scale: what a linear step leaves out is known,
-    ! and far out it is large.
+    ! Shapes are not linear in the scale. The known remainder of the linear step is added; far out
+    ! it is large.
     associate (n => size(now%step) - 1, grid => equations%meshes%grid(control%mesh))
       now%z(:n) = now%z(:n) + equations%problem%shape%bend( &
         (now%z(n + 1) - now%step(n + 1))*grid%x(:n), now%step(n + 1)*grid%x(:n))

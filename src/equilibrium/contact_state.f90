@@ -1,4 +1,5 @@
-!> One state of the two bodies on the nodes of a mesh, dimensionless, and where its gap is what.
+!> A state of the two bodies on the nodes of a mesh, dimensionless, and searches for the position of
+!> a given gap.
 module contact_state
   use kinds, only: wp
   use shape, only: shape_t
@@ -8,16 +9,16 @@ module contact_state
   private
   public :: state_t, state_from, load_reach, gap_at_end, gap_at, radius_of_gap, far_gap
 
-  !> Where gaps are that large, in the law's lengths, no force depends on their last digits.
+  !> At gaps this large, in the law's lengths, no force depends on the last digits.
   real(wp), parameter :: far_gap = 1000
 
   type :: state_t
     real(wp), allocatable :: gap(:), pressure(:)
     real(wp) :: h0 = 0, scale = 1
     real(wp) :: axis_gap = 0, load = 0
-    !> Largest |G|, in units of the law's length; of gaps beyond `far_gap` as a part of them.
+    !> Largest |G|, in units of the law's length; for gaps beyond `far_gap` relative to these.
     real(wp) :: residual = huge(1.0_wp)
-    !> Operator products that this state took.
+    !> Operator products spent on this state.
     integer :: iterations = 0
   contains
     procedure :: become
@@ -25,8 +26,8 @@ module contact_state
 
 contains
 
-  !> Takes over all of another state, into the arrays that it has: assignment would allocate them
-  !> anew.
+  !> Copies another state into the arrays that are already allocated; an assignment would allocate
+  !> them again.
   pure subroutine become(self, other)
     class(state_t), intent(inout) :: self
     type(state_t), intent(in) :: other
@@ -57,7 +58,7 @@ contains
     load_reach = state%scale*grid%end
   end function load_reach
 
-  !> The gap there, the deformation being that of the last node.
+  !> The gap at the end of a bounded mesh, with the deformation of the last node.
   pure real(wp) function gap_at_end(shape, grid, state) result(gap)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
@@ -67,8 +68,8 @@ contains
       shape%height(state%scale*grid%x(grid%nodes)))
   end function gap_at_end
 
-  !> The gap of a state at a position on its mesh. Where that goes on to infinity, or bodies may end
-  !> in a panel, what the gap has beside the shape is interpolated: it is bounded and smooth.
+  !> The gap of a state at a position on its mesh. On an unbounded mesh, or where bodies may end
+  !> within a panel, the gap minus the shape is interpolated, which is bounded and smooth.
   pure real(wp) function gap_at(shape, grid, state, x) result(gap)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid

@@ -34,10 +34,11 @@ module equilibrium
   !> H0 prescribed, the contact radius c unknown.
   integer, parameter :: at_h0_with_edge = 4
 
-  !> No length of an equilibrium, in the law's or in lateral units, is larger; its cube is a number.
+  !> Upper limit of all lengths of an equilibrium, in the law's or in lateral units; its cube is
+  !> still a number.
   real(wp), parameter :: largest_unknown = 1.0e80_wp
 
-  !> Part of what is beyond it that may close at once, as gaps under forces of powers may.
+  !> The part of a gap's excess over `far_gap` that may close in one step.
   real(wp), parameter :: harmless = 0.3_wp
 
   type :: control_t
@@ -69,7 +70,7 @@ module equilibrium
     type(elastic_operator_t) :: operator
     type(besides_t), allocatable :: besides
     type(drainage_t), allocatable :: drainage
-    !> Scratch of `residual`, which is called too often to allocate any: the rise of the gap.
+    !> Work array of `residual`, which is called too often to allocate one: the rise of the gap.
     real(wp), allocatable, private :: rise(:)
   contains
     procedure :: become_those_of
@@ -79,7 +80,7 @@ module equilibrium
 
 contains
 
-  !> What the gaps of a state have beside the shape.
+  !> The gap on the axis and at the nodes minus H0 and shape.
   pure function raised(self, mesh, state)
     class(equations_t), intent(in) :: self
     integer, intent(in) :: mesh
@@ -90,7 +91,7 @@ contains
       state%scale*self%meshes%grid(mesh)%x(:size(state%gap)))
   end function raised
 
-  !> The part of the fluid in the pressure of a state. rate: that of the gaps, [1/s].
+  !> The pressure of the fluid in a state. rate: of the gaps, [1/s].
   function fluid_pressure(self, mesh, state, rate) result(pressure)
     class(equations_t), intent(in) :: self
     integer, intent(in) :: mesh
@@ -103,7 +104,7 @@ contains
     if (present(rate)) rate = change
   end function fluid_pressure
 
-  !> Turns them into those of another problem on the same meshes.
+  !> Replaces the problem; the meshes stay.
   subroutine become_those_of(self, problem)
     class(equations_t), intent(inout) :: self
     type(problem_t), intent(in) :: problem
@@ -119,10 +120,9 @@ contains
     h0_is_prescribed = control%kind == at_h0 .or. control%kind == at_h0_with_edge
   end function h0_is_prescribed
 
-  !> g(:nodes) = G and, where the control has one, g(nodes + 1) = its own equation, for the unknowns
-  !> z = (gaps [, H0 or c]). On return `state` is what z stands for, with its load and residual.
-  !> Where z is outside the law's domain there are neither pressures nor a load, and the residual is
-  !> huge.
+  !> g(:nodes) = G and, where the control has its own equation, g(nodes + 1), for the unknowns z =
+  !> (gaps [, H0 or c]). On return `state` holds z, its pressures, load and residual. Outside the
+  !> law's domain there are no pressures and no load, and the residual is huge.
   subroutine residual(equations, control, z, g, state)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -169,8 +169,8 @@ contains
         g(i) = state%gap(i) - state%h0 - problem%shape%height(state%scale*grid%x(i)) - &
           rise(first_node - 1 + i)
       end do
-      ! In a stiff contact the equation for the axis, which is no node, is off by many times what
-      ! the polynomials lack of the pressure between the nodes; their gaps tell it better.
+      ! The axis is not a node. In a stiff contact its equation magnifies the error of the
+      ! pressure's interpolation; the gaps of the nodes give a better value.
       state%axis_gap = state%h0 + rise(axis_row)
       if (grid%centre > 0) state%axis_gap = dot_product(grid%at_axis, state%gap)
       select case (control%kind)
@@ -184,8 +184,8 @@ contains
     end associate
   end subroutine residual
 
-  !> The largest |G|; what belongs to gaps beyond `far_gap` as a part of them. Neither NaN nor
-  !> infinity must ever look converged: they are huge.
+  !> The largest |G|, relative to the gap beyond `far_gap`. NaN and infinity become huge, so that
+  !> they never count as converged.
   pure real(wp) function largest_error(g, gap) result(largest)
     real(wp), intent(in) :: g(:), gap(:)
     real(wp) :: error
@@ -205,7 +205,7 @@ contains
     end do
   end function largest_error
 
-  !> Whether a state is such that pressures, and all that follows from them, are numbers.
+  !> Whether a state is within the range in which pressures and all derived quantities are numbers.
   pure logical function defined(problem, state)
     type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
@@ -244,9 +244,9 @@ contains
       real(wp), intent(in) :: gap(:), step(:)
       real(wp) :: room(size(gap))
 
-      ! Far out a gap may have to close by many of the law's lengths, without any effect.
+      ! A distant gap may close by many of the law's lengths without any effect.
       room = max(problem%law%closure(gap), harmless*(gap - far_gap))
-      ! A quotient with a step that opens a gap could overflow.
+      ! The quotient with a step that opens a gap could overflow.
       limit = min(1.0_wp, minval(room/max(-step, room, tiny(1.0_wp))))
     end function limit
 
@@ -318,7 +318,7 @@ contains
     end select
   end subroutine unpack
 
-  !> Number of leading columns beyond which no pressure reaches the rounding of the largest one.
+  !> Number of leading columns, beyond which all pressures are below the rounding of the largest.
   pure integer function acting_columns(pressure) result(columns)
     real(wp), intent(in) :: pressure(:)
     real(wp) :: least
@@ -326,7 +326,7 @@ contains
     least = 0
     do columns = 1, size(pressure)
       least = max(least, abs(pressure(columns)))
-      ! An infinite pressure or NaN must reach the residual.
+      ! An infinite pressure or NaN must enter the residual.
       if (.not. abs(pressure(columns)) <= huge(1.0_wp)) exit
     end do
     if (columns <= size(pressure)) then

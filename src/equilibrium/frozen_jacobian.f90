@@ -1,5 +1,5 @@
-!> A factorised Jacobian that serves many states, and where it was made: the same state and control
-!> give the same factors, bit by bit.
+!> A factorised Jacobian that serves many states, and the state at which it was made. The same state
+!> and control give the same factors, bit by bit.
 module frozen_jacobian
   use contact_state, only: state_t
   use equilibrium, only: control_t, equations_t
@@ -11,12 +11,12 @@ module frozen_jacobian
 
   type :: frozen_jacobian_t
     type(factorisation_t) :: factors
-    !> The control, and of the state what the Jacobian depends on: gaps, H0 and scale.
+    !> The control, and the part of the state that the Jacobian depends on: gaps, H0 and scale.
     type(control_t) :: control
     type(state_t) :: state
-    !> Iterations that states solved with it took beyond those that they take anyway.
+    !> Iterations beyond those that every state takes, over all states solved with these factors.
     integer :: excess = 0
-    !> Jacobians that were frozen here, this one included.
+    !> Number of Jacobians frozen here, this one included.
     integer :: renewals = 0
   contains
     procedure :: serves
@@ -25,7 +25,7 @@ module frozen_jacobian
 
 contains
 
-  !> Whether there are factors for so many unknowns of a control of this kind on the same mesh.
+  !> Whether the factors are for as many unknowns, of the same kind of control on the same mesh.
   pure logical function serves(self, control, unknowns)
     class(frozen_jacobian_t), intent(in) :: self
     type(control_t), intent(in) :: control
@@ -43,7 +43,7 @@ contains
     self%factors%valid = .false.
   end subroutine forget
 
-  !> Takes the Jacobian at a state for the present one. frozen%factors%valid: whether it is regular.
+  !> Factorises the Jacobian at a state. frozen%factors%valid: whether it is regular.
   subroutine freeze(equations, control, state, frozen)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control

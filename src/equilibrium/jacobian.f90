@@ -1,5 +1,5 @@
-!> Derivatives of the equations of equilibrium: the Jacobian, factorised, and how the equations
-!> depend on what a control prescribes.
+!> Derivatives of the equations of equilibrium: the factorised Jacobian, and the derivative by the
+!> prescribed value of a control.
 module jacobian
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t
@@ -39,8 +39,8 @@ contains
     equations%cost%factorisations = equations%cost%factorisations + 1
   end subroutine factorise_jacobian
 
-  !> What bodies that remember have beside: its rise is in the gaps that `scale_derivative` reads,
-  !> and does not go with the scale.
+  !> Corrects the derivative by the scale for bodies that remember: their rise is part of the gaps
+  !> that `scale_derivative` uses, but does not change with the scale.
   subroutine add_besides(besides, control, state, lu)
     type(besides_t), intent(in) :: besides
     type(control_t), intent(in) :: control
@@ -56,7 +56,7 @@ contains
     lu(n + 1, n + 1) = lu(n + 1, n + 1) + change(centre_row)
   end subroutine add_besides
 
-  !> Behind a spring H0 goes with the load, which goes with gaps and scale.
+  !> Adds the spring: H0 depends on the load, and so on gaps and scale.
   subroutine add_spring(equations, control, state, lu)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -77,7 +77,7 @@ contains
     end associate
   end subroutine add_spring
 
-  !> What a fluid adds to the derivatives of the pressures meets the same elastic operator.
+  !> Adds the fluid, whose pressure passes through the same elastic operator.
   subroutine add_drainage(equations, control, state, lu)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -113,7 +113,7 @@ contains
     end associate
   end subroutine add_drainage
 
-  !> The same for a state on a mesh that is given, locked to a given gap, of bodies at rest.
+  !> Factorises the Jacobian of bodies at rest on any mesh, locked to a given gap.
   subroutine factorise_on(problem, grid, operator, locked_gap, control, state, factors, cost, &
     shift)
     type(problem_t), intent(in) :: problem
@@ -131,7 +131,7 @@ contains
     cost%factorisations = cost%factorisations + 1
   end subroutine factorise_on
 
-  !> The matrix that is to be factorised.
+  !> Assembles the matrix to be factorised.
   subroutine fill(problem, grid, operator, locked_gap, control, state, factors, cost, &
     shift)
     type(problem_t), intent(in) :: problem
@@ -193,7 +193,7 @@ contains
     end associate
   end function jacobian_times
 
-  !> The row of the kernel in the control's own equation.
+  !> The row of the kernel that belongs to the control's own equation.
   pure integer function bordered_row(control)
     type(control_t), intent(in) :: control
 
@@ -218,9 +218,10 @@ contains
     end if
   end subroutine border
 
-  !> Derivative of `residual` by the scale c: -x f'(c x) - dA/dc P at the nodes, the opposite sign,
-  !> with x = 1, in the equation for the edge. A P/c, all that homogeneous bodies have of dA/dc P,
-  !> is read off the gaps: that is exact where the residual vanishes, and costs no operator product.
+  !> Derivative of `residual` by the scale c: -x f'(c x) - dA/dc P at the nodes; the negative of
+  !> this, with x = 1, in the equation for the edge. For homogeneous bodies dA/dc P is A P/c, which
+  !> is taken from the gaps. That is exact where the residual vanishes and costs no operator
+  !> product.
   subroutine scale_derivative(problem, grid, operator, locked_gap, state, column)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -240,8 +241,8 @@ contains
     end associate
   end subroutine scale_derivative
 
-  !> Derivative of `residual` by the control's value, at a state: with the factors of the same
-  !> control the tangent of the path is minus their solution for it.
+  !> Derivative of `residual` by the control's value at a state. The tangent of the path is minus
+  !> the solution of the Jacobian of the same control for it.
   function control_derivative(equations, control, state) result(derivative)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control

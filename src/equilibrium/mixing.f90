@@ -1,10 +1,10 @@
-!> The paper's iteration: the new deformation mixed with the old one, at a ratio that is lowered
-!> when the central displacement oscillates or its change grows and otherwise raised to a limit.
+!> The paper's iteration: the new deformation is mixed with the old one. The ratio is lowered when
+!> the central displacement oscillates or its change grows, and otherwise raised to a limit.
 !>
-!> In a stiff contact the ratio must fall to about one over the largest eigenvalue of the operator,
-!> and then a small *change* of the displacement says nothing: the iteration may have all but
-!> stopped far from equilibrium. It is therefore judged on the residual; the paper's own rule is
-!> there, as an option, to reproduce the paper.
+!> In a stiff contact the ratio must fall to about one over the largest eigenvalue of the operator.
+!> A small *change* of the displacement then says nothing: the iteration may be far from
+!> equilibrium. Convergence is therefore judged on the residual; the paper's own rule is an option,
+!> to reproduce the paper.
 module mixing
   use kinds, only: wp
   use contact_state, only: state_t
@@ -14,13 +14,12 @@ module mixing
   private
   public :: solve_mixing
 
-  !> Factors by which the ratio falls and rises, and the smallest ratio: below it a million
+  !> Factors by which the ratio falls and rises. With a ratio below the smallest, a million
   !> iterations would not relax the softest mode.
   real(wp), parameter :: fall = 0.5_wp, rise = 1.05_wp, smallest_ratio = 1.0e-6_wp
-  !> Factor by which the change of the central displacement must grow for the ratio to fall. On its
-  !> way to equilibrium the change may grow a little for many iterations, and for the more of them
-  !> the lower the ratio is: lowering it for any growth ends at the smallest ratio, far from
-  !> equilibrium.
+  !> Growth of the change of the central displacement at which the ratio falls. Far from equilibrium
+  !> the change may grow slowly for many iterations, and for more of them with a smaller ratio. If
+  !> any growth lowered the ratio, it would end at the smallest value, far from equilibrium.
   real(wp), parameter :: growth = 2
 
 contains
@@ -55,7 +54,7 @@ contains
       end if
       if (converged .or. .not. state%residual < huge(1.0_wp)) exit
 
-      ! The first node stands for the axis, where its change is that of the central displacement.
+      ! The first node represents the axis.
       change_before = change
       change = -ratio*g(1)
       if (iteration > 1) then

@@ -1,4 +1,4 @@
-!> The passage of a state from one mesh to another.
+!> Transfers a state from one mesh to another.
 module regridding
   use kinds, only: wp
   use shape, only: shape_t
@@ -10,8 +10,8 @@ module regridding
 
 contains
 
-  !> The state on another mesh, at the scale given: gaps interpolated, and beyond the old mesh those
-  !> of a deformation that decays as 1/r.
+  !> The state on another mesh at a given scale. Gaps are interpolated; beyond the old mesh the
+  !> deformation decays as 1/r.
   pure function regrid(shape, state, from, to, scale) result(new)
     class(shape_t), intent(in) :: shape
     type(state_t), intent(in) :: state

@@ -1,5 +1,5 @@
-!> The state that bodies out of equilibrium come to rest in: dh/dtau = -G at fixed h0, by implicit
-!> steps that lengthen as the residual falls, and so end in Newton's. Follows a jump to where a
+!> Relaxation of bodies out of equilibrium: dh/dtau = -G at fixed h0, by implicit steps that
+!> lengthen as the residual falls and end as Newton's method. It follows a jump to where a
 !> quasi-static experiment would land, and leaves unstable equilibria.
 module relaxation
   use kinds, only: wp
@@ -12,22 +12,22 @@ module relaxation
   private
   public :: relax
 
-  !> Most pseudo-time steps; factorisations that are always allowed (a contact edge that runs across
-  !> a hundred widths of the neck takes some 200), and cubes of the matrix's order that more may
-  !> amount to (some ten seconds).
+  !> Most steps of pseudo-time; factorisations that are always allowed (a contact edge that moves
+  !> across a hundred neck widths takes some 200); and the limit of further ones, in cubes of the
+  !> matrix's order (some ten seconds).
   integer, parameter :: most_steps = 2000, few_factorisations = 500
   real(wp), parameter :: most_cubes = 1.0e11_wp
-  !> First pseudo-time step (the stiffest modes relax in less than one unit), its largest growth
-  !> and its limits: a residual that grows, as it does while bodies come apart, is no reason for
-  !> steps below the usual one, an unstable mode is. The nudge off an unstable equilibrium, in the
-  !> law's lengths.
+  !> First step of pseudo-time (the stiffest modes relax in less than one unit), its largest growth
+  !> and its limits. A growing residual, as while bodies part, does not shorten a step below the
+  !> usual one; an unstable mode does. Size of the nudge off an unstable equilibrium, in the law's
+  !> lengths.
   real(wp), parameter :: first_step = 1, growth = 3, usual_step = 0.3_wp, &
     shortest_step = 1.0e-3_wp, longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
-  !> Stands for a residual before the first; and the fraction of the smallest gap below which bodies
-  !> that nothing keeps apart have fallen onto each other: the attraction then grows by more than an
-  !> order, and no deformation answers that.
+  !> The residual before the first step is unknown. Bodies without repulsion have fallen onto each
+  !> other when the smallest gap is below this fraction of the initial one: the attraction has then
+  !> grown by more than an order, and no deformation balances it.
   real(wp), parameter :: unknown = 1.0e100_wp, fallen = 0.3_wp
-  !> Change of the gaps in one step that follows the fall well enough, in the law's lengths.
+  !> Largest change of the gaps in a step of the fall, in the law's lengths.
   real(wp), parameter :: travel = 0.3_wp
 
 contains
@@ -68,8 +68,8 @@ contains
         if (.not. factors%valid) return
         converged = determinant_sign(factors) > 0
         if (converged) return
-        ! On an unstable equilibrium nothing drives the bodies away: a nudge towards each other
-        ! does.
+        ! No force drives the bodies from an unstable equilibrium: they are nudged towards each
+        ! other.
         z = z - nudge
         dtau = first_step
         before = unknown
@@ -81,7 +81,7 @@ contains
       do
         call factorise_jacobian(equations, control, state, factors, 1/dtau)
         if (.not. factors%valid) return
-        ! A step so long that an unstable mode would be climbed instead of left is too long.
+        ! A longer step would climb an unstable mode instead of leaving it.
         if (determinant_sign(factors) > 0 .or. dtau <= shortest_step) exit
         dtau = 0.1_wp*dtau
       end do

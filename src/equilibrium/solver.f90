@@ -1,8 +1,8 @@
-!> A problem on its meshes with an iteration that solves it: from state to state.
+!> A problem on its meshes with the iteration that solves it, state after state.
 module solver
   use contact_state, only: state_t
   use equilibrium, only: control_t, equations_t
-  use solver_options, only: solver_options_t, newton_of
+  use solver_options, only: solver_options_t
   use mixing, only: solve_mixing
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
@@ -12,7 +12,7 @@ module solver
 
   type, extends(equations_t) :: solver_t
     type(solver_options_t) :: options
-    !> What one state leaves for the next.
+    !> The factors that one state leaves for the next.
     type(frozen_jacobian_t) :: frozen
   contains
     procedure :: solve
@@ -21,7 +21,7 @@ module solver
 
 contains
 
-  !> From `state` to the equilibrium at `control` by options%method. converged: the residual is
+  !> From `state` to the equilibrium at `control`. converged: the residual is
   !> within options%tolerance, or for mixing the chosen stopping rule is met.
   subroutine solve(self, control, state, converged)
     class(solver_t), intent(inout) :: self
@@ -29,15 +29,11 @@ contains
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
 
-    select case (self%options%method)
-    case ('mixing')
+    if (self%options%mixing) then
       call solve_mixing(self%equations_t, self%options, control, state, converged)
-    case ('newton')
-      call self%frozen%forget()
-      call self%correct(control, state, converged, newton_of(self%options))
-    case default
+    else
       call self%correct(control, state, converged)
-    end select
+    end if
   end subroutine solve
 
   !> From a state nearby to the equilibrium at `control`, by the accelerated iteration whatever the

@@ -1,28 +1,30 @@
-!> What the three iterations (mixing, Anderson, Newton) are told.
+!> Options of the iterations.
 module solver_options
   use kinds, only: wp
   implicit none
   private
   public :: solver_options_t, tightened, newton_of
 
-  !> Well above the rounding of equations whose terms are hundreds of the law's lengths.
+  !> Well above the rounding of equations with terms of hundreds of the law's lengths.
   real(wp), parameter :: tight_tolerance = 1.0e-12_wp
 
   type :: solver_options_t
-    !> 'mixing', 'anderson' or 'newton'.
-    character(len=8) :: method = 'anderson'
+    !> Whether the iteration is the paper's mixing, without derivatives. Otherwise it is Anderson
+    !> acceleration, of which Newton's method is a special case (`newton_of`).
+    logical :: mixing = .false.
     !> Largest acceptable residual, in the law's lengths.
     real(wp) :: tolerance = 1.0e-8_wp
     !> Previous steps that Anderson acceleration combines.
     integer :: depth = 5
-    !> Accelerated iterations with one factorisation before it is renewed.
+    !> Accelerated iterations after which the factorisation is renewed.
     integer :: patience = 8
     integer :: most_iterations = 60
-    !> Errors that are left of the place of an extremum on the path, in its coordinate, and of
-    !> slopes, relative.
+    !> Error of the place of an extremum on the path, in its coordinate, and relative error of
+    !> slopes.
     real(wp) :: place_error = 1.0e-12_wp, slope_error = 1.0e-13_wp
-    !> Of mixing the largest ratio; whether it stops on a small change of the central displacement,
-    !> as in the paper, instead of on the residual, and on which change (in the law's lengths).
+    !> For mixing: the largest ratio; whether it stops on a small change of the central
+    !> displacement, as in the paper, instead of on the residual; and that change, in the law's
+    !> lengths.
     real(wp) :: mixing_limit = 0.2_wp
     logical :: stop_on_change = .false.
     real(wp) :: displacement_tolerance = 0
@@ -30,9 +32,8 @@ module solver_options
 
 contains
 
-  !> The same options with a tolerance near rounding: for the few states whose place on the path,
-  !> not only whose load, must be exact. Where rounding allows no better its floor counts
-  !> (`residual_floor`).
+  !> The options with a tolerance near rounding, for states whose place on the path must be exact.
+  !> Where rounding allows no better, its floor counts (`residual_floor`).
   pure function tightened(options) result(tight)
     type(solver_options_t), intent(in) :: options
     type(solver_options_t) :: tight
@@ -41,8 +42,7 @@ contains
     tight%tolerance = min(options%tolerance, tight_tolerance)
   end function tightened
 
-  !> Newton's method: the accelerated iteration with the Jacobian renewed at every step and nothing
-  !> to accelerate.
+  !> Newton's method: the accelerated iteration with a new Jacobian at every step and no history.
   pure function newton_of(options) result(newton)
     type(solver_options_t), intent(in) :: options
     type(solver_options_t) :: newton

@@ -14,22 +14,22 @@ module stability
   private
   public :: smallest_eigenvalue, local_criterion, axis_criterion, unknown
 
-  !> What bounds an eigenvalue lambda, as a part of 1 - lambda and of the operator's largest number,
-  !> 1 or |1 - lambda|, whose rounding no method escapes.
+  !> The bound of an error of an eigenvalue lambda, relative to 1 - lambda and to the largest number
+  !> of the operator, 1 or |1 - lambda|, whose rounding no method avoids.
   type :: margin_t
     real(wp) :: relative, rounding
   end type margin_t
 
-  !> How far below the eigenvalue found the shift of the inverse iteration lies, and how far from it
-  !> that may end.
+  !> Distance of the shift of the inverse iteration below the eigenvalue found, and largest distance
+  !> of its result.
   type(margin_t), parameter :: close = margin_t(1.0e-6_wp, 1.0e-12_wp)
-  !> The change that ends the inverse iteration, and the largest residual of the pair it ends with.
+  !> The change that ends the inverse iteration, and the largest residual of the pair found.
   type(margin_t), parameter :: settled = margin_t(1.0e-12_wp, 1.0e-14_wp), &
     exact = margin_t(1.0e-9_wp, 1.0e-12_wp)
-  !> How far the eigenvalues that were found may be from the true ones: none is lower by more.
+  !> Bound of the errors of all eigenvalues found.
   type(margin_t), parameter :: lower = margin_t(1.0e-2_wp, 1.0e-12_wp)
   integer, parameter :: most_iterations = 50
-  !> Pressures that are none, and by which nothing is divided.
+  !> Smaller pressures count as zero, and nothing is divided by them.
   real(wp), parameter :: least_pressure = 1.0e-100_wp
 
 contains
@@ -58,9 +58,10 @@ contains
     certain = .true.
     n = size(state%gap)
     factor = problem%law%slope(state%gap)
-    ! Rigid bodies, or none that attract: repulsion raises eigenvalues, which accumulate at 1.
+    ! Rigid bodies, or bodies that do not attract each other: repulsion raises eigenvalues, which
+    ! accumulate at 1.
     if (.not. (problem%coupling > 0 .and. maxval(factor) > 0)) return
-    ! With the slope shared by rows and columns the eigenvectors are far from parallel.
+    ! If rows and columns share the slope, the eigenvectors are far from parallel.
     root = sqrt(abs(factor))
     allocate (matrix(n, n))
     call operator%matrix(problem, grid, state%scale, sign(root, factor), first_node, matrix)
@@ -77,9 +78,9 @@ contains
     if (.not. certain) eigenvalue = unknown()
   end subroutine smallest_eigenvalue
 
-  !> Inverse iteration from a shift just below the eigenvalue, on the operator itself. certain:
-  !> it ended where it began, with a pair of the operator, and the determinant says that an even
-  !> number of eigenvalues is below the shift.
+  !> Inverse iteration on the operator itself, from a shift just below the eigenvalue. certain: it
+  !> converged to a pair of the operator near where it began, and by the determinant an even number
+  !> of eigenvalues is below the shift.
   subroutine refine(problem, grid, operator, state, factor, widest, eigenvalue, certain, cost)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -124,7 +125,7 @@ contains
     end associate
   end subroutine refine
 
-  !> What a margin is at an eigenvalue of an operator with the given largest |1 - lambda|.
+  !> The margin at an eigenvalue of an operator with the given largest |1 - lambda|.
   pure real(wp) function room(margin, eigenvalue, widest)
     type(margin_t), intent(in) :: margin
     real(wp), intent(in) :: eigenvalue, widest
@@ -132,7 +133,7 @@ contains
     room = margin%relative*abs(1 - eigenvalue) + margin%rounding*max(1.0_wp, widest)
   end function room
 
-  !> What stands for a number that there is not.
+  !> NaN, for a value that does not exist.
   pure real(wp) function unknown()
     unknown = ieee_value(unknown, ieee_quiet_nan)
   end function unknown

@@ -115,7 +115,7 @@ contains
     end if
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
     ! The path has no use for mixing.
-    if (steps%options%method == 'mixing') steps%options%method = 'anderson'
+    steps%options%mixing = .false.
     ! Kernels are made of small products, and cases of a sweep make them at the same time.
     call use_threads_for(1)
     began = seconds()

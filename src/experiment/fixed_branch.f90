@@ -69,7 +69,7 @@ contains
 
     state = expected
     ! A single state says too little about where the next is, and mixing starts as in the paper.
-    if (self%options%method == 'mixing' .or. position%held == 1) state = position%state
+    if (self%options%mixing .or. position%held == 1) state = position%state
     call self%solve_at(h0, state, event)
     continues = event%converged .and. change(expected, state) <= &
       0.5_wp*change(position%state, expected) + jump + merge(abs(h0 - position%state%h0), 0.0_wp, &
@@ -83,7 +83,7 @@ contains
     type(branch_point_t), intent(in) :: position
     type(state_t) :: expected
 
-    if (self%options%method == 'mixing' .or. &
+    if (self%options%mixing .or. &
       .not. over_neck(self%problem, self%meshes%grid(1)%spacing) <= resolved) then
       expected = extrapolated(position, h0)
       return
@@ -162,7 +162,7 @@ contains
     end if
     call self%continue_to(h0, position, expected, state, event, continues)
     ahead%before = ahead%determinant
-    if (.not. continues .or. self%options%method == 'mixing') return
+    if (.not. continues .or. self%options%mixing) return
     ahead%foreseen = ahead%regular
     call self%linearise(state, ahead)
     ahead%foreseen = ahead%foreseen .and. ahead%regular
@@ -216,7 +216,7 @@ contains
 
     ahead%determinant = 0
     ahead%regular = .false.
-    if (self%options%method == 'mixing') return
+    if (self%options%mixing) return
     control%value = state%h0
     call freeze(self%equations_t, control, state, self%frozen)
     self%frozen%excess = 0

@@ -81,7 +81,7 @@ contains
 
     slipped = .false.
     if (.not. position%state%axis_gap < self%problem%law%edge_gap .or. &
-      self%options%method == 'mixing') return
+      self%options%mixing) return
     call self%land(beyond, position%state, landed, event)
     slipped = self%stays(position%state, landed, event) .and. abs(beyond - h0) > 0.0_wp
     if (.not. slipped) return
@@ -138,11 +138,10 @@ contains
     type(solver_options_t) :: newton
 
     goes_on = .false.
-    if (self%options%method == 'mixing') return
+    if (self%options%mixing) return
     newton = newton_of(self%options)
     newton%most_iterations = newton_iterations
     state = before
-    call self%frozen%forget()
     call solve_anderson(self%equations_t, newton, self%frozen, control_t(value=h0), state, goes_on)
     call self%frozen%forget()
     goes_on = goes_on .and. change(before, state) <= jump
@@ -158,7 +157,7 @@ contains
     type(step_result_t), intent(inout) :: event
 
     state = before
-    if (self%options%method == 'mixing') then
+    if (self%options%mixing) then
       call self%solve_at(h0, state, event)
       return
     end if

@@ -143,7 +143,7 @@ contains
     real(wp), intent(in) :: h0
     type(state_t), intent(in) :: before
 
-    passes_many = self%options%method /= 'mixing' .and. abs(h0 - before%h0) > short_step .and. &
+    passes_many = .not. self%options%mixing .and. abs(h0 - before%h0) > short_step .and. &
       before%axis_gap < self%problem%law%edge_gap .and. &
       over_neck(self%problem, self%meshes%grid(1)%spacing) < fine_enough
   end function passes_many

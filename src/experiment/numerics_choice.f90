@@ -8,14 +8,22 @@ module numerics_choice
   use mesh_digits, only: digits_for
   use contact_scales, only: largest_radius, contact_level, smallest_feature
   use experiment_request, only: numerics_t
-  use solver_options, only: solver_options_t
+  use solver_options, only: solver_options_t, newton_of
   implicit none
   private
-  public :: choice_t, choose, fixed_mesh, companion
+  public :: choice_t, choose, fixed_choice, fixed_mesh, companion
+  public :: grid_names, unchosen, edge_locked, uniform, panels
+
+  !> Grids: none, since nothing is solved or bodies are rigid; panels locked to the contact edge; and
+  !> two that are fixed in space. What results call them.
+  integer, parameter :: unchosen = 0, no_grid = 1, edge_locked = 2, uniform = 3, panels = 4
+  character(len=*), parameter :: grid_names(*) = [character(len=11) :: 'none', 'edge_locked', &
+    'uniform', 'panels']
 
   type :: choice_t
-    !> 'edge_locked' panels, fixed 'uniform' or 'panels', or 'none' for rigid bodies.
-    character(len=:), allocatable :: grid, because
+    integer :: grid = unchosen
+    !> What results call the iteration, and why this grid.
+    character(len=:), allocatable :: method, because
     type(solver_options_t) :: options
     !> Digits that edge-locked meshes are to have.
     real(wp) :: digits = 7
@@ -46,24 +54,24 @@ contains
     real(wp), intent(in) :: h0_low
     logical, intent(in) :: profiles
     type(choice_t) :: chosen
-    real(wp) :: widest, feature
 
     if (problem%rigid) then
-      chosen%grid = 'none'
-      chosen%options%method = 'integral'
+      chosen%grid = no_grid
+      chosen%method = 'integral'
       chosen%because = 'the bodies are rigid: their load is an integral over the gap'
       if (problem%shape%parabolic) chosen%because = &
         'the bodies are rigid: their load is 2 pi R times the energy per area at h0'
       return
     end if
+    chosen%method = numerics%method
+    if (numerics%method == 'auto') chosen%method = 'anderson'
     associate (options => chosen%options)
-      options%method = numerics%method
-      if (numerics%method == 'auto') options%method = 'anderson'
+      options%mixing = numerics%method == 'mixing'
       options%tolerance = min(1.0e-8_wp, 0.01_wp*numerics%accuracy)
       ! Rounding decides where below its tolerance an iteration stops, which shows in the digits of
       ! a load from a thousandth of it on: beyond those asked for. Less costs some products. Mixing
       ! would pay more, and on uniform grids the mesh leaves far larger errors.
-      if (options%method /= 'mixing' .and. numerics%grid /= 'uniform') &
+      if (.not. options%mixing .and. numerics%grid /= 'uniform') &
         options%tolerance = min(options%tolerance, max(1.0e-10_wp, 1.0e-4_wp*numerics%accuracy))
       if (allocated(numerics%residual_tolerance)) options%tolerance = numerics%residual_tolerance
       options%place_error = min(1.0e-7_wp, max(options%place_error, &
@@ -71,36 +79,58 @@ contains
       options%slope_error = max(options%slope_error, 0.1_wp*options%place_error)
       options%depth = numerics%anderson_depth
       options%mixing_limit = numerics%mixing_limit
-      options%stop_on_change = numerics%convergence == 'displacement_change'
+      options%stop_on_change = options%mixing .and. numerics%convergence == 'displacement_change'
       options%displacement_tolerance = numerics%displacement_tolerance/problem%length
-      if (options%method == 'mixing') then
+      if (options%mixing) then
         options%most_iterations = numerics%max_iterations
       else
         options%most_iterations = min(numerics%max_iterations, options%most_iterations)
       end if
+      if (numerics%method == 'newton') options = newton_of(options)
     end associate
-
-    widest = largest_radius(problem, h0_low, contact_level(problem))
-    chosen%digits = digits_for(problem, widest, numerics%accuracy, profiles)
-    chosen%panel_order = panel_order_for(numerics%accuracy)
-    if (allocated(numerics%panel_order)) chosen%panel_order = numerics%panel_order
+    chosen%digits = digits_for(problem, largest_radius(problem, h0_low, contact_level(problem)), &
+      numerics%accuracy, profiles)
     if (numerics%grid == 'uniform') then
-      chosen%grid = 'uniform'
+      chosen%grid = uniform
       chosen%because = 'the deck asks for it'
-    else if (chosen%options%method == 'mixing' .and. numerics%grid == 'panels') then
-      chosen%grid = 'panels'
+    else if (chosen%options%mixing .and. numerics%grid == 'panels') then
+      chosen%grid = panels
       chosen%because = 'mixing needs a mesh that is fixed in space'
-    else if (chosen%options%method == 'mixing') then
-      chosen%grid = 'uniform'
+    else if (chosen%options%mixing) then
+      chosen%grid = uniform
       chosen%because = 'it is the grid of the mixing iteration in the paper'
     else
-      chosen%grid = 'edge_locked'
+      chosen%grid = edge_locked
       chosen%because = 'panels locked to the contact edge converge at any adhesion strength'
       if (.not. problem%law%adhesion > 0) &
         chosen%because = 'panels scaled with the contact converge spectrally'
     end if
-    if (.not. chosen%is_fixed()) return
+    if (chosen%is_fixed()) call size_grid(chosen, numerics, problem, h0_low)
+  end function choose
 
+  !> A grid that is fixed in space, whatever the iteration.
+  function fixed_choice(numerics, problem, h0_low, grid) result(chosen)
+    type(numerics_t), intent(in) :: numerics
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0_low
+    integer, intent(in) :: grid
+    type(choice_t) :: chosen
+
+    chosen%grid = grid
+    call size_grid(chosen, numerics, problem, h0_low)
+  end function fixed_choice
+
+  !> Nodes and extent of a grid that is fixed in space.
+  subroutine size_grid(chosen, numerics, problem, h0_low)
+    type(choice_t), intent(inout) :: chosen
+    type(numerics_t), intent(in) :: numerics
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0_low
+    real(wp) :: widest, feature
+
+    chosen%panel_order = panel_order_for(numerics%accuracy)
+    if (allocated(numerics%panel_order)) chosen%panel_order = numerics%panel_order
+    widest = largest_radius(problem, h0_low, contact_level(problem))
     feature = smallest_feature(problem, widest)
     chosen%extent = 1.5_wp*widest + 8
     if (allocated(numerics%r_max)) chosen%extent = numerics%r_max/problem%lateral
@@ -108,13 +138,13 @@ contains
     chosen%nodes = ceiling(min(real(most, wp), max(real(fewest, wp), &
       chosen%extent/(comfortable*feature))))
     if (allocated(numerics%nodes)) chosen%nodes = numerics%nodes
-  end function choose
+  end subroutine size_grid
 
   !> Whether the grid is fixed in space.
   pure logical function is_fixed(self)
     class(choice_t), intent(in) :: self
 
-    is_fixed = self%grid == 'uniform' .or. self%grid == 'panels'
+    is_fixed = self%grid >= uniform
   end function is_fixed
 
   !> Nodes of panels fixed in space for a relative accuracy of load and displacement.
@@ -135,7 +165,7 @@ contains
     real(wp), allocatable :: outer(:)
     integer :: count, j
 
-    if (chosen%grid == 'uniform') then
+    if (chosen%grid == uniform) then
       mesh = new_uniform_grid(chosen%nodes, chosen%extent, elastic=.true.)
       return
     end if

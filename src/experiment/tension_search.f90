@@ -173,7 +173,7 @@ contains
     if (.not. width > closest*max(1.0_wp, abs(low), abs(high))) return
     ! Nor between states that the paper's rule has stopped anywhere: what is computed there is one
     ! more of them, and not of this experiment.
-    if (steps%options%stop_on_change .and. steps%options%method == 'mixing') return
+    if (steps%options%stop_on_change) return
     if (stretch%jagged) then
       call self%search_jump_by_jump(steps, stretch)
       return

@@ -11,7 +11,7 @@ module timed_run
   use edge_locked, only: new_mesh_family
   use mesh_digits, only: most_digits
   use records, only: observer_t
-  use numerics_choice, only: choice_t, choose, fixed_mesh
+  use numerics_choice, only: choice_t, fixed_choice, fixed_mesh, panels
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
   use creep, only: elastic_bodies
@@ -117,7 +117,7 @@ contains
       steps%creep = elastic_bodies()
       if (allocated(request%creep)) steps%creep = request%creep
       steps%options = chosen%options
-      if (steps%options%method == 'mixing') steps%options%method = 'anderson'
+      steps%options%mixing = .false.
       if (allocated(asked%stiffness)) &
         steps%compliance = problem%load/(asked%stiffness*problem%length)
       drive = new_motion(asked%velocity/problem%length, law%gap_of(asked%z_start), &
@@ -187,11 +187,9 @@ contains
       steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
       if (.not. allocated(request%creep)) return
       numerics = request%numerics
-      numerics%method = 'mixing'
-      numerics%grid = 'panels'
       if (relaxed%film_gap > 0) numerics%r_max = far_out*relaxed%lateral* &
         relaxed%shape%position_of(relaxed%film_gap)
-      of_memory = choose(numerics, relaxed, low, .false.)
+      of_memory = fixed_choice(numerics, relaxed, low, panels)
       of_memory%panel_over_feature = over_neck
       of_memory%panel_order = of_memory%panel_order + over_order + pass
       of_memory%nodes = most_nodes

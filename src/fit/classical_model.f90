@@ -1,6 +1,6 @@
-!> The classical theories as models of a measured curve: JKR, DMT, Maugis and Dugdale. Bodies that
-!> do not touch do not attract each other; those that touch go along the theory's curve, whose order
-!> is the contact radius. Where the bodies jump into contact these theories cannot say.
+!> The theories of JKR, DMT and Maugis-Dugdale as models of a measured curve. Bodies apart do not
+!> attract each other. Bodies in contact follow the theory's curve, ordered by contact radius. These
+!> theories do not say where the jump into contact is.
 module classical_model
   use kinds, only: wp
   use root_finding, only: bracket_t
@@ -15,15 +15,16 @@ module classical_model
   character(len=*), parameter :: theories(*) = [character(len=14) :: 'jkr', 'dmt', &
     'maugis_dugdale']
 
-  !> Panels of the branch in contact; and of the step of a difference over what is varied.
+  !> Panels of the branch in contact; relative step of the differences.
   integer, parameter :: panels = 200
   real(wp), parameter :: step = 1.0e-4_wp
-  !> Contact radii that are tried for the largest position, over the largest of all; sections that
-  !> find it then.
+  !> Contact radii that are tried to find the largest position (the first over the largest radius),
+  !> and sections that refine it.
   integer, parameter :: tried = 400, sections = 60
 
-  !> The unknowns are the work of adhesion [J/m^2] and the stiffness [Pa] where these are to be
-  !> found; else they are as here. radius [m]; range [m] of the tension of Maugis and Dugdale.
+  !> The unknowns are the work of adhesion [J/m^2] and the stiffness [Pa], where these are to be
+  !> found; otherwise the values here hold. radius [m]; range [m]: of the tension in Maugis-Dugdale
+  !> theory.
   type, extends(force_model_t) :: classical_model_t
     character(len=14) :: theory = 'jkr'
     real(wp) :: radius = 1, work = 1, stiffness = 1, range = 1
@@ -45,7 +46,7 @@ contains
 
     number = [self%work, self%stiffness]
     number(pack([1, 2], [self%finds_work, self%finds_stiffness])) = value
-    ! The contact that Hertz foretells under the load and under more adhesion than there is.
+    ! Hertz's contact radius under the largest load and a hundred times the adhesion.
     widest = (1.5_wp*self%radius*(2*max(largest, 0.0_wp) + 100*number(1)*self%radius)/ &
       number(2))**(1.0_wp/3)
     turn = turning_radius(self, number, 1/stiffness, widest)
@@ -61,7 +62,7 @@ contains
     response%way(outward) = way_t([2, 1], [response%branch(2)%position(1), huge(1.0_wp)], 1)
   end subroutine respond
 
-  !> No load, until the bodies touch.
+  !> The branch of bodies apart: no load.
   subroutine set_apart(widest, unknowns, branch)
     real(wp), intent(in) :: widest
     integer, intent(in) :: unknowns
@@ -69,12 +70,13 @@ contains
 
     allocate (branch%h0(4, 1), branch%load(4, 1), branch%h0_rate(unknowns, 2, 1), &
       branch%load_rate(unknowns, 2, 1), source=0.0_wp)
-    ! From any distance, and with a slope that makes h0 fall evenly.
+    ! h0 falls evenly from beyond any distance.
     branch%h0(:, 1) = widest*[1, 0, -1, -1]
     branch%turns_last = .true.
   end subroutine set_apart
 
-  !> In contact, from where the position turns round inward; panels grow with the contact.
+  !> The branch in contact, from where the position turns round inward. Panels become longer with
+  !> the contact.
   subroutine set_in_contact(model, number, turn, widest, unknowns, branch)
     class(classical_model_t), intent(in) :: model
     real(wp), intent(in) :: number(2), turn, widest
@@ -122,7 +124,7 @@ contains
     varied = (state(model, more, a) - state(model, less, a))/(2*step*number(k))
   end function varied
 
-  !> h0 and load at a contact radius; number: work of adhesion and stiffness.
+  !> h0 and load at a contact radius. number: work of adhesion and stiffness.
   pure function state(model, number, a)
     class(classical_model_t), intent(in) :: model
     real(wp), intent(in) :: number(2), a

@@ -1,5 +1,5 @@
-!> The fit of a model to a measured curve: the values of the unknowns that leave least of it, their
-!> errors, and what the data cannot tell apart.
+!> The fit of a model to a measured curve: the best values of the unknowns, their errors, and which
+!> of them the data cannot tell apart.
 module curve_fit
   use kinds, only: wp
   use linear_algebra, only: singular_values
@@ -16,33 +16,33 @@ module curve_fit
   private
   public :: fitted_t, fit_curve
 
-  !> Contact points that are tried, samples for each, and sections by which the best are refined.
+  !> Contact points that are tried, samples used for each, and sections that refine the best ones.
   integer, parameter :: tried = 160, samples = 250, sections = 25
-  !> Contact points that are kept of a candidate; searches from the best of all; how many of what
-  !> they find are followed up, and how often the data are looked at again each time.
+  !> Contact points kept for each candidate; searches from the best candidates; results of searches
+  !> that are followed up; rounds in which the data are examined again.
   integer, parameter :: most_points = 2, most_fits = 8, most_looks = 3, most_rounds = 8
-  !> What so many searches find is the best there is; relative differences of sums of squares that
-  !> are none, and that show another place.
+  !> The same result of this many searches ends the search. Relative differences between sums of
+  !> squares: below `same` they are equal, above `apart` they belong to different minima.
   integer, parameter :: enough = 3
   real(wp), parameter :: same = 1.0e-4_wp, apart = 0.02_wp
 
-  !> What a fit found. value and its standard deviation in the unit of each key; the same of the
-  !> fitted number (`fit_request`), of which the errors are symmetric; correlation of these.
-  !> identifiable: the least singular value of their Jacobian with columns of length 1: 1 where the
-  !> data tell all apart, 0 where they do not tell some. effect: by how many standard deviations of
-  !> all data together a change of the fitted number by 1 is seen.
+  !> The result of a fit. value, deviation: each unknown and its standard deviation, in the unit of
+  !> its key. fitted_deviation, correlation: the same for the fitted numbers (`fit_request`), whose
+  !> errors are symmetric. identifiable: the least singular value of their Jacobian with columns of
+  !> length 1; 1 where the data tell all unknowns apart, 0 where they do not. effect: how many
+  !> standard deviations of all data together a change of the fitted number by 1 makes.
   type :: fitted_t
     logical :: found = .false., has_curve = .false.
     real(wp), allocatable :: value(:), deviation(:), fitted_deviation(:), correlation(:, :), &
       effect(:)
     real(wp) :: identifiable = 0
-    !> Sum of the squares of the residuals in standard deviations, and what it is expected to be.
+    !> Sum of the squared residuals in standard deviations, and its expected value.
     real(wp) :: chi_squared = 0
     integer :: freedom = 0
     type(lack_t) :: lack = lack_t()
-    !> Of all samples: model with baseline, and what is left.
+    !> At all samples: the model with its baseline, the residual, the baseline.
     real(wp), allocatable :: model(:), residual(:), baseline(:)
-    !> Where the base is when the model jumps in and out; NaN where it does not.
+    !> Position of the base where the model jumps in and out; NaN where it does not jump.
     real(wp) :: jump_z(2) = 0
   contains
     procedure :: end_of
@@ -51,9 +51,9 @@ module curve_fit
 
 contains
 
-  !> Fits the model from several candidates, start(unknown, candidate), and from several contact
-  !> points where that is unknown, until one describes the data; the best is kept. renew: noise,
-  !> outliers and jumps of the data are found again by the model, the noise not if keep_noise.
+  !> Fits the model, starting from several candidates, start(unknown, candidate), and from several
+  !> contact points if that is unknown. It ends when a fit describes the data, and keeps the best.
+  !> renew: the model is used to find noise (unless keep_noise), outliers and jumps again.
   subroutine fit_curve(curve, model, start, renew, keep_noise, fitted)
     type(modelled_curve_t), intent(inout) :: curve
     class(force_model_t), intent(inout), target :: model
@@ -85,13 +85,13 @@ contains
         curve = trial%curve
       end if
       if (fitted%lack%is_noise()) exit
-      ! Where the others lead to.
+      ! The others that lead to the same minimum.
       where (left < (1 + apart)*left(k)) left = huge(left)
     end do
   end subroutine fit_curve
 
-  !> Searches from the values with the least sums of squares, `cost`, and puts what it finds in
-  !> their place; left: the sums of squares there, huge where no search was made.
+  !> Searches from the candidates with the least sums of squares, `cost`, and replaces them by the
+  !> minima found. left: the sums of squares there; huge where no search was made.
   subroutine search_from(residuals, cost, value, left, found)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(inout) :: cost(:), value(:, :)
@@ -111,7 +111,7 @@ contains
     end do
   end subroutine search_from
 
-  !> Noise, outliers and jumps of the data by the model, and the fit again, until nothing changes.
+  !> Finds noise, outliers and jumps by the model and fits again, until nothing changes.
   subroutine settle(residuals, keep_noise, fitted)
     type(curve_residuals_t), intent(inout) :: residuals
     logical, intent(in) :: keep_noise
@@ -129,8 +129,7 @@ contains
     end do
   end subroutine settle
 
-  !> Values to start from, with the sums of squares there: `start`, each with the contact points at
-  !> which it leaves least.
+  !> Candidates with their sums of squares: each column of `start`, at its best contact points.
   subroutine find_candidates(residuals, start, value, cost)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: start(:, :)
@@ -164,7 +163,7 @@ contains
 
   contains
 
-    !> The trial as a candidate, if the model has a curve there.
+    !> Adds the trial to the candidates, if the model has a curve there.
     subroutine add(left)
       real(wp), intent(in) :: left
 
@@ -175,9 +174,9 @@ contains
 
   end subroutine find_candidates
 
-  !> Contact points between two ends, which are number `role` of the unknowns, where the sum of
-  !> squares is lowest, and the sums there. Moving the curve along needs no new solution, so that
-  !> many are tried.
+  !> The contact points between two ends with the lowest sums of squares, and these sums. role: the
+  !> index of the contact point among the unknowns. The model is not solved again when only the
+  !> contact point changes, so many are tried.
   subroutine lowest_points(residuals, value, role, ends, points, costs)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:), ends(2)
@@ -226,7 +225,7 @@ contains
     if (found) cost = sum(residual**2)
   end function cost_of
 
-  !> Moves values to where the sum of squares, `left`, is least.
+  !> Moves the values to the nearest minimum of the sum of squares, `left`.
   subroutine search(residuals, value, left, found)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(inout) :: value(:)
@@ -241,7 +240,7 @@ contains
     value = residuals%values(x)
   end subroutine search
 
-  !> Whether a fit could be judged and leaves less than another.
+  !> Whether a fit has errors and leaves less than another.
   pure logical function is_better_than(self, other)
     class(fitted_t), intent(in) :: self
     type(fitted_t), intent(in) :: other
@@ -251,7 +250,7 @@ contains
       self%chi_squared/self%freedom < other%chi_squared/other%freedom
   end function is_better_than
 
-  !> Errors and correlations of the values, and what is left of the curve.
+  !> Finds errors and correlations of the values, and the residuals of the curve.
   subroutine judge(residuals, fitted)
     type(curve_residuals_t), intent(inout) :: residuals
     type(fitted_t), intent(inout) :: fitted
@@ -302,8 +301,8 @@ contains
     fitted%jump_z = [(residuals%curve%jump_of(fitted%value, i), i=1, 2)]
   end subroutine judge
 
-  !> The end of the interval of `sign` standard deviations about unknown i; that of what is positive
-  !> is even in the logarithm.
+  !> The end of the interval of `sign` standard deviations about unknown i. For a positive unknown
+  !> the interval is symmetric in the logarithm.
   pure real(wp) function end_of(self, i, unknown, sign) result(value)
     class(fitted_t), intent(in) :: self
     integer, intent(in) :: i

@@ -1,8 +1,7 @@
-!> What a model leaves of a measured curve (`modelled_curve`), in standard deviations. Baselines and
-!> slope enter linearly: the residuals are what is left when the best ones are taken off (variable
-!> projection; Golub and Pereyra, 1973; `fit_samples`). Samples are made white first. Where a jump
-!> starts is a datum of its own, and so is what is known of an unknown before; no sample within a
-!> jump counts.
+!> The residuals of a measured curve under a model (`modelled_curve`), in standard deviations.
+!> Baselines and slope enter linearly; the best ones are removed by projection (variable projection;
+!> Golub and Pereyra, 1973; `fit_samples`). The samples are whitened first. The start of a jump is
+!> one more datum, and so is prior knowledge of an unknown. Samples within a jump do not count.
 module curve_residuals
   use kinds, only: wp
   use fit_request, only: unknown_t, value_of, value_by_free, value_by_fitted, fitted_of
@@ -12,10 +11,10 @@ module curve_residuals
   private
   public :: curve_residuals_t
 
-  !> What a jump that the model does not have counts, in standard deviations.
+  !> Residual of a jump that the model does not have, in standard deviations.
   real(wp), parameter :: missed = 10
-  !> A trial is no farther than a factor of exp of this from the deck's value: paths of problems
-  !> that are nothing like it may take for ever.
+  !> Largest logarithm of a trial over the deck's value: the path of a very different problem may
+  !> take too long.
   real(wp), parameter :: farthest_off = 5
 
   type, extends(residuals_t) :: curve_residuals_t
@@ -32,7 +31,7 @@ module curve_residuals
 
 contains
 
-  !> Number of residuals: samples, jumps that the theory speaks of, what was known before.
+  !> Number of residuals: samples, measured jumps, unknowns with a prior.
   pure integer function rows(self)
     class(curve_residuals_t), intent(in) :: self
 
@@ -60,7 +59,7 @@ contains
     call self%residuals_of(self%values(x), residual, found)
   end subroutine evaluate
 
-  !> The residuals at values of the unknowns.
+  !> The residuals at these values of the unknowns.
   subroutine residuals_of(self, value, residual, found)
     class(curve_residuals_t), intent(inout) :: self
     real(wp), intent(in) :: value(:)
@@ -139,14 +138,14 @@ contains
     end associate
   end subroutine jacobian_of
 
-  !> What is known before of an unknown, as a deviation of its fitted number.
+  !> The prior standard deviation of an unknown, as one of its fitted number.
   pure real(wp) function prior_of(unknown) result(deviation)
     type(unknown_t), intent(in) :: unknown
 
     deviation = unknown%prior/value_by_fitted(unknown, unknown%value)
   end function prior_of
 
-  !> Where the model's jump starts, less where the measured one does, over its uncertainty.
+  !> Start of the model's jump minus start of the measured one, over its uncertainty.
   real(wp) function jump_residual(self, value, way) result(residual)
     class(curve_residuals_t), intent(in) :: self
     real(wp), intent(in) :: value(:)

@@ -1,4 +1,4 @@
-!> Which samples of a measured curve are far from contact, and the noise that they show.
+!> Finds the samples of a measured curve that are far from contact, and their noise.
 module far_samples
   use kinds, only: wp
   use measured_curve, only: measured_t
@@ -9,18 +9,18 @@ module far_samples
   private
   public :: find_far, off_baseline
 
-  !> Fewer samples show no noise but by their differences, and no slope. The part of the travel that
-  !> may be far from contact; it is halved where the half that is farther varies by less than this
-  !> part of the whole.
+  !> With fewer far samples the noise comes from their differences, and no slope is found. The part
+  !> of the travel that may be far from contact: it is halved as long as the farther half varies by
+  !> less than this part of the whole.
   integer, parameter :: fewest_far = 12
   real(wp), parameter :: far_part = 1.0_wp/3, less = 0.6_wp
-  !> What a spike is more than the noise, and than a curve makes of the distance of samples, in
-  !> units of the spring's own slope.
+  !> A spike is this many deviations, and this many times what the spring's own slope makes of the
+  !> distance between samples, away from its neighbours.
   real(wp), parameter :: apart = 5, bent = 3
 
 contains
 
-  !> Marks the far samples, and finds their noise. stiffness: of the spring, units of signal over z.
+  !> Marks the far samples and finds their noise. stiffness: of the spring, units of signal over z.
   subroutine find_far(measured, stiffness, noise)
     type(measured_t), intent(inout) :: measured
     real(wp), intent(in) :: stiffness
@@ -71,7 +71,7 @@ contains
 
   end subroutine find_far
 
-  !> The step of z on the way of each sample.
+  !> The typical step of z on the way of each sample.
   pure function typical_steps(measured) result(step)
     type(measured_t), intent(in) :: measured
     real(wp) :: step(size(measured%z)), on_way
@@ -85,7 +85,7 @@ contains
     end do
   end function typical_steps
 
-  !> The signal less the straight line through the baseline of its way.
+  !> The signal minus the straight line through the baseline of its way.
   pure function off_baseline(measured) result(left)
     type(measured_t), intent(in) :: measured
     real(wp) :: left(size(measured%z))

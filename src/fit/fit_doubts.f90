@@ -1,5 +1,5 @@
-!> What speaks against a fit: a model that does not describe the data, unknowns that these cannot
-!> tell apart, bounds that decide.
+!> The doubts about a fit: a model that does not describe the data, unknowns that the data cannot
+!> tell apart, bounds that decide a value.
 module fit_doubts
   use kinds, only: wp
   use text, only: rounded
@@ -13,9 +13,8 @@ module fit_doubts
   private
   public :: doubts_of
 
-  !> Correlation of unknowns that the data hardly tell apart; least singular value where some
-  !> combination of several is not told; error of a logarithm that is no knowledge; standard
-  !> deviations by which jumps may differ.
+  !> Limits: correlation of two unknowns; least singular value; standard deviation of a logarithm;
+  !> distance of a jump in standard deviations.
   real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, far = 4
   character(len=*), parameter :: not_described = ': the model does not describe these data, ' // &
     'and the true errors are larger than the standard errors'
@@ -48,7 +47,7 @@ contains
     call doubt_jumps(outcome, lines)
   end function doubts_of
 
-  !> Of what the deck holds fixed: the number of which the data ask most surely for another value.
+  !> Doubts about numbers that the deck holds fixed: the one that the data contradict most.
   subroutine doubt_held(held, lines)
     type(held_t), intent(in) :: held(:)
     type(line_t), allocatable, intent(inout) :: lines(:)
@@ -62,7 +61,7 @@ contains
       rounded(abs(held(i)%asked)) // ' standard deviations)' // not_described)
   end subroutine doubt_held
 
-  !> What is compared with noise: samples or means over some.
+  !> Describes what was compared with noise: samples or means over neighbours.
   function what_is_left(lack) result(words)
     type(lack_t), intent(in) :: lack
     character(len=:), allocatable :: words
@@ -73,7 +72,7 @@ contains
     words = words // rounded(lack%times)
   end function what_is_left
 
-  !> Of unknown i alone: what the data say of it, and bounds that decide.
+  !> Doubts about unknown i alone: a large error, a bound within the error.
   subroutine doubt_unknown(fitted, unknown, i, lines)
     type(fitted_t), intent(in) :: fitted
     type(unknown_t), intent(in) :: unknown
@@ -96,7 +95,7 @@ contains
     end associate
   end subroutine doubt_unknown
 
-  !> Of unknown i and those before it: whether the data tell them apart.
+  !> Doubts about unknown i and those before it: whether the data tell them apart.
   subroutine doubt_pairs(fitted, unknown, i, lines)
     type(fitted_t), intent(in) :: fitted
     type(unknown_t), intent(in) :: unknown(:)
@@ -111,7 +110,7 @@ contains
     end do
   end subroutine doubt_pairs
 
-  !> Of the jumps in the data that the model does not have there.
+  !> Doubts about jumps of the data that are not where the model jumps.
   subroutine doubt_jumps(outcome, lines)
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), allocatable, intent(inout) :: lines(:)

@@ -1,7 +1,7 @@
-!> What is asked of a fit: the measured curve, and the unknowns.
+!> What a fit is asked for: the measured curve and the unknowns.
 !>
-!> A search moves numbers freely. What is positive goes by its logarithm; bounds, which the search
-!> does not know, by a sine or, where there is one, by a hyperbola.
+!> The search uses free numbers without bounds. A positive unknown is represented by its logarithm;
+!> two bounds are mapped by a sine, a single one by a hyperbola.
 module fit_request
   use kinds, only: wp
   implicit none
@@ -15,19 +15,18 @@ module fit_request
     character(len=48), allocatable :: columns(:)
     real(wp) :: spring_constant = 0
     real(wp), allocatable :: sensitivity, contact_point
-    !> Pairs of positions between which samples do not count.
+    !> Pairs of positions; the samples between them do not count.
     real(wp), allocatable :: skip(:)
-    !> Of position and signal in the file.
+    !> Units of position and signal in the file.
     real(wp) :: unit(2) = 1
   end type measurement_t
 
-  !> What an unknown belongs to: a number of the problem, where the bodies touch, the detector, the
-  !> spring.
+  !> What an unknown is a number of: the problem, the contact point, the detector, the spring.
   integer, parameter :: of_model = 0, of_contact_point = 1, of_sensitivity = 2, of_spring = 3
 
-  !> An unknown, in the unit of its key. in_log: it is positive, and its logarithm is fitted; of
-  !> others the difference from `origin` over `scale`. prior: standard deviation of what is known
-  !> before of the value in the deck; 0: nothing.
+  !> An unknown, in the unit of its key. in_log: it is positive and its logarithm is fitted;
+  !> otherwise its difference from `origin`, over `scale`. prior: standard deviation of the deck's
+  !> value as known beforehand; 0: none.
   type :: unknown_t
     character(len=:), allocatable :: name
     integer :: role = of_model
@@ -53,7 +52,7 @@ contains
     if (unknown%in_log) u = log(value/unknown%scale)
   end function fitted_of
 
-  !> The free number of a value; of one at its bound or beyond, that of one a little within.
+  !> The free number of a value. A value at its bound or beyond is moved a little inside.
   elemental real(wp) function free_of(unknown, value) result(x)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: value

@@ -1,5 +1,5 @@
-!> A fit from beginning to end: noise and jumps of the measured curve are found, the model
-!> of the path is fitted, and the classical theories are beside it.
+!> A whole fit: finds noise and jumps of the measured curve, fits the model of the path, then fits
+!> the classical theories to the same samples.
 module fit_run
   use kinds, only: wp, pi
   use failure, only: failure_t
@@ -24,14 +24,14 @@ module fit_run
   private
   public :: fit_outcome_t, run_fit
 
-  !> What a classical theory makes of the curve.
+  !> The fit of a classical theory.
   type :: theory_fit_t
     character(len=14) :: theory = ''
     type(unknown_t), allocatable :: unknown(:)
     type(fitted_t) :: fitted
   end type theory_fit_t
 
-  !> trouble: why there is no fit, and what to do.
+  !> The result. trouble: why there is no fit, and what to do.
   type :: fit_outcome_t
     character(len=:), allocatable :: trouble
     type(modelled_curve_t) :: curve
@@ -39,30 +39,30 @@ module fit_run
     !> Whether the meshes of the model resolve the force law.
     logical :: resolved = .true.
     type(theory_fit_t), allocatable :: theory(:)
-    !> What the data say of numbers that were no unknowns.
+    !> What the data say of the numbers that the deck holds fixed.
     type(held_t), allocatable :: held(:)
-    !> The problem with the values found, where there is one.
+    !> The problem with the fitted values, where it could be posed.
     type(problem_t), allocatable :: problem
   end type fit_outcome_t
 
-  !> A signal whose noise is smaller than this part of it is one that was computed.
+  !> Least noise over the largest signal: a computed signal has less.
   real(wp), parameter :: least_noise = 1.0e-9_wp
-  !> Over the largest signal, up to which the model is wanted: for a trial that is too soft.
+  !> The model is solved up to this many times the largest signal, since a trial may be too soft.
   real(wp), parameter :: beyond = 1.2_wp
-  !> An unknown whose fitted number (`fit_request`) changes by 1 is seen by this many standard
-  !> deviations of all data, or it has no effect.
+  !> An unknown has no effect if a change of its fitted number (`fit_request`) by 1 makes fewer
+  !> standard deviations of all data than this.
   real(wp), parameter :: least_effect = 0.1_wp
-  !> Stiffnesses over the deck's from which theories start, and ranges of the force from which the
-  !> model does; samples by which the theories are fitted then.
+  !> Starting stiffnesses of the theories over the deck's; starting ranges of the force over the
+  !> deck's; samples to which the theories are fitted to find starting values.
   real(wp), parameter :: factors(*) = [1.0_wp, 0.1_wp, 10.0_wp, 0.01_wp, 100.0_wp], &
     ranges(*) = [0.25_wp, 4.0_wp]
   integer, parameter :: few_samples = 1000
 
 contains
 
-  !> Fits what the deck asks for. measured: the curve of `measurement`; family: the problems, whose
-  !> parameters are the unknowns of the model; wider: with other numbers behind these, held;
-  !> problem: with their values in the deck.
+  !> Runs the fit. measured: the curve of `measurement`. family: the problems, whose parameters are
+  !> the unknowns of the model. wider: the same family with the fixed numbers of the deck as further
+  !> parameters. problem: the problem with the deck's values.
   subroutine run_fit(measured, measurement, fit, numerics, family, wider, problem, listener, &
     outcome)
     type(measured_t), intent(in) :: measured
@@ -108,7 +108,7 @@ contains
     call fit_theories(outcome, problem, family)
   end subroutine run_fit
 
-  !> The measured curve with its noise and its jumps, and what is unknown.
+  !> Makes the curve to fit: the samples, their noise and jumps, and the unknowns.
   subroutine take_curve(measured, measurement, fit, problem, curve, trouble)
     type(measured_t), intent(in) :: measured
     type(measurement_t), intent(in) :: measurement
@@ -154,8 +154,8 @@ contains
     end associate
   end function level_of
 
-  !> Work of adhesion, stiffness and range of force that the curve may have: by its pull-off, below
-  !> the mean of the baseline and below its slope, by JKR and DMT, each with the range of the deck's
+  !> Likely works of adhesion, stiffnesses and ranges of force: from the pull-off below the mean of
+  !> the baseline and below its slope, and from JKR and DMT fits, each with the range of the deck's
   !> force and with others.
   function likely_characters(curve, problem) result(likely)
     type(modelled_curve_t), intent(in) :: curve
@@ -209,7 +209,7 @@ contains
     end do
   end function likely_characters
 
-  !> What is unknown of a theory, and what of the measurement.
+  !> Sets the unknowns of a theory and those of the measurement.
   subroutine take_unknowns(curve, measured, model, start)
     type(modelled_curve_t), intent(inout) :: curve
     type(modelled_curve_t), intent(in) :: measured
@@ -226,9 +226,9 @@ contains
       pack(measured%unknown, measured%unknown%role /= of_model)]
   end subroutine take_unknowns
 
-  !> The same curve by JKR, DMT and Maugis-Dugdale, where the bodies are parabolas. Found is what
-  !> the deck wants to find of it: adhesion where it asks for a force, stiffness where for that of
-  !> bodies.
+  !> Fits JKR, DMT and Maugis-Dugdale theory to the same curve, if the bodies are parabolas. The
+  !> work of adhesion is unknown if the deck fits a number of a force, the stiffness if it fits one
+  !> of the bodies.
   subroutine fit_theories(outcome, problem, family)
     type(fit_outcome_t), intent(inout), target :: outcome
     type(problem_t), intent(in) :: problem

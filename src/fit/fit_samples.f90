@@ -1,9 +1,8 @@
-!> The samples of a measured curve that a fit counts: which side of a jump each is on, and how what
-!> is left of them is made white and freed of its baseline.
+!> The samples of a measured curve that count in a fit: on which side of a jump each one is, and how
+!> residuals are whitened and freed of the baseline.
 !>
-!> The baseline is a constant for each way, and a slope of both. The unknowns of a model do not
-!> change what it is made of, so that the best one is taken off residuals and their derivatives by
-!> the same projection.
+!> The baseline is a constant for each way and a slope common to both. It does not depend on the
+!> unknowns of a model, so one projection removes it from residuals and from their derivatives.
 module fit_samples
   use kinds, only: wp
   use measured_curve, only: measured_t
@@ -18,10 +17,11 @@ module fit_samples
     type(measured_t) :: measured
     type(noise_t) :: noise
     type(measured_jump_t) :: jump(2)
-    !> The samples that count. Of all: the way, the side of its jump (`load_on`), and the run.
+    !> The samples that count. For all samples: the way, the side of its jump (`load_on`), and the
+    !> number of the run.
     integer, allocatable :: sample(:), way(:), side(:), run(:)
-    !> The baseline's columns for all samples; for those that count, white, as an orthonormal basis
-    !> and the triangle that leads from it to them.
+    !> The columns of the baseline at all samples; an orthonormal basis of the whitened columns at
+    !> the samples that count, and the triangle that maps these to the basis.
     real(wp), allocatable, private :: column(:, :), basis(:, :), triangle(:, :)
   contains
     procedure :: take
@@ -32,7 +32,8 @@ module fit_samples
 
 contains
 
-  !> Which samples count, every `every`-th, and the columns that are linear in them.
+  !> Selects the samples that count, every `every`-th of them, and makes the columns of the
+  !> baseline.
   subroutine take(self, every)
     class(fit_samples_t), intent(inout) :: self
     integer, intent(in) :: every
@@ -46,15 +47,15 @@ contains
       do i = 1, n
         associate (jump => self%jump(self%way(i)))
           if (jump%before == 0) cycle
-          ! The last before it may be as near to it as one likes, where the slope grows beyond
-          ! bounds: it is number `before`.
+          ! The last sample before the jump, number `before`, does not count: the slope there may be
+          ! arbitrarily large.
           if (i < jump%before) self%side(i) = 1
           if (i >= jump%before .and. i < jump%after) self%side(i) = -1
           if (i >= jump%after) self%side(i) = 2
         end associate
       end do
       counts = self%side >= 0 .and. data%usable
-      ! Neighbours of one way and one side of its jump.
+      ! A run is a sequence of neighbours of one way and one side of its jump.
       self%run = [(1, i=1, n)]
       do i = 2, n
         self%run(i) = self%run(i - 1)
@@ -66,7 +67,7 @@ contains
     end associate
   end subroutine take
 
-  !> The columns of the baseline.
+  !> Makes the columns of the baseline, and their whitened basis.
   pure subroutine set_baseline(self)
     type(fit_samples_t), intent(inout) :: self
     real(wp), allocatable :: column(:, :)
@@ -87,7 +88,7 @@ contains
     call orthonormalise(self%basis, self%triangle)
   end subroutine set_baseline
 
-  !> Gram and Schmidt, twice, so that rounding does not count: a = q r.
+  !> a = q r by Gram-Schmidt, applied twice against rounding.
   pure subroutine orthonormalise(q, r)
     real(wp), intent(inout) :: q(:, :)
     real(wp), allocatable, intent(out) :: r(:, :)
@@ -108,14 +109,14 @@ contains
     end do
   end subroutine orthonormalise
 
-  !> How many numbers the baseline has.
+  !> The number of columns of the baseline.
   pure integer function baseline_numbers(self)
     class(fit_samples_t), intent(in) :: self
 
     baseline_numbers = size(self%column, 2)
   end function baseline_numbers
 
-  !> Makes columns of numbers, one a sample that counts, white, and takes their baseline off.
+  !> Whitens columns of numbers, one a sample that counts, and removes their baseline.
   pure subroutine clean(self, column)
     class(fit_samples_t), intent(in) :: self
     real(wp), intent(inout) :: column(:, :)
@@ -124,7 +125,7 @@ contains
     column = column - matmul(self%basis, matmul(transpose(self%basis), column))
   end subroutine clean
 
-  !> The baseline, at all samples, that leaves least of a signal without force.
+  !> The best baseline, at all samples, of a signal without force.
   pure function baseline_under(self, signal) result(line)
     class(fit_samples_t), intent(in) :: self
     real(wp), intent(in) :: signal(:)

@@ -1,6 +1,5 @@
-!> Where the search for a model's unknowns may start: at the deck's values, and at those with which
-!> work of adhesion, stiffness and range of the force are what the data say by themselves and by the
-!> classical theories.
+!> Starting values of a model's unknowns: the deck's, and those that give work of adhesion,
+!> stiffness and range of the force the values that the data and the classical theories suggest.
 module fit_starts
   use kinds, only: wp
   use failure, only: failure_t
@@ -12,21 +11,23 @@ module fit_starts
   private
   public :: character_t, character_of, starts_like
 
-  !> Work of adhesion [J/m^2], stiffness [Pa] and range [m], which is work over largest tension.
+  !> Work of adhesion [J/m^2], stiffness [Pa], and range [m], which is the work over the largest
+  !> tension.
   type :: character_t
     real(wp) :: work = 0, stiffness = 0, range = 0
   end type character_t
 
-  !> Steps of the secant method, the last of which is so small, and of its first differences; how
-  !> far from the deck's value a start may be, as a logarithm; starts that differ by less are one.
+  !> Most steps of the secant method; the size of a last step and of the first differences; the
+  !> largest logarithm of a start over the deck's value; starts that differ by less than `alike` are
+  !> the same.
   integer, parameter :: steps = 6
   real(wp), parameter :: near = 0.01_wp, change = 1.0e-3_wp, farthest = 4.5_wp, alike = 0.05_wp
-  !> What of a step is not worth moving an unknown for that has hardly an effect.
+  !> Damping, which keeps unknowns of hardly any effect from moving far.
   real(wp), parameter :: damping = 1.0e-4_wp
 
 contains
 
-  !> The character of a problem; range 0 for a law without a largest tension.
+  !> The character of a problem. The range is 0 for a law without a largest tension.
   pure type(character_t) function character_of(problem) result(character)
     type(problem_t), intent(in) :: problem
     real(wp) :: tension
@@ -37,8 +38,8 @@ contains
     if (tension > 0) character%range = character%work/tension
   end function character_of
 
-  !> Values of the unknowns, (unknown, start), first the deck's, then as like each of `wanted` as
-  !> the least change of the deck's can make them.
+  !> Starting values, (unknown, start). The first are the deck's. Each other start has the character
+  !> `wanted(i)` by the least change of the deck's values.
   subroutine starts_like(wanted, family, unknown, start)
     type(character_t), intent(in) :: wanted(:)
     class(problem_family_t), intent(in) :: family
@@ -72,8 +73,9 @@ contains
     end do
   end subroutine starts_like
 
-  !> The values nearest to the deck's, in their logarithms, whose problem has a character. own: the
-  !> traits of the deck's, and by: their derivatives, which steps renew (Broyden, 1965).
+  !> Finds the values nearest to the deck's, in their logarithms, whose problem has the wanted
+  !> character. own: the traits of the deck's problem. by: their derivatives, which each step
+  !> updates (Broyden, 1965).
   subroutine move_to(wanted, family, unknown, own, by, value, found)
     type(character_t), intent(in) :: wanted
     class(problem_family_t), intent(in) :: family
@@ -119,7 +121,7 @@ contains
     end do
   end subroutine move_to
 
-  !> What is to be made alike, for values of the unknowns.
+  !> The traits, logarithms of the character, for values of the unknowns.
   subroutine traits(family, unknown, value, trait, found)
     class(problem_family_t), intent(in) :: family
     type(unknown_t), intent(in) :: unknown(:)

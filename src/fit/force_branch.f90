@@ -1,8 +1,8 @@
-!> The load on bodies that are driven through a spring along one stable piece, as a function of the
-!> drive's position, with its derivatives by the unknowns of a model. SI units.
+!> The load on bodies driven through a spring along one stable piece, as a function of the drive's
+!> position, with derivatives by the unknowns of a model. SI units.
 !>
-!> Between two places of the piece h0 and load are cubics of the place; which place has a given
-!> position h0 - load/stiffness is found by Newton's method.
+!> On each panel h0 and load are cubics of a parameter t. Newton's method finds the t of a given
+!> position h0 - load/stiffness.
 module force_branch
   use kinds, only: wp
   use root_finding, only: bracket_t
@@ -10,21 +10,21 @@ module force_branch
   private
   public :: branch_t, load_at_t
 
-  !> Loads, not found for larger errors of the position in units of a panel's.
+  !> Error of a position over that of its panel at which the search ends.
   real(wp), parameter :: found_at = 1.0e-13_wp
   integer, parameter :: most_steps = 60
 
-  !> Panels from afar inward. h0(:, i) and load(:, i): at begin and end of panel i, and their
-  !> derivatives by t, which goes from 0 to 1 along it. The same of derivatives by each unknown,
-  !> rate(unknown, end, panel), at a fixed t. turns: the piece ends there because the position turns
-  !> round, not because no more is known of it.
+  !> Panels, ordered from afar inward. h0(:, i), load(:, i): values at begin and end of panel i, and
+  !> derivatives there by t, which goes from 0 to 1. h0_rate, load_rate(unknown, end, panel):
+  !> derivatives by the unknowns at fixed t. turns: the piece ends at a turn of the position, not
+  !> where the path ends.
   type :: branch_t
     real(wp), allocatable :: h0(:, :), load(:, :)
     real(wp), allocatable :: h0_rate(:, :, :), load_rate(:, :, :)
     logical :: turns_first = .false., turns_last = .false.
     !> 1/stiffness of the spring.
     real(wp) :: compliance = 0
-    !> Position where panel i begins; one more for the end of the last.
+    !> Positions at the begins of the panels, and at the end of the last.
     real(wp), allocatable :: position(:)
   contains
     procedure :: close
@@ -32,7 +32,8 @@ module force_branch
     procedure :: end_of
   end type branch_t
 
-  !> The load at a position, its derivative by that, and by the unknowns at that position.
+  !> The load at a position, and its derivatives by the position and by the unknowns at that
+  !> position.
   type :: load_at_t
     real(wp) :: load = 0, slope = 0
     real(wp), allocatable :: rate(:)
@@ -40,7 +41,7 @@ module force_branch
 
 contains
 
-  !> Sets the spring, after the panels.
+  !> Sets the spring, once the panels are set.
   pure subroutine close(self, stiffness)
     class(branch_t), intent(inout) :: self
     real(wp), intent(in) :: stiffness
@@ -52,8 +53,8 @@ contains
       self%h0(2, n) - self%compliance*self%load(2, n)]
   end subroutine close
 
-  !> The load at a position. Beyond a turning end the load stays what it is there; beyond an end
-  !> of what is known it goes on along a straight line inward, and stays outward.
+  !> The load at a position. Beyond a turn the load stays constant. Beyond an end of the path it
+  !> continues along a straight line inward, and stays constant outward.
   pure type(load_at_t) function at(self, position) result(found)
     class(branch_t), intent(in) :: self
     real(wp), intent(in) :: position
@@ -75,7 +76,7 @@ contains
     end if
   end function at
 
-  !> The last panel that begins at or before a position; positions fall.
+  !> The last panel that begins at or before a position. Positions fall.
   pure integer function panel_of(positions, position) result(low)
     real(wp), intent(in) :: positions(:), position
     integer :: high, middle
@@ -92,7 +93,7 @@ contains
     end do
   end function panel_of
 
-  !> t on panel i, over which the position falls, at a position.
+  !> t of a position on panel i, over which the position falls.
   pure real(wp) function place_on(self, i, position) result(t)
     class(branch_t), intent(in) :: self
     integer, intent(in) :: i
@@ -114,7 +115,7 @@ contains
     end do
   end function place_on
 
-  !> All of it at t on panel i, where the position does not turn round.
+  !> Load and derivatives at t on panel i, where the position does not turn.
   pure type(load_at_t) function on_panel(self, i, t) result(found)
     class(branch_t), intent(in) :: self
     integer, intent(in) :: i
@@ -132,8 +133,8 @@ contains
       self%compliance*found%rate)
   end function on_panel
 
-  !> The load at an end, which moves with the unknowns where the position turns round: to where the
-  !> derivative of the position by t is zero again.
+  !> Load and derivatives at an end. A turn moves with the unknowns to where the derivative of the
+  !> position by t vanishes again.
   pure type(load_at_t) function end_of(self, inner) result(found)
     class(branch_t), intent(in) :: self
     logical, intent(in) :: inner
@@ -175,7 +176,7 @@ contains
     slope_of = c(2) + t*(2*c(3) + 3*t*c(4))
   end function slope_of
 
-  !> Between the values at both ends of a panel.
+  !> Linear interpolation between both ends of a panel.
   pure function linear(ends, t) result(value)
     real(wp), intent(in) :: ends(:, :), t
     real(wp) :: value(size(ends, 1))

@@ -1,4 +1,4 @@
-!> What a model foretells of bodies that are driven through a spring towards each other and back.
+!> The prediction of a model for bodies that a spring drives towards each other and back.
 module force_model
   use kinds, only: wp
   use force_branch, only: branch_t, load_at_t
@@ -9,10 +9,9 @@ module force_model
   !> The two ways.
   integer, parameter :: inward = 1, outward = 2
 
-  !> The branches that a way goes along, in order, and the position of the drive at which each is
-  !> left. The main jump, the one with the largest change of load, starts from the end of branch
-  !> number `main` of these; 0: the way has none. foretold = .false.: the theory has no say in
-  !> where.
+  !> The branches of a way in order, and the position of the drive at which each is left. The main
+  !> jump, that with the largest change of load, starts from the end of branch number `main` of
+  !> these; 0: there is none. foretold = .false.: the theory does not say where the bodies jump.
   type :: way_t
     integer, allocatable :: branch(:)
     real(wp), allocatable :: leaves_at(:)
@@ -31,9 +30,9 @@ module force_model
   !> A model of the force between the bodies, with unknowns.
   type, abstract :: force_model_t
   contains
-    !> Its response with these values of the unknowns behind a spring of `stiffness`, from the
-    !> position `farthest` [m] as far into contact as to the load `largest` [N] at least.
-    !> with_rates: derivatives by the unknowns too. found = .false.: there is none.
+    !> The response for values of the unknowns, behind a spring of `stiffness`, from the position
+    !> `farthest` [m] to a contact under the load `largest` [N] at least. with_rates: with
+    !> derivatives by the unknowns. found = .false.: there is no response.
     procedure(respond_to), deferred :: respond
   end type force_model_t
 
@@ -50,8 +49,8 @@ module force_model
 
 contains
 
-  !> The load at a position on a way. side: 1 before the main jump, 2 after it, wherever the model
-  !> itself jumps; 0: as the model does.
+  !> The load at a position on a way. side: 1 before the main jump, 2 after it, whatever the
+  !> position; 0: jumps are where the model has them.
   pure type(load_at_t) function load_on(self, way, side, position) result(found)
     class(response_t), intent(in) :: self
     integer, intent(in) :: way, side
@@ -71,8 +70,8 @@ contains
     end associate
   end function load_on
 
-  !> Where the main jump of a way starts: position of the drive, its derivatives by the unknowns,
-  !> and the load before it.
+  !> The start of the main jump of a way: position of the drive, its derivatives by the unknowns,
+  !> and the load there.
   pure subroutine jump_from(self, way, position, rate, load)
     class(response_t), intent(in) :: self
     integer, intent(in) :: way
@@ -85,7 +84,7 @@ contains
       side = merge(2, 1, way == inward)
       position = branch%position(merge(size(branch%position), 1, way == inward))
       load = branch%load(side, i)
-      ! The position turns round here, so that moving along the branch does not change it.
+      ! At a turn of the position, moving along the branch does not change the position.
       rate = branch%h0_rate(:, side, i) - branch%compliance*branch%load_rate(:, side, i)
     end associate
   end subroutine jump_from

@@ -1,7 +1,7 @@
-!> Whether the data would have another value of a number that a fit holds fixed. A step in it from
-!> the best fit changes the residuals r along a direction, of which the unknowns make up for a part.
-!> With the rest of it, g, as a unit vector, g.r is a normal number if the value held is right (the
-!> score test; Rao, 1948). It needs no other fit, and sees what bends all samples a little.
+!> Whether the data contradict a number that a fit holds fixed. A change of it changes the residuals
+!> r along some direction. The unknowns can compensate a part of that; g is the rest as a unit
+!> vector. If the value is right, g.r is a standard normal number (the score test; Rao, 1948). The
+!> test needs no further fit, and detects a small deviation that all samples share.
 module held_numbers
   use kinds, only: wp
   use fit_request, only: measurement_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
@@ -18,8 +18,8 @@ module held_numbers
   private
   public :: held_t, test_held
 
-  !> A number that is held; by how many standard deviations the data ask for another, larger one if
-  !> positive.
+  !> A number that is held, and by how many standard deviations the data ask for another value, a
+  !> larger one if positive.
   type :: held_t
     character(len=:), allocatable :: name
     real(wp) :: asked = 0
@@ -27,21 +27,21 @@ module held_numbers
     procedure :: is_right
   end type held_t
 
-  !> What of a direction is left must be more than rounding of the derivatives makes.
+  !> Least part of a direction that must remain; rounding of the derivatives leaves less.
   real(wp), parameter :: rounding = 1.0e-4_wp
 
 contains
 
-  !> Whether noise may ask as much.
+  !> Whether the value agrees with the data.
   pure logical function is_right(self)
     class(held_t), intent(in) :: self
 
     is_right = abs(self%asked) <= hardly_ever
   end function is_right
 
-  !> curve and value: what was fitted; wider: the family of the fit with the deck's other positive
-  !> numbers behind its parameters. What the unknowns make up for wholly, or
-  !> cannot be varied, is left out.
+  !> Tests every number that is held. curve, value: the fit. wider: the family of the fit with the
+  !> deck's other positive numbers as further parameters. Numbers that the unknowns compensate
+  !> completely, or that cannot be varied, are left out.
   subroutine test_held(curve, value, measurement, numerics, wider, held)
     type(modelled_curve_t), intent(in) :: curve
     real(wp), intent(in) :: value(:)
@@ -85,7 +85,7 @@ contains
     end do
   end subroutine test_held
 
-  !> Takes what a vector has of orthonormal ones off it, twice, so that rounding does not count.
+  !> Makes a vector orthogonal to orthonormal ones, twice against rounding.
   pure subroutine take_off(basis, vector)
     real(wp), intent(in) :: basis(:, :)
     real(wp), intent(inout) :: vector(:)
@@ -96,8 +96,7 @@ contains
     end do
   end subroutine take_off
 
-  !> Leaves out the parameters behind those of the fit, whose values are given, that cannot be
-  !> varied.
+  !> Removes the further parameters that cannot be varied. value: those of the fit's own parameters.
   subroutine keep_variable(value, family)
     real(wp), intent(in) :: value(:)
     class(problem_family_t), intent(inout) :: family
@@ -115,7 +114,7 @@ contains
     family%parameter = pack(family%parameter, keep)
   end subroutine keep_variable
 
-  !> Puts what is held behind the unknowns: numbers of the model, of the measurement.
+  !> Appends what is held to the unknowns: numbers of the model and of the measurement.
   subroutine add_held(family, curve, has_detector, unknown)
     class(problem_family_t), intent(in) :: family
     type(modelled_curve_t), intent(in) :: curve

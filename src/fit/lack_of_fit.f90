@@ -1,5 +1,5 @@
-!> Whether what a fit leaves is noise. Means over neighbours show what single samples hide: what a
-!> wrong model leaves goes the same way over many of them.
+!> Whether the residuals of a fit are noise. A wrong model leaves residuals of one sign over many
+!> neighbours, so that means over blocks of samples reveal it.
 module lack_of_fit
   use kinds, only: wp
   use noise, only: noise_t
@@ -7,8 +7,8 @@ module lack_of_fit
   private
   public :: lack_t, lack_in, hardly_ever
 
-  !> How a fit is wrong. excess: by how many standard deviations blocks of `width` samples leave
-  !> more than noise would, where that is most; times: how many times what noise leaves of them.
+  !> The lack of fit where it is largest. excess: by how many standard deviations the means of
+  !> blocks of `width` samples exceed those of noise. times: their ratio to those of noise.
   type :: lack_t
     integer :: width = 1
     real(wp) :: excess = 0, times = 1
@@ -16,23 +16,23 @@ module lack_of_fit
     procedure :: is_noise
   end type lack_t
 
-  !> Fewer blocks say nothing. What noise hardly ever leaves more than it should, in standard
-  !> deviations: by the seven or so widths in one fit of two hundred.
+  !> Fewer blocks are not tested. The excess that noise reaches in one fit of two hundred, given
+  !> some seven widths.
   integer, parameter :: fewest_blocks = 8
   real(wp), parameter :: hardly_ever = 3.2_wp
 
 contains
 
-  !> Whether noise may have left as much.
+  !> Whether noise explains the residuals.
   pure logical function is_noise(self)
     class(lack_t), intent(in) :: self
 
     is_noise = self%excess <= hardly_ever
   end function is_noise
 
-  !> Where and how a fit is wrong most. white: what is left in standard deviations; run: samples
-  !> of different runs are no neighbours; freedom: how many of them are independent; noise: by
-  !> which they were made so.
+  !> The largest lack of fit over all widths. white: whitened residuals. run: samples of different
+  !> runs are not neighbours. freedom: how many residuals are independent. noise: what whitened
+  !> them.
   pure type(lack_t) function lack_in(white, run, freedom, noise) result(worst)
     real(wp), intent(in) :: white(:)
     type(noise_t), intent(in) :: noise
@@ -59,8 +59,8 @@ contains
       end do
       if (width == 1) blocks = max(1, freedom)
       if (width > 1 .and. blocks < fewest_blocks) return
-      ! What all samples leave over what their steps do scatters by 1/n, half as much as the former
-      ! alone (von Neumann, 1941): as if n were twice as large.
+      ! The ratio of the variance of all samples to that of their steps has the variance 1/n, half
+      ! that of the former alone (von Neumann, 1941), as if n were twice as large.
       excess = normal_of(total, blocks, noise%known_by)
       if (width == 1 .and. noise%of_steps) excess = normal_of(2*total, 2*blocks, huge(1.0_wp))
       if (excess > worst%excess) worst = lack_t(width, excess, sqrt(total/blocks))
@@ -68,8 +68,8 @@ contains
     end do
   end function lack_in
 
-  !> A sum of n squares of normal numbers as a normal number (Wilson and Hilferty, 1931), where
-  !> their variance is known by `known_by` others.
+  !> A sum of n squares of normal numbers as a normal number (Wilson and Hilferty, 1931), if their
+  !> variance is known from `known_by` others.
   pure real(wp) function normal_of(total, n, known_by)
     real(wp), intent(in) :: total, known_by
     integer, intent(in) :: n

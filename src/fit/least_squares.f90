@@ -6,7 +6,7 @@ module least_squares
   private
   public :: residuals_t, minimise
 
-  !> What is to be made small. To be extended by whatever the residuals depend on.
+  !> Residuals to be minimised; an extension holds what they depend on.
   type, abstract :: residuals_t
   contains
     !> The residuals at x; found = .false.: there are none.
@@ -32,7 +32,7 @@ module least_squares
     end subroutine evaluate_derivatives
   end interface
 
-  !> Through a C pointer lmder can hand this on, but nothing polymorphic.
+  !> lmder hands on a C pointer to this; a polymorphic object cannot be handed on.
   type :: carrier_t
     class(residuals_t), pointer :: residuals => null()
   end type carrier_t
@@ -51,19 +51,18 @@ module least_squares
     end subroutine lmder
   end interface
 
-  !> Relative change of the sum of squares, and of x, below which the search ends: of the former a
-  !> ten millionth is far below what noise makes of it. Evaluations after which it is given up; and
-  !> the length of the first step.
+  !> Relative changes of the sum of squares and of x at which the search ends (noise changes the sum
+  !> by far more than 1e-7 of it); most evaluations; length of the first step.
   real(wp), parameter :: less = 1.0e-7_wp, nearer = 1.0e-10_wp, first_step = 0.3_wp
   integer, parameter :: most_evaluations = 80
-  !> Instead of residuals that do not exist: lmder then makes a shorter step.
+  !> Stands for residuals that do not exist; lmder then shortens its step.
   real(wp), parameter :: nowhere = 1.0e8_wp
 
 contains
 
-  !> Moves x to where the sum of the squares of the residuals is least. A change of x by 1 is to be
-  !> a large one: the first step is shorter. found = .false.: it was not
-  !> found within so many evaluations, or there are no residuals at x to begin with.
+  !> Moves x to the least sum of squares. A change of x by 1 should be large: the first step is
+  !> shorter. found = .false.: there are no residuals at the first x, or the evaluations did not
+  !> suffice.
   subroutine minimise(residuals, x, residual, found)
     class(residuals_t), intent(inout), target :: residuals
     real(wp), intent(inout) :: x(:)
@@ -79,7 +78,7 @@ contains
     call lmder(evaluate_for_lmder, c_loc(carrier), size(residual), size(x), x, residual, jacobian, &
       size(residual), less, nearer, 0.0_wp, most_evaluations, diag, 2, first_step, 0, &
       info, evaluations, jacobians, pivot, qtf, wa1, wa2, wa3, wa4)
-    ! 6 to 8: nothing more can be gained in this arithmetic.
+    ! 6 to 8: this arithmetic allows no further gain.
     found = any(info == [1, 2, 3, 4, 6, 7, 8])
   end subroutine minimise
 

@@ -1,4 +1,4 @@
-!> Whether a measured curve is one that can be fitted; if not, why, and what to do.
+!> Whether a measured curve can be fitted; if not, why, and what to do.
 module measured_checks
   use kinds, only: wp
   use text, only: rounded
@@ -10,15 +10,16 @@ module measured_checks
   private
   public :: check_measured
 
-  !> What stands out of the noise; the part of the travel that is an end of it; how steep, over the
-  !> spring, the wrong end of a curve must be to be called so; standard errors of what is sure.
+  !> Limits: a signal in standard deviations of the noise; the part of the travel that counts as an
+  !> end; the slope, over the spring's, of an end in contact; standard errors of a certain
+  !> statement.
   real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5
   integer, parameter :: parts = nint(1/nearest_part)
 
 contains
 
-  !> trouble is allocated where the curve cannot be fitted. stiffness: of the spring, units of
-  !> signal over z.
+  !> Checks a curve. trouble: allocated where it cannot be fitted. stiffness: of the spring, units
+  !> of signal over z.
   subroutine check_measured(measured, noise, stiffness, trouble)
     type(measured_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
@@ -48,10 +49,9 @@ contains
       'minus before the name of a column turns its sign'
   end subroutine check_measured
 
-  !> trouble where approach and retreat are exchanged. Bodies that are driven together and apart
-  !> take energy and give none, wherever the baselines are and however they tilt: between their
-  !> ends, where the ways meet, the approach lies above the retreat. Where the two do not differ by
-  !> more than noise, contact at the end that should be far tells.
+  !> Sets `trouble` where approach and retreat are exchanged. A cycle dissipates energy: between its
+  !> ends, where the ways meet, the approach lies above the retreat, whatever the baseline. Where
+  !> the difference is within the noise, a contact at the far end decides.
   subroutine check_ways(measured, noise, stiffness, trouble)
     type(measured_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
@@ -68,7 +68,7 @@ contains
     end do
     call slope_at(position, slope(1), slope_error(1))
     call slope_at(-position, slope(2), slope_error(2))
-    ! A signal of the other sign takes energy where the bodies give it: its ends bend down.
+    ! The signal has the other sign: both ends bend down.
     if (sum(slope) < 0) return
     taken = sum(above)/parts - above([1, parts])
     sure = surely*maxval(error([1, parts]))
@@ -85,8 +85,8 @@ contains
 
   contains
 
-    !> By how much the approach is above the retreat in a part of the travel, along the slope that
-    !> both have there.
+    !> How far the approach lies above the retreat in a part of the travel, beside their common
+    !> slope.
     pure subroutine compare(part, above, error)
       integer, intent(in) :: part
       real(wp), intent(out) :: above, error
@@ -116,7 +116,7 @@ contains
       error = sqrt(error)
     end subroutine compare
 
-    !> Slope of the signal at the samples of smallest `place`, against it.
+    !> Minus the slope of the signal at the samples with the smallest `place`.
     pure subroutine slope_at(place, slope, error)
       real(wp), intent(in) :: place(:)
       real(wp), intent(out) :: slope, error
@@ -133,8 +133,8 @@ contains
 
   end subroutine check_ways
 
-  !> Means of what is left over the samples nearest to the other body and the as many before them,
-  !> and how far apart these are.
+  !> The mean residual of the samples nearest to the other body, that of as many before them, and
+  !> the distance between both.
   pure subroutine nearest(measured, left, near, before, travel)
     type(measured_t), intent(in) :: measured
     real(wp), intent(in) :: left(:)

@@ -1,5 +1,5 @@
-!> A measured force curve: the base of the spring moves to the other body and back, and its
-!> deflection, or the force, is recorded.
+!> A measured force curve: the deflection of a spring, or the force, while its base moves to the
+!> other body and back.
 module measured_curve
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
@@ -9,33 +9,33 @@ module measured_curve
   private
   public :: measured_t, read_measured
 
-  !> Samples in the order of the file, those of the approach first. Where undeformed bodies under a
-  !> relaxed spring would touch, z is the contact point; the position of the drive (`driven_pieces`)
-  !> is facing*(z - contact point): facing = 1 where z falls towards the other body, else -1.
+  !> Samples in the order of the file, the approach first. The contact point is the z at which
+  !> undeformed bodies under a relaxed spring would touch. The position of the drive (`drive_t`) is
+  !> facing*(z - contact point); facing is 1 if z falls towards the other body, else -1.
   type :: measured_t
     real(wp), allocatable :: z(:), signal(:)
     logical, allocatable :: inward(:)
     real(wp) :: facing = 1
-    !> Samples so far from contact that they are the baseline, once that is known.
+    !> Samples far from contact, which show the baseline, once they are known.
     logical, allocatable :: far(:)
-    !> Samples that are neither outliers nor left out by the deck.
+    !> Samples that count: neither outliers nor skipped by the deck.
     logical, allocatable :: usable(:), skipped(:)
   contains
     procedure :: outlier
   end type measured_t
 
-  !> Samples of a way, fewer of which are no curve.
+  !> Fewest samples of a way.
   integer, parameter :: fewest = 20
-  !> How often what has noise turns round, and what goes there and back, over the number of samples;
-  !> the longest travel of a base [m].
+  !> Turns over the number of samples: above `rough` a column is noise, below `even` it goes there
+  !> and back. The longest travel of a base [m].
   real(wp), parameter :: rough = 0.2_wp, even = 0.02_wp, longest = 1.0e-3_wp
-  !> A way begins and ends with this part of its samples; a turn that is nearer to the first or the
-  !> last sample than that is none.
+  !> The part of a way's samples at either end within which a turn does not count, and over which
+  !> the ends are averaged.
   real(wp), parameter :: end_part = 0.1_wp
 
 contains
 
-  !> Which samples are outliers.
+  !> Marks the outliers.
   pure function outlier(self)
     class(measured_t), intent(in) :: self
     logical :: outlier(size(self%z))
@@ -43,8 +43,8 @@ contains
     outlier = .not. (self%usable .or. self%skipped)
   end function outlier
 
-  !> Reads what `request` says, whose file is where a path from here leads. A third column says
-  !> which way a sample is of: 0 approach, 1 retreat; without one the ways part where z turns.
+  !> Reads what `request` says, from its file. A third column says of which way a sample is: 0
+  !> approach, 1 retreat. Without one the ways part where z turns.
   subroutine read_measured(request, measured, error)
     type(measurement_t), intent(in) :: request
     type(measured_t), intent(out) :: measured
@@ -91,7 +91,7 @@ contains
     call find_facing(table%source%file, measured, error)
   end subroutine read_measured
 
-  !> Refuses columns that are exchanged, and positions that cannot be in metres.
+  !> Refuses columns that are exchanged, and positions that are not in metres.
   subroutine check_columns(file, z, signal, error)
     character(len=*), intent(in) :: file
     real(wp), intent(in) :: z(:), signal(:)
@@ -107,7 +107,7 @@ contains
 
   contains
 
-    !> How often a number turns round.
+    !> How often the differences of a column change their sign.
     pure integer function turns_of(number) result(turns)
       real(wp), intent(in) :: number(:)
       integer :: n
@@ -118,7 +118,7 @@ contains
 
   end subroutine check_columns
 
-  !> Which samples come before z turns round; where it does not, `segment` decides.
+  !> Marks the samples before the turn of z; where z does not turn, `segment` decides.
   pure function before_turn(z, segment) result(inward)
     real(wp), intent(in) :: z(:)
     character(len=*), intent(in) :: segment
@@ -132,7 +132,8 @@ contains
     inward = [(i <= turn, i=1, size(z))]
   end function before_turn
 
-  !> Which way z goes when the bodies approach; fails where a way is too short or the two disagree.
+  !> Finds in which sense z changes on the approach. It fails where a way is too short or both ways
+  !> have the same sense.
   subroutine find_facing(file, measured, error)
     character(len=*), intent(in) :: file
     type(measured_t), intent(inout) :: measured
@@ -154,7 +155,7 @@ contains
     measured%facing = merge(1.0_wp, -1.0_wp, sum(travel) < 0)
   end subroutine find_facing
 
-  !> How far z goes from the begin to the end of a way.
+  !> The change of z from the begin to the end of a way.
   pure real(wp) function travel_of(z) result(travel)
     real(wp), intent(in) :: z(:)
     integer :: part

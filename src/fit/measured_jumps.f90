@@ -1,9 +1,11 @@
-!> Jumps in a measured curve from one branch to another. In a jump inward the force falls, in one
-!> outward it rises, over less of the base's travel than the spring alone would take for it. Before
-!> any model is known the means of some samples before and of as many after a place are compared: of
-!> few where that is enough to stand out of the noise, of more where it is not. Where both branches
-!> are given, each place between two samples has a likelihood, that of the samples before it lying
-!> on the one branch and those after it on the other. Samples that were taken during the jump lie on
+!> Jumps of a measured curve between branches. The force falls in a jump inward and rises in a jump
+!> outward, over less travel of the base than the spring alone would need.
+!>
+!> Before a model is known, the mean of some samples before a place is compared with that of as many
+!> after it: of few samples if the difference stands out of the noise, otherwise of more.
+!>
+!> Once both branches are known, each place between two samples has a likelihood: that the samples
+!> before it lie on one branch and those after it on the other. Samples taken during the jump lie on
 !> neither.
 module measured_jumps
   use kinds, only: wp
@@ -12,31 +14,31 @@ module measured_jumps
   private
   public :: measured_jump_t, find_jump, likely_jump
 
-  !> Samples up to `before` - 1 are before it, those from `after` on after it; 0 where none was
-  !> seen. Where the base was, with the uncertainty of that; by how much the signal changes.
+  !> A jump between the samples `before` and `after`; 0 where none was seen. Position of the base
+  !> with its uncertainty, and the change of the signal.
   type :: measured_jump_t
     integer :: before = 0, after = 0
     real(wp) :: z = 0, uncertainty = 0, change = 0
   end type measured_jump_t
 
-  !> Change over what the spring makes of it; what is left of it over its noise; most steps that a
-  !> jump takes in a record that an amplifier has smoothed.
+  !> Least change over what the spring makes of it; least remaining change over the noise; most
+  !> steps of a jump that an amplifier has smoothed.
   real(wp), parameter :: steep = 3, seen = 8
   integer, parameter :: most_steps = 6
 
-  !> Most samples within a jump that an instrument smooths. A sample that is farther from both
-  !> branches than this part of the jump, and than these standard deviations, is one, or an outlier:
-  !> a single one is as likely either, of several together each further one is rather within the
-  !> jump, by as many squares of standard deviations.
+  !> Most samples within a smoothed jump. A sample is within the jump, or an outlier, if it is
+  !> farther from both branches than this part of the jump and this many standard deviations. A
+  !> single one is either with equal likelihood; each further neighbour favours the jump by
+  !> `together`, in squares of standard deviations.
   integer, parameter :: most_within = 6
   real(wp), parameter :: off_part = 0.2_wp, off = 4, together = 4
-  !> Which side a sample is on is known if the other has less than this chance; the jump, if it is
-  !> not among more than this part of the samples of a way.
+  !> The side of a sample is known if the other has less than this chance; the jump is known if less
+  !> than this part of the way's samples is doubtful.
   real(wp), parameter :: doubtful = 1.0e-3_wp, known_part = 0.2_wp
 
 contains
 
-  !> The largest jump on the way in or out. deviation: of the noise; stiffness: of the spring, units
+  !> The largest jump on the way in or out. deviation: of the noise. stiffness: of the spring, units
   !> of signal over z.
   pure type(measured_jump_t) function find_jump(measured, deviation, stiffness, inward) result(jump)
     type(measured_t), intent(in) :: measured
@@ -70,7 +72,7 @@ contains
       width = 2*width
     end do
     if (k == 0) return
-    ! Somewhere in the middle of as many samples as were needed to see it.
+    ! The jump is near the middle of the samples that were compared.
     first = k - width/2
     last = k + 1 + width/2
     do while (width == 1 .and. first > 1 .and. last - first < most_steps)
@@ -88,14 +90,15 @@ contains
     associate (z => measured%z)
       k = merge(first + 1, last, width == 1)
       jump%z = 0.5_wp*(z(at(first)) + z(at(k)))
-      ! That of an even distribution between the two, and of steps that are not equal.
+      ! The deviation of an even distribution between the two samples, or that of an average step if
+      ! it is larger.
       jump%uncertainty = max(abs(z(at(k)) - z(at(first))), (maxval(z) - minval(z))/n)/sqrt(12.0_wp)
     end associate
 
   contains
 
-    !> Whether the signal goes the way of a jump from sample i to the next by more than the spring
-    !> makes of it, and more than noise does.
+    !> Whether the signal changes from sample i to the next as in a jump, by more than spring and
+    !> noise explain.
     pure logical function goes_on(i)
       integer, intent(in) :: i
 
@@ -105,10 +108,10 @@ contains
 
   end function find_jump
 
-  !> before(i), after(i): the squares of what either branch leaves of sample i in standard
-  !> deviations, 0 for samples that do not count; change: of the signal in the jump, `noise` its
-  !> standard deviation. The number of a sample is counted from `first`. No jump where its
-  !> place is not seen.
+  !> The jump by likelihood. before(i), after(i): squared distances of sample i from either branch
+  !> in standard deviations; 0 for samples that do not count. change: of the signal in the jump.
+  !> noise: its standard deviation. first: number of the first sample. No jump where its place is
+  !> not known.
   pure type(measured_jump_t) function likely_jump(z, before, after, change, noise, first) &
     result(jump)
     real(wp), intent(in) :: z(:), before(:), after(:), change, noise
@@ -162,7 +165,7 @@ contains
     jump%change = change
   end function likely_jump
 
-  !> The first of some chances up to which the sum is no longer small.
+  !> The first index at which the sum of the chances is no longer small.
   pure integer function first_beyond(chance) result(i)
     real(wp), intent(in) :: chance(:)
     real(wp) :: total

@@ -1,9 +1,9 @@
-!> A measured curve by a model with given unknowns:
+!> A measured curve as a model with given unknowns predicts it:
 !>
 !>     signal = F(Z)/(k s) + baseline of the way + slope z ,   Z = facing (z - contact point) ,
 !>
-!> k the spring's stiffness, s the detector's sensitivity. What the model answered last is kept:
-!> moving the curve along, or another detector, needs no new solution.
+!> k: stiffness of the spring; s: sensitivity of the detector. The last response of the model is
+!> kept: another contact point or detector needs no new solution.
 module modelled_curve
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
@@ -16,14 +16,14 @@ module modelled_curve
   public :: modelled_curve_t
 
   type :: modelled_curve_t
-    !> Is to live as long as it is asked.
+    !> The target must exist as long as this object is used.
     class(force_model_t), pointer :: model => null()
     type(fit_samples_t) :: data
     type(unknown_t), allocatable :: unknown(:)
-    !> Spring, detector and contact point where they are no unknowns. Where the signal is the force,
-    !> it is the deflection of the deck's spring.
+    !> Spring, detector and contact point where they are not unknown. If the signal is a force, the
+    !> detector measures the deflection of the deck's spring.
     real(wp) :: spring = 1, sensitivity = 1, contact_point = 0
-    !> Signals up to this are wanted of the model, less their baseline.
+    !> The model is asked for signals up to this, without baseline.
     real(wp) :: largest = 0
     type(response_t) :: response
     real(wp), allocatable, private :: asked(:)
@@ -43,7 +43,7 @@ module modelled_curve
 
 contains
 
-  !> Takes another model, which has answered nothing yet.
+  !> Takes another model, and forgets the last response.
   subroutine use_model(self, model)
     class(modelled_curve_t), intent(inout) :: self
     class(force_model_t), intent(in), target :: model
@@ -52,7 +52,7 @@ contains
     if (allocated(self%asked)) deallocate (self%asked)
   end subroutine use_model
 
-  !> Has the model answer for these values, unless it has.
+  !> Has the model respond for these values, unless the last response serves.
   subroutine ask(self, value, with_rates, found)
     class(modelled_curve_t), intent(inout) :: self
     real(wp), intent(in) :: value(:)
@@ -69,7 +69,7 @@ contains
       (self%has_rates .or. .not. with_rates)
     if (found) return
     if (allocated(self%asked)) deallocate (self%asked)
-    ! From twice the travel, wherever the contact point is.
+    ! Twice the travel is enough, wherever the contact point is.
     farthest = 2*(maxval(self%data%measured%z) - minval(self%data%measured%z))
     call self%model%respond(asked(:size(asked) - 1), k, farthest, largest, with_rates, &
       self%response, found)
@@ -79,8 +79,8 @@ contains
     self%has_rates = with_rates
   end subroutine ask
 
-  !> The model's part of the signal at samples, for the values asked for last; all on one `side` of
-  !> their jump, or each on the side on which it was measured.
+  !> The model's signal at samples, without baseline, by the last response. side: of the jump, for
+  !> all samples; absent: that on which each was measured.
   function signal_of(self, value, sample, side) result(signal)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -101,7 +101,7 @@ contains
       self%number_of(value, of_sensitivity, self%sensitivity))
   end function signal_of
 
-  !> Its derivatives by the unknowns, (sample, unknown), at samples that count.
+  !> Its derivatives by the unknowns, (sample, unknown), at the samples that count.
   function signal_rates(self, value) result(by)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -121,7 +121,7 @@ contains
     end do
   end function signal_rates
 
-  !> Where the base is when the model's main jump on a way starts; NaN without one.
+  !> Position of the base at the start of the model's main jump on a way; NaN without one.
   real(wp) function jump_of(self, value, way) result(z)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -152,7 +152,8 @@ contains
       0.0_wp, load/self%number_of(value, of_spring, self%spring)**2)
   end function jump_rates
 
-  !> Derivatives by the unknowns in their order, from those by the model's and by the others.
+  !> Derivatives by the unknowns in their order, from those by the model's unknowns and by the
+  !> others.
   pure function unfolded(role, by_model, by_contact_point, by_sensitivity, by_spring) result(by)
     integer, intent(in) :: role(:)
     real(wp), intent(in) :: by_model(:), by_contact_point, by_sensitivity, by_spring
@@ -176,8 +177,8 @@ contains
     model = model + baseline
   end subroutine split
 
-  !> The contact points with which the nearest sample is anywhere from the end of what the model
-  !> knows of the contact out to where nothing holds the bodies together.
+  !> The interval of contact points for which the nearest sample lies between the end of the model's
+  !> contact and the outermost state in contact.
   subroutine reach(self, value, ends, found)
     class(modelled_curve_t), intent(inout) :: self
     real(wp), intent(in) :: value(:)
@@ -198,7 +199,7 @@ contains
         if (i > 1) outer = max(outer, maxval(position))
       end associate
     end do
-    ! Z = facing z - facing (contact point).
+    ! Z = facing (z - contact point), solved for the contact point.
     ends = self%data%measured%facing*(nearest - [inner, outer])
   end subroutine reach
 

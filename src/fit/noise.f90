@@ -1,6 +1,6 @@
-!> The noise of a signal, from samples that would be a straight line without it. Neighbours are
-!> correlated where an instrument filters: a sample is then foretold from some before it, and what
-!> is left of it is white (autoregression; Levinson, 1947, and Durbin, 1960).
+!> The noise of a signal, from samples that would lie on a straight line without it. An instrument's
+!> filter correlates neighbours: a linear prediction from some previous samples then leaves white
+!> noise (autoregression; Levinson, 1947, and Durbin, 1960).
 module noise
   use kinds, only: wp
   implicit none
@@ -8,22 +8,22 @@ module noise
   public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, &
     median_of, normal_median, whiten
 
-  !> Most samples from which another is foretold.
+  !> Most samples that a prediction uses.
   integer, parameter :: longest = 8
 
-  !> What chance hardly adds to n ln(left^2) by any of so many orders.
+  !> The gain n ln(left^2) of any order that is hardly due to chance.
   real(wp), parameter :: by_chance = 10
-  !> The median of the magnitude of a normal number.
+  !> The median of the magnitude of a standard normal number.
   real(wp), parameter :: normal_median = 0.6745_wp
 
-  !> Standard deviation; correlation of samples so many apart; how many of those before a sample
-  !> tell something of it, by what weights (of the nearest first, column k where there are k), and
-  !> what then is left of the standard deviation.
+  !> deviation: standard deviation. correlation(k): of samples k apart. order: previous samples that
+  !> predict one. weight(:k, k): weights of the prediction from k samples, the nearest first.
+  !> left(k): standard deviation that this prediction leaves.
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
-    !> By as many independent samples it is known; and whether these are the steps between the
-    !> samples that it is compared with.
+    !> The number of independent samples that the deviation is known from, and whether it is known
+    !> from the steps between the samples.
     real(wp) :: known_by = huge(1.0_wp)
     logical :: of_steps = .false.
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
@@ -33,7 +33,7 @@ module noise
 
 contains
 
-  !> The deviation of white noise whose means over many samples scatter as much.
+  !> The deviation of white noise with the same scatter of means over many samples.
   pure real(wp) function long_deviation(self) result(deviation)
     class(noise_t), intent(in) :: self
 
@@ -41,7 +41,7 @@ contains
       abs(1 - sum(self%weight(:self%order, max(1, self%order))))
   end function long_deviation
 
-  !> Noise without correlation.
+  !> Uncorrelated noise.
   pure type(noise_t) function white_noise(deviation) result(noise)
     real(wp), intent(in) :: deviation
 
@@ -50,8 +50,8 @@ contains
     noise%left = deviation
   end function white_noise
 
-  !> The noise of a signal at equal steps, of which each run of samples is a straight line in z;
-  !> run(i) is the number of the run of sample i.
+  !> The noise of a signal at equal steps, which is a straight line in z over each run. run(i):
+  !> number of the run of sample i.
   pure function noise_of(z, signal, run) result(noise)
     real(wp), intent(in) :: z(:), signal(:)
     integer, intent(in) :: run(:)
@@ -66,7 +66,7 @@ contains
     do k = 0, longest
       covariance(k) = sum(r(1 + k:)*r(:n - k), run(1 + k:) == run(:n - k))/n
     end do
-    ! Each line took two unknowns.
+    ! Each line has two unknowns.
     noise = white_noise(sqrt(covariance(0)*n/max(1, n - 2*(maxval(run) - minval(run) + 1))))
     noise%known_by = n
     if (.not. covariance(0) > 0) return
@@ -74,8 +74,8 @@ contains
     call find_weights(noise, n)
   end function noise_of
 
-  !> White noise that makes the steps between neighbours of one run in something smooth; `steps`:
-  !> how many there are (von Neumann, 1941).
+  !> White noise from the steps between neighbours of a run in a smooth signal. steps: their number
+  !> (von Neumann, 1941).
   pure subroutine noise_of_steps(smooth, run, noise, steps)
     real(wp), intent(in) :: smooth(:)
     integer, intent(in) :: run(:)
@@ -87,13 +87,13 @@ contains
     steps = count(mask)
     noise = white_noise(sqrt(sum((smooth(2:) - smooth(:size(run) - 1))**2, mask)/ &
       (2*max(1, steps))))
-    ! Steps have a sample in common.
+    ! Neighbouring steps share a sample.
     noise%known_by = max(1.0_wp, 2*steps/3.0_wp)
     noise%of_steps = .true.
   end subroutine noise_of_steps
 
-  !> The deviation of white noise in a signal that otherwise is smooth, but for outliers: from the
-  !> median of its second differences.
+  !> The deviation of white noise in a smooth signal with outliers, from the median of its second
+  !> differences.
   pure real(wp) function rough_deviation(signal) result(deviation)
     real(wp), intent(in) :: signal(:)
     !> The sum of the squares of 1, -2, 1.
@@ -123,7 +123,7 @@ contains
     end do
   end function median_of
 
-  !> What is left of the samples in `mask` beside their straight line.
+  !> The samples in `mask` minus their straight line.
   pure function off_line(z, signal, mask) result(r)
     real(wp), intent(in) :: z(:), signal(:)
     logical, intent(in) :: mask(:)
@@ -135,9 +135,8 @@ contains
       max(sum((z - middle(1))**2, mask), tiny(1.0_wp))
   end function off_line
 
-  !> The weights of all orders from the correlations, and the order that is worth its unknowns: the
-  !> one with the least n ln(left^2) + order ln(n) (Schwarz, 1978), if that is so much less than for
-  !> none that chance hardly makes it.
+  !> The weights of all orders from the correlations, and the order with the least n ln(left^2) +
+  !> order ln(n) (Schwarz, 1978), if chance does not explain the gain over order 0.
   pure subroutine find_weights(noise, n)
     type(noise_t), intent(inout) :: noise
     integer, intent(in) :: n
@@ -169,8 +168,8 @@ contains
     reversed = a(size(a):1:-1)
   end function reversed
 
-  !> Makes columns of numbers, one a sample, such that noise in them is white and of deviation 1;
-  !> samples of different runs are not correlated.
+  !> Transforms columns of numbers, one a sample, so that noise in them becomes white with deviation
+  !> 1. Samples of different runs are uncorrelated.
   pure subroutine whiten(noise, run, column)
     type(noise_t), intent(in) :: noise
     integer, intent(in) :: run(:)

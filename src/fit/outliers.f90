@@ -1,18 +1,18 @@
-!> Samples that stand apart from those on either side of them: spikes, which come back. What goes on
-!> as it was before, jumps in one way or bends is none.
+!> Outliers: samples that stand apart from their neighbours on both sides. A jump, a bend or a
+!> change that lasts is not one.
 module outliers
   use kinds, only: wp
   implicit none
   private
   public :: stand_apart
 
-  !> Neighbours on each side, of which the median counts: one of three may be a spike itself.
+  !> Neighbours on each side, whose median is compared: one of three may be an outlier itself.
   integer, parameter :: neighbours = 3
 
 contains
 
-  !> Which samples are farther than their `tolerance` outside the range between the medians of their
-  !> neighbours of the same run, those that are not `usable` left out.
+  !> Marks samples that lie more than their `tolerance` outside the range between the medians of
+  !> their neighbours in the run. Samples that are not `usable` are ignored.
   pure function stand_apart(signal, run, usable, tolerance) result(apart)
     real(wp), intent(in) :: signal(:), tolerance(:)
     integer, intent(in) :: run(:)
@@ -23,7 +23,7 @@ contains
     integer :: i, pass
 
     good = usable
-    ! Once more without those found first, which may have hidden others.
+    ! The second pass leaves out what the first found, which may have hidden others.
     do pass = 1, 2
       apart = .false.
       do i = 1, size(signal)
@@ -37,7 +37,7 @@ contains
     end do
   end function stand_apart
 
-  !> The median of the nearest good samples of the same run on one side of sample i.
+  !> The median of the nearest good samples of the run on one side of sample i.
   pure subroutine beside(signal, run, good, i, step, middle, known)
     real(wp), intent(in) :: signal(:)
     integer, intent(in) :: run(:), i, step

@@ -122,7 +122,7 @@ contains
     call range_of(request, problem, low, high)
     chosen = choose(self%numerics, problem, low, .false.)
     call prepare(self%steps, problem, chosen, self%numerics%accuracy)
-    if (self%steps%options%method == 'mixing') self%steps%options%method = 'anderson'
+    self%steps%options%mixing = .false.
     self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits, store=self%store)
     call self%steps%know_path(high, low, .true., silent, farthest_wanted(request, problem), &
       self%numerics%accuracy)

@@ -1,5 +1,5 @@
-!> The data once a model has been fitted to them: what is left shows the noise, the outliers and
-!> where the curve jumps better than the curve itself.
+!> A second examination of the data with a fitted model: residuals show noise, outliers and jumps
+!> better than the curve itself.
 module second_look
   use kinds, only: wp
   use noise, only: noise_t, noise_of, noise_of_steps, median_of, normal_median
@@ -10,17 +10,17 @@ module second_look
   private
   public :: look_again
 
-  !> Standard deviations by which an outlier stands apart: one good sample in 150,000 does.
+  !> Standard deviations beyond which a sample is an outlier; one good sample in 150,000 is.
   real(wp), parameter :: apart = 4.5_wp
-  !> Far samples that show whether noise is correlated; how sure it must be that the noise far from
-  !> contact is another than elsewhere, in standard errors.
+  !> Far samples that suffice to find a correlation of the noise; standard errors by which the noise
+  !> far from contact must differ from that elsewhere.
   integer, parameter :: enough = 50
   real(wp), parameter :: differs = 4
 
 contains
 
-  !> Finds noise, outliers and jumps again. value: what fits best so far. keep_noise: it
-  !> is given. settled: nothing has changed that counts.
+  !> Finds noise, outliers and jumps again. value: the best fit so far. keep_noise: the noise is
+  !> given. settled: nothing significant has changed.
   subroutine look_again(curve, value, keep_noise, settled)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: value(:)
@@ -37,9 +37,9 @@ contains
     associate (data => curve%data)
       usable = data%measured%usable
       deviation = data%noise%deviation
-      ! A model that is off leaves more than noise nearly everywhere.
+      ! A wrong model leaves large residuals nearly everywhere.
       spread = max(deviation, median_of(abs(left(data%sample)))/normal_median)
-      ! Near a jump the model's side is in doubt, and what was an outlier stays one.
+      ! Near a jump, on whose side the model may be wrong, outliers are kept.
       data%measured%usable = merge(usable, .not. (data%measured%skipped .or. &
         stand_apart(left, 3*data%way + data%side, .not. data%measured%skipped, &
         [(apart*spread, way=1, size(left))])), data%side < 0)
@@ -58,7 +58,7 @@ contains
     call curve%data%take(1)
   end subroutine look_again
 
-  !> The noise by what is left, if possible by all samples.
+  !> The noise of the residuals, of all samples if possible.
   subroutine renew_noise(curve, left)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: left(:)
@@ -81,7 +81,7 @@ contains
     end associate
   end subroutine renew_noise
 
-  !> Where the curve jumps from one branch of the model to the other.
+  !> The jump of the curve from one branch of the model to the other.
   type(measured_jump_t) function jump_by_model(curve, value, baseline, left, way) result(jump)
     type(modelled_curve_t), intent(in) :: curve
     real(wp), intent(in) :: value(:), baseline(:), left(:)

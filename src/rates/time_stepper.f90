@@ -70,7 +70,6 @@ contains
       if (.not. done .and. allocated(self%drainage)) then
         ! The fluid's part of the Jacobian changes much where gaps close.
         call self%guess(from, time, position, control, to%state)
-        self%frozen%factors%valid = .false.
         call solve_anderson(self%equations_t, newton_of(self%options), self%frozen, control, &
           to%state, done)
       end if

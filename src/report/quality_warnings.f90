@@ -57,7 +57,7 @@ contains
     real(wp) :: enough, estimate
 
     associate (tolerance => outcome%chosen%options%tolerance)
-      if (summary%is_true('converged') .and. .not. stops_on_change(outcome) .and. &
+      if (summary%is_true('converged') .and. .not. outcome%chosen%options%stop_on_change .and. &
         summary%number('worst_residual') > &
         max(tolerance, scene%numerics%accuracy, usual_residual)) &
         call summary%warn('rounding leaves residuals of up to '// &
@@ -88,21 +88,13 @@ contains
     logical, intent(in) :: ended
     type(summary_t), intent(inout) :: summary
 
-    if (.not. stops_on_change(outcome)) return
+    if (.not. outcome%chosen%options%stop_on_change) return
     call summary%warn('the iteration was stopped on a small change of the displacement, '// &
       'which is not convergence: the largest residual left is '// &
       short_number(summary%number('worst_residual'))//' lengths of the force law')
     call summary%set('converged', ended .and. &
       summary%number('worst_residual') <= outcome%chosen%options%tolerance)
   end subroutine judge_stopping
-
-  !> Whether the iteration stops on a small change, whatever the residual.
-  pure logical function stops_on_change(outcome)
-    type(experiment_result_t), intent(in) :: outcome
-
-    stops_on_change = outcome%chosen%options%stop_on_change .and. &
-      outcome%chosen%options%method == 'mixing'
-  end function stops_on_change
 
   !> A number for a message, to three digits.
   pure function short_number(x) result(text)

@@ -2,6 +2,7 @@
 !> is not as it should be.
 module summarise
   use kinds, only: wp, long
+  use numerics_choice, only: grid_names, unchosen, edge_locked
   use dimensionless_problem, only: problem_t, adhesion_strength, tabor_parameter, &
     surface_energy
   use classical, only: jkr_pull_off, dmt_pull_off
@@ -45,7 +46,7 @@ contains
     call judge_law(problem, summary)
     if (allocated(scene%classical)) call summarise_classical(problem, scene%classical, summary)
     if (allocated(scene%approximations)) call summarise_approximations(problem, summary)
-    if (.not. allocated(outcome%chosen%grid)) return
+    if (outcome%chosen%grid == unchosen) return
     call describe_numerics(outcome, summary)
     call summarise_branches(scene, problem, outcome, summary)
     if (allocated(outcome%timed)) &
@@ -59,7 +60,7 @@ contains
     call judge_layers(problem, extent_of(outcome), summary)
     if (.not. outcome%differentiated) &
       call summary%fail_with('sensitivity: not all derivatives were found')
-    call judge_resolution(outcome%chosen%grid == 'edge_locked', summary)
+    call judge_resolution(outcome%chosen%grid == edge_locked, summary)
     call judge_accuracy(scene, outcome, summary)
     call judge_stopping(outcome, ended_as_planned(outcome), summary)
   end function summary_of
@@ -69,8 +70,8 @@ contains
     type(experiment_result_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
 
-    call summary%set('grid', outcome%chosen%grid)
-    call summary%set('method', trim(outcome%chosen%options%method))
+    call summary%set('grid', trim(grid_names(outcome%chosen%grid)))
+    call summary%set('method', outcome%chosen%method)
     call summary%set('chosen_because', outcome%chosen%because)
     call summary%set('nodes', int(outcome%nodes, long))
     call summary%set('worst_residual', 0.0_wp)
