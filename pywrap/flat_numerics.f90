@@ -58,7 +58,7 @@ contains
   !> Whether a curve with these values and slopes at rising places may turn between one of them and
   !> the next: 1 if so.
   subroutine turning_intervals(x, value, slope, turns, n)
-    use path_extremum, only: may_turn
+    use path_search, only: may_turn
     use interpolation, only: hermite_through
     integer(c_int), intent(in) :: n
     real(c_double), intent(in) :: x(n), value(n), slope(n)
@@ -66,10 +66,8 @@ contains
     integer :: i
 
     do i = 1, n - 1
-      associate (both => slope(i:i + 1))
-        turns(i) = merge(1, 0, may_turn(hermite_through(x(i:i + 1), value(i:i + 1), both), &
-          x(i:i + 1), both))
-      end associate
+      turns(i) = merge(1, 0, may_turn(hermite_through(x(i:i + 1), value(i:i + 1), &
+        slope(i:i + 1)), x(i:i + 1)))
     end do
   end subroutine turning_intervals
 

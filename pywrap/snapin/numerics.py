@@ -80,7 +80,7 @@ def gauss_rule(points):
 
 
 def turning_intervals(x, value, slope):
-    """Return for each interval of a curve whether it may turn there (src/path/path_extremum.f90).
+    """Return for each interval of a curve whether it may turn there (src/path/path_search.f90).
 
     `x` rises; `value` and `slope` are the curve's at `x`.
     """
