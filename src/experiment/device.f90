@@ -4,12 +4,11 @@
 module device
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
-  use interpolation, only: hermite_t
   use solver, only: solver_t
   use path_tangent, only: of_h0
   use traced_path, only: traced_path_t
   use curve_states, only: curve_state_t, state_where
-  use driven_pieces, only: drive_t, driven_piece_t, find_pieces, state_driven
+  use driven_pieces, only: drive_t, driven_piece_t, find_pieces, piece_with, state_driven
   use driven_cycle, only: driven_t, leg_t, jump_t
   implicit none
   private
@@ -77,7 +76,7 @@ contains
 
     self%state = driven%piece(1)%first
     if (.not. allocated(self%start)) return
-    k = piece_with(driven%piece, driven%drive, self%start, 1, 1)
+    k = piece_with(driven%piece, driven%drive, self%start, 0, .true.)
     if (k == 0) return
     self%piece = k
     call self%move_to(self%start, driven)
@@ -164,17 +163,17 @@ contains
     real(wp), intent(out) :: at
     logical, intent(out) :: there_is
     type(curve_state_t) :: there
-    type(hermite_t) :: h0
-    real(wp) :: ends(2)
     integer :: i
 
     at = drive%position(piece%last)
     there_is = .not. piece%last_turns
     do i = piece%last%interval, piece%first%interval, -1
-      if (.not. self%path%joins(i)) cycle
-      call self%path%curve_between(i, of_h0, h0, ends)
-      if (.not. (h0%value(ends(1)) >= self%h0_end .and. h0%value(ends(2)) <= self%h0_end)) cycle
-      call state_where(self%solver, self%path, i, of_h0, self%h0_end, ends(1), ends(2), there)
+      if (.not. self%path%point(i)%leads_on) cycle
+      associate (ends => self%path%point(i:i + 1))
+        if (.not. (ends(1)%state%h0 >= self%h0_end .and. ends(2)%state%h0 <= self%h0_end)) cycle
+        call state_where(self%solver, self%path, i, of_h0, self%h0_end, ends(1)%coordinate, &
+          ends(2)%coordinate, there)
+      end associate
       there_is = there_is .or. there%converged
       if (there%converged) at = max(at, drive%position(there))
       exit
@@ -187,14 +186,13 @@ contains
     logical, intent(in) :: inward
     type(driven_t), intent(inout) :: driven
     type(jump_t), intent(out) :: jump
-    integer :: k, sense
+    integer :: k
 
     jump%inward = inward
     jump%before = self%state
     jump%energy = ieee_value(1.0_wp, ieee_quiet_nan)
-    sense = merge(1, -1, inward)
-    k = piece_with(driven%piece, driven%drive, driven%drive%position(self%state), &
-      self%piece + sense, sense)
+    k = piece_with(driven%piece, driven%drive, driven%drive%position(self%state), self%piece, &
+      inward)
     if (k == 0) return
     call state_driven(self%solver, self%path, driven%drive, driven%piece(k), &
       driven%drive%position(self%state), jump%after)
@@ -206,21 +204,5 @@ contains
     self%piece = k
     self%state = jump%after
   end subroutine leap
-
-  !> The first piece from number k on, counting by `sense`, with a state at a position; 0: none.
-  pure integer function piece_with(pieces, drive, position, k, sense) result(found)
-    type(driven_piece_t), intent(in) :: pieces(:)
-    type(drive_t), intent(in) :: drive
-    real(wp), intent(in) :: position
-    integer, intent(in) :: k, sense
-
-    found = k
-    do while (found >= 1 .and. found <= size(pieces))
-      if (position <= drive%position(pieces(found)%first) .and. &
-        position >= drive%position(pieces(found)%last)) return
-      found = found + sense
-    end do
-    found = 0
-  end function piece_with
 
 end module device

@@ -55,9 +55,9 @@ contains
     type(leg_t), intent(in) :: leg
     type(curve_node_t), allocatable :: nodes(:)
 
-    associate (ends => [leg%from%interval, leg%to%interval])
-      nodes = pack(all_nodes, all_nodes%shown .and. all_nodes%point > minval(ends) .and. &
-        all_nodes%point <= maxval(ends))
+    associate (first => min(leg%from%interval, leg%to%interval) + 1, &
+      last => max(leg%from%interval, leg%to%interval))
+      nodes = pack(all_nodes(first:last), all_nodes(first:last)%shown)
     end associate
     if (.not. leg%inward) nodes = nodes(size(nodes):1:-1)
   end function nodes_on

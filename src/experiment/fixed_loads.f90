@@ -1,7 +1,6 @@
 !> All equilibria under given loads, stable or not, wherever they are on the path.
 module fixed_loads
   use kinds, only: wp
-  use interpolation, only: hermite_t
   use solver, only: solver_t
   use path_tangent, only: of_load
   use traced_path, only: traced_path_t
@@ -30,20 +29,19 @@ contains
     logical, intent(inout) :: solved
     type(loaded_state_t) :: found
     type(curve_state_t), allocatable :: turns(:)
-    type(hermite_t) :: curve
-    real(wp) :: ends(2)
     real(wp), allocatable :: edges(:), beyond(:)
     integer :: i, k
     logical :: all_turns
 
     found%wanted = load
     do i = 1, path%last - 1
-      if (.not. path%joins(i)) cycle
+      if (.not. path%point(i)%leads_on) cycle
       call find_turns(solver, path, i, of_load, turns, all_turns)
       solved = solved .and. all_turns
-      call path%curve_between(i, of_load, curve, ends)
-      edges = [ends(1), turns%x, ends(2)]
-      beyond = [curve%value(ends(1)), turns%load, curve%value(ends(2))] - load
+      associate (ends => path%point(i:i + 1))
+        edges = [ends(1)%coordinate, turns%x, ends(2)%coordinate]
+        beyond = [ends(1)%state%load, turns%load, ends(2)%state%load] - load
+      end associate
       do k = 1, size(edges) - 1
         if ((beyond(k) < 0) .eqv. (beyond(k + 1) < 0)) cycle
         call state_where(solver, path, i, of_load, load, edges(k), edges(k + 1), found%state)

@@ -64,8 +64,11 @@ contains
       if (i == first .and. present(h0_start)) row = row_at_h0(steps, i, h0_start)
       if (i == first) path%first_piece = piece_of(steps%known, i)
       row%profile = any(abs(profiles - row%state%h0) <= 0)
-      call take(steps, row, observer, path)
+      ! Where the path passes to another mesh, points are there twice.
+      if (i == first .or. steps%known%path%comes_from_before(i)) &
+        call take(steps, row, observer, path)
       if (i == last .and. .not. ends_between) exit
+      if (.not. steps%known%path%point(i)%leads_on) cycle
       until = h0_end
       if (i < last) until = steps%known%path%point(i + 1)%state%h0
       call rows_between(steps, i, row%state%h0, until, widest, profiles, between)
@@ -88,7 +91,8 @@ contains
     real(wp), intent(in) :: h0
 
     do i = path%undeformed + 1, path%held - 1
-      if (path%point(i)%state%h0 >= h0 .and. path%point(i + 1)%state%h0 <= h0) return
+      if (path%point(i)%leads_on .and. path%point(i)%state%h0 >= h0 .and. &
+        path%point(i + 1)%state%h0 <= h0) return
     end do
     i = path%held + 1
   end function first_crossing
@@ -106,7 +110,7 @@ contains
     ends_between = .false.
     if (known%ending%early()) return
     do k = size(known%piece), 1, -1
-      ends_between = h0_end >= known%piece(k)%low .and. h0_end <= known%piece(k)%high
+      ends_between = h0_end >= known%piece(k)%last%h0 .and. h0_end <= known%piece(k)%first%h0
       if (.not. ends_between) cycle
       last = interval_at(known, k, h0_end)
       return
@@ -119,7 +123,7 @@ contains
     integer, intent(in) :: i
 
     do k = size(known%piece), 1, -1
-      if (i >= known%piece(k)%first .and. i <= known%piece(k)%last) return
+      if (i >= known%piece(k)%first%interval .and. i <= known%piece(k)%last%interval + 1) return
     end do
   end function piece_of
 

@@ -15,7 +15,7 @@ module path_stepper
   use traced_path, only: traced_path_t
   use path_span, only: path_span_t, new_path_span
   use path_prediction, only: missed_t, expect
-  use known_path, only: known_path_t, landing_t, trace, interval_at, lowest_point
+  use known_path, only: known_path_t, landing_t, trace_pieces, interval_at, lowest_point
   use stepper, only: branch_point_t, step_result_t, extreme_t, remember
   implicit none
   private
@@ -60,8 +60,8 @@ contains
 
     call self%begin_afar(h0_high, position, event)
     if (.not. event%ending%early()) then
-      call trace(self%solver_t, position%state, h0_low, into_contact, listener, self%known, &
-        farthest, accuracy)
+      call trace_pieces(self%solver_t, position%state, h0_low, into_contact, listener, &
+        self%known, farthest, accuracy)
     else
       self%known%ending = event%ending
       allocate (self%known%piece(0))
@@ -100,9 +100,10 @@ contains
     if (event%ending%early()) return
     from = h0
     if (position%number > 0) from = position%state%h0
-    do while (h0 > self%known%piece(position%piece)%high .or. &
-      h0 < self%known%piece(position%piece)%low)
-      call self%step_over(h0 < self%known%piece(position%piece)%low, from, position, lowest, event)
+    do while (h0 > self%known%piece(position%piece)%first%h0 .or. &
+      h0 < self%known%piece(position%piece)%last%h0)
+      call self%step_over(h0 < self%known%piece(position%piece)%last%h0, from, position, lowest, &
+        event)
       if (.not. event%ending%early()) cycle
       if (event%jumped) event%lowest = lowest
       return
@@ -210,10 +211,12 @@ contains
 
     associate (width => abs(ends(2) - ends(1)))
       beside = .false.
-      if (self%known%piece(piece)%begins_in_fold .and. i == self%known%piece(piece)%first) &
-        beside = abs(s - ends(1)) < beside_fold*width
-      if (self%known%piece(piece)%ends_in_fold .and. i + 1 == self%known%piece(piece)%last) &
-        beside = beside .or. abs(s - ends(2)) < beside_fold*width
+      associate (on => self%known%piece(piece))
+        if (on%first_turns .and. i == on%first%interval) &
+          beside = abs(s - ends(1)) < beside_fold*width
+        if (on%last_turns .and. i == on%last%interval) &
+          beside = beside .or. abs(s - ends(2)) < beside_fold*width
+      end associate
     end associate
   end function is_beside_fold
 

@@ -124,7 +124,7 @@ contains
     type(tangent_t) :: along
 
     associate (path => finder%steps%known%path)
-      place%mesh = path%mesh_between(state%interval)
+      place%mesh = path%point(state%interval)%mesh
       found = place%mesh /= no_mesh
       if (.not. found) return
       place%s = state%x

@@ -1,7 +1,6 @@
 !> What derivatives by the parameters of &sensitivity are found with.
 module sensitivity_finder
   use kinds, only: wp
-  use contact_state, only: state_t
   use traced_path, only: traced_path_t
   use variation, only: variation_t
   use path_stepper, only: path_stepper_t
@@ -31,19 +30,18 @@ contains
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: mesh
     real(wp), intent(in) :: s
-    real(wp) :: below, above, at
-    type(state_t) :: state
-    logical :: there
+    real(wp) :: below, above
     integer :: i
 
     below = s - usual
     above = s + usual
     do i = 1, path%held
       if (path%point(i)%fold .or. path%point(i)%load_extremum) cycle
-      call path%seen_on(i, mesh, state, at, there)
-      if (.not. there) cycle
-      if (at < s) below = max(below, at)
-      if (at > s) above = min(above, at)
+      if (path%point(i)%mesh /= mesh) cycle
+      associate (at => path%point(i)%coordinate)
+        if (at < s) below = max(below, at)
+        if (at > s) above = min(above, at)
+      end associate
     end do
     apart = part*(above - below)
   end function apart_at

@@ -174,11 +174,9 @@ contains
       branch%load_rate(size(rate, 1), 2, n))
     n = 0
     do i = piece%first%interval, piece%last%interval
-      if (.not. path%joins(i)) cycle
+      if (.not. path%point(i)%leads_on) cycle
       call path%curve_between(i, of_h0, h0, ends)
       call path%curve_between(i, of_load, load, ends, near)
-      near = [(findloc(nodes%point == near(k) .and. nodes%mesh == path%mesh_between(i), .true., 1), &
-        k=1, size(near))]
       if (i == piece%first%interval) ends(1) = piece%first%x
       if (i == piece%last%interval) ends(2) = piece%last%x
       if (.not. ends(2) > ends(1)) cycle

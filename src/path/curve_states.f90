@@ -1,5 +1,5 @@
-!> Single equilibria of the path: at a place, where Q = weights(1) h0 + weights(2) load has a value or
-!> turns round, on the path's meshes or, farther out, of bodies that do not deform.
+!> Single equilibria of the path: at a place, or where Q = weights(1) h0 + weights(2) load has a value
+!> or turns round; on the path's meshes or, farther out, of bodies that do not deform.
 module curve_states
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, contact_level_of
@@ -131,7 +131,7 @@ contains
     found%axis_gap = state%axis_gap
     found%residual = state%residual
     found%slopes = [tangent%h0, tangent%load]
-    associate (mesh => path%mesh_between(place%interval))
+    associate (mesh => path%point(place%interval)%mesh)
       found%radius = radius_of_gap(solver%problem%shape, contact_level_of(solver%problem), &
         solver%meshes%grid(mesh), state)
       call energy_of(solver%equations_t, mesh, state, found%energy, found%uncertainty)

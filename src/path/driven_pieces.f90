@@ -13,7 +13,8 @@ module driven_pieces
   use curve_states, only: curve_state_t, place_t, state_of, state_where, find_turns
   implicit none
   private
-  public :: drive_t, driven_piece_t, find_pieces, state_driven, through_spring
+  public :: drive_t, driven_piece_t, find_pieces, piece_with, interval_with, state_driven, &
+    through_spring
 
   !> Weights of h0 and load in D (`path_tangent`).
   type :: drive_t
@@ -86,7 +87,7 @@ contains
     call gauss_legendre(node, weight)
     work = 0
     do i = from%interval, to%interval
-      if (.not. path%joins(i)) cycle
+      if (.not. path%point(i)%leads_on) cycle
       call path%curve_between(i, merge([0.0_wp, 1.0_wp], [1.0_wp, 0.0_wp], self%weights(1) > 0), &
         force, ends)
       call path%curve_between(i, self%weights, driven, ends)
@@ -132,14 +133,15 @@ contains
     whole = .true.
     open = .false.
     do i = 1, path%last - 1
-      if (.not. path%joins(i)) cycle
+      if (.not. path%point(i)%leads_on) cycle
       ! Where a mode is unstable at fixed h0, the path is not stable however stiff the spring is.
       stable = path%point(i)%modes == 0
       if (.not. (stable .or. open)) cycle
       call path%curve_between(i, drive%weights, curve, ends)
       if (allocated(turns)) deallocate (turns)
       allocate (turns(0))
-      if (stable) then
+      ! Those of h0 are points of the path.
+      if (stable .and. abs(drive%weights(2)) > 0) then
         call find_turns(solver, path, i, drive%weights, turns, solved)
         whole = whole .and. solved
       end if
@@ -185,6 +187,41 @@ contains
 
   end subroutine find_pieces
 
+  !> The piece nearest to `from`, inward or outward, with a state at a position of the drive; 0:
+  !> there is none.
+  pure integer function piece_with(pieces, drive, position, from, inward) result(found)
+    type(driven_piece_t), intent(in) :: pieces(:)
+    type(drive_t), intent(in) :: drive
+    real(wp), intent(in) :: position
+    integer, intent(in) :: from
+    logical, intent(in) :: inward
+    integer :: sense
+
+    sense = merge(1, -1, inward)
+    found = from + sense
+    do while (found >= 1 .and. found <= size(pieces))
+      if (position <= drive%position(pieces(found)%first) .and. &
+        position >= drive%position(pieces(found)%last)) return
+      found = found + sense
+    end do
+    found = 0
+  end function piece_with
+
+  !> The interval of a piece in which weights(1) h0 + weights(2) load comes to a value. (Where the
+  !> path changes its mesh, it differs by the meshes' errors, and a value may lie between.)
+  pure integer function interval_with(path, piece, weights, wanted) result(i)
+    type(traced_path_t), intent(in) :: path
+    type(driven_piece_t), intent(in) :: piece
+    real(wp), intent(in) :: weights(2), wanted
+
+    do i = piece%first%interval, piece%last%interval - 1
+      if (.not. path%point(i)%leads_on) cycle
+      associate (end => path%point(i + 1)%state)
+        if (dot_product(weights, [end%h0, end%load]) <= wanted) return
+      end associate
+    end do
+  end function interval_with
+
   !> The state of a piece at which D has a value between those at its ends.
   subroutine state_driven(solver, path, drive, piece, wanted, state)
     class(solver_t), intent(inout) :: solver
@@ -193,18 +230,12 @@ contains
     type(driven_piece_t), intent(in) :: piece
     real(wp), intent(in) :: wanted
     type(curve_state_t), intent(out) :: state
-    type(hermite_t) :: curve
     real(wp) :: ends(2)
     integer :: i
 
-    do i = piece%first%interval, piece%last%interval
-      if (.not. path%joins(i)) cycle
-      call path%curve_between(i, drive%weights, curve, ends)
-      ends = part_of(ends, i, piece%first, piece%last)
-      if (curve%value(ends(2)) <= wanted) exit
-    end do
-    call state_where(solver, path, min(i, piece%last%interval), drive%weights, wanted, ends(1), &
-      ends(2), state)
+    i = interval_with(path, piece, drive%weights, wanted)
+    ends = part_of(path%point(i:i + 1)%coordinate, i, piece%first, piece%last)
+    call state_where(solver, path, i, drive%weights, wanted, ends(1), ends(2), state)
   end subroutine state_driven
 
 end module driven_pieces

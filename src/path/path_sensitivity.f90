@@ -48,8 +48,9 @@ contains
           cycle
         end if
         place%mesh = node%mesh
-        call path%seen_on(node%point, node%mesh, place%state, place%s, found)
-        if (found) call differentiate(equations, place, frozen, varied, change, found)
+        place%s = node%x
+        place%state = path%point(j)%state
+        call differentiate(equations, place, frozen, varied, change, found)
         if (.not. found) return
         do i = 1, size(varied)
           rate(i, j) = rate_t(change(i)%separation(size(change(i)%separation)), change(i)%load, &

@@ -12,7 +12,7 @@ module path_span
   use path_tangent, only: of_h0, of_load
   use arc, only: arc_t
   use path_search, only: found_t, find_place, place_on
-  use traced_path, only: traced_path_t, either_side
+  use traced_path, only: traced_path_t
   implicit none
   private
   public :: path_span_t, new_path_span
@@ -42,15 +42,11 @@ contains
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     type(path_span_t) :: span
-    integer :: j
     real(wp) :: middle
 
     span%point = i
-    span%mesh = path%mesh_between(i)
-    do j = max(1, i - either_side), min(path%held, i + 1 + either_side)
-      call path%add_to(j, span)
-      if (j == i .or. j == i + 1) span%ends(j + 1 - i) = span%coordinate(span%held)
-    end do
+    span%ends = path%point(i:i + 1)%coordinate
+    call path%add_to(i, span)
     middle = 0.5_wp*sum(span%ends)
     call span%support(middle, span%nodes, span%fitted)
     span%h0_curve = span%curve(of_h0, middle)

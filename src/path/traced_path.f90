@@ -1,29 +1,20 @@
-!> The record of the traced equilibrium path: its points in order from afar inward, among them every
-!> fold in h0 and every extremum of the load, and how many modes of the bodies are unstable between
-!> one point and the next.
-!>
-!> A fold is an extremum of h0 along the path. Whether stability is lost or gained there follows
-!> from the sense of turning in the plane of h0 and load (Maddocks, Arch. Rational Mech. Anal. 99,
-!> 1987): with primes for derivatives along the path, an eigenvalue of the operator passes zero
-!> upward where h0'' F' > 0. Far apart there are none below zero. Alternating signs would not do:
-!> of the two folds that follow the jump into contact at large sigma, the first makes a second mode
-!> unstable.
+!> The equilibrium path: its points in order from afar inward, among them every fold in h0 and every
+!> extremum of the load, and how many modes of the bodies are unstable between one point and the
+!> next. Points are known on one mesh; where the path passes to the next mesh, two of them are
+!> there again. Farther out than it was traced, points are of undeformed bodies.
 module traced_path
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use interpolation, only: hermite_t, hermite_through, most_hermite_nodes, find_nodes_about
   use contact_state, only: state_t
   use undeformed, only: load_undeformed, load_slope_undeformed
-  use solver, only: solver_t
   use edge_locked, only: approach
   use reported, only: error_t, measure_t
-  use path_tangent, only: tangent_t, of_h0, of_load
+  use path_tangent, only: tangent_t
   use arc, only: arc_t
-  use path_search, only: found_t, find_extrema
-  use continuation, only: continuation_t
   implicit none
   private
-  public :: traced_path_t, path_point_t, extend, pass_on, collapsed, either_side, no_mesh
+  public :: traced_path_t, path_point_t, no_mesh
 
   !> One equilibrium of the path.
   type :: path_point_t
@@ -33,14 +24,11 @@ module traced_path
     !> The mesh that it was solved on and its coordinate there (`path_coordinate`).
     integer :: mesh = approach
     real(wp) :: coordinate = 0
-    !> Unstable modes from here to the next point.
+    !> Whether the path leads on from here to the next point, and unstable modes on the way.
+    logical :: leads_on = .false.
     integer :: modes = 0
     !> Whether it is an extremum, of h0 or of the load.
     logical :: fold = .false., load_extremum = .false.
-    !> The last two equilibria before the mesh changes, on the next mesh too: every piece of
-    !> the path has both its ends on one mesh.
-    type(state_t), allocatable :: twin
-    type(tangent_t), allocatable :: twin_tangent
     !> What it is on a finer mesh, and its errors: once they were estimated.
     type(measure_t), allocatable :: fine
     type(error_t), allocatable :: error
@@ -53,16 +41,14 @@ module traced_path
     !> is of use: the end of the last stable piece.
     integer :: undeformed = 0, last = 0
   contains
+    procedure :: insert
     procedure :: begin_undeformed
-    procedure :: joins
-    procedure :: curve_between
-    procedure, private :: look
     procedure :: modes_at
+    procedure :: comes_from_before
     procedure :: add_to
-    procedure :: seen_on
     procedure :: arc_about
-    procedure, private :: is_behind
-    procedure :: mesh_between
+    procedure :: curve_between
+    procedure, private :: find_nearby
   end type traced_path_t
 
   !> What undeformed bodies are on in place of a mesh; their coordinate is -log(h0). Ratio of h0
@@ -73,29 +59,28 @@ module traced_path
   !> be too near to tell anything.
   integer, parameter :: either_side = 2
 
-  !> Without repulsion the bodies fall onto each other once they have jumped, and the path goes on
-  !> to no gap at all. What is left of the gap at the first fold when it is followed no farther,
-  !> and if there is no fold, how many of the law's lengths.
-  real(wp), parameter :: collapse = 0.3_wp
-  !> A load over the law's adhesion below which it is none: its extrema are of no consequence.
-  real(wp), parameter :: no_load = 1.0e-16_wp
-
 contains
 
-  !> Whether the newest state of a path is one of collapse.
-  pure logical function collapsed(problem, path)
-    type(problem_t), intent(in) :: problem
-    type(traced_path_t), intent(in) :: path
-    real(wp) :: scale
-    integer :: first
+  !> Puts a point in the given place, later ones move up.
+  pure subroutine insert(path, place, point)
+    class(traced_path_t), intent(inout) :: path
+    integer, intent(in) :: place
+    type(path_point_t), intent(in) :: point
+    type(path_point_t), allocatable :: longer(:)
+    integer :: j
 
-    collapsed = .false.
-    if (problem%law%edge_gap > 0) return
-    scale = 1
-    first = findloc(path%point(:path%held)%fold, .true., 1)
-    if (first > 0) scale = path%point(first)%state%axis_gap
-    collapsed = path%point(path%held)%state%axis_gap < collapse*scale
-  end function collapsed
+    if (.not. allocated(path%point)) allocate (path%point(64))
+    if (path%held == size(path%point)) then
+      allocate (longer(2*path%held))
+      longer(:path%held) = path%point
+      call move_alloc(longer, path%point)
+    end if
+    do j = path%held, place, -1
+      path%point(j + 1) = path%point(j)
+    end do
+    path%held = path%held + 1
+    path%point(place) = point
+  end subroutine insert
 
   !> Puts undeformed bodies from h0 = `farthest` inward before the first point, if that is nearer.
   subroutine begin_undeformed(self, problem, farthest)
@@ -114,6 +99,7 @@ contains
       do i = 0, n
         associate (point => all_points(i + 1))
           point%mesh = no_mesh
+          point%leads_on = i < n
           point%state%h0 = h0*(farthest/h0)**(1 - real(i, wp)/n)
           point%state%load = load_undeformed(problem, point%state%h0)
           point%state%axis_gap = point%state%h0
@@ -128,14 +114,65 @@ contains
     self%held = self%held + self%undeformed
   end subroutine begin_undeformed
 
-  !> Whether the path leads from point i to the next: from the last point of undeformed bodies it
-  !> goes on at the next point, which is the same place.
-  pure logical function joins(self, i)
+  !> Unstable modes of the i-th point; a fold has those of its more unstable side.
+  pure integer function modes_at(self, i)
     class(traced_path_t), intent(in) :: self
     integer, intent(in) :: i
 
-    joins = i /= self%undeformed
-  end function joins
+    modes_at = self%point(i)%modes
+    if (self%point(i)%fold .and. i > 1) modes_at = max(modes_at, self%point(i - 1)%modes)
+  end function modes_at
+
+  !> Whether the path leads to point i from the one before.
+  pure logical function comes_from_before(self, i)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: i
+
+    comes_from_before = i > 1
+    if (comes_from_before) comes_from_before = self%point(i - 1)%leads_on
+  end function comes_from_before
+
+  !> The points, from one number to another, that tell about what is between point i and the next.
+  pure subroutine find_nearby(self, i, from, to)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: i
+    integer, intent(out) :: from, to
+
+    do from = i, max(2, i - either_side + 1), -1
+      if (self%point(from - 1)%mesh /= self%point(i)%mesh) exit
+    end do
+    do to = i, min(self%held, i + 1 + either_side) - 1
+      if (self%point(to + 1)%mesh /= self%point(i)%mesh) exit
+    end do
+  end subroutine find_nearby
+
+  !> Adds the points that tell about what is between point i and the next to an arc.
+  pure subroutine add_to(self, i, arc)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: i
+    class(arc_t), intent(inout) :: arc
+    integer :: j, from, to
+
+    arc%mesh = self%point(i)%mesh
+    call self%find_nearby(i, from, to)
+    do j = from, to
+      call arc%add(self%point(j)%coordinate, self%point(j)%state, self%point(j)%tangent)
+    end do
+  end subroutine add_to
+
+  !> The arc of the points about s on a mesh.
+  pure function arc_about(self, mesh, s) result(arc)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    type(arc_t) :: arc
+    integer :: i
+
+    do i = findloc(self%point(:self%held)%mesh, mesh, 1), self%held - 1
+      if (self%point(i + 1)%mesh /= mesh .or. self%point(i + 1)%coordinate > s) exit
+    end do
+    call self%add_to(i, arc)
+  end function arc_about
 
   !> The polynomial that weights(1) h0 + weights(2) load is between point i and the next, the
   !> coordinates of these, and the points that it fits.
@@ -146,284 +183,19 @@ contains
     type(hermite_t), intent(out) :: curve
     real(wp), intent(out) :: ends(2)
     integer, allocatable, intent(out), optional :: fitted(:)
-    real(wp), dimension(2 + 2*either_side) :: at, value, slope
-    real(wp) :: s, numbers(2)
-    logical :: there
-    integer :: point_of(2 + 2*either_side), nodes(most_hermite_nodes), j, n, held, first
+    integer :: nodes(most_hermite_nodes), n, from, to, j
 
-    held = 0
-    first = 1
-    do j = max(1, i - either_side), min(self%held, i + 1 + either_side)
-      call self%look(j, self%mesh_between(i), weights, s, numbers, there)
-      there = there .and. .not. any(abs(at(:held) - s) <= 0)
-      if (there) then
-        held = held + 1
-        point_of(held) = j
-        at(held) = s
-        value(held) = numbers(1)
-        slope(held) = numbers(2)
-      end if
-      if (j == i) first = held
-    end do
-    ends = at(first:first + 1)
-    call find_nodes_about(at(:held), first, nodes, n)
-    curve = hermite_through(at(nodes(:n)), value(nodes(:n)), slope(nodes(:n)))
-    if (present(fitted)) fitted = point_of(nodes(:n))
+    call self%find_nearby(i, from, to)
+    to = min(to, max(self%last, i + 1))
+    associate (x => self%point(from:to)%coordinate)
+      call find_nodes_about(x, i + 1 - from, nodes, n)
+    end associate
+    nodes(:n) = nodes(:n) + from - 1
+    ends = self%point(i:i + 1)%coordinate
+    curve = hermite_through(self%point(nodes(:n))%coordinate, &
+      weights(1)*self%point(nodes(:n))%state%h0 + weights(2)*self%point(nodes(:n))%state%load, &
+      [(self%point(nodes(j))%tangent%of(weights), j=1, n)])
+    if (present(fitted)) fitted = nodes(:n)
   end subroutine curve_between
-
-  !> The coordinate of the i-th point on a mesh, and weights(1) h0 + weights(2) load there with its
-  !> derivative; there = .false. if that does not know it.
-  pure subroutine look(self, i, mesh, weights, s, numbers, there)
-    class(traced_path_t), intent(in) :: self
-    integer, intent(in) :: i, mesh
-    real(wp), intent(in) :: weights(2)
-    real(wp), intent(out) :: s, numbers(2)
-    logical, intent(out) :: there
-
-    s = 0
-    numbers = 0
-    associate (point => self%point(i))
-      there = point%mesh == mesh
-      if (there) then
-        s = point%coordinate
-        numbers = [dot_product(weights, [point%state%h0, point%state%load]), &
-          point%tangent%of(weights)]
-      else if (mesh == point%mesh + 1 .and. allocated(point%twin)) then
-        there = .true.
-        s = log(point%twin%scale)
-        numbers = [dot_product(weights, [point%twin%h0, point%twin%load]), &
-          point%twin_tangent%of(weights)]
-      end if
-    end associate
-  end subroutine look
-
-  !> Unstable modes of the i-th point; a fold has those of its more unstable side.
-  pure integer function modes_at(self, i)
-    class(traced_path_t), intent(in) :: self
-    integer, intent(in) :: i
-
-    modes_at = self%point(i)%modes
-    if (self%point(i)%fold .and. i > 1) modes_at = max(modes_at, self%point(i - 1)%modes)
-  end function modes_at
-
-  !> Adds the i-th point to an arc, if it is known on the arc's mesh.
-  pure subroutine add_to(self, i, arc)
-    class(traced_path_t), intent(in) :: self
-    integer, intent(in) :: i
-    class(arc_t), intent(inout) :: arc
-
-    associate (point => self%point(i))
-      if (point%mesh == arc%mesh) then
-        call arc%add(point%coordinate, point%state, point%tangent)
-      else if (arc%mesh == point%mesh + 1 .and. allocated(point%twin)) then
-        call arc%add(log(point%twin%scale), point%twin, point%twin_tangent)
-      end if
-    end associate
-  end subroutine add_to
-
-  !> The i-th point as a mesh has it; there = .false. if that does not know it.
-  pure subroutine seen_on(self, i, mesh, state, coordinate, there)
-    class(traced_path_t), intent(in) :: self
-    integer, intent(in) :: i, mesh
-    type(state_t), intent(out) :: state
-    real(wp), intent(out) :: coordinate
-    logical, intent(out) :: there
-    type(arc_t) :: alone
-
-    alone%mesh = mesh
-    call self%add_to(i, alone)
-    there = alone%held > 0
-    if (there) state = alone%state(1)
-    coordinate = alone%coordinate(1)
-  end subroutine seen_on
-
-  !> The arc of the points about s on a mesh.
-  pure function arc_about(self, mesh, s) result(arc)
-    class(traced_path_t), intent(in) :: self
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: s
-    type(arc_t) :: arc
-    integer :: i, j
-
-    do i = self%held, 1, -1
-      if (self%point(i)%mesh <= mesh .and. .not. self%is_behind(i, mesh, s)) exit
-    end do
-    arc%mesh = mesh
-    do j = max(1, i - either_side), min(self%held, i + 1 + either_side)
-      call self%add_to(j, arc)
-    end do
-  end function arc_about
-
-  !> Whether the i-th point is known on a mesh and lies farther along the path than s there.
-  pure logical function is_behind(self, i, mesh, s)
-    class(traced_path_t), intent(in) :: self
-    integer, intent(in) :: i, mesh
-    real(wp), intent(in) :: s
-
-    is_behind = .false.
-    associate (point => self%point(i))
-      if (point%mesh == mesh) then
-        is_behind = point%coordinate > s
-      else if (mesh == point%mesh + 1 .and. allocated(point%twin)) then
-        is_behind = log(point%twin%scale) > s
-      end if
-    end associate
-  end function is_behind
-
-  !> The mesh on which the piece from point i to point i + 1 is known.
-  pure integer function mesh_between(self, i)
-    class(traced_path_t), intent(in) :: self
-    integer, intent(in) :: i
-
-    mesh_between = max(self%point(i)%mesh, self%point(i + 1)%mesh)
-  end function mesh_between
-
-  !> Advances the tracer by a step and appends the new point. A new path begins with the tracer's
-  !> own newest state. lost: no step, however small, converged.
-  subroutine extend(path, walker, solver, lost)
-    type(traced_path_t), intent(inout) :: path
-    type(continuation_t), intent(inout) :: walker
-    class(solver_t), intent(inout) :: solver
-    logical, intent(out) :: lost
-
-    if (path%held == 0) call append(path, walker)
-    call walker%advance(solver, lost)
-    if (.not. lost) call append(path, walker)
-  end subroutine extend
-
-  !> Lets the tracer pass to the next mesh if it has come there, and puts the extrema that have been
-  !> passed before the newest point. lost: a solve failed.
-  subroutine pass_on(path, walker, solver, lost)
-    type(traced_path_t), intent(inout) :: path
-    type(continuation_t), intent(inout) :: walker
-    class(solver_t), intent(inout) :: solver
-    logical, intent(out) :: lost
-    type(found_t), allocatable :: extrema(:)
-    logical :: folds
-    integer :: pass, n, k
-
-    call change_mesh(path, walker, solver, lost)
-    do pass = 1, 2
-      folds = pass == 1
-      if (lost) return
-      n = walker%held
-      if (.not. folds .and. .not. any(abs(walker%state(max(1, n - 1):n)%load) > &
-        no_load*solver%problem%law%adhesion)) cycle
-      if (n < 2) return
-      call find_extrema(solver, walker%arc_t, walker%coordinate(n - 1:n), &
-        merge(of_h0, of_load, folds), extrema, lost)
-      do k = 1, size(extrema)
-        call put(path, walker, folds, extrema(k))
-      end do
-    end do
-  end subroutine pass_on
-
-  !> Makes the tracer's newest state the last point.
-  subroutine append(path, walker)
-    type(traced_path_t), intent(inout) :: path
-    type(continuation_t), intent(in) :: walker
-    type(path_point_t) :: point
-
-    if (path%held > 0) point%modes = path%point(path%held)%modes
-    point%state = walker%state(walker%held)
-    point%tangent = walker%tangent(walker%held)
-    point%mesh = walker%mesh
-    point%coordinate = walker%coordinate(walker%held)
-    call insert(path, path%held + 1, point)
-  end subroutine append
-
-  !> Lets the tracer change its mesh, and keeps what it took along as twins.
-  subroutine change_mesh(path, walker, solver, lost)
-    type(traced_path_t), intent(inout) :: path
-    type(continuation_t), intent(inout) :: walker
-    class(solver_t), intent(inout) :: solver
-    logical, intent(out) :: lost
-    real(wp) :: before(2)
-    integer :: mesh, i, k
-
-    mesh = walker%mesh
-    before = walker%coordinate(walker%held - 1:walker%held)
-    call walker%change_mesh(solver, lost)
-    if (lost .or. walker%mesh == mesh) return
-    do k = 1, 2
-      do i = path%held, 1, -1
-        associate (point => path%point(i))
-          if (point%mesh < mesh - 1) cycle
-          ! Where bands are narrow a state is taken along twice: its twin becomes the point.
-          if (point%mesh == mesh - 1 .and. allocated(point%twin)) then
-            if (abs(log(point%twin%scale) - before(k)) <= 0) call replace_by_twin(point, mesh)
-          end if
-          if (point%mesh == mesh .and. abs(point%coordinate - before(k)) <= 0) exit
-        end associate
-      end do
-      if (i == 0) cycle
-      path%point(i)%twin = walker%state(k)
-      path%point(i)%twin_tangent = walker%tangent(k)
-    end do
-  end subroutine change_mesh
-
-  !> Lets a point be what it is on the mesh of its twin.
-  pure subroutine replace_by_twin(point, mesh)
-    type(path_point_t), intent(inout) :: point
-    integer, intent(in) :: mesh
-
-    point%state = point%twin
-    point%tangent = point%twin_tangent
-    point%coordinate = log(point%state%scale)
-    point%mesh = mesh
-    deallocate (point%twin, point%twin_tangent)
-  end subroutine replace_by_twin
-
-  !> Puts an extremum, of h0 (a fold) or of the load, among the last points, by its coordinate on
-  !> the walker's mesh.
-  subroutine put(path, walker, fold, found)
-    type(traced_path_t), intent(inout) :: path
-    type(continuation_t), intent(in) :: walker
-    logical, intent(in) :: fold
-    type(found_t), intent(in) :: found
-    type(path_point_t) :: point
-    integer :: place, change
-
-    place = path%held
-    do while (place > 1)
-      if (.not. path%is_behind(place - 1, walker%mesh, found%coordinate)) exit
-      place = place - 1
-    end do
-    ! Before the first point of all nothing is known.
-    if (place < 2) return
-    point%state = found%state
-    point%tangent = found%tangent
-    point%mesh = walker%mesh
-    point%coordinate = found%coordinate
-    point%fold = fold
-    point%load_extremum = .not. fold
-    point%modes = path%point(place - 1)%modes
-    call insert(path, place, point)
-    if (.not. fold) return
-    ! At a maximum of h0 its second derivative is negative.
-    change = merge(-1, 1, -found%sense*found%tangent%load > 0)
-    path%point(place:path%held)%modes = path%point(place:path%held)%modes + change
-  end subroutine put
-
-  !> Puts a point in the given place, later ones move up.
-  subroutine insert(path, place, point)
-    type(traced_path_t), intent(inout) :: path
-    integer, intent(in) :: place
-    type(path_point_t), intent(in) :: point
-    type(path_point_t), allocatable :: longer(:)
-    integer :: j
-
-    if (.not. allocated(path%point)) allocate (path%point(64))
-    if (path%held == size(path%point)) then
-      allocate (longer(2*path%held))
-      longer(:path%held) = path%point
-      call move_alloc(longer, path%point)
-    end if
-    do j = path%held, place, -1
-      path%point(j + 1) = path%point(j)
-    end do
-    path%held = path%held + 1
-    path%point(place) = point
-  end subroutine insert
 
 end module traced_path

@@ -1,0 +1,308 @@
+!> Traces the equilibrium path: a tracer goes on step by step, from mesh to mesh, and what it passes
+!> becomes points of the path.
+!>
+!> A fold is an extremum of h0 along the path. Whether stability is lost or gained there follows
+!> from the sense of turning in the plane of h0 and load (Maddocks, Arch. Rational Mech. Anal. 99,
+!> 1987): with primes for derivatives along the path, an eigenvalue of the operator passes zero
+!> upward where h0'' F' > 0. Far apart there are none below zero. Alternating signs would not do:
+!> of the two folds that follow the jump into contact at large sigma, the first makes a second mode
+!> unstable.
+module tracing
+  use kinds, only: wp
+  use listener, only: listener_t
+  use dimensionless_problem, only: problem_t
+  use contact_state, only: state_t, state_from
+  use equilibrium, only: equations_t
+  use solver, only: solver_t
+  use edge_locked, only: approach
+  use contact_scales, only: largest_radius, lost_in_rounding
+  use locked_meshes, only: h0_control
+  use path_tangent, only: of_h0, of_load
+  use path_search, only: found_t, find_extrema
+  use continuation, only: continuation_t
+  use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
+  use traced_path, only: traced_path_t, path_point_t
+  use mending, only: mender_t, new_mender, left_on_path
+  implicit none
+  private
+  public :: tracing_t, trace
+
+  !> What was traced: how it ends, and whether in the fall of bodies that nothing keeps apart; the
+  !> largest part of the load that nodes leave out of its pressures, but of a fall.
+  type :: tracing_t
+    type(traced_path_t) :: path
+    type(ending_t) :: ending
+    logical :: fallen = .false.
+    real(wp) :: left_out = 0
+  end type tracing_t
+
+  !> Most points of a path before it is given up as going nowhere.
+  integer, parameter :: longest = 5000
+  !> Contact radii over the largest expected that no path has.
+  real(wp), parameter :: too_large = 5
+  !> Steps after which the listener hears of them: to write a message takes a tenth of a step.
+  integer, parameter :: steps_a_message = 8
+  !> Residual, in the law's lengths, that the points of the path have at most, whatever the deck
+  !> allows the experiment's states.
+  real(wp), parameter :: path_tolerance = 1.0e-8_wp
+
+  !> Without repulsion the bodies fall onto each other once they have jumped, and the path goes on
+  !> to no gap at all. What is left of the gap at the first fold when it is followed no farther,
+  !> and if there is no fold, how many of the law's lengths.
+  real(wp), parameter :: collapse = 0.3_wp
+  !> A load over the law's adhesion below which it is none: its extrema are of no consequence.
+  real(wp), parameter :: no_load = 1.0e-16_wp
+
+contains
+
+  !> Traces the path from a state far from contact, on the mesh for the approach, until it is stable
+  !> at h0_low; into_contact: until it is also on the mesh for contact. farthest: where given, there
+  !> are points enough for a smooth curve, and from there to the start bodies are undeformed.
+  !> accuracy: where given, meshes that leave out too much of the load for it are mended.
+  subroutine trace(solver, start, h0_low, into_contact, listener, known, farthest, accuracy)
+    class(solver_t), intent(inout) :: solver
+    type(state_t), intent(in) :: start
+    real(wp), intent(in) :: h0_low
+    logical, intent(in) :: into_contact
+    class(listener_t), intent(inout) :: listener
+    class(tracing_t), intent(inout) :: known
+    real(wp), intent(in), optional :: farthest, accuracy
+    type(continuation_t) :: walker
+    type(mender_t) :: mender
+    character(len=40) :: so_far
+    logical :: lost, blind, finished, mended
+    type(ending_t) :: going_on
+    real(wp) :: tolerance
+    logical :: guarded
+    integer :: steps
+
+    ! Where rounding hides the contact the path is of use up to its first fold.
+    blind = lost_in_rounding(solver%problem, &
+      largest_radius(solver%problem, h0_low, solver%meshes%level))
+    tolerance = solver%options%tolerance
+    solver%options%tolerance = min(tolerance, path_tolerance)
+    finished = .false.
+    steps = 0
+    if (present(farthest)) call walker%follow_closely()
+    call walker%begin_with(solver, start, approach, lost)
+    if (lost) known%ending%cause = path_lost
+    guarded = present(accuracy) .and. .not. solver%problem%law%of_paper
+    if (guarded) mender = new_mender(accuracy, solver%meshes)
+    do while (.not. (known%ending%early() .or. finished))
+      call extend(known%path, walker, solver, lost)
+      steps = steps + 1
+      if (mod(steps, steps_a_message) == 0) then
+        write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
+        call listener%hear(trim(so_far))
+      end if
+      mended = .false.
+      if (guarded .and. .not. lost) then
+        if (walker%has_come_to_next(solver%equations_t)) then
+          call mender%mend(solver%equations_t, known%path, walker%mesh, .false., mended)
+          if (.not. mended) call mender%note(known%path, walker)
+        end if
+      end if
+      if (.not. (lost .or. mended)) call pass_on(known%path, walker, solver, lost)
+      known%fallen = collapsed(solver%problem, known%path)
+      lost = lost .or. known%path%held >= longest .or. astray(solver%equations_t, known%path)
+      if (lost) then
+        known%ending%cause = path_lost
+      else if (known%fallen) then
+        known%ending%cause = no_equilibrium
+      else if (blind .and. any(known%path%point(:known%path%held)%fold)) then
+        known%ending%cause = beyond_rounding
+      end if
+      associate (last => known%path%point(known%path%held))
+        finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
+          last%tangent%h0 < 0 .and. &
+          (solver%meshes%in_contact(last%mesh) .or. .not. into_contact)
+      end associate
+      if (guarded .and. .not. mended .and. (finished .or. known%ending%early())) &
+        call mender%mend(solver%equations_t, known%path, walker%mesh, lost, mended)
+      if (.not. mended) cycle
+      known%ending = going_on
+      finished = .false.
+      call go_back(mender, solver, start, known%path, walker, lost)
+      if (lost) known%ending%cause = path_lost
+    end do
+    solver%options%tolerance = tolerance
+    if (guarded .and. .not. known%fallen) &
+      known%left_out = left_on_path(solver%equations_t, known%path)
+    if (present(farthest)) call known%path%begin_undeformed(solver%problem, farthest)
+    known%path%last = known%path%held
+  end subroutine trace
+
+  !> Goes back to where the path came to a mesh that was made anew since, or to its beginning afar.
+  subroutine go_back(mender, solver, start, path, walker, lost)
+    type(mender_t), intent(in) :: mender
+    class(solver_t), intent(inout) :: solver
+    type(state_t), intent(in) :: start
+    type(traced_path_t), intent(inout) :: path
+    type(continuation_t), intent(inout) :: walker
+    logical, intent(out) :: lost
+    type(state_t) :: state
+    logical :: done
+
+    path = mender%path
+    if (path%held > 0) then
+      walker = mender%walker
+      call pass_on(path, walker, solver, lost)
+      return
+    end if
+    call walker%forget()
+    call solver%frozen%forget()
+    associate (problem => solver%problem, grid => solver%meshes%grid(approach))
+      state = state_from(grid%nodes)
+      state%h0 = start%h0
+      state%axis_gap = start%axis_gap
+      state%scale = start%scale
+      state%gap = start%h0 + problem%shape%height(start%scale*grid%x)
+      ! At its h0, where an experiment may begin.
+      call solver%correct(h0_control(problem%shape, solver%meshes, approach, start%h0), state, done)
+    end associate
+    lost = .not. done
+    if (done) call walker%begin_with(solver, state, approach, lost)
+  end subroutine go_back
+
+  !> Whether the contact is much larger than any that is expected: on a mesh that is too coarse
+  !> folds were lost, and no state is taken for stable any more.
+  pure logical function astray(equations, path)
+    type(equations_t), intent(in) :: equations
+    type(traced_path_t), intent(in) :: path
+
+    associate (last => path%point(path%held), meshes => equations%meshes)
+      astray = meshes%in_contact(last%mesh) .and. &
+        last%state%scale > too_large*meshes%passage(size(meshes%passage))
+    end associate
+  end function astray
+
+  !> Whether the newest state of a path is one of collapse.
+  pure logical function collapsed(problem, path)
+    type(problem_t), intent(in) :: problem
+    type(traced_path_t), intent(in) :: path
+    real(wp) :: scale
+    integer :: first
+
+    collapsed = .false.
+    if (problem%law%edge_gap > 0) return
+    scale = 1
+    first = findloc(path%point(:path%held)%fold, .true., 1)
+    if (first > 0) scale = path%point(first)%state%axis_gap
+    collapsed = path%point(path%held)%state%axis_gap < collapse*scale
+  end function collapsed
+
+  !> Advances the tracer by a step and appends the new point. A new path begins with the tracer's
+  !> own newest state. lost: no step, however small, converged.
+  subroutine extend(path, walker, solver, lost)
+    type(traced_path_t), intent(inout) :: path
+    type(continuation_t), intent(inout) :: walker
+    class(solver_t), intent(inout) :: solver
+    logical, intent(out) :: lost
+
+    if (path%held == 0) call append(path, walker)
+    call walker%advance(solver, lost)
+    if (.not. lost) call append(path, walker)
+  end subroutine extend
+
+  !> Lets the tracer pass to the next mesh if it has come there, and puts the extrema that have been
+  !> passed before the newest point. lost: a solve failed.
+  subroutine pass_on(path, walker, solver, lost)
+    type(traced_path_t), intent(inout) :: path
+    type(continuation_t), intent(inout) :: walker
+    class(solver_t), intent(inout) :: solver
+    logical, intent(out) :: lost
+    type(found_t), allocatable :: extrema(:)
+    logical :: folds
+    integer :: pass, n, k
+
+    call change_mesh(path, walker, solver, lost)
+    do pass = 1, 2
+      folds = pass == 1
+      if (lost) return
+      n = walker%held
+      if (.not. folds .and. .not. any(abs(walker%state(max(1, n - 1):n)%load) > &
+        no_load*solver%problem%law%adhesion)) cycle
+      if (n < 2) return
+      call find_extrema(solver, walker%arc_t, walker%coordinate(n - 1:n), &
+        merge(of_h0, of_load, folds), extrema, lost)
+      do k = 1, size(extrema)
+        call put(path, walker, folds, extrema(k))
+      end do
+    end do
+  end subroutine pass_on
+
+  !> Makes a state of the tracer's, the newest but for `before`, the last point.
+  subroutine append(path, walker, before)
+    type(traced_path_t), intent(inout) :: path
+    type(continuation_t), intent(in) :: walker
+    integer, intent(in), optional :: before
+    type(path_point_t) :: point
+    integer :: k
+
+    k = walker%held
+    if (present(before)) k = k - before
+    if (path%held > 0) then
+      associate (last => path%point(path%held))
+        last%leads_on = last%mesh == walker%mesh
+        point%modes = last%modes
+      end associate
+    end if
+    point%state = walker%state(k)
+    point%tangent = walker%tangent(k)
+    point%mesh = walker%mesh
+    point%coordinate = walker%coordinate(k)
+    call path%insert(path%held + 1, point)
+  end subroutine append
+
+  !> Lets the tracer change its mesh. The last two points, which it takes along, are there again on
+  !> the next mesh, and between these the path goes on.
+  subroutine change_mesh(path, walker, solver, lost)
+    type(traced_path_t), intent(inout) :: path
+    type(continuation_t), intent(inout) :: walker
+    class(solver_t), intent(inout) :: solver
+    logical, intent(out) :: lost
+    integer :: mesh
+
+    mesh = walker%mesh
+    call walker%change_mesh(solver, lost)
+    if (lost .or. walker%mesh == mesh) return
+    path%point(path%held - 1)%leads_on = .false.
+    call append(path, walker, 1)
+    call append(path, walker)
+  end subroutine change_mesh
+
+  !> Puts an extremum, of h0 (a fold) or of the load, among the last points, by its coordinate on
+  !> the walker's mesh.
+  subroutine put(path, walker, fold, found)
+    type(traced_path_t), intent(inout) :: path
+    type(continuation_t), intent(in) :: walker
+    logical, intent(in) :: fold
+    type(found_t), intent(in) :: found
+    type(path_point_t) :: point
+    integer :: place, change
+
+    place = path%held
+    do while (place > 1)
+      associate (before => path%point(place - 1))
+        if (before%mesh /= walker%mesh .or. .not. before%coordinate > found%coordinate) exit
+      end associate
+      place = place - 1
+    end do
+    ! Before the first point of all nothing is known.
+    if (place < 2) return
+    point%state = found%state
+    point%tangent = found%tangent
+    point%mesh = walker%mesh
+    point%coordinate = found%coordinate
+    point%leads_on = .true.
+    point%fold = fold
+    point%load_extremum = .not. fold
+    point%modes = path%point(place - 1)%modes
+    call path%insert(place, point)
+    if (.not. fold) return
+    ! At a maximum of h0 its second derivative is negative.
+    change = merge(-1, 1, -found%sense*found%tangent%load > 0)
+    path%point(place:path%held)%modes = path%point(place:path%held)%modes + change
+  end subroutine put
+
+end module tracing
