@@ -8,13 +8,21 @@ module path_readings
   use path_curve, only: curve_node_t, nodes_of
   use path_sensitivity, only: rate_t
   use driven_pieces, only: drive_t, through_spring
-  use driven_cycle, only: driven_t
-  use device, only: drive_bodies
-  use fixed_loads, only: loaded_state_t, find_loaded
+  use path_tangent, only: of_load
+  use curve_states, only: curve_state_t, states_where
+  use device, only: driven_t, drive_bodies
   use path_stepper, only: path_stepper_t
   implicit none
   private
-  public :: path_readings_t, read_path
+  public :: path_readings_t, loaded_state_t, read_path
+
+  !> An equilibrium under a load (units of `dimensionless_problem`). It is stable at fixed load
+  !> where no mode is unstable at fixed h0 and dF/dh0 < 0.
+  type :: loaded_state_t
+    real(wp) :: wanted = 0
+    type(curve_state_t) :: state
+    logical :: stable = .false.
+  end type loaded_state_t
 
   !> In the units of `dimensionless_problem`.
   type :: path_readings_t
@@ -42,7 +50,6 @@ contains
     class(path_stepper_t), intent(inout) :: steps
     class(listener_t), intent(inout) :: listener
     type(path_readings_t), allocatable, intent(out) :: readings
-    integer :: i
 
     allocate (readings)
     call listener%hear('reading the path')
@@ -54,13 +61,8 @@ contains
       readings%traced_from = path%point(path%undeformed + 1)%state%h0
       readings%undeformed_from = path%point(1)%state%h0
       if (allocated(request%device)) call run_device(request, steps, readings)
-      if (allocated(request%fixed_load)) then
-        allocate (readings%loaded(0))
-        do i = 1, size(request%fixed_load%load)
-          call find_loaded(steps%solver_t, path, request%fixed_load%load(i)/steps%problem%load, &
-            readings%loaded, readings%solved)
-        end do
-      end if
+      if (allocated(request%fixed_load)) call find_loaded(request%fixed_load%load/ &
+        steps%problem%load, steps, readings)
       if (request%table) then
         allocate (readings%prescribed)
         call drive_between(request, steps, through_spring(), readings%prescribed)
@@ -68,6 +70,28 @@ contains
       end if
     end associate
   end subroutine read_path
+
+  !> &fixed_load: all equilibria under each load.
+  subroutine find_loaded(load, steps, readings)
+    real(wp), intent(in) :: load(:)
+    class(path_stepper_t), intent(inout) :: steps
+    type(path_readings_t), intent(inout) :: readings
+    type(curve_state_t), allocatable :: states(:)
+    type(loaded_state_t) :: one
+    integer :: i, k
+    logical :: solved
+
+    allocate (readings%loaded(0))
+    do i = 1, size(load)
+      call states_where(steps%solver_t, steps%known%path, of_load, load(i), states, solved)
+      readings%solved = readings%solved .and. solved
+      do k = 1, size(states)
+        ! Inward h0 falls along what is stable at fixed h0.
+        one = loaded_state_t(load(i), states(k), states(k)%modes == 0 .and. states(k)%slopes(2) > 0)
+        readings%loaded = [readings%loaded, one]
+      end do
+    end do
+  end subroutine find_loaded
 
   !> &device: one drive for each stiffness, or at prescribed h0.
   subroutine run_device(request, steps, readings)

@@ -10,8 +10,7 @@ module reading_errors
   use curve_states, only: curve_state_t, reading_t, reading_of
   use path_curve, only: curve_node_t
   use driven_pieces, only: state_driven
-  use driven_cycle, only: driven_t, leg_t, nodes_on
-  use fixed_loads, only: loaded_state_t
+  use device, only: driven_t, leg_t, nodes_on
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
   use path_demand, only: farthest_wanted

@@ -8,7 +8,7 @@ module reading_sensitivities
   use curve_states, only: curve_state_t, equilibrium_at
   use path_tangent, only: tangent_t
   use driven_pieces, only: drive_t
-  use driven_cycle, only: jump_t
+  use device, only: jump_t
   use state_sensitivity, only: place_on_path_t
   use place_sensitivity, only: local_t, find_local, local_undeformed, at_fixed, at_extremum, &
     of_h0, of_load, of_energy

@@ -8,7 +8,7 @@ module result_errors
   use locked_stepper, only: locked_stepper_t
   use path_stepper, only: path_stepper_t
   use stepper, only: stepper_t
-  use hysteresis, only: lost_energy_t, energy_lost
+  use known_path, only: lost_energy_t, energy_lost
   use reported, only: reported_t, relative_error
   use error_estimate, only: finer_t, judge_at_h0, rounding
   use path_errors, only: judge_on_path
@@ -247,8 +247,8 @@ contains
       call judge_jump(steps%known%inward(k)%fold)
       call judge_jump(steps%known%outward(k + 1)%fold)
     end do
-    call energy_lost(steps%equations_t, steps%known, 1, turned, lowest, lost, whole)
-    if (whole) call energy_lost(steps%equations_t, steps%known, turned, 1, lowest, lost, whole)
+    call energy_lost(steps%known, 1, turned, lowest, lost, whole)
+    if (whole) call energy_lost(steps%known, turned, 1, lowest, lost, whole)
     if (.not. whole) return
     outcome%energy_lost = lost%energy
     outcome%jumps = lost%fold

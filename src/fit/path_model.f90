@@ -15,8 +15,7 @@ module path_model
   use path_curve, only: curve_node_t, nodes_of
   use path_sensitivity, only: rate_t, rates_along
   use driven_pieces, only: driven_piece_t, through_spring
-  use driven_cycle, only: driven_t
-  use device, only: drive_bodies
+  use device, only: driven_t, drive_bodies
   use experiment_request, only: request_t, numerics_t
   use h0_range, only: range_of
   use experiment, only: prepare

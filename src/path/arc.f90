@@ -34,7 +34,6 @@ module arc
     procedure :: guess
     procedure :: guess_from
     procedure :: curve
-    procedure :: value
     procedure :: slope
     procedure :: curvature
     procedure :: state_at
@@ -242,16 +241,6 @@ contains
     end do
     curve = hermite_through(at(:n), value(:n), slope(:n))
   end function curve
-
-  !> Its value at s, as the arc lets expect it.
-  pure real(wp) function value(self, weights, s)
-    class(arc_t), intent(in) :: self
-    real(wp), intent(in) :: weights(2), s
-    type(hermite_t) :: about
-
-    about = self%curve(weights, s)
-    value = about%value(s)
-  end function value
 
   !> Its derivative by s.
   pure real(wp) function slope(self, weights, s)

@@ -1,5 +1,5 @@
-!> Single equilibria of the path: at a place, or where Q = weights(1) h0 + weights(2) load has a value
-!> or turns round; on the path's meshes or, farther out, of bodies that do not deform.
+!> Single equilibria of the path: at a place, or where Q = weights(1) h0 + weights(2) load has a
+!> value or turns round; on the path's meshes or, farther out, of bodies that do not deform.
 module curve_states
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, contact_level_of
@@ -15,8 +15,8 @@ module curve_states
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   implicit none
   private
-  public :: curve_state_t, place_t, reading_t, reading_of, state_of, state_where, find_turns, &
-    equilibrium_at
+  public :: curve_state_t, place_t, reading_t, reading_of, state_of, state_where, states_where, &
+    find_turns, equilibrium_at
 
   !> A place between point `interval` of a path and the next, at the path's coordinate x.
   type :: place_t
@@ -176,6 +176,40 @@ contains
     end function beyond
 
   end subroutine state_where
+
+  !> All equilibria at which Q is `wanted`, stable or not, from afar inward. solved = .false.: one
+  !> was not found.
+  subroutine states_where(solver, path, weights, wanted, states, solved)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
+    real(wp), intent(in) :: weights(2), wanted
+    type(curve_state_t), allocatable, intent(out) :: states(:)
+    logical, intent(out) :: solved
+    type(curve_state_t) :: found
+    type(curve_state_t), allocatable :: turns(:)
+    real(wp), allocatable :: x(:), beyond(:)
+    integer :: i, k
+    logical :: all_turns
+
+    allocate (states(0))
+    solved = .true.
+    do i = 1, path%last - 1
+      if (.not. path%point(i)%leads_on) cycle
+      call find_turns(solver, path, i, weights, turns, all_turns)
+      solved = solved .and. all_turns
+      associate (ends => path%point(i:i + 1))
+        x = [ends(1)%coordinate, turns%x, ends(2)%coordinate]
+        beyond = weights(1)*[ends(1)%state%h0, turns%h0, ends(2)%state%h0] + &
+          weights(2)*[ends(1)%state%load, turns%load, ends(2)%state%load] - wanted
+      end associate
+      do k = 1, size(x) - 1
+        if ((beyond(k) < 0) .eqv. (beyond(k + 1) < 0)) cycle
+        call state_where(solver, path, i, weights, wanted, x(k), x(k + 1), found)
+        solved = solved .and. found%converged
+        if (found%converged) states = [states, found]
+      end do
+    end do
+  end subroutine states_where
 
   !> The equilibria inside interval i at which Q turns round, in order. solved = .false.: not all
   !> were solved.

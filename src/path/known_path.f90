@@ -9,11 +9,13 @@ module known_path
   use reported, only: error_t, measure_t
   use path_tangent, only: of_h0
   use path_span, only: path_span_t, new_path_span
+  use potential_energy, only: energy_of
   use driven_pieces, only: drive_t, driven_piece_t, find_pieces, piece_with, interval_with
   use tracing, only: tracing_t, trace
   implicit none
   private
-  public :: known_path_t, landing_t, trace_pieces, interval_at, lowest_point, landing_over
+  public :: known_path_t, landing_t, lost_energy_t, trace_pieces, interval_at, lowest_point, &
+    landing_over, energy_lost
 
   !> Where a jump leads: the fold that it starts from (a point of the path; 0: there is none), the
   !> piece that it ends on (0: there is none) and the state there, at the h0 of the fold.
@@ -23,6 +25,8 @@ module known_path
     real(wp) :: coordinate = 0
     type(state_t) :: state
     logical :: converged = .false.
+    !> The potential energy that it loses, and what rounding leaves of that.
+    real(wp) :: energy = 0, uncertainty = 0
     !> As for a point of the path.
     type(measure_t), allocatable :: fine
     type(error_t), allocatable :: error
@@ -34,6 +38,13 @@ module known_path
     type(driven_piece_t), allocatable :: piece(:)
     type(landing_t), allocatable :: inward(:), outward(:)
   end type known_path_t
+
+  !> Energy lost in jumps, the same on the finer mesh of the error estimate, and what rounding
+  !> leaves; in units of load times length. The folds that the jumps start from.
+  type :: lost_energy_t
+    real(wp) :: energy = 0, fine_energy = 0, rounding = 0
+    integer, allocatable :: fold(:)
+  end type lost_energy_t
 
 contains
 
@@ -78,11 +89,13 @@ contains
     logical, intent(in) :: inward
     type(landing_t), intent(out) :: landing
     type(path_span_t) :: span
-    real(wp) :: h0
+    real(wp) :: h0, energy, uncertainty
 
     associate (left => known%piece(from))
       if (.not. merge(left%last_turns, left%first_turns, inward)) return
       landing%fold = merge(left%last%interval + 1, left%first%interval, inward)
+      landing%energy = merge(left%last%energy, left%first%energy, inward)
+      landing%uncertainty = merge(left%last%uncertainty, left%first%uncertainty, inward)
     end associate
     h0 = known%path%point(landing%fold)%state%h0
     landing%piece = piece_with(known%piece, drive_t(of_h0), h0, from, inward)
@@ -90,7 +103,47 @@ contains
     span = new_path_span(known%path, interval_at(known, landing%piece, h0))
     landing%mesh = span%mesh
     call span%solve_at_h0(solver, h0, landing%coordinate, landing%state, landing%converged)
+    call energy_of(solver%equations_t, landing%mesh, landing%state, energy, uncertainty)
+    landing%energy = landing%energy - energy
+    landing%uncertainty = landing%uncertainty + uncertainty
   end subroutine land
+
+  !> Adds what is lost in the jumps that lead from one stable piece to another, h0 going no lower
+  !> than `lowest`; whole = .false. where no jumps lead there. Over a closed cycle it is the area
+  !> between the ways out and back.
+  subroutine energy_lost(known, from, to, lowest, lost, whole)
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: from, to
+    real(wp), intent(in) :: lowest
+    type(lost_energy_t), intent(inout) :: lost
+    logical, intent(out) :: whole
+    type(landing_t) :: landing
+    integer :: k
+
+    if (.not. allocated(lost%fold)) allocate (lost%fold(0))
+    whole = .true.
+    k = from
+    do while (k /= to)
+      if (to > k) then
+        landing = known%inward(k)
+      else
+        landing = known%outward(k)
+      end if
+      ! Beyond where it was to lead: another way.
+      whole = landing%piece > 0 .and. landing%converged .and. (landing%piece - to)*(k - to) >= 0
+      if (.not. whole) return
+      associate (fold => known%path%point(landing%fold))
+        whole = fold%state%h0 >= lowest
+        if (.not. whole) return
+        lost%energy = lost%energy + landing%energy
+        if (allocated(fold%fine) .and. allocated(landing%fine)) &
+          lost%fine_energy = lost%fine_energy + (fold%fine%energy - landing%fine%energy)
+        lost%rounding = lost%rounding + landing%uncertainty
+      end associate
+      lost%fold = [lost%fold, landing%fold]
+      k = landing%piece
+    end do
+  end subroutine energy_lost
 
   !> The landing over a fold: inward(k) or outward(k), with inside telling which; k = 0 where the
   !> fold is no end of a stable piece.

@@ -7,7 +7,7 @@ module device_rows
   use path_curve, only: curve_node_t
   use curve_states, only: curve_state_t
   use driven_pieces, only: drive_t
-  use driven_cycle, only: driven_t, leg_t, jump_t, nodes_on
+  use device, only: driven_t, leg_t, jump_t, nodes_on
   use reading_numbers, only: error_of, state_errors
   use place_sensitivity, only: of_load
   use reading_sensitivities, only: weights_of
@@ -94,7 +94,7 @@ contains
         call add(driven, direction, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, .true.)
       end do
       call add(driven, direction, leg%to%h0, leg%to%load, leg%to%radius, &
-        .not. driven%jumps_after(leg))
+        .not. leg%jumps)
     end subroutine add_leg
 
     subroutine add(driven, direction, h0, load, radius, stable)

@@ -2,8 +2,7 @@
 module fixed_load_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use fixed_loads, only: loaded_state_t
-  use path_readings, only: path_readings_t
+  use path_readings, only: path_readings_t, loaded_state_t
   use reading_numbers, only: state_errors
   use tables, only: cells
   use results, only: results_t

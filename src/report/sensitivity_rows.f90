@@ -5,11 +5,10 @@ module sensitivity_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use variation, only: variation_t
-  use fixed_loads, only: loaded_state_t
   use place_sensitivity, only: of_h0, of_displacement, of_radius
   use path_sensitivity, only: rate_t, held
   use driven_pieces, only: through_spring
-  use path_readings, only: path_readings_t
+  use path_readings, only: path_readings_t, loaded_state_t
   use results, only: results_t
   use result_rows, only: rows
   use summary, only: summary_t

@@ -7,7 +7,7 @@ module table_rows
   use maugis, only: maugis_units_t, maugis_units
   use path_curve, only: curve_node_t
   use path_readings, only: path_readings_t
-  use driven_cycle, only: nodes_on
+  use device, only: nodes_on
   use results, only: results_t
   implicit none
   private
@@ -46,7 +46,7 @@ contains
               [nodes(j)%h0_slope, nodes(j)%load_slope], .false.)
           end do
           call add(leg%inward, leg%to%h0, leg%to%load, leg%to%radius, leg%to%slopes, &
-            driven%jumps_after(leg))
+            leg%jumps)
         end associate
       end do
     end associate
