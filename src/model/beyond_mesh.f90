@@ -1,6 +1,6 @@
-!> What acts beyond the end of a mesh, where the deformation hardly varies: from the position r0 on
-!> the gap is H(r) = H(r0) + f(r) - f(r0). For the parabola r dr = dH, and the integrals are the
-!> law's own, Derjaguin's (23); for other shapes they are integrated over r0/r.
+!> Forces beyond the end of a mesh, where the deformation hardly varies: from the position r0 on the
+!> gap is H(r) = H(r0) + f(r) - f(r0). For the parabola r dr = dH, so the integrals are the law's
+!> own, Derjaguin's (23). For other shapes they are integrated over r0/r.
 module beyond_mesh
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -9,12 +9,13 @@ module beyond_mesh
   private
   public :: load_beyond, load_slope_beyond, energy_beyond, energy_density, farthest
 
-  !> Points; and those for the energy of the parabola, where it is a power of the gap or nothing.
+  !> Points of the quadrature, and for the energy of the parabola, where a power of the gap needs
+  !> few.
   integer, parameter :: points = 24, few = 8
-  !> Gaps beyond which no force acts, and whose powers are numbers.
+  !> No force acts beyond this gap; its powers are numbers.
   real(wp), parameter :: farthest = 1.0e30_wp
 
-  !> Where the points are: gap, position, and the weight of g in Int g(H) r dr.
+  !> The points: gap, position, and the weight of g in Int g(H) r dr.
   type :: rule_t
     real(wp), allocatable :: gap(:), at(:), weight(:)
   end type rule_t
@@ -69,9 +70,9 @@ contains
   end function energy_beyond
 
   !> The energy of the surface force per area, at gaps and positions. Between shapes that open
-  !> slowly it falls so slowly, under gap^-3 between cones as r^-2, that its integral has hardly a
-  !> limit, or none. Only differences of energies count: that of undeformed bodies at H0 = 1 is
-  !> taken off.
+  !> slowly it falls so slowly (as r^-2 under gap^-3 between cones) that its integral hardly
+  !> converges, or diverges. Only differences of energies count, so that of undeformed bodies at H0
+  !> = 1 is subtracted.
   pure function energy_density(problem, gap, r) result(energy)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap(:), r(:)

@@ -18,8 +18,8 @@ contains
     stiffness = 2/sum((1 - poisson)*(1 + poisson)/young)
   end function composite_stiffness
 
-  !> What each of two bodies deforms by over what identical bodies of the composite stiffness do:
-  !> its compliance over the mean. Arguments as above.
+  !> The deformation of each of two bodies over that of identical bodies of the composite stiffness:
+  !> its compliance over the mean compliance. Arguments as above.
   pure function compliance_shares(young, poisson) result(share)
     real(wp), intent(in) :: young(2), poisson(2)
     real(wp) :: share(2)

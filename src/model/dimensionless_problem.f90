@@ -20,7 +20,7 @@ module dimensionless_problem
   type :: problem_t
     class(force_law_t), allocatable :: law
     class(shape_t), allocatable :: shape
-    !> What the bodies yield beside a half-space; homogeneous ones nothing.
+    !> The remainder of the bodies beside a half-space; homogeneous bodies have none.
     class(elastic_body_t), allocatable :: body
     real(wp) :: coupling = 0
     !> Units: gap [m], lateral position [m], pressure [Pa], load [N].
@@ -28,14 +28,14 @@ module dimensionless_problem
     !> Bodies, SI: R of their shape, and E/(1-nu^2) of two identical bodies.
     real(wp) :: radius = 1, stiffness = 1
     logical :: rigid = .false.
-    !> Where a fluid drains from between the bodies, the largest gap (law's lengths) about which its
-    !> pressure is no power yet of the position; 0: there is none.
+    !> Largest gap (law's lengths) at which the pressure of a draining fluid is not yet a power of
+    !> the position; 0: there is no fluid.
     real(wp) :: film_gap = 0
-    !> What each body deforms by over what it is for identical ones.
+    !> Deformation of each body over that of identical bodies.
     real(wp) :: share(2) = 1
   end type problem_t
 
-  !> In contact is, as in the paper's Fig. 6, what is nearer than this many gaps at rest.
+  !> Bodies are in contact, as in the paper's Fig. 6, where the gap is below this many gaps at rest.
   real(wp), parameter :: contact_gap = 1.1_wp
   !> Width of the neck times sigma, lateral units.
   real(wp), parameter :: neck = 0.375_wp
@@ -71,9 +71,9 @@ contains
     adhesion_strength = problem%coupling*problem%law%adhesion
   end function adhesion_strength
 
-  !> How much bodies yield under a pressure over a circle of this radius (lateral units): about the
-  !> coupling of half-spaces that yield as much to a flat punch, which makes waves as
-  !> (sin(k radius)/(k radius))^2, taken as those up to a k that leaves as many.
+  !> The coupling of half-spaces that yield as much to a flat punch of this radius (lateral units),
+  !> approximately. A punch makes waves of weight (sin(k radius)/(k radius))^2; equal weights up to
+  !> a k that keeps their sum stand for these.
   elemental real(wp) function coupling_over(problem, radius) result(coupling)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: radius
@@ -115,8 +115,8 @@ contains
   end function tabor_parameter
 
   !> A gap beyond which bodies hardly deform: twice that of the jump of parabolas into contact under
-  !> an r^-3 attraction, (37); for any shape and law that attracts, where about a tenth of what a
-  !> jump takes is left. Outside a step of the law.
+  !> an r^-3 attraction, (37). For any shape and attractive law, about a tenth of the yielding that
+  !> a jump takes remains there. It lies outside a step of the law.
   pure real(wp) function calm_gap(problem) result(gap)
     type(problem_t), intent(in) :: problem
     !> Widths of a step outside it at which erfc(x) is below rounding.
@@ -130,15 +130,16 @@ contains
       problem%law%adhesion)**(2.0_wp/7))
   end function calm_gap
 
-  !> The largest gap at which bodies yield by more than the part `left` of what makes them jump into
-  !> contact; 0 where they never do. Over the zone in which they interact, for a parabola sqrt(gap)
-  !> wide, the law's slope makes them yield by coupling*slope*width of their gap, times some number;
-  !> at (37), the gap of the jump under an r^-3 attraction, that is one.
+  !> The largest gap at which bodies yield by more than the fraction `left` of what makes them jump
+  !> into contact; 0 where they never do. Over the zone of interaction, sqrt(gap) wide for a
+  !> parabola, the law's slope makes bodies yield by coupling*slope*width of their gap, times a
+  !> constant. The constant is chosen so that the result is one at (37), the gap of the jump under
+  !> an r^-3 attraction.
   pure real(wp) function yielding_gap(problem, left) result(gap)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: left
     real(wp), parameter :: at_jump = 27.0_wp/8
-    !> Ratio of gaps that are tried, and their number: to 1e6 lengths.
+    !> Ratio of gaps that are tried, and their number: up to 1e6 lengths.
     real(wp), parameter :: ratio = 1.05_wp
     integer, parameter :: tried = 284
     real(wp) :: at(tried), width(tried)

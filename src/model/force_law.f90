@@ -11,29 +11,30 @@ module force_law
   public :: force_law_t
 
   type, abstract :: force_law_t
-    !> The law sets these. Unit of gap [m] and of pressure [Pa], and the separation [m] that is gap
-    !> 0: that of the bodies, unless the law has its well anywhere; then one length before the well.
+    !> Set by the law: unit of gap [m] and of pressure [Pa], and the separation [m] at gap 0. That
+    !> is the separation of the bodies, unless the well of the law may be anywhere; then gap 0 is
+    !> one length before the well.
     real(wp) :: length = 1, pressure_unit = 1, origin = 0
     !> Change of gap over which a strong repulsion changes by a factor of e.
     real(wp) :: repulsion_length = 1
-    !> A gap may close in one iteration by at most closure_fraction*gap + closure_length: beyond it
-    !> the linearised law means nothing. Keeps gaps where the formulas are defined.
+    !> A gap may close in one iteration by at most closure_fraction*gap + closure_length, within
+    !> which the linearised law is meaningful. This keeps gaps where the formulas are defined.
     real(wp) :: closure_fraction = 0, closure_length = 0
-    !> Smallest gap at which the formulas are asked for. No equilibrium has a smaller one; below it
-    !> pressures, and their products with the coupling, would leave the range of numbers.
+    !> Smallest gap at which the formulas are evaluated. No equilibrium has a smaller one; below it
+    !> pressures, or their products with the coupling, would overflow.
     real(wp) :: smallest_gap = -300
     !> Far away the pressure falls as gap^-tail_power; `huge` where it falls faster than any power.
     real(wp) :: tail_power = huge(1.0_wp)
-    !> Gap from which on it does so, but for a series in the inverse of the gap.
+    !> Gap beyond which the pressure is that power times a series in the inverse of the gap.
     real(wp) :: power_from = 0
-    !> Whether `length` and `pressure_unit` are scales of the force; else those of its well become
-    !> the units (`force_sum`).
+    !> Whether `length` and `pressure_unit` are scales of the force. Otherwise those of its well
+    !> become the units (`force_sum`).
     logical :: has_units = .true.
-    !> Whether there is a length at which the force changes; a single power has none, and its
-    !> `length` is any.
+    !> Whether the force has a characteristic length. A single power has none; its `length` is
+    !> arbitrary.
     logical :: has_length = .true.
-    !> Whether `length` is the z0 of a law of powers, in which the field gives sigma and Tabor's
-    !> parameter; else it is the range, surface energy over largest tension.
+    !> Whether `length` is the z0 of a law of powers, by which the field defines sigma and Tabor's
+    !> parameter. Otherwise it is the range, surface energy over largest tension.
     logical :: has_z0 = .false.
     !> Period of gap in which the pressure oscillates, and the gap of a step of it and its width,
     !> for meshes; 0: none.
@@ -48,20 +49,20 @@ module force_law
     !> Whether the law is one of the paper's own, of which the summary says no more than its
     !> parameters.
     logical :: of_paper = .false.
-    !> What the summary calls the coupling of law and bodies: sigma (40) if the law attracts, or
-    !> this. Blank: nothing.
+    !> The summary's name for the coupling of law and bodies; sigma (40) if the law attracts. Blank:
+    !> none.
     character(len=12) :: coupling_name = ''
     !> The group of the deck that the law is read from, and the keys in it that set the sizes of
     !> pressure and gap, for messages.
     character(len=24) :: group = '', strength_key = '', length_key = ''
-    !> Where its own assumptions do not hold for the numbers of the deck, what to tell the user.
+    !> A warning where the law's own assumptions do not hold for the numbers of the deck.
     character(len=200) :: caveat = ''
 
-    !> The scan of the law sets these (`law_scan`), or the law where it knows closed forms.
-    !> Tension integrated from the gap at rest to the next zero of the pressure, in units of
-    !> length*pressure_unit: what contact has to overcome, the scale of everything at its edge; 0
-    !> for a law that does not attract. And the work of adhesion, from rest to infinity: less where
-    !> a barrier lies outside, negative where contact is only metastable.
+    !> Set by the scan of the law (`law_scan`), or by the law where closed forms are known.
+    !> adhesion: tension integrated from the gap at rest to the next zero of the pressure, in units
+    !> of length*pressure_unit, which sets the scale of the contact edge; 0 for a law that does not
+    !> attract. work: the work of adhesion, from rest to infinity; less than adhesion if a barrier
+    !> lies outside, negative where contact is only metastable.
     real(wp) :: adhesion = 0, work = 0
     !> Gap of maximum tension, which defines the contact edge; 0 where there is no such gap.
     real(wp) :: edge_gap = 0
@@ -91,7 +92,7 @@ module force_law
 
 contains
 
-  !> By how much gaps may close in one iteration.
+  !> Largest change by which gaps may close in one iteration.
   pure function closure(self, gap) result(most)
     class(force_law_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)

@@ -1,5 +1,4 @@
-!> Several forces at once: the law whose pressure is the sum of theirs. A single law stays as it is,
-!> so that what is absent costs nothing.
+!> The sum of several forces. A single law is kept as it is, so that an absent force costs nothing.
 module force_sum
   use kinds, only: wp
   use force_law, only: force_law_t
@@ -8,8 +7,8 @@ module force_sum
   private
   public :: add_term, settle
 
-  !> One of the forces, and the units of the sum in its own: its gap is stretch*gap + shift, and its
-  !> pressure counts `weight` times.
+  !> One of the forces. Its gap is stretch*gap + shift in its own units, and its pressure counts
+  !> `weight` times.
   type :: term_t
     class(force_law_t), allocatable :: law
     real(wp) :: stretch = 1, shift = 0, weight = 1
@@ -29,7 +28,7 @@ module force_sum
 
 contains
 
-  !> Adds a term, if there is one, to a law, if there is one; takes the term away.
+  !> Adds a term to a law. Either may be unallocated; the term is moved.
   subroutine add_term(law, term)
     class(force_law_t), allocatable, intent(inout) :: law, term
     type(force_sum_t) :: sum_of
@@ -50,7 +49,7 @@ contains
 
   contains
 
-    !> Moves what a law consists of into the terms.
+    !> Moves the parts of a law into the terms.
     subroutine take(from)
       class(force_law_t), allocatable, intent(inout) :: from
       integer :: i
@@ -70,7 +69,7 @@ contains
 
   end subroutine add_term
 
-  !> How many forces a law consists of: a group of the deck may be several.
+  !> Number of forces in a law; a group of the deck may be several.
   pure integer function terms_in(law)
     class(force_law_t), intent(in) :: law
 
@@ -81,11 +80,11 @@ contains
     end select
   end function terms_in
 
-  !> Units and scales of a law whose terms are complete. A sum is looked at in units of its shortest
-  !> term first, of those that have a length. If it has a well its units are then those of the well:
-  !> z0 of the first term that has one, else the range, which is the depth over the largest tension;
-  !> and the largest tension. The contact is at gap 1. So are those of a law without units of its
-  !> own, a sum of one.
+  !> Sets units and scales of a law whose terms are complete. A sum is first scanned in units of its
+  !> shortest term, of those with a length. If it has a well, its units then become those of the
+  !> well: as length the z0 of the first term that has one, else the range (depth over largest
+  !> tension); as pressure the largest tension. The contact is at gap 1. The same holds for a single
+  !> law without units of its own.
   subroutine settle(law)
     class(force_law_t), allocatable, intent(inout) :: law
     type(force_sum_t) :: alone
@@ -121,7 +120,7 @@ contains
     end select
   end subroutine settle
 
-  !> The units of a sum; its scales are to be found again.
+  !> Sets the units of a sum; its scales must be found again.
   subroutine take_units(law, length, unit, origin)
     type(force_sum_t), intent(inout) :: law
     real(wp), intent(in) :: length, unit, origin
@@ -164,7 +163,7 @@ contains
       end associate
     end do
     call move_alloc(breaks, law%breaks)
-    ! Messages point at the first.
+    ! Messages refer to the first term.
     law%group = law%term(1)%law%group
     law%strength_key = law%term(1)%law%strength_key
     law%length_key = law%term(1)%law%length_key
@@ -178,7 +177,7 @@ contains
     own = self%stretch*gap + self%shift
   end function own
 
-  !> Lengths of the terms; of those that have one, if any has.
+  !> Lengths of the terms, of those with a length if there are any.
   pure function lengths(law)
     type(force_sum_t), intent(in) :: law
     real(wp), allocatable :: lengths(:)
@@ -263,8 +262,8 @@ contains
     end do
   end function table_error
 
-  !> The least that any of the forces allows; and beyond the range half of what is beyond it,
-  !> whatever their lengths: far out gaps are large, and so is what a prediction of them is off by.
+  !> The least closure that any of the forces allows. Beyond the range half of the excess is allowed
+  !> as well, whatever the lengths: distant gaps are large, and so is the error of their prediction.
   pure function closure(self, gap) result(most)
     class(force_sum_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)

@@ -1,8 +1,8 @@
-!> A force that is known at points only. Interpolated is the pressure, or the energy, over its tail:
-!> q = p g^m as a function of u = ln g where the pressure ends as a power, q = p exp(u) of u = g/l
-!> where it ends as an exponential, the gap g being in units of the first. The energy is that of the
-!> interpolant, or the pressure its derivative. Beyond the last point q is constant; before
-!> the first the pressure is the power of the gap that goes on with value and slope there.
+!> A force known at points only. The pressure, or the energy, is divided by its tail and
+!> interpolated: q = p g^m as a function of u = ln g for a tail that is a power, q = p exp(u) with u
+!> = g/l for an exponential one; the gap g is in units of the first. The energy is the integral of
+!> the interpolant, or the pressure its derivative. Beyond the last point q is constant. Before the
+!> first point the pressure is a power of the gap that continues value and slope.
 module force_table
   use kinds, only: wp
   use cubic, only: spline, monotone
@@ -17,11 +17,11 @@ module force_table
 
   type :: force_table_t
     logical :: of_energy = .false.
-    !> m, or 1 for an exponential, of what is interpolated; and of the energy.
+    !> Exponents of the tails of the interpolated quantity and of the energy; 1 for an exponential.
     real(wp) :: rate = 1, energy_rate = 1
     !> l; 0 for a power.
     real(wp) :: decay_length = 0
-    !> The repulsion goes on as gap^-power; pressure and energy at the first point.
+    !> The repulsion before the first point is gap^-power; pressure and energy at the first point.
     real(wp) :: power = 0, pressure = 0, energy = 0
     real(wp), allocatable :: u(:), cubic(:, :), energy_from(:)
     real(wp) :: x(order) = 0, w(order) = 0
@@ -67,7 +67,7 @@ contains
     at_first = table%values(1.0_wp)
     table%pressure = at_first(1)
     table%energy = at_first(3)
-    ! Where there is no pressure there is no power.
+    ! No pressure, no power.
     table%power = -at_first(2)/sign(max(abs(at_first(1)), tiny(1.0_wp)), at_first(1))
   end function new_force_table
 
@@ -132,7 +132,7 @@ contains
     end associate
     if (u >= self%u(n)) q(1:) = 0
     fall = exp(-self%rate*u)
-    ! By u, and with its fall.
+    ! Derivative by u, including that of the tail.
     q(2) = fall*(q(2) - 2*self%rate*q(1) + self%rate**2*q(0))
     q(1) = fall*(q(1) - self%rate*q(0))
     q(0) = fall*q(0)
@@ -145,7 +145,8 @@ contains
     end if
   end function values
 
-  !> The piece between neighbours of the ascending x that holds `at`; the last for what is beyond.
+  !> The piece between neighbours of the ascending x that contains `at`; the last one beyond the
+  !> end.
   pure integer function piece_of(x, at) result(low)
     real(wp), intent(in) :: x(:), at
     integer :: high, middle

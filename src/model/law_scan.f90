@@ -1,5 +1,5 @@
-!> The natural scales of a force law, from one look at its pressure: where it vanishes, where it
-!> pulls most, how far it reaches, how deep its well is. Solvers know a law by these alone.
+!> The natural scales of a force law from a scan of its pressure: zeros, largest tension, range,
+!> depth of the well. Solvers use nothing else of a law than these and its formulas.
 module law_scan
   use kinds, only: wp
   use force_law, only: force_law_t
@@ -7,26 +7,26 @@ module law_scan
   private
   public :: find_scales, surroundings_t, surroundings_of
 
-  !> What a law has outside the well of contact, law's units: the highest barrier of energy, with
-  !> the largest pressure on its far side, and the deepest of the outer wells.
+  !> Features outside the well of contact, in the law's units: the highest barrier of energy, with
+  !> the largest pressure on its far side, and the deepest outer well.
   type :: surroundings_t
     logical :: has_barrier = .false., has_well = .false.
     real(wp) :: barrier_pressure = 0, barrier_energy = 0, well_gap = 0, well_energy = 0
   end type surroundings_t
 
-  !> Gaps that are looked at, in the law's lengths: geometrically from `nearest` to `farthest` above
-  !> the smallest gap of a law that is singular there, and evenly below for one that is not.
+  !> Gaps of the scan, in the law's lengths: geometrically spaced from `nearest` to `farthest` above
+  !> the smallest gap of a singular law, and evenly spaced below for others.
   real(wp), parameter :: nearest = 1.0e-2_wp, farthest = 1.0e5_wp, lowest = -60
   integer, parameter :: geometric = 3000, even = 3000
-  !> What is left of a pressure, relative to the largest tension or the unit, where it has ended;
-  !> and the length, in lengths beyond the gap at rest, after which a tail no longer matters: where
-  !> a repulsion of the ninth power is below that.
+  !> Pressure at which a law has ended, relative to the largest tension or the unit; and lengths
+  !> beyond the gap at rest after which a tail does not matter: a repulsion of the ninth power has
+  !> then ended.
   real(wp), parameter :: ended = 1.0e-16_wp, longest = 59
-  !> What is left of a pressure, in its unit, where it is none.
+  !> Smaller pressures count as zero.
   real(wp), parameter :: vanished = 1.0e-100_wp
-  !> A pressure has become a power where its local exponent is that power to this.
+  !> A pressure has become a power where its local exponent agrees to this.
   real(wp), parameter :: settled = 1.0e-2_wp
-  !> Pressure over the largest tension below which there is no barrier and no outer well.
+  !> Barriers and outer wells of less pressure than this part of the largest tension are ignored.
   real(wp), parameter :: nothing = 1.0e-12_wp
 
 contains
@@ -44,7 +44,7 @@ contains
     end if
     gap = gaps_of(law)
     pressure = law%pressure(gap)
-    ! Where exponentials run out of numbers their signs mean nothing.
+    ! Exponentials below this underflow, and their signs mean nothing.
     i = findloc(abs(pressure) > vanished, .true., 1, back=.true.)
     gap = gap(:i)
     pressure = pressure(:i)
@@ -64,7 +64,7 @@ contains
         largest = -pressure_at(law, law%edge_gap)
       end if
     else if (pressure(1) < 0) then
-      ! Without a well there is no depth: the energy at one length stands for it.
+      ! Without a well the energy at one length stands for its depth.
       law%adhesion = -energy_at(law, 1.0_wp)
       law%work = law%adhesion
     end if
@@ -78,7 +78,7 @@ contains
     if (i > 0 .and. i < size(gap)) law%range = min(law%range, gap(i + 1))
   end subroutine find_scales
 
-  !> What lies outside the well of contact.
+  !> Finds the features outside the well of contact.
   function surroundings_of(law) result(found)
     class(force_law_t), intent(in) :: law
     type(surroundings_t) :: found
@@ -90,7 +90,7 @@ contains
     if (.not. law%edge_gap > 0) return
     gap = gaps_of(law)
     pressure = law%pressure(gap)
-    ! Less than this is rounding, or of no consequence; a barrier that fades into it has no well.
+    ! Smaller pressures are rounding or negligible; a barrier that fades into them has no well.
     counts = abs(pressure) >= nothing*abs(pressure_at(law, law%edge_gap))
     gap = pack(gap, counts)
     pressure = pack(pressure, counts)
@@ -121,8 +121,8 @@ contains
     end do
   end function surroundings_of
 
-  !> The first index from `from` after which values change their sign, falling or rising; 0 if none
-  !> does.
+  !> The first index from `from` after which values change their sign from positive to negative
+  !> (falling) or back; 0 if none does.
   pure integer function next_zero(value, from, falling) result(i)
     real(wp), intent(in) :: value(:)
     integer, intent(in) :: from
@@ -135,8 +135,8 @@ contains
     i = 0
   end function next_zero
 
-  !> A zero of the pressure, or of its slope, between two gaps where it has different signs: by
-  !> bisection to the last bit, since everything else is built on it.
+  !> A zero of the pressure, or of its slope, between two gaps of different signs, bisected to the
+  !> last bit because all scales are built on it.
   real(wp) function zero_between(law, from, to, of_slope) result(middle)
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: from, to

@@ -39,26 +39,25 @@ contains
     real(wp) :: y, share
 
     y = surface(2)%potential
-    ! 4 tanh(y/4)/sinh y, which is 1 where the second surface has no charge.
+    ! 4 tanh(y/4)/sinh y, which is 1 if the second surface has no charge.
     share = 1/(cosh(y/4)**2*cosh(y/2))
     state%t(2) = 8*tanh(surface(1)%potential/4)*exp(-gap)*share
     state%pressure = pressure_at(surface(2), state%t(2))
     state%t(1) = state%pressure/sinh(surface(1)%potential)
   end function far_state
 
-  !> Newton's iteration from a state near by to that at `gap`; `solved` says whether it came there.
-  !> The derivatives are differences, renewed by what the steps show of them (Broyden, 1965) as long
-  !> as these gain.
+  !> Newton's iteration from a nearby state to that at `gap`; solved: whether it converged. The
+  !> derivatives are differences, updated from the steps (Broyden, 1965) as long as the steps gain.
   pure subroutine solve_gap(surface, gap, state, solved)
     type(surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: gap
     type(gap_state_t), intent(inout) :: state
     logical, intent(out) :: solved
-    !> Increment of the differences relative to the unknowns, which is their error too; gain of a
-    !> step, without which differences are taken again; and what a step may leave, relative to the
-    !> unknowns: its own length times the error of its derivatives.
+    !> Increment of the differences relative to the unknowns, which is also their error; gain of a
+    !> step below which the differences are renewed; and the largest error that a step may leave,
+    !> relative to the unknowns, estimated as its length times the error of its derivatives.
     real(wp), parameter :: increment = 1.0e-7_wp, gain = 0.1_wp, rounding = 1.0e-16_wp
-    !> A t that is less than so much of the other counts as that much.
+    !> The smaller t counts as at least this part of the other.
     real(wp), parameter :: negligible = 1.0e-3_wp
     integer, parameter :: most_steps = 60, most_halvings = 20
     real(wp) :: r(2), trial(2), jacobian(2, 2), step(2), t(2), scale(2), unit, off, last
@@ -103,7 +102,7 @@ contains
       r = trial
     end do
     state%t = t
-    ! The surface of lower potential has less rounding in it.
+    ! The surface of lower potential has the smaller rounding error.
     state%pressure = pressure_at(surface(2), t(2))
 
   contains
@@ -153,7 +152,8 @@ contains
     s = [slope_at(surface_1, t_1), slope_at(surface_2, t_2)]
     p = pressure_at(surface_2, t_2)
     p = sign(max(abs(p), tiny(p)), p)
-    ! Of a state that is not solved yet, slopes and potentials are at odds: the smaller tell w.
+    ! Before convergence slopes and potentials are inconsistent; the smaller of both gives the
+    ! better w.
     if (p > 0) then
       between = .not. s(1)*s(2) < 0
       root(2, :) = abs(s)/2

@@ -28,7 +28,7 @@ contains
   end function pair_factor
 
   !> surface_energy [J/m^2], z0 [m]; exponents n > m > 1; part is 'full', 'repulsive' or
-  !> 'attractive'. The closed forms of the scales, and those of `new_lennard_jones` otherwise.
+  !> 'attractive'. Scales in closed form; otherwise as `new_lennard_jones`.
   pure function new_power_pair(surface_energy, z0, exponents, part) result(law)
     real(wp), intent(in) :: surface_energy, z0, exponents(2)
     character(len=*), intent(in) :: part

@@ -1,5 +1,4 @@
-!> Problems that differ in the values of some parameters: what a derivative by these needs, or a
-!> fit.
+!> Problems that differ in the values of some parameters, for derivatives by these and for fits.
 module problem_family
   use kinds, only: wp
   use failure, only: failure_t
@@ -8,8 +7,8 @@ module problem_family
   private
   public :: problem_family_t, parameter_t
 
-  !> A parameter; its value in the problem in hand, SI units; and the change that counts as one of
-  !> its own size, which for what is not zero is that value.
+  !> A parameter: its value in the present problem, SI units, and its scale, which is that value
+  !> unless it is zero.
   type :: parameter_t
     character(len=:), allocatable :: name
     real(wp) :: value = 0, scale = 1

@@ -1,13 +1,13 @@
-!> What every shape of the two bodies offers: the gap f(r) that they leave where they touch without
-!> force. A shape is a type that extends this one, in a file of its own under shapes/, with its keys
-!> and the reading of them, its parameters and formulas.
+!> The interface of every shape of the two bodies: the gap f(r) between them when they touch without
+!> force. A shape is a type that extends this one, in a file of its own under shapes/, with its
+!> keys, their reader, its parameters and formulas.
 !>
 !> Formulas are in the units of `dimensionless_problem`: lateral positions in l, heights in the
-!> force law's length L. A shape chooses l; with the radius l^2/L all else follows as for the
-!> parabola r^2/(2R), whose l is sqrt(R L). Shapes are convex and smooth but for `breaks`.
+!> force law's length L. A shape chooses l; with the radius l^2/L everything else follows as for the
+!> parabola r^2/(2R), whose l is sqrt(R L). Shapes are convex and smooth except at `breaks`.
 !>
 !> The theory of contact needs two integrals of the slope, after Galin and Sneddon: the indentation
-!> q(a) by a rigid body of this shape up to the contact radius a, and the load that it takes.
+!> q(a) by a rigid body of this shape up to the contact radius a, and the load for it.
 module shape
   use kinds, only: wp, pi
   use quadrature, only: gauss_legendre
@@ -21,11 +21,11 @@ module shape
     real(wp) :: radius = 1
     !> Whether this is the parabola, for which the load of rigid bodies is the law's energy.
     logical :: parabolic = .false.
-    !> Power of r that the shape is on the axis (0: none), and far away.
+    !> Power of r that describes the shape near the axis (0: none), and far away.
     real(wp) :: exponent = 2, growth = 2
-    !> Positions between 0 and infinity at which a derivative of the slope, or itself, jumps.
+    !> Positions between 0 and infinity at which the slope or a derivative of it jumps.
     real(wp), allocatable :: breaks(:)
-    !> Position at which the body ends; beyond it the shape goes on only so that a gap exists.
+    !> Position at which the body ends. The shape continues beyond it only to define a gap.
     real(wp) :: ends = huge(1.0_wp)
   contains
     !> f(r) and f'(r) at positions r >= 0.
@@ -51,7 +51,7 @@ module shape
     end function profile_function
   end interface
 
-  !> Points of the quadratures, at least so many in each piece between breaks.
+  !> Points of the quadratures, and the fewest in each piece between breaks.
   integer, parameter :: points = 48, fewest = 4
 
 contains
@@ -72,7 +72,7 @@ contains
     r = bracket%high
   end function position_of
 
-  !> f(r + dr) - f(r) - f'(r) dr: what a linear step leaves out.
+  !> f(r + dr) - f(r) - f'(r) dr, the remainder of a linear step.
   elemental real(wp) function bend(self, r, dr)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: r, dr
@@ -80,7 +80,7 @@ contains
     bend = self%height(r + dr) - self%height(r) - self%slope(r)*dr
   end function bend
 
-  !> x f'(c x) - f(c x)/c: how f(c x), enlarged with c, changes beyond being proportional to c.
+  !> x f'(c x) - f(c x)/c: the change of f(c x) with c beyond proportionality.
   elemental real(wp) function unlike_scaling(self, c, x) result(change)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: c, x
