@@ -91,7 +91,7 @@ GUARDS = {
     ),
     "hidden_folds": Guard(
         "folds that a step passes over are looked for",
-        "path/path_extremum.f90",
+        "path/path_search.f90",
         "if (doubt .and. near%held < most_states) then",
         "if (doubt .and. near%held < 0) then",
         ("path/test_close_folds.py::test_folds_however_close_are_found",),
