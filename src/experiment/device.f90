@@ -7,12 +7,12 @@ module device
   use solver, only: solver_t
   use path_tangent, only: of_h0
   use traced_path, only: traced_path_t
-  use path_curve, only: curve_node_t
   use curve_states, only: curve_state_t
-  use driven_pieces, only: drive_t, driven_piece_t, find_pieces, piece_with, state_driven
+  use driven_pieces, only: drive_t, driven_piece_t, jump_t, find_pieces, find_jump, piece_with, &
+    state_driven
   implicit none
   private
-  public :: driven_t, leg_t, jump_t, nodes_on, drive_bodies
+  public :: driven_t, leg_t, nodes_on, drive_bodies
 
   !> A way along one stable piece, of this number in `driven_t`; jumps: from its end.
   type :: leg_t
@@ -21,16 +21,6 @@ module device
     type(curve_state_t) :: from, to
     logical :: jumps = .false.
   end type leg_t
-
-  !> A jump and the energy that it loses, in units of load times length; landed = .false.: nothing
-  !> that is known of the path catches the bodies.
-  type :: jump_t
-    logical :: inward = .true., landed = .false.
-    type(curve_state_t) :: before, after
-    real(wp) :: energy = 0, uncertainty = 0
-    !> Derivatives of the energy by each parameter of &sensitivity, SI units.
-    real(wp), allocatable :: energy_rate(:)
-  end type jump_t
 
   !> What a drive does to the bodies. Lost in all jumps, and over the cycle, the area between the
   !> ways in and out, by another route; NaN where they do not come back to where they began.
@@ -114,9 +104,12 @@ contains
         leg%jumps = leg%jumps .and. driven%solved
         driven%leg = [driven%leg, leg]
         if (.not. leg%jumps) return
-        call leap(inward, jump)
+        call find_jump(solver, path, drive, driven%piece, here, inward, jump)
+        driven%solved = driven%solved .and. (jump%landed .or. jump%piece == 0)
         driven%jump = [driven%jump, jump]
         if (.not. jump%landed) return
+        here = jump%piece
+        state = jump%after
       end do
     end subroutine go
 
@@ -163,38 +156,17 @@ contains
       end associate
     end subroutine find_limit
 
-    !> Jumps from the present state to the nearest stable piece with the same position.
-    subroutine leap(inward, jump)
-      logical, intent(in) :: inward
-      type(jump_t), intent(out) :: jump
-      integer :: k
-
-      jump%inward = inward
-      jump%before = state
-      jump%energy = ieee_value(1.0_wp, ieee_quiet_nan)
-      k = piece_with(driven%piece, drive, drive%position(state), here, inward)
-      if (k == 0) return
-      call state_driven(solver, path, drive, driven%piece(k), drive%position(state), jump%after)
-      jump%landed = jump%after%converged
-      driven%solved = driven%solved .and. jump%landed
-      if (.not. jump%landed) return
-      jump%energy = drive%energy(jump%before) - drive%energy(jump%after)
-      jump%uncertainty = jump%before%uncertainty + jump%after%uncertainty
-      here = k
-      state = jump%after
-    end subroutine leap
-
   end subroutine drive_bodies
 
   !> The nodes of the path that a leg passes, in the order of the leg.
   pure function nodes_on(all_nodes, leg) result(nodes)
-    type(curve_node_t), intent(in) :: all_nodes(:)
+    type(curve_state_t), intent(in) :: all_nodes(:)
     type(leg_t), intent(in) :: leg
-    type(curve_node_t), allocatable :: nodes(:)
+    type(curve_state_t), allocatable :: nodes(:)
 
     associate (first => min(leg%from%interval, leg%to%interval) + 1, &
       last => max(leg%from%interval, leg%to%interval))
-      nodes = pack(all_nodes(first:last), all_nodes(first:last)%shown)
+      nodes = pack(all_nodes(first:last), .not. all_nodes(first:last)%again)
     end associate
     if (.not. leg%inward) nodes = nodes(size(nodes):1:-1)
   end function nodes_on

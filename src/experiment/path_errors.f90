@@ -109,7 +109,7 @@ contains
     if (allocated(landing%error)) return
     call judge_point(own, fine, known, landing%fold)
     associate (fold => known%path%point(landing%fold))
-      if (.not. landing%converged) then
+      if (.not. landing%landed) then
         landing%error = unknown_error(reported_t(h0=fold%state%h0))
         return
       end if

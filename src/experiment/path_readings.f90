@@ -5,11 +5,10 @@ module path_readings
   use kinds, only: wp
   use listener, only: listener_t
   use experiment_request, only: request_t
-  use path_curve, only: curve_node_t, nodes_of
   use path_sensitivity, only: rate_t
   use driven_pieces, only: drive_t, through_spring
   use path_tangent, only: of_load
-  use curve_states, only: curve_state_t, states_where
+  use curve_states, only: curve_state_t, states_of_points, states_where
   use device, only: driven_t, drive_bodies
   use path_stepper, only: path_stepper_t
   implicit none
@@ -26,7 +25,8 @@ module path_readings
 
   !> In the units of `dimensionless_problem`.
   type :: path_readings_t
-    type(curve_node_t), allocatable :: node(:)
+    !> The points of the path.
+    type(curve_state_t), allocatable :: node(:)
     !> A drive for each stiffness; and at prescribed h0, for the table.
     type(driven_t), allocatable :: device(:), prescribed
     type(loaded_state_t), allocatable :: loaded(:)
@@ -57,7 +57,7 @@ contains
       readings%solved = path%held > 1
       allocate (readings%node(0))
       if (.not. readings%solved) return
-      readings%node = nodes_of(steps%solver_t, path)
+      readings%node = states_of_points(steps%solver_t, path)
       readings%traced_from = path%point(path%undeformed + 1)%state%h0
       readings%undeformed_from = path%point(1)%state%h0
       if (allocated(request%device)) call run_device(request, steps, readings)

@@ -8,7 +8,6 @@ module reading_errors
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
   use curve_states, only: curve_state_t, reading_t, reading_of
-  use path_curve, only: curve_node_t
   use driven_pieces, only: state_driven
   use device, only: driven_t, leg_t, nodes_on
   use experiment_request, only: request_t
@@ -175,7 +174,7 @@ contains
     type(path_readings_t), intent(in) :: fine
     type(path_readings_t), intent(inout) :: own
     real(wp), intent(inout) :: largest
-    type(curve_node_t), allocatable :: nodes(:)
+    type(curve_state_t), allocatable :: nodes(:)
     real(wp) :: scale
     integer :: i, k, place
 
@@ -207,7 +206,7 @@ contains
     !> Holds a row, and the middle between it and the next, against the finer path.
     subroutine hold(leg, row, next)
       integer, intent(in) :: leg
-      type(curve_node_t), intent(in) :: row, next
+      type(curve_state_t), intent(in) :: row, next
       real(wp) :: load
 
       if (at(leg, row%h0, load)) own%table_error = &
@@ -216,7 +215,7 @@ contains
         if (.not. abs(width) > 0) return
         if (at(leg, 0.5_wp*(row%h0 + next%h0), load)) own%table_interpolation_error = &
           max(own%table_interpolation_error, abs(load - 0.5_wp*(row%load + next%load) - &
-          width/8*(row%load_slope/row%h0_slope - next%load_slope/next%h0_slope)))
+          width/8*(row%slopes(2)/row%slopes(1) - next%slopes(2)/next%slopes(1))))
       end associate
     end subroutine hold
 

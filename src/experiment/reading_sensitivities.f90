@@ -7,8 +7,7 @@ module reading_sensitivities
   use traced_path, only: no_mesh
   use curve_states, only: curve_state_t, equilibrium_at
   use path_tangent, only: tangent_t
-  use driven_pieces, only: drive_t
-  use device, only: jump_t
+  use driven_pieces, only: drive_t, jump_t
   use state_sensitivity, only: place_on_path_t
   use place_sensitivity, only: local_t, find_local, local_undeformed, at_fixed, at_extremum, &
     of_h0, of_load, of_energy
@@ -32,8 +31,8 @@ contains
     integer :: i, k
 
     if (.not. readings%solved) return
-    call rates_along(finder%steps%equations_t, finder%steps%known%path, readings%node, &
-      finder%varied(2:), readings%rate, found)
+    call rates_along(finder%steps%equations_t, finder%steps%known%path, finder%varied(2:), &
+      readings%rate, found)
     finder%whole = finder%whole .and. found
     if (allocated(readings%device)) then
       do i = 1, size(readings%device)

@@ -150,7 +150,7 @@ contains
       landing = finder%steps%known%outward(k)
     end if
     call rate_point(finder, fold, before, found)
-    found = found .and. landing%converged
+    found = found .and. landing%landed
     if (found) call rate_at_h0(finder, landing%mesh, landing%state, before(of_h0, :), after, found)
   end subroutine rate_jump
 

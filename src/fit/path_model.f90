@@ -12,7 +12,6 @@ module path_model
   use mesh_store, only: mesh_store_t
   use path_tangent, only: of_h0, of_load
   use traced_path, only: traced_path_t
-  use path_curve, only: curve_node_t, nodes_of
   use path_sensitivity, only: rate_t, rates_along
   use driven_pieces, only: driven_piece_t, through_spring
   use device, only: driven_t, drive_bodies
@@ -41,7 +40,6 @@ module path_model
     !> The trial that was solved last, at these values.
     real(wp), allocatable, private :: value(:)
     type(path_stepper_t), private :: steps
-    type(curve_node_t), allocatable, private :: node(:)
     type(driven_t), private :: driven
     real(wp), private :: stiffness = 0, farthest = 0, largest = 0
     logical, private :: solved = .false.
@@ -67,13 +65,13 @@ contains
       call self%solve_trial(value, stiffness, farthest, largest)
     found = self%solved
     if (.not. found) return
-    allocate (rate(merge(size(value), 0, with_rates), size(self%node)))
+    allocate (rate(merge(size(value), 0, with_rates), self%steps%known%path%last))
     if (size(rate) > 0) call find_rates(self, rate, found)
     if (.not. found) return
     allocate (response%branch(size(self%driven%piece)))
     do i = 1, size(response%branch)
-      call make_branch(self%steps%problem, self%steps%known%path, self%node, &
-        self%driven%piece(i), rate, response%branch(i))
+      call make_branch(self%steps%problem, self%steps%known%path, self%driven%piece(i), rate, &
+        response%branch(i))
       call response%branch(i)%close(stiffness)
     end do
     call find_ways(self%steps%problem, self%driven, response)
@@ -127,7 +125,6 @@ contains
       self%numerics%accuracy)
     self%left_out = self%steps%known%left_out
     if (.not. self%steps%known%path%held > 1) return
-    self%node = nodes_of(self%steps%solver_t, self%steps%known%path)
     call drive_bodies(self%steps%solver_t, self%steps%known%path, &
       through_spring(stiffness*problem%length/problem%load), low, anywhere, anywhere, self%driven)
     self%solved = self%driven%solved .and. self%driven%caught .and. size(self%driven%leg) > 1
@@ -150,16 +147,15 @@ contains
       call vary(self%family, i, to_search, varied(i), error)
       found = found .and. .not. allocated(error)
     end do
-    if (found) call rates_along(self%steps%equations_t, self%steps%known%path, self%node, varied, &
-      all_rates, found)
+    if (found) call rates_along(self%steps%equations_t, self%steps%known%path, varied, all_rates, &
+      found)
     if (found) rate = all_rates
   end subroutine find_rates
 
-  !> A stable piece of the path as panels, SI units; rate(unknown, node) at its nodes.
-  subroutine make_branch(problem, path, nodes, piece, rate, branch)
+  !> A stable piece of the path as panels, SI units; rate(unknown, point) at its points.
+  subroutine make_branch(problem, path, piece, rate, branch)
     type(problem_t), intent(in) :: problem
     type(traced_path_t), intent(in) :: path
-    type(curve_node_t), intent(in) :: nodes(:)
     type(driven_piece_t), intent(in) :: piece
     type(rate_t), intent(in) :: rate(:, :)
     type(branch_t), intent(out) :: branch
@@ -204,7 +200,7 @@ contains
       branch%load(side, n) = problem%load*load%value(x)
       branch%load(2 + side, n) = problem%load*width*load%slope(x)
       if (size(rate, 1) == 0) return
-      associate (weight => polynomial_weights(nodes(near)%x, x))
+      associate (weight => polynomial_weights(path%point(near)%coordinate, x))
         branch%h0_rate(:, side, n) = matmul(rate(:, near)%h0, weight)
         branch%load_rate(:, side, n) = matmul(rate(:, near)%load, weight)
       end associate

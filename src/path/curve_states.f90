@@ -15,8 +15,8 @@ module curve_states
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   implicit none
   private
-  public :: curve_state_t, place_t, reading_t, reading_of, state_of, state_where, states_where, &
-    find_turns, equilibrium_at
+  public :: curve_state_t, place_t, reading_t, reading_of, states_of_points, state_of, &
+    state_where, states_where, find_turns, equilibrium_at
 
   !> A place between point `interval` of a path and the next, at the path's coordinate x.
   type :: place_t
@@ -37,6 +37,8 @@ module curve_states
     real(wp) :: slopes(2) = 0, residual = 0
     integer :: modes = 0
     logical :: converged = .false.
+    !> Of a point of the path: whether it is there again on the next mesh.
+    logical :: again = .false.
     !> Derivatives of what is reported of it by each parameter of &sensitivity
     !> (`place_sensitivity`).
     real(wp), allocatable :: rate(:, :)
@@ -56,6 +58,22 @@ contains
     reading = reading_t(state%h0, state%load, state%axis_gap - state%h0, state%radius)
   end function reading_of
 
+  !> What is reported of the points of a path, up to the end of its last stable piece. Modes are
+  !> those on the more unstable side.
+  function states_of_points(solver, path) result(states)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
+    type(curve_state_t), allocatable :: states(:)
+    integer :: i
+
+    allocate (states(path%last))
+    do i = 1, path%last
+      call state_of(solver, path, place_t(i, path%point(i)%coordinate), states(i))
+      states(i)%modes = path%modes_at(i)
+      states(i)%again = .not. (path%point(i)%leads_on .or. i == path%last)
+    end do
+  end function states_of_points
+
   !> The equilibrium at a place that is on a mesh, with its tangent by the path's coordinate.
   subroutine equilibrium_at(solver, path, place, state, tangent, converged)
     class(solver_t), intent(inout) :: solver
@@ -65,18 +83,20 @@ contains
     type(tangent_t), intent(out) :: tangent
     logical, intent(out) :: converged
     type(path_span_t) :: span
-    integer :: k
+    integer :: i
 
+    do i = place%interval, min(place%interval + 1, path%held)
+      associate (point => path%point(i))
+        converged = abs(point%coordinate - place%x) <= 0
+        if (.not. converged) cycle
+        state = point%state
+        tangent = point%tangent
+        return
+      end associate
+    end do
     span = new_path_span(path, place%interval)
-    k = findloc(span%coordinate(:span%held), place%x, 1)
-    converged = k > 0
-    if (converged) then
-      state = span%state(k)
-      tangent = span%tangent(k)
-    else
-      call span%state_at(solver, place%x, state, tangent, converged)
-      solver%cost%states = solver%cost%states + 1
-    end if
+    call span%state_at(solver, place%x, state, tangent, converged)
+    solver%cost%states = solver%cost%states + 1
   end subroutine equilibrium_at
 
   !> What is reported of the equilibrium at a place.
@@ -139,13 +159,14 @@ contains
   end function told
 
   !> The equilibrium in interval i between x = from and x = to, where Q goes one way, at which Q is
-  !> `wanted`.
-  subroutine state_where(solver, path, i, weights, wanted, from, to, state)
+  !> `wanted`; equilibrium: its gaps, where it is on a mesh.
+  subroutine state_where(solver, path, i, weights, wanted, from, to, state, equilibrium)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2), wanted, from, to
     type(curve_state_t), intent(out) :: state
+    type(state_t), intent(out), optional :: equilibrium
     type(path_span_t) :: span
     type(found_t) :: found
     type(root_search_t) :: search
@@ -165,6 +186,7 @@ contains
     call find_place(solver, span%arc_t, [from, to], weights, found, done, wanted)
     solver%cost%states = solver%cost%states + 1
     state = told(solver, path, place_t(i, found%coordinate), found%state, found%tangent, done)
+    if (present(equilibrium)) equilibrium = found%state
 
   contains
 

@@ -7,14 +7,16 @@
 module driven_pieces
   use kinds, only: wp
   use quadrature, only: gauss_legendre
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use interpolation, only: hermite_t
+  use contact_state, only: state_t
   use solver, only: solver_t
   use traced_path, only: traced_path_t
   use curve_states, only: curve_state_t, place_t, state_of, state_where, find_turns
   implicit none
   private
-  public :: drive_t, driven_piece_t, find_pieces, piece_with, interval_with, state_driven, &
-    through_spring
+  public :: drive_t, driven_piece_t, jump_t, find_pieces, find_jump, piece_with, interval_with, &
+    state_driven, through_spring
 
   !> Weights of h0 and load in D (`path_tangent`).
   type :: drive_t
@@ -31,6 +33,19 @@ module driven_pieces
     type(curve_state_t) :: first, last
     logical :: first_turns = .false., last_turns = .false.
   end type driven_piece_t
+
+  !> A jump from the end of a piece, and the energy that it loses, in units of load times length;
+  !> landed = .false.: nothing that is known of the path catches the bodies.
+  type :: jump_t
+    logical :: inward = .true., landed = .false.
+    type(curve_state_t) :: before, after
+    !> The piece that it leads to (0: there is none), and the gaps there.
+    integer :: piece = 0
+    type(state_t) :: state
+    real(wp) :: energy = 0, uncertainty = 0
+    !> Derivatives of the energy by each parameter of &sensitivity, SI units.
+    real(wp), allocatable :: energy_rate(:)
+  end type jump_t
 
   !> The part of itself by which D falls at least over a piece: where a turn is a state of the path
   !> on two meshes, rounding leaves pieces over which it hardly does.
@@ -223,19 +238,46 @@ contains
   end function interval_with
 
   !> The state of a piece at which D has a value between those at its ends.
-  subroutine state_driven(solver, path, drive, piece, wanted, state)
+  subroutine state_driven(solver, path, drive, piece, wanted, state, equilibrium)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
     type(drive_t), intent(in) :: drive
     type(driven_piece_t), intent(in) :: piece
     real(wp), intent(in) :: wanted
     type(curve_state_t), intent(out) :: state
+    type(state_t), intent(out), optional :: equilibrium
     real(wp) :: ends(2)
     integer :: i
 
     i = interval_with(path, piece, drive%weights, wanted)
     ends = part_of(path%point(i:i + 1)%coordinate, i, piece%first, piece%last)
-    call state_where(solver, path, i, drive%weights, wanted, ends(1), ends(2), state)
+    call state_where(solver, path, i, drive%weights, wanted, ends(1), ends(2), state, equilibrium)
   end subroutine state_driven
+
+  !> Where the bodies land that leave a piece over the turn at its inner or outer end: on the
+  !> nearest stable piece with the same position of the drive.
+  subroutine find_jump(solver, path, drive, pieces, from, inward, jump)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
+    type(drive_t), intent(in) :: drive
+    type(driven_piece_t), intent(in) :: pieces(:)
+    integer, intent(in) :: from
+    logical, intent(in) :: inward
+    type(jump_t), intent(out) :: jump
+
+    jump%inward = inward
+    jump%before = pieces(from)%first
+    if (inward) jump%before = pieces(from)%last
+    jump%energy = ieee_value(1.0_wp, ieee_quiet_nan)
+    associate (position => drive%position(jump%before))
+      jump%piece = piece_with(pieces, drive, position, from, inward)
+      if (jump%piece == 0) return
+      call state_driven(solver, path, drive, pieces(jump%piece), position, jump%after, jump%state)
+    end associate
+    jump%landed = jump%after%converged
+    if (.not. jump%landed) return
+    jump%energy = drive%energy(jump%before) - drive%energy(jump%after)
+    jump%uncertainty = jump%before%uncertainty + jump%after%uncertainty
+  end subroutine find_jump
 
 end module driven_pieces

@@ -8,26 +8,18 @@ module known_path
   use solver, only: solver_t
   use reported, only: error_t, measure_t
   use path_tangent, only: of_h0
-  use path_span, only: path_span_t, new_path_span
-  use potential_energy, only: energy_of
-  use driven_pieces, only: drive_t, driven_piece_t, find_pieces, piece_with, interval_with
+  use driven_pieces, only: drive_t, driven_piece_t, jump_t, find_pieces, find_jump, interval_with
   use tracing, only: tracing_t, trace
   implicit none
   private
   public :: known_path_t, landing_t, lost_energy_t, trace_pieces, interval_at, lowest_point, &
     landing_over, energy_lost
 
-  !> Where a jump leads: the fold that it starts from (a point of the path; 0: there is none), the
-  !> piece that it ends on (0: there is none) and the state there, at the h0 of the fold.
-  type :: landing_t
-    integer :: fold = 0, piece = 0
-    integer :: mesh = 1
-    real(wp) :: coordinate = 0
-    type(state_t) :: state
-    logical :: converged = .false.
-    !> The potential energy that it loses, and what rounding leaves of that.
-    real(wp) :: energy = 0, uncertainty = 0
-    !> As for a point of the path.
+  !> A jump at prescribed h0: the fold that it starts from, a point of the path (0: there is no
+  !> jump), and the mesh of the state that it leads to.
+  type, extends(jump_t) :: landing_t
+    integer :: fold = 0, mesh = 1
+    !> Of that state, as for a point of the path.
     type(measure_t), allocatable :: fine
     type(error_t), allocatable :: error
   end type landing_t
@@ -88,24 +80,13 @@ contains
     integer, intent(in) :: from
     logical, intent(in) :: inward
     type(landing_t), intent(out) :: landing
-    type(path_span_t) :: span
-    real(wp) :: h0, energy, uncertainty
 
     associate (left => known%piece(from))
       if (.not. merge(left%last_turns, left%first_turns, inward)) return
       landing%fold = merge(left%last%interval + 1, left%first%interval, inward)
-      landing%energy = merge(left%last%energy, left%first%energy, inward)
-      landing%uncertainty = merge(left%last%uncertainty, left%first%uncertainty, inward)
     end associate
-    h0 = known%path%point(landing%fold)%state%h0
-    landing%piece = piece_with(known%piece, drive_t(of_h0), h0, from, inward)
-    if (landing%piece == 0) return
-    span = new_path_span(known%path, interval_at(known, landing%piece, h0))
-    landing%mesh = span%mesh
-    call span%solve_at_h0(solver, h0, landing%coordinate, landing%state, landing%converged)
-    call energy_of(solver%equations_t, landing%mesh, landing%state, energy, uncertainty)
-    landing%energy = landing%energy - energy
-    landing%uncertainty = landing%uncertainty + uncertainty
+    call find_jump(solver, known%path, drive_t(of_h0), known%piece, from, inward, landing%jump_t)
+    if (landing%landed) landing%mesh = known%path%point(landing%after%interval)%mesh
   end subroutine land
 
   !> Adds what is lost in the jumps that lead from one stable piece to another, h0 going no lower
@@ -130,7 +111,7 @@ contains
         landing = known%outward(k)
       end if
       ! Beyond where it was to lead: another way.
-      whole = landing%piece > 0 .and. landing%converged .and. (landing%piece - to)*(k - to) >= 0
+      whole = landing%landed .and. (landing%piece - to)*(k - to) >= 0
       if (.not. whole) return
       associate (fold => known%path%point(landing%fold))
         whole = fold%state%h0 >= lowest

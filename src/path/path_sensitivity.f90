@@ -1,5 +1,5 @@
 !> How the curve of all equilibria changes with parameters of the problem: derivatives of h0 and
-!> load at every node of the curve (`path_curve`) at a fixed place x on it, in SI units. At a fixed
+!> load at every point of the path at a fixed place x on it, in SI units. At a fixed
 !> h0, or position of a drive, the place moves; `held` takes that into account.
 module path_sensitivity
   use kinds, only: wp
@@ -7,7 +7,7 @@ module path_sensitivity
   use equilibrium, only: equations_t
   use frozen_jacobian, only: frozen_jacobian_t
   use traced_path, only: traced_path_t, no_mesh
-  use path_curve, only: curve_node_t
+  use curve_states, only: curve_state_t
   use undeformed, only: load_undeformed
   use variation, only: variation_t
   use state_sensitivity, only: change_t, place_on_path_t, differentiate
@@ -23,12 +23,11 @@ module path_sensitivity
 
 contains
 
-  !> rate(i, j): by parameter i at node j of the path, at fixed x. found = .false.: at some node
+  !> rate(i, j): by parameter i at point j of the path, at fixed x. found = .false.: at some point
   !> they do not exist.
-  subroutine rates_along(equations, path, nodes, varied, rate, found)
+  subroutine rates_along(equations, path, varied, rate, found)
     type(equations_t), intent(inout) :: equations
     type(traced_path_t), intent(in) :: path
-    type(curve_node_t), intent(in) :: nodes(:)
     type(variation_t), intent(in) :: varied(:)
     type(rate_t), allocatable, intent(out) :: rate(:, :)
     logical, intent(out) :: found
@@ -37,19 +36,17 @@ contains
     type(place_on_path_t) :: place
     integer :: i, j
 
-    allocate (rate(size(varied), size(nodes)))
+    allocate (rate(size(varied), path%last))
     found = .true.
-    do j = 1, size(nodes)
-      associate (node => nodes(j))
-        if (node%mesh == no_mesh) then
+    do j = 1, path%last
+      associate (point => path%point(j))
+        if (point%mesh == no_mesh) then
           do i = 1, size(varied)
-            rate(i, j) = rate_undeformed(equations, varied(i), node%h0)
+            rate(i, j) = rate_undeformed(equations, varied(i), point%state%h0)
           end do
           cycle
         end if
-        place%mesh = node%mesh
-        place%s = node%x
-        place%state = path%point(j)%state
+        place = place_on_path_t(point%mesh, point%coordinate, point%state)
         call differentiate(equations, place, frozen, varied, change, found)
         if (.not. found) return
         do i = 1, size(varied)
@@ -84,12 +81,12 @@ contains
   !> Infinite where that value turns round along the path.
   pure type(rate_t) function held(problem, node, rate, weights)
     type(problem_t), intent(in) :: problem
-    type(curve_node_t), intent(in) :: node
+    type(curve_state_t), intent(in) :: node
     type(rate_t), intent(in) :: rate
     real(wp), intent(in) :: weights(2)
     real(wp) :: slope(2), shift
 
-    slope = [node%h0_slope*problem%length, node%load_slope*problem%load]
+    slope = node%slopes*[problem%length, problem%load]
     shift = -dot_product(weights, [rate%h0, rate%load])/dot_product(weights, slope)
     held = rate
     held%h0 = rate%h0 + shift*slope(1)

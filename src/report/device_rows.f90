@@ -4,10 +4,9 @@ module device_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use path_curve, only: curve_node_t
   use curve_states, only: curve_state_t
-  use driven_pieces, only: drive_t
-  use device, only: driven_t, leg_t, jump_t, nodes_on
+  use driven_pieces, only: drive_t, jump_t
+  use device, only: driven_t, leg_t, nodes_on
   use reading_numbers, only: error_of, state_errors
   use place_sensitivity, only: of_load
   use reading_sensitivities, only: weights_of
@@ -72,9 +71,8 @@ contains
 
       do j = 1, size(readings%node)
         associate (node => readings%node(j))
-          if (node%shown) call add(driven, 'path', node%h0, node%load, node%radius, &
-            node%modes == 0 .and. &
-            dot_product(driven%drive%weights, [node%h0_slope, node%load_slope]) < 0)
+          if (.not. node%again) call add(driven, 'path', node, node%modes == 0 .and. &
+            dot_product(driven%drive%weights, node%slopes) < 0)
         end associate
       end do
     end subroutine add_path
@@ -84,28 +82,26 @@ contains
       type(driven_t), intent(in) :: driven
       type(leg_t), intent(in) :: leg
       character(len=:), allocatable :: direction
-      type(curve_node_t), allocatable :: nodes(:)
+      type(curve_state_t), allocatable :: nodes(:)
       integer :: j
 
       direction = direction_of(leg%inward)
-      call add(driven, direction, leg%from%h0, leg%from%load, leg%from%radius, .true.)
+      call add(driven, direction, leg%from, .true.)
       nodes = nodes_on(readings%node, leg)
       do j = 1, size(nodes)
-        call add(driven, direction, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, .true.)
+        call add(driven, direction, nodes(j), .true.)
       end do
-      call add(driven, direction, leg%to%h0, leg%to%load, leg%to%radius, &
-        .not. leg%jumps)
+      call add(driven, direction, leg%to, .not. leg%jumps)
     end subroutine add_leg
 
-    subroutine add(driven, direction, h0, load, radius, stable)
+    subroutine add(driven, direction, state, stable)
       type(driven_t), intent(in) :: driven
       character(len=*), intent(in) :: direction
-      real(wp), intent(in) :: h0, load, radius
+      type(curve_state_t), intent(in) :: state
       logical, intent(in) :: stable
 
       call results%row(cells([driven%stiffness]) // ',' // direction, &
-        [z_of(problem, driven%drive, h0, load), problem%law%separation_of(h0), &
-        load*problem%load, radius*problem%lateral], [stable])
+        [z_of(problem, driven%drive, state), si_of(problem, state)], [stable])
     end subroutine add
 
   end subroutine write_device
@@ -124,7 +120,7 @@ contains
           after = ieee_value(1.0_wp, ieee_quiet_nan)
           if (jump%landed) after = si_of(problem, jump%after)
           call results%row(cells([driven%stiffness]) // ',' // direction_of(jump%inward), &
-            [z_of(problem, driven%drive, jump%before%h0, jump%before%load), &
+            [z_of(problem, driven%drive, jump%before), &
             si_of(problem, jump%before), after, jump%energy*problem%load*problem%length, &
             jump_errors(problem, readings, driven, jump)])
         end associate
@@ -151,13 +147,13 @@ contains
   end function si_of
 
   !> Position of the drive [m].
-  pure real(wp) function z_of(problem, drive, h0, load) result(z)
+  pure real(wp) function z_of(problem, drive, state) result(z)
     type(problem_t), intent(in) :: problem
     type(drive_t), intent(in) :: drive
-    real(wp), intent(in) :: h0, load
+    type(curve_state_t), intent(in) :: state
 
     z = ieee_value(z, ieee_quiet_nan)
-    if (drive%weights(1) > 0) z = problem%law%separation_of(h0 + drive%weights(2)*load)
+    if (drive%weights(1) > 0) z = problem%law%separation_of(drive%position(state))
   end function z_of
 
   !> What the drives leave in the summary, an element for each stiffness: the first jump of each
@@ -219,7 +215,7 @@ contains
           first = findloc(driven%jump%inward, inward, 1)
           if (first == 0) cycle
           associate (jump => driven%jump(first))
-            z(k) = z_of(problem, driven%drive, jump%before%h0, jump%before%load)
+            z(k) = z_of(problem, driven%drive, jump%before)
             before(k) = jump%before%load*problem%load
             if (jump%landed) after(k) = jump%after%load*problem%load
             associate (errors => jump_errors(problem, readings, driven, jump))

@@ -151,7 +151,7 @@ contains
 
       associate (node => readings%node(i), drive => through_spring(stiffness))
         weights = drive%weights
-        terms = weights*[node%h0_slope*problem%length, node%load_slope*problem%load]
+        terms = weights*node%slopes*[problem%length, problem%load]
         rate = held(problem, node, readings%rate(j, i), weights)
         if (.not. abs(sum(terms)) > turning*sum(abs(terms) + &
           abs(weights)*[problem%length, problem%load])) then

@@ -5,7 +5,7 @@ module table_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, surface_energy
   use maugis, only: maugis_units_t, maugis_units
-  use path_curve, only: curve_node_t
+  use curve_states, only: curve_state_t
   use path_readings, only: path_readings_t
   use device, only: nodes_on
   use results, only: results_t
@@ -32,37 +32,34 @@ contains
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
     type(results_t), intent(inout) :: results
-    type(curve_node_t), allocatable :: nodes(:)
+    type(curve_state_t), allocatable :: nodes(:)
     integer :: i, j
 
     associate (driven => readings%prescribed)
       do i = 1, size(driven%leg)
         associate (leg => driven%leg(i))
-          call add(leg%inward, leg%from%h0, leg%from%load, leg%from%radius, leg%from%slopes, &
-            .false.)
           nodes = nodes_on(readings%node, leg)
+          call add(leg%inward, leg%from, .false.)
           do j = 1, size(nodes)
-            call add(leg%inward, nodes(j)%h0, nodes(j)%load, nodes(j)%radius, &
-              [nodes(j)%h0_slope, nodes(j)%load_slope], .false.)
+            call add(leg%inward, nodes(j), .false.)
           end do
-          call add(leg%inward, leg%to%h0, leg%to%load, leg%to%radius, leg%to%slopes, &
-            leg%jumps)
+          call add(leg%inward, leg%to, leg%jumps)
         end associate
       end do
     end associate
 
   contains
 
-    !> A state, with the derivatives of h0 and load along the path.
-    subroutine add(inward, h0, load, radius, slopes, at_jump)
+    subroutine add(inward, state, at_jump)
       logical, intent(in) :: inward, at_jump
-      real(wp), intent(in) :: h0, load, radius, slopes(2)
+      type(curve_state_t), intent(in) :: state
       type(maugis_units_t) :: unit
       real(wp) :: si(4)
 
-      si = [-h0*problem%length, load*problem%load, radius*problem%lateral, &
+      si = [-state%h0*problem%length, state%load*problem%load, state%radius*problem%lateral, &
         ieee_value(1.0_wp, ieee_quiet_nan)]
-      if (.not. at_jump) si(4) = -slopes(2)/slopes(1)*problem%load/problem%length
+      if (.not. at_jump) &
+        si(4) = -state%slopes(2)/state%slopes(1)*problem%load/problem%length
       unit = maugis_units(problem%radius, problem%stiffness, surface_energy(problem))
       ! Other shapes have no radius.
       if (.not. problem%shape%parabolic) then
