@@ -69,6 +69,8 @@ contains
         readings%solved = readings%solved .and. readings%prescribed%solved
       end if
     end associate
+    if (allocated(readings%loaded)) &
+      steps%cost%states = steps%cost%states + size(readings%loaded)
   end subroutine read_path
 
   !> &fixed_load: all equilibria under each load.
@@ -134,6 +136,8 @@ contains
       end if
       call drive_bodies(steps%solver_t, steps%known%path, drive, &
         law%gap_of(request%path%h0_end), start, finish, driven)
+      ! The ends of its ways.
+      steps%cost%states = steps%cost%states + 2*size(driven%leg)
     end associate
   end subroutine drive_between
 

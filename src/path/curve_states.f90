@@ -96,7 +96,6 @@ contains
     end do
     span = new_path_span(path, place%interval)
     call span%state_at(solver, place%x, state, tangent, converged)
-    solver%cost%states = solver%cost%states + 1
   end subroutine equilibrium_at
 
   !> What is reported of the equilibrium at a place.
@@ -184,7 +183,6 @@ contains
     end if
     span = new_path_span(path, i)
     call find_place(solver, span%arc_t, [from, to], weights, found, done, wanted)
-    solver%cost%states = solver%cost%states + 1
     state = told(solver, path, place_t(i, found%coordinate), found%state, found%tangent, done)
     if (present(equilibrium)) equilibrium = found%state
 
@@ -262,7 +260,6 @@ contains
     solved = .not. lost
     deallocate (turns)
     allocate (turns(size(extrema)))
-    solver%cost%states = solver%cost%states + size(extrema)
     do k = 1, size(extrema)
       turns(k) = told(solver, path, place_t(i, extrema(k)%coordinate), extrema(k)%state, &
         extrema(k)%tangent, .true.)
