@@ -66,7 +66,7 @@ contains
     end do
   end subroutine find_local
 
-  !> The same of bodies that do not deform, at the gap h0; their place is -log(h0) (`path_curve`).
+  !> The same of bodies that do not deform, at the gap h0; their place is -log(h0) (`traced_path`).
   function local_undeformed(problem, h0, varied) result(local)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
