@@ -9,10 +9,13 @@ module layer_group
   use scene_groups, only: scene_t, bodies_t
   implicit none
   private
-  public :: layer_keys, layer_bears_all, take_layer
+  public :: layer_keys, layer_bears_all, take_layer, check_thinness
 
   !> Largest ratio of two thicknesses or moduli.
   real(wp), parameter :: most_unlike = 1.0e9_wp
+  !> Thickness of the top layer over the lateral unit, of which all contacts are wider, at least: the
+  !> waves that see it are in number as contacts are wide beside it, and take half a minute here.
+  real(wp), parameter :: thinnest = 3.0e-4_wp
 
 contains
 
@@ -102,6 +105,21 @@ contains
       bodies%rigid = .false.
     end associate
   end subroutine take_layer
+
+  !> Refuses a top layer too thin for its waves to be followed; after forces and shape.
+  subroutine check_thinness(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: thickness(:)
+
+    if (.not. scene%deck%has_group('layer')) return
+    call scene%deck%get('layer', 'thickness', thickness)
+    associate (least => thinnest*sqrt(scene%shape%radius*scene%law%length))
+      if (thickness(1) < least) call scene%deck%mistake('layer', 'thickness', 'the top layer ' // &
+        'is thinner than ' // brief(least) // ' m, ' // brief(thinnest) // ' of sqrt(R L), ' // &
+        'with the range L of the force; contacts are too wide beside it, leave it out', error)
+    end associate
+  end subroutine check_thinness
 
   !> Makes one layer of neighbours of one material.
   pure subroutine join_alike(thickness, young, poisson)
