@@ -25,8 +25,8 @@ module mesh_digits
   !> waves of this many or fewer over the radius: at weak adhesion, and more for each decade of
   !> sigma.
   real(wp), parameter :: for_layers = 0.4_wp, for_necks_in_layers = 1.2_wp, waves_in_layer = 32
-  !> The same for each decade of what such a contact yields less than on a half-space. Where it yields
-  !> more: for each decade of that, times the square of the decades by which the contact is wider.
+  !> The same for each decade of what such a contact yields less than on a half-space. Where it
+  !> yields more: for each decade of that, times the square of those by which the contact is wider.
   real(wp), parameter :: for_unlike = 0.1_wp, for_necks_in_unlike = 0.1_wp, for_softer = 0.3_wp
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; what is more
   !> there, the factor in sigma up to which that is felt, and the part of it, logarithmically, in

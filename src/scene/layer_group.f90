@@ -13,9 +13,10 @@ module layer_group
 
   !> Largest ratio of two thicknesses or moduli.
   real(wp), parameter :: most_unlike = 1.0e9_wp
-  !> Thickness of the top layer over the lateral unit, of which all contacts are wider, at least: the
-  !> waves that see it are in number as contacts are wide beside it, and take half a minute here.
-  real(wp), parameter :: thinnest = 3.0e-4_wp
+  !> Thickness of the top layer over the lateral unit, at least. Contacts are wider than that unit;
+  !> as wide as they are beside the layer, so many are the waves that see it, and so much is held of
+  !> them: gigabytes, and minutes of work, here.
+  real(wp), parameter :: thinnest = 1.0e-3_wp
 
 contains
 
