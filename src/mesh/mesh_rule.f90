@@ -343,9 +343,10 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, radius
 
-    kernel_digits = max(5, ceiling(1.2_wp*digits - 2 + &
-      0.5_wp*log10(1 + adhesion_strength(problem)) + max(0.0_wp, min(for_layers, &
-      log10(problem%coupling/coupling_over(problem, radius))))))
+    kernel_digits = 1.2_wp*digits - 2 + 0.5_wp*log10(1 + adhesion_strength(problem))
+    if (.not. problem%body%is_homogeneous()) kernel_digits = kernel_digits + max(0.0_wp, &
+      min(for_layers, log10(problem%coupling/coupling_over(problem, radius))))
+    kernel_digits = max(5, ceiling(kernel_digits))
   end function kernel_digits
 
 end module mesh_rule
