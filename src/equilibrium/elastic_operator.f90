@@ -18,7 +18,7 @@ module elastic_operator
   public :: elastic_operator_t
 
   !> Scales for which waves are found, over the present one. For larger ones some are added.
-  real(wp), parameter :: smaller = 0.1_wp, larger = 1.2_wp
+  real(wp), parameter :: smaller = 0.5_wp, larger = 1.4_wp
   !> Meshes whose waves are kept: the path passes from one to the next, and jumps lead back.
   integer, parameter :: most_meshes = 8
 

@@ -5,7 +5,7 @@ module mesh_rule
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
   use shape, only: shape_t
-  use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
+  use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength, coupling_over
   use contact_scales, only: smallest_feature, cohesive_width
   use law_panels, only: fit_panels, nodes_on, about_axis, about_front, about_edge
   use seen_gaps, only: seen_gaps_t
@@ -50,9 +50,9 @@ module mesh_rule
   !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
   !> near one another have the same meshes: at the cost of a fraction of a node.
   real(wp), parameter :: rung = 0.25_wp
-  !> More digits of kernels of bodies with layers: what the half-space yields and what these yield
-  !> beside it may be much more than both together.
-  integer, parameter :: for_layers = 2
+  !> More digits of kernels at most where what the half-space yields and what layers yield beside it
+  !> are much more than both together.
+  real(wp), parameter :: for_layers = 2
   !> Digits that a shape with kinks allows.
   real(wp), parameter :: digits_of_broken = 4
 
@@ -84,7 +84,7 @@ contains
     call add_panels(problem, shape, about_axis, 1, asinh(reach/shape%d), density, digits, 0.0_wp, &
       0.0_wp, seen)
     call refine_axis(problem, digits, 3.0_wp, shape)
-    shape%digits = kernel_digits(problem, digits)
+    shape%digits = kernel_digits(problem, digits, 1.0_wp)
   end function approach_shape
 
   !> In contact, about the edge, for contact radii from `low` to `high` (lateral units); or before,
@@ -128,7 +128,7 @@ contains
     ! Panels of a whole number of nodes are a little longer, and end on the axis.
     shape%d = 1/sinh(sum(shape%z_length))
     call add_panels(problem, shape, about, 1, asinh(reach/shape%d), outer, digits, low, high, seen)
-    shape%digits = kernel_digits(problem, digits)
+    shape%digits = kernel_digits(problem, digits, high)
   end function contact_shape
 
   !> The tail of the pressure: an algebraic panel where it falls as a power; otherwise the mesh ends
@@ -338,14 +338,15 @@ contains
   end function is_even
 
   !> Digits of the kernel: its errors matter less than those of the pressure's polynomials, and
-  !> more where bodies yield more.
-  pure real(wp) function kernel_digits(problem, digits)
+  !> more where bodies yield more, or yield less to contacts of this radius than their half-spaces.
+  pure real(wp) function kernel_digits(problem, digits, radius)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: digits
+    real(wp), intent(in) :: digits, radius
 
-    kernel_digits = max(5, ceiling(1.2_wp*digits - 2 + &
-      0.5_wp*log10(1 + adhesion_strength(problem))))
-    if (.not. problem%body%is_homogeneous()) kernel_digits = kernel_digits + for_layers
+    kernel_digits = 1.2_wp*digits - 2 + 0.5_wp*log10(1 + adhesion_strength(problem))
+    if (.not. problem%body%is_homogeneous()) kernel_digits = kernel_digits + max(0.0_wp, &
+      min(for_layers, log10(problem%coupling/coupling_over(problem, radius))))
+    kernel_digits = max(5, ceiling(kernel_digits))
   end function kernel_digits
 
 end module mesh_rule

@@ -26,6 +26,9 @@ module mesh_waves
   !> product to have none of the wave. Inside, where bodies are in contact, nothing is left out: of
   !> thin films the second part of the operator is nearly the negative of the first, which has all.
   real(wp), parameter :: passing = 20, from = 0.6_wp
+  !> To infinity that does for pressures that fall as this power of the position. Of what falls less
+  !> steeply more lies where waves are left out, and they are so farther out.
+  real(wp), parameter :: steep = 6
   !> Places there are moved by waves that turn by less than this from node to node, and by all that
   !> turn less than this between the axis and them, each for a digit; smoothly from that part on.
   real(wp), parameter :: passing_place = 1.4_wp, crossing = 2.4_wp, from_of_place = 0.25_wp
@@ -231,6 +234,7 @@ contains
 
     last = huge(last)
     if (grid%panel(p)%left >= 0) last = passing/step_on(grid, p, s)
+    if (grid%panel(p)%kind == algebraic_map) last = last*max(1.0_wp, steep/grid%panel(p)%decay)**2
   end function last_on
 
   !> The distance between nodes at places s of a panel. On one that goes on to infinity it begins as

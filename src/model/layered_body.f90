@@ -95,8 +95,8 @@ contains
     body%plain = largest <= resolved
     ! Without an end of the series no state may converge.
     if (body%ends(size(body%ends)) < last) body%series = ieee_value(last, ieee_quiet_nan)
-    body%bottom = 1 + power_value(body%series(:, 1), -1.0_wp)
-    ! On a rigid base what is left is rounding.
+    body%bottom = body%yielding(tiny(last))
+    ! On a rigid base next to nothing is left.
     if (body%bottom < resolved) body%bottom = 0
 
   contains

@@ -9,10 +9,14 @@ module layer_group
   use scene_groups, only: scene_t, bodies_t
   implicit none
   private
-  public :: layer_keys, layer_bears_all, take_layer
+  public :: layer_keys, layer_bears_all, take_layer, check_thinness
 
   !> Largest ratio of two thicknesses or moduli.
   real(wp), parameter :: most_unlike = 1.0e9_wp
+  !> Thickness of the top layer over the lateral unit, at least. Contacts are wider than that unit;
+  !> as wide as they are beside the layer, so many are the waves that see it, and so much is held of
+  !> them: gigabytes, and minutes of work, here.
+  real(wp), parameter :: thinnest = 1.0e-3_wp
 
 contains
 
@@ -102,6 +106,21 @@ contains
       bodies%rigid = .false.
     end associate
   end subroutine take_layer
+
+  !> Refuses a top layer too thin for its waves to be followed; after forces and shape.
+  subroutine check_thinness(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: thickness(:)
+
+    if (.not. scene%deck%has_group('layer')) return
+    call scene%deck%get('layer', 'thickness', thickness)
+    associate (least => thinnest*sqrt(scene%shape%radius*scene%law%length))
+      if (thickness(1) < least) call scene%deck%mistake('layer', 'thickness', 'the top layer ' // &
+        'is thinner than ' // brief(least) // ' m, ' // brief(thinnest) // ' of sqrt(R L), ' // &
+        'with the range L of the force; contacts are too wide beside it, leave it out', error)
+    end associate
+  end subroutine check_thinness
 
   !> Makes one layer of neighbours of one material.
   pure subroutine join_alike(thickness, young, poisson)

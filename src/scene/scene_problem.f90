@@ -6,7 +6,7 @@ module scene_problem
   use laws, only: keys_of_laws, read_laws
   use shapes, only: keys_of_shapes, read_shapes
   use bodies_group, only: bodies_keys, take_bodies
-  use layer_group, only: layer_keys, take_layer
+  use layer_group, only: layer_keys, take_layer, check_thinness
   use layered_surface, only: layered_surface_t
   use layered_body, only: new_layered_body
   use scene_groups, only: scene_t
@@ -33,6 +33,7 @@ contains
     call read_laws(scene%deck, scene%law, error)
     if (allocated(scene%law)) &
       call read_shapes(scene%deck, scene%law%length, scene%shape, error)
+    if (.not. allocated(error)) call check_thinness(scene, error)
   end subroutine take_model
 
   !> The problem that a scene poses.

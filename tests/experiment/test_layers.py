@@ -94,6 +94,18 @@ def test_errors_of_a_thin_coat_a_hundred_times_as_stiff_hold(solve, sigma):
         assert abs(asked[key] - finer[key]) < 3 * asked[f"{key}_error"] + 1e-8 * abs(finer[key])
 
 
+def test_a_cone_over_a_layer_has_the_load_that_is_asked_for(solve):
+    """Its pressures fall so slowly far out that waves left out there were a part of the load."""
+    asked, finer = (solve(deck(
+        bodies={"young": 70e9, "poisson": 0.2}, layer={"thickness": 2e-5, "young": 3e6,
+                                                       "poisson": 0.45},
+        shape={"kind": "cone", "half_angle": 1.2}, numerics={"accuracy": accuracy},
+        force={"law": "lennard_jones", "surface_energy": 0.02, "z0": 20e-9},
+        equilibrium_path={"h0_end": -100e-9})).summary for accuracy in (1e-6, 1e-8))
+    assert asked["error_estimate"] < 1e-6
+    assert asked["end_load"] == pytest.approx(finer["end_load"], rel=1e-6)
+
+
 @pytest.mark.parametrize("pieces", [1, 3])
 def test_equal_moduli_are_a_half_space(solve, pieces):
     plain = solve(deck(bodies={"radius": 1.0, "young": 0.91, "poisson": 0.3},

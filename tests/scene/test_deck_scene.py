@@ -73,6 +73,9 @@ REFUSED = {
     "no load": (with_extra("&equilibrium_path /\n&fixed_load /"), 5, "fixed_load", "load",
                 "missing"),
     "layer of no thickness": (LAYERED.replace("1e-6,", "0,"), 2, "layer", "thickness", "> 0 m"),
+    # Once it was at work for ever.
+    "layer of next to no thickness": (LAYERED.replace("1e-6,", "1e-14,"), 2, "layer", "thickness",
+                                      "too wide beside it"),
     "layer too incompressible": (LAYERED.replace("0.5, body", "0.51, body"), 2, "layer",
                                  "poisson", "<= 0.5"),
     # Once the table of waves had no end.
