@@ -19,6 +19,11 @@ GRID = {"key": ["bodies.stiffness", "force.hamaker"], "from": [1e9, 1e-20], "to"
 CASES = list(itertools.product([1e9, 1e10, 1e11], [1e-20, 4e-20, 7e-20, 1e-19]))
 
 
+# Quick.
+RIGID = {"bodies": {"radius": 1e-6, "rigid": True}, "equilibrium_path": None,
+         "loading": loading(3e-9, 2e-9, 1e-9)}
+
+
 def scene(sweep=None, **groups):
     return deck(**{"bodies": BODIES, "force": FORCE, "equilibrium_path": PATH, "sweep": sweep,
                    **groups})
@@ -71,13 +76,11 @@ def test_a_file_is_read_in_pieces_whatever_its_line_ends(run, folder):
     """The pieces have 64 kB: rows lie across their ends."""
     count = 4000
     rows = [f"{1e-6 * (1 + i / count)!r},\t{1e-20 * (i + 1)!r} # {i}" for i in range(count)]
-    rigid = {"bodies": {"radius": 1e-6, "rigid": True}, "equilibrium_path": None,
-             "loading": loading(3e-9, 2e-9, 1e-9)}
     tables = []
     for ends in ("\n", "\r\n"):
         (folder / "many.csv").write_bytes(
             ends.join(["\ufeff# all", "Bodies.Radius, force.hamaker", "", *rows]).encode())
-        tables.append(run(scene({"file": "many.csv"}, **rigid)).table("sweep.csv"))
+        tables.append(run(scene({"file": "many.csv"}, **RIGID)).table("sweep.csv"))
     for table in tables:
         np.testing.assert_array_equal(table["bodies.radius"],
                                       [1e-6 * (1 + i / count) for i in range(count)])
@@ -97,9 +100,9 @@ def test_an_interrupted_file_of_cases_goes_on_to_the_same_bytes(snapin, snapin_p
 
 
 def test_a_file_that_becomes_shorter_meanwhile_stops_the_sweep(snapin_path, tmp_path):
-    rows = "".join(f"{1e-20 * (i + 1)!r}\n" for i in range(6000))
+    rows = "".join(f"{1e-20 * (i + 1)!r}\n" for i in range(60000))
     (tmp_path / "cases.csv").write_text("force.hamaker\n" + rows)
-    (tmp_path / "d.nml").write_text(scene({"file": "cases.csv"}))
+    (tmp_path / "d.nml").write_text(scene({"file": "cases.csv"}, **RIGID))
     with subprocess.Popen([snapin_path, "d.nml"], cwd=tmp_path, stderr=subprocess.PIPE,
                           text=True) as run:
         while not (tmp_path / "results/d/sweep.csv.partial").exists():
@@ -157,6 +160,9 @@ WRONG = {
     "columns": ({"file": "columns.csv"}, "2 columns where 1 column are expected"),
     "whole": ({"file": "whole.csv"}, "case 3: 2.5"),
     "folder": ({"file": "."}, "cannot be"),
+    "twice": ({**GRID, "key": ["force.hamaker", "Force.Hamaker"]}, "'Force.Hamaker' is there twice"),
+    "column twice": ({"file": "twice.csv"}, "'bodies.stiffness' is there twice"),
+    "nul": ({"file": "nul.csv"}, "nul.csv:3: a NUL byte"),
 }
 
 
@@ -167,7 +173,9 @@ def test_a_wrong_sweep_is_refused(snapin, tmp_path, case):
                        ("sign", "bodies.stiffness\n1\n-1\n"), ("empty", "bodies.stiffness\n"),
                        ("void", ""), ("late", "bodies.stiffness\n" + "1e9\n" * 20000 + "1e\n"),
                        ("columns", "bodies.stiffness\n1e9, 2\n"),
-                       ("whole", "numerics.nodes\n100\n200\n2.5\n")):
+                       ("whole", "numerics.nodes\n100\n200\n2.5\n"),
+                       ("twice", "bodies.stiffness, bodies.stiffness\n1e9, 2e9\n"),
+                       ("nul", "bodies.stiffness\n1e9\n2e9\0\n")):
         (tmp_path / f"{name}.csv").write_text(text)
     (tmp_path / "d.nml").write_text(scene(sweep))
     result = snapin("d.nml", cwd=tmp_path)
@@ -197,9 +205,7 @@ def test_memory_does_not_grow_with_the_number_of_cases(snapin, snapin_path, tmp_
     for count in (2000, 42000):
         (tmp_path / "cases.csv").write_text("bodies.radius, force.hamaker\n" + "".join(
             f"{1e-6 + 1e-12 * i!r}, {1e-20 + 1e-25 * i!r}\n" for i in range(count)))
-        (tmp_path / "d.nml").write_text(scene(
-            {"file": "cases.csv"}, bodies={"radius": 1e-6, "rigid": True},
-            equilibrium_path=None, loading=loading(3e-9, 2e-9, 1e-9)))
+        (tmp_path / "d.nml").write_text(scene({"file": "cases.csv"}, **RIGID))
         status, memory = status_and_memory(snapin_path, "--quiet", "d.nml", cwd=tmp_path)
         assert status == 0
         used.append(memory)
@@ -227,6 +233,19 @@ def test_words_are_swept(run, models):
     assert len(set(table["end_load"])) == 3
 
 
+def test_every_word_is_combined_with_every_number(run, models):
+    sweep = {"key": ["double_layer.salt", "double_layer.model"], "words": MODELS,
+             "from": [1.0], "to": [10.0], "count": [2]}
+    result = run(scene(sweep, **COLLOID, double_layer=LAYER))
+    table = result.table("sweep.csv")
+    assert list(table["double_layer.model"]) == 2 * MODELS
+    np.testing.assert_array_equal(table["double_layer.salt"], 3 * [1] + 3 * [10])
+    np.testing.assert_array_equal(table["end_load"][:3], models.table("sweep.csv")["end_load"])
+    assert len(set(table["end_load"])) == 6
+    text = (result.folder / "sweep.csv").read_text()
+    assert "# double_layer.salt [mol/m^3] " in text and "# double_layer.model [] " in text
+
+
 def test_a_table_has_words_in_columns_of_words(run, folder, models):
     salts = {"Nonlinear": 10, "linear": 1, "superposition": 1}
     (folder / "models.csv").write_text("double_layer.salt, double_layer.model\n" + "".join(
@@ -241,10 +260,12 @@ WRONG_WORDS = {
     "unknown": ({"key": "force.law", "words": ["lennard_jones", "exponentail"]},
                 'did you mean "exponential"'),
     "none": ({"key": "force.law"}, "missing"),
-    "values": ({"key": "force.law", "values": [1.0]}, "holds a word; give words"),
+    "values": ({"key": "force.law", "words": "exponential", "values": [1.0]}, "give words"),
     "number": ({"key": "force.hamaker", "words": ["linear"]}, "does not hold a word"),
-    "several": ({"key": ["force.law", "force.hamaker"], "words": ["lennard_jones"]},
-                "swept alone"),
+    "several": ({"key": ["force.law", "numerics.method"], "words": ["lennard_jones"]},
+                "only one of the keys may hold a word"),
+    "no range": ({"key": ["force.law", "force.hamaker"], "words": ["lennard_jones"]},
+                 "missing; give from"),
     "cell": ({"file": "laws.csv"}, "laws.csv:3"),
     "with file": ({"file": "laws.csv", "words": ["exponential"]}, "not together with file"),
     "deck": ({"key": "force.law", "words": ["exponential"]}, "with force.law = exponential"),
