@@ -13,6 +13,7 @@ crosses; those that have no such value are dots.
 
 import itertools
 import pathlib
+import re
 
 import numpy as np
 from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, run, title_of
@@ -34,7 +35,8 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
     """Return a figure of the column `value` of the sweep in `folder`, over one or two others."""
     columns = read_table(folder, "sweep.csv")
     # Words cannot be an axis.
-    keys = sorted((name for name in columns if "." in name), key=lambda name: _has_words(columns[name]))
+    keys = sorted((name for name in columns if "." in name),
+                  key=lambda name: _has_words(columns[name]))
     over = list(over or keys[:2])
     for name in [value, *([per] if per else []), *over]:
         if name not in columns:
@@ -60,7 +62,8 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
     figure = Figure(figsize=(6.4, 4.6), layout="constrained")
     axes = figure.subplots()
     if len(over) == 1:
-        _draw_curves(axes, columns[over[0]], shown, good, [columns[name] for name in others])
+        _draw_curves(axes, columns[over[0]], shown, good, [columns[name] for name in others],
+                     joined=over[0] in keys)
         if others:
             axes.legend(title=", ".join(_label(name, units) for name in others), frameon=False,
                         fontsize="small")
@@ -139,18 +142,19 @@ def _as_drawn(place, axis):
     return np.log10(np.where(place > 0, place, np.nan))
 
 
-def _draw_curves(axes, x, values, good, others):
-    """Draw values over one column, one curve for each combination of values of the others."""
-    of_each = list(dict.fromkeys(zip(*others))) or [()]
-    of_each.sort()
+def _draw_curves(axes, x, values, good, others, *, joined):
+    """Draw values over one column, one curve for each combination of values of the others; where
+    they are not joined only the cases."""
+    of_each = sorted(set(zip(*others))) or [()]
     few = len(of_each) <= _MOST_CURVES
     named = np.unique(np.linspace(0, len(of_each) - 1, _MOST_CURVES).astype(int))
     for i, one in enumerate(of_each):
         mine = good.copy()
         for column, wanted in zip(others, one):
             mine &= column == wanted
-        order = np.argsort(x[mine], kind="stable")
-        axes.plot(x[mine][order], values[mine][order], ".-" if few else "-",
+        order = np.argsort(x[mine])
+        axes.plot(x[mine][order], values[mine][order],
+                  "." if not joined else ".-" if few else "-",
                   color=_COLOURS[i] if few else colormaps["viridis"](i / (len(of_each) - 1)),
                   label=", ".join(word if isinstance(word, str) else f"{word:.3g}" for word in one)
                   if i in named else None)
@@ -163,14 +167,15 @@ def _draw_curves(axes, x, values, good, others):
 
 def _wide(values):
     """Return whether values are positive and reach over decades."""
-    return values.min() > 0 and values.max() > _DECADES * values.min()
+    values = values[np.isfinite(values)]
+    return len(values) > 0 and values.min() > 0 and values.max() > _DECADES * values.min()
 
 
 def _units(folder):
     """Return the units of the columns by name."""
     with open(pathlib.Path(folder) / "sweep.csv", encoding="utf-8") as lines:
         heads = [line[2:] for line in itertools.takewhile(lambda line: line[0] == "#", lines)]
-    return {head.split(" [")[0]: head.split(" [")[1].split("]")[0] for head in heads if " [" in head}
+    return dict(re.findall(r"^(\S+) \[(.*?)\]", "".join(heads), re.MULTILINE))
 
 
 def _label(name, units):

@@ -16,6 +16,7 @@ DECK = """&bodies radius = 1e-6, stiffness = 1e10 /
 &force law = 'lennard_jones', hamaker = 1e-19, z0 = 3e-10 /
 &equilibrium_path h0_end = -1e-9 /
 """
+SWEEP = "&sweep key = 'force.hamaker', values = 1e-20, 1e-19 /\n"
 
 
 def run(*command, cwd=None, **variables):
@@ -43,7 +44,8 @@ def checkout(tmp_path_factory):
 def test_pip_installs_package_and_command(checkout, tmp_path):
     venv.create(tmp_path / "new", with_pip=True)
     binaries = tmp_path / "new/bin"
-    run(binaries / "python", "-m", "pip", "install", "--disable-pip-version-check", checkout)
+    run(binaries / "python", "-m", "pip", "install", "--disable-pip-version-check",
+        f"{checkout}[plots]")
     (tmp_path / "deck.nml").write_text(DECK)
     code = "import snapin; print(repr(snapin.run(open('deck.nml').read()).summary['max_tension']))"
     from_python = float(run(binaries / "python", "-c", code, cwd=tmp_path))
@@ -52,6 +54,11 @@ def test_pip_installs_package_and_command(checkout, tmp_path):
     from_program = float(run(binaries / "python", "-c", code, cwd=tmp_path))
     assert from_python == pytest.approx(from_program, rel=1e-9)
     assert from_program > 0
+    (tmp_path / "map.nml").write_text(DECK + SWEEP)
+    said = subprocess.run([binaries / "snapin", "map.nml"], cwd=tmp_path, capture_output=True,
+                          text=True, check=True).stderr
+    run(*said.splitlines()[-1].partition("to draw it: ")[2].split(), cwd=tmp_path)
+    assert (tmp_path / "results/map/map.png").stat().st_size > 0
     about = run(binaries / "python", "-m", "pip", "show", "snapin")
     version = run(binaries / "snapin", "--version").split()[1]
     assert f"Version: {version}\n" in about
