@@ -29,6 +29,8 @@ _COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 _DECADES = 30.0
 # More values of a second column than this are a map and not curves; so many curves have names.
 _MOST_CURVES = 7
+# Twice the area of a triangle that has none, of a picture's.
+_FLAT = 1e-12
 
 
 def draw_map(folder, value="max_tension", per=None, over=None, where=()):
@@ -71,7 +73,9 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
         raise ResultsError(f"{', '.join(others)} was swept too: choose with --where "
                            f"{others[0]}=VALUE")
     else:
-        _draw_colours(figure, axes, [columns[name] for name in over], shown, good, failed, label)
+        varied = [columns[name] for name in keys if len(np.unique(columns[name])) > 1]
+        _draw_colours(figure, axes, [columns[name] for name in over], varied, shown, good, failed,
+                      label)
         label = _label(over[1], units)
     axes.set(xlabel=_label(over[0], units), ylabel=label)
     figure.suptitle(title_of(folder, read_summary(folder)))
@@ -103,20 +107,15 @@ def _chosen(columns, keys, where):
     return columns
 
 
-def _draw_colours(figure, axes, places, values, good, failed, label):
-    """Draw values over two columns: a triangulation, contours, marks where there is none."""
+def _draw_colours(figure, axes, places, keys, values, good, failed, label):
+    """Draw values over two columns: triangles, contours, marks where there is none."""
     x, y = (_as_drawn(place, axis) for place, axis in zip(places, (axes.xaxis, axes.yaxis)))
     there = np.isfinite(x) & np.isfinite(y)
-    x, y, values, good, failed = (of[there] for of in (x, y, values, good, failed))
-    span = [np.ptp(of) or 1.0 for of in (x, y)]
-    try:
-        # Triangles between neighbours on the picture, whatever the units.
-        triangles = Triangulation(x / span[0], y / span[1]).triangles
-    except (RuntimeError, ValueError) as problem:
-        raise ResultsError("the cases lie on one line of these columns; give one to --over") \
-            from problem
-    # Nothing is drawn between cases of which one has no value.
-    mesh = Triangulation(x, y, triangles, mask=~good[triangles].all(axis=1))
+    x, y = (np.where(there, of, of[there].mean()) for of in (x, y))
+    triangles = _triangles(x / (np.ptp(x) or 1.0), y / (np.ptp(y) or 1.0), there, keys)
+    # Nothing is drawn between cases of which one has no value or place.
+    mesh = Triangulation(x, y, triangles, mask=~(good & there)[triangles].all(axis=1))
+    good, failed, nothing = good & there, failed & there, there & ~good & ~failed
     low, high = values[good].min(), values[good].max()
     norm = LogNorm() if _wide(values[good]) else None
     filled = np.where(good, values, low)
@@ -128,7 +127,27 @@ def _draw_colours(figure, axes, places, values, good, failed, label):
         levels = levels.tick_values(low, high)
         bar.add_lines(axes.tricontour(mesh, filled, levels=levels, colors="white", linewidths=0.7))
     axes.plot(x[failed], y[failed], "x", color=VERMILION, markersize=4)
-    axes.plot(x[~good & ~failed], y[~good & ~failed], ".", color=GREY, markersize=2)
+    axes.plot(x[nothing], y[nothing], ".", color=GREY, markersize=2)
+
+
+def _triangles(x, y, there, keys):
+    """Return the corners of triangles between neighbours: in a sweep of all combinations of two
+    keys cases with values next to each other, else those next to each other on the picture."""
+    sizes = [len(np.unique(key)) for key in keys]
+    if len(keys) == 2 and sizes[0] * sizes[1] == len(x) == len(set(zip(*keys))):
+        at = np.lexsort(keys[::-1]).reshape(sizes)
+        a, b, c, d = at[:-1, :-1], at[1:, :-1], at[:-1, 1:], at[1:, 1:]
+        found = np.concatenate([np.stack(corners, -1).reshape(-1, 3)
+                                for corners in ((a, b, c), (d, c, b))])
+    else:
+        try:
+            found = np.flatnonzero(there)[Triangulation(x[there], y[there]).triangles]
+        except (RuntimeError, ValueError):
+            found = np.zeros((1, 3), int)
+    sides = [of[found[:, 1:]] - of[found[:, :1]] for of in (x, y)]
+    if not (abs(sides[0][:, 0] * sides[1][:, 1] - sides[0][:, 1] * sides[1][:, 0]) > _FLAT).any():
+        raise ResultsError("the cases lie on one line of these columns; give one to --over")
+    return found
 
 
 def _as_drawn(place, axis):

@@ -99,8 +99,8 @@ contains
     call deck%get('sweep', 'words', words)
     k = findloc(sweep%words /= '', .true., dim=1)
     if (count(sweep%words /= '') > 1) then
-      call deck%mistake('sweep', 'key', 'only one of the keys may hold a word; for more give a ' // &
-        'file', error)
+      call deck%mistake('sweep', 'key', 'only one of the keys may hold a word; for more give ' // &
+        'a file', error)
     else if (k == 0) then
       if (deck%is_set('sweep', 'words')) call deck%mistake('sweep', 'words', &
         quoted(sweep%names) // ' does not hold a word', error)

@@ -4,8 +4,8 @@ module files
   use, intrinsic :: iso_fortran_env, only: error_unit
   use kinds, only: wp, long
   use failure, only: failure_t
-  use c_library, only: c_make_folder, c_current_folder, c_own_path, c_free_disk, c_is_terminal, c_write, &
-    c_open, c_read, c_sync, c_sync_above, c_close, as_folder, system_failure, nul
+  use c_library, only: c_make_folder, c_current_folder, c_own_path, c_free_disk, c_is_terminal, &
+    c_write, c_open, c_read, c_sync, c_sync_above, c_close, as_folder, system_failure, nul
   implicit none
   private
   public :: make_folder, sync_names, file_exists, free_disk, whole_path, own_path, read_file, &

@@ -3,6 +3,8 @@
 import contextlib
 import itertools
 import os
+import pty
+import re
 import subprocess
 import time
 from pathlib import Path
@@ -163,6 +165,28 @@ def test_a_case_that_fails_is_a_row_that_says_why(run):
     assert any("1 of 4 cases failed" in text for text in result.warnings)
 
 
+def test_a_terminal_shows_how_far_a_sweep_is(snapin_path, tmp_path):
+    """In half of the cases the loading would go the wrong way."""
+    sweep = {"key": ["loading.h0_start", "loading.h0_end"], "from": [2e-9, 1e-9],
+             "to": [5e-9, 4e-9], "count": [160, 160]}
+    (tmp_path / "d.nml").write_text(scene(sweep, **RIGID))
+    ours, theirs = pty.openpty()
+    with subprocess.Popen([snapin_path, "d.nml"], cwd=tmp_path, stderr=theirs) as run:
+        os.close(theirs)
+        said = b""
+        with contextlib.suppress(OSError):  # the other end is closed
+            while part := os.read(ours, 65536):
+                said += part
+    os.close(ours)
+    assert run.returncode == 1
+    *lines, last, _ = re.split("[\r\n]+", said.decode())
+    line = r"d: case, \d+ %, \d+ failed, \d+ a second, \d+ (s|min) left, \d+ (s|min) so far *"
+    assert any(re.fullmatch(line, text) for text in lines), lines
+    command = re.fullmatch(r"results/d: 25600 cases, \d+ a second: results/d/sweep.csv; "
+                           r"to draw it: (\S+) (\S+/map.py) results/d", last)
+    assert command and all(map(os.path.exists, command.groups())), last
+
+
 WRONG = {
     "count": ({**GRID, "count": [3]}, "1 for 2 of key"),
     "fraction": ({**GRID, "count": [3, 2.5]}, "not a whole number"),
@@ -183,7 +207,7 @@ WRONG = {
     "columns": ({"file": "columns.csv"}, "2 columns where 1 column are expected"),
     "whole": ({"file": "whole.csv"}, "case 3: 2.5"),
     "folder": ({"file": "."}, "cannot be"),
-    "twice": ({**GRID, "key": ["force.hamaker", "Force.Hamaker"]}, "'Force.Hamaker' is there twice"),
+    "twice": ({**GRID, "key": ["force.hamaker", "Force.Hamaker"]}, "is there twice"),
     "column twice": ({"file": "twice.csv"}, "'bodies.stiffness' is there twice"),
     "nul": ({"file": "nul.csv"}, "nul.csv:3: a NUL byte"),
 }
