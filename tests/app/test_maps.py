@@ -231,13 +231,18 @@ def test_a_wrong_sweep_is_refused(snapin, tmp_path, case):
     assert not (tmp_path / "results").exists()
 
 
-@pytest.mark.parametrize("name", ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"])
-def test_several_at_once_are_refused_without_mpi(snapin, tmp_path, name, monkeypatch):
-    monkeypatch.setenv(name, "3")
+@pytest.mark.parametrize("size, rank", [
+    ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"), ("PMI_SIZE", "PMI_RANK"),
+    ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID")])
+def test_several_at_once_are_refused_without_mpi(snapin, tmp_path, size, rank, monkeypatch):
+    """All of them end; the first says why."""
+    monkeypatch.setenv(size, "3")
     (tmp_path / "d.nml").write_text(scene())
-    result = snapin("d.nml", cwd=tmp_path)
-    assert result.returncode == 2
-    assert "this build has no MPI" in result.stderr
+    for number in "01":
+        monkeypatch.setenv(rank, number)
+        result = snapin("d.nml", cwd=tmp_path)
+        assert result.returncode == 2
+        assert ("this build has no MPI" in result.stderr) == (number == "0")
     assert not (tmp_path / "results").exists()
 
 
