@@ -2,12 +2,12 @@
 !> its keys' values and its numbers.
 module sweeps
   use kinds, only: wp
-  use failure, only: failure_t
+  use failure, only: failure_t, fail, file_trouble
   use clock, only: clock_now => seconds
   use linear_algebra, only: claim_buffers
   use scene_groups, only: scene_t
   use sweep_case, only: case_t, put_case, take_case, run_case
-  use sweep_cases, only: sweep_cases_t
+  use case_rows, only: case_rows_t
   use equilibrium, only: cost_t
   use progress, only: progress_t
   use case_columns, only: columns_of, column_width
@@ -21,16 +21,17 @@ module sweeps
   private
   public :: run_sweep, work_on_sweeps
 
-  !> The cases still to come, and those that have ended before others whose rows come first; how
-  !> many rows are written, how many cases have ended and failed, and what all took. A case is in
-  !> `waiting` at its number, all numbers modulo the size.
+  !> The cases still to come, after the last that was handed out, and those that have ended before
+  !> others whose rows come first; how many rows are written, how many cases failed, and what all
+  !> took. A case is in `waiting` at its number, all numbers modulo the size.
   type, extends(foreman_t) :: queue_t
     type(scene_t), pointer :: scene => null()
     type(results_t), pointer :: results => null()
     character(len=column_width), allocatable :: columns(:)
-    type(sweep_cases_t) :: to_come
+    !> Where cases are those of a file.
+    type(case_rows_t) :: rows
     type(case_t), allocatable :: waiting(:)
-    integer :: written = 0, ended = 0, failed = 0
+    integer :: handed_out = 0, written = 0, failed = 0
     type(cost_t) :: cost
   contains
     procedure :: next
@@ -73,7 +74,8 @@ contains
     queue%results => results
     queue%columns = columns_of(scene)
     call recall_cases(queue)
-    call queue%to_come%begin(scene, error)
+    if (allocated(scene%sweep%file)) &
+      call queue%rows%open(scene%sweep%file%path, scene%deck, error)
     if (allocated(error)) then
       call move_alloc(error, results%trouble)
     else if (crew%workers > 0) then
@@ -148,7 +150,8 @@ contains
     end do
   end subroutine work
 
-  !> The next case that is not complete; not found: there is none, or results cannot be written.
+  !> The next case that is not complete; not found: there is none, or results cannot be written, or
+  !> a file is no longer what it was when the deck was read.
   subroutine next(self, case, found)
     class(queue_t), intent(inout) :: self
     type(case_t), intent(inout) :: case
@@ -157,13 +160,25 @@ contains
 
     found = .false.
     if (allocated(self%results%trouble) .or. allocated(self%results%journal%trouble)) return
-    do
-      call self%to_come%next(self%scene, case%values, found, error)
-      if (allocated(error)) call move_alloc(error, self%results%trouble)
-      if (.not. found) return
-      case%number = self%to_come%number
-      if (.not. self%has(case%number)) return
-    end do
+    associate (sweep => self%scene%sweep)
+      do while (.not. found .and. self%handed_out < sweep%cases())
+        self%handed_out = self%handed_out + 1
+        case%number = self%handed_out
+        if (allocated(sweep%file)) then
+          call self%rows%next(case%values, found, error)
+          if (.not. (found .or. allocated(error))) call fail(error, file_trouble, &
+            sweep%file%path // ' has become shorter since it was read first')
+        else
+          case%values = sweep%values(case%number)
+        end if
+        if (allocated(error)) then
+          found = .false.
+          call move_alloc(error, self%results%trouble)
+          return
+        end if
+        found = .not. self%has(case%number)
+      end do
+    end associate
   end subroutine next
 
   subroutine put_next(self, batch, found)
@@ -230,7 +245,6 @@ contains
     class(queue_t), intent(inout) :: self
     type(case_t), intent(in) :: case
 
-    self%ended = self%ended + 1
     if (.not. case%converged) self%failed = self%failed + 1
     self%cost = sum_of(self%cost, case%cost)
     if (.not. allocated(self%waiting)) allocate (self%waiting(0:15))
