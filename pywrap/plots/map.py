@@ -1,17 +1,23 @@
 #!/usr/bin/env python3
-"""A result of a sweep: over two keys as colours with contours, over one key as a curve.
+"""A result of a sweep: over two keys as colours with contours, over one key as curves.
 
     .venv/bin/python pywrap/plots/map.py results/map --value max_tension
+    .venv/bin/python pywrap/plots/map.py results/map --over bodies.stiffness
     .venv/bin/python pywrap/plots/map.py results/map --over big_lambda jkr_pull_off
 
 Without `--over` the axes are the keys of the sweep. Any column of sweep.csv may be an axis, the
-value, or what the value is divided by (`--per`). Cases that failed are crosses.
+value, or what the value is divided by (`--per`). Over one key there is a curve for every value of
+the others. `--where KEY=VALUE` leaves the cases nearest to a value of a key. Cases that failed are
+crosses; those that have no such value are dots.
 """
 
+import itertools
 import pathlib
+import re
 
 import numpy as np
 from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, run, title_of
+from matplotlib import colormaps
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
@@ -21,66 +27,127 @@ from snapin.results import ResultsError, read_summary, read_table
 _COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 # Values whose largest is more than so many times the smallest are shown as logarithms.
 _DECADES = 30.0
-# More curves than this are a map.
+# More values of a second column than this are a map and not curves; so many curves have names.
 _MOST_CURVES = 7
+# Twice the area of a triangle that has none, of a picture's.
+_FLAT = 1e-12
 
 
-def draw_map(folder, value="max_tension", per=None, over=None):
+def draw_map(folder, value="max_tension", per=None, over=None, where=()):
     """Return a figure of the column `value` of the sweep in `folder`, over one or two others."""
     columns = read_table(folder, "sweep.csv")
-    units = _units(folder)
-    keys = [name for name in columns if "." in name]
-    over = list(over or keys)
+    # Words cannot be an axis.
+    keys = sorted((name for name in columns if "." in name),
+                  key=lambda name: _has_words(columns[name]))
+    over = list(over or keys[:2])
     for name in [value, *([per] if per else []), *over]:
         if name not in columns:
             raise ResultsError(f"{folder}/sweep.csv has no column {name!r}; it has "
                                + ", ".join(columns))
-        if columns[name].dtype.kind == "U" and over[1:] != [name]:
+        if _has_words(columns[name]) and over[1:] != [name]:
             raise ResultsError(f"{name} has words, which cannot be drawn")
+    if len(over) > 2:
+        raise ResultsError("--over takes one or two columns")
+    columns = _chosen(columns, keys, where)
     shown = columns[value] / (columns[per] if per else 1)
+    units = _units(folder)
     label = _label(value, units) if not per else f"{_words(value)} over {_words(per)}"
-    good = np.isfinite(shown) & (columns["converged"] == 1)
+    failed = columns["converged"] != 1
+    good = np.isfinite(shown) & ~failed
     if not good.any():
         raise ResultsError(f"{folder}/sweep.csv: no case has the column {value!r}")
+    others = [name for name in keys
+              if {*over} <= {*keys} and name not in over and len(np.unique(columns[name])) > 1]
+    if len(over) == 2 and (_has_words(columns[over[1]])
+                           or len(np.unique(columns[over[1]])) <= _MOST_CURVES):
+        others.insert(0, over.pop())
     figure = Figure(figsize=(6.4, 4.6), layout="constrained")
     axes = figure.subplots()
     if len(over) == 1:
-        _draw_curves(axes, columns[over[0]], shown, good, [])
-    elif len(over) == 2:
-        x, y = (columns[name] for name in over)
-        if y.dtype.kind == "U" or len(np.unique(y)) <= _MOST_CURVES:
-            _draw_curves(axes, x, shown, good, y)
-            axes.legend(title=_label(over[1], units), frameon=False, fontsize="small")
-        else:
-            _draw_colours(figure, axes, (x, y), shown, good, label)
-            label = _label(over[1], units)
+        _draw_curves(axes, columns[over[0]], shown, good, [columns[name] for name in others],
+                     joined=over[0] in keys)
+        if others:
+            axes.legend(title=", ".join(_label(name, units) for name in others), frameon=False,
+                        fontsize="small")
+    elif others:
+        raise ResultsError(f"{', '.join(others)} was swept too: choose with --where "
+                           f"{others[0]}=VALUE")
     else:
-        raise ResultsError(f"this sweep has {len(over)} keys; say two of them with --over")
+        varied = [columns[name] for name in keys if len(np.unique(columns[name])) > 1]
+        _draw_colours(figure, axes, [columns[name] for name in over], varied, shown, good, failed,
+                      label)
+        label = _label(over[1], units)
     axes.set(xlabel=_label(over[0], units), ylabel=label)
     figure.suptitle(title_of(folder, read_summary(folder)))
     return figure
 
 
-def _draw_colours(figure, axes, places, values, good, label):
-    """Draw values over two columns: a triangulation, contours, crosses where there is none."""
+def _has_words(column):
+    return column.dtype.kind == "U"
+
+
+def _chosen(columns, keys, where):
+    """Return the columns with the cases that are nearest to what each "KEY=VALUE" says."""
+    for condition in where:
+        key, _, wanted = condition.partition("=")
+        if key not in keys:
+            raise ResultsError(f"{condition!r} is no KEY=VALUE; keys are {', '.join(keys)}")
+        of_key = columns[key]
+        if _has_words(of_key):
+            chosen = of_key == wanted
+        else:
+            try:
+                distance = np.abs(of_key - float(wanted))
+            except ValueError as problem:
+                raise ResultsError(f"{condition!r}: {problem}") from problem
+            chosen = distance == distance.min()
+        if not chosen.any():
+            raise ResultsError(f"{condition!r}: the sweep has " + ", ".join(np.unique(of_key)))
+        columns = {name: column[chosen] for name, column in columns.items()}
+    return columns
+
+
+def _draw_colours(figure, axes, places, keys, values, good, failed, label):
+    """Draw values over two columns: triangles, contours, marks where there is none."""
     x, y = (_as_drawn(place, axis) for place, axis in zip(places, (axes.xaxis, axes.yaxis)))
-    good = good & np.isfinite(x) & np.isfinite(y)
-    span = [np.ptp(of[good]) or 1.0 for of in (x, y)]
-    # Triangles between neighbours on the picture, whatever the units.
-    triangles = Triangulation(x[good] / span[0], y[good] / span[1]).triangles
-    mesh = Triangulation(x[good], y[good], triangles)
-    norm = LogNorm() if _wide(values[good]) else None
-    colours = axes.tripcolor(mesh, values[good], shading="gouraud", cmap="viridis", norm=norm,
-                             rasterized=True)
+    there = np.isfinite(x) & np.isfinite(y)
+    x, y = (np.where(there, of, of[there].mean()) for of in (x, y))
+    triangles = _triangles(x / (np.ptp(x) or 1.0), y / (np.ptp(y) or 1.0), there, keys)
+    # Nothing is drawn between cases of which one has no value or place.
+    mesh = Triangulation(x, y, triangles, mask=~(good & there)[triangles].all(axis=1))
+    good, failed, nothing = good & there, failed & there, there & ~good & ~failed
     low, high = values[good].min(), values[good].max()
+    norm = LogNorm() if _wide(values[good]) else None
+    filled = np.where(good, values, low)
+    colours = axes.tripcolor(mesh, filled, shading="gouraud", cmap="viridis", norm=norm,
+                             rasterized=True)
+    bar = figure.colorbar(colours, ax=axes, label=label)
     if high > low:
         levels = LogLocator(subs=(1, 2, 5)) if norm else MaxNLocator(8)
         levels = levels.tick_values(low, high)
-        lines = axes.tricontour(mesh, values[good], levels=levels, colors="white", linewidths=0.7)
-    axes.plot(x[~good], y[~good], "x", color=VERMILION, markersize=4)
-    bar = figure.colorbar(colours, ax=axes, label=label)
-    if high > low:
-        bar.add_lines(lines)
+        bar.add_lines(axes.tricontour(mesh, filled, levels=levels, colors="white", linewidths=0.7))
+    axes.plot(x[failed], y[failed], "x", color=VERMILION, markersize=4)
+    axes.plot(x[nothing], y[nothing], ".", color=GREY, markersize=2)
+
+
+def _triangles(x, y, there, keys):
+    """Return the corners of triangles between neighbours: in a sweep of all combinations of two
+    keys cases with values next to each other, else those next to each other on the picture."""
+    sizes = [len(np.unique(key)) for key in keys]
+    if len(keys) == 2 and sizes[0] * sizes[1] == len(x) == len(set(zip(*keys))):
+        at = np.lexsort(keys[::-1]).reshape(sizes)
+        a, b, c, d = at[:-1, :-1], at[1:, :-1], at[:-1, 1:], at[1:, 1:]
+        found = np.concatenate([np.stack(corners, -1).reshape(-1, 3)
+                                for corners in ((a, b, c), (d, c, b))])
+    else:
+        try:
+            found = np.flatnonzero(there)[Triangulation(x[there], y[there]).triangles]
+        except (RuntimeError, ValueError):
+            found = np.zeros((1, 3), int)
+    sides = [of[found[:, 1:]] - of[found[:, :1]] for of in (x, y)]
+    if not (abs(sides[0][:, 0] * sides[1][:, 1] - sides[0][:, 1] * sides[1][:, 0]) > _FLAT).any():
+        raise ResultsError("the cases lie on one line of these columns; give one to --over")
+    return found
 
 
 def _as_drawn(place, axis):
@@ -94,15 +161,23 @@ def _as_drawn(place, axis):
     return np.log10(np.where(place > 0, place, np.nan))
 
 
-def _draw_curves(axes, x, values, good, parameter):
-    """Draw values over one column, one curve for each value of `parameter`."""
-    of_each = np.unique(parameter) if len(parameter) else [None]
-    for colour, one in zip(_COLOURS, of_each):
-        mine = good & (np.asarray(parameter) == one) if one is not None else good
+def _draw_curves(axes, x, values, good, others, *, joined):
+    """Draw values over one column, one curve for each combination of values of the others; where
+    they are not joined only the cases."""
+    of_each = sorted(set(zip(*others))) or [()]
+    few = len(of_each) <= _MOST_CURVES
+    named = np.unique(np.linspace(0, len(of_each) - 1, _MOST_CURVES).astype(int))
+    for i, one in enumerate(of_each):
+        mine = good.copy()
+        for column, wanted in zip(others, one):
+            mine &= column == wanted
         order = np.argsort(x[mine])
-        axes.plot(x[mine][order], values[mine][order], ".-", color=colour,
-                  label=None if one is None else one if isinstance(one, str) else f"{one:.3g}")
-    for place in x[~good]:
+        axes.plot(x[mine][order], values[mine][order],
+                  "." if not joined else ".-" if few else "-",
+                  color=_COLOURS[i] if few else colormaps["viridis"](i / (len(of_each) - 1)),
+                  label=", ".join(word if isinstance(word, str) else f"{word:.3g}" for word in one)
+                  if i in named else None)
+    for place in np.unique(x[~good]):
         axes.axvline(place, color=GREY, linewidth=0.5, linestyle=":")
     axes.set(xscale="log" if _wide(x) else "linear",
              yscale="log" if _wide(values[good]) else "linear")
@@ -111,14 +186,15 @@ def _draw_curves(axes, x, values, good, parameter):
 
 def _wide(values):
     """Return whether values are positive and reach over decades."""
-    return values.min() > 0 and values.max() > _DECADES * values.min()
+    values = values[np.isfinite(values)]
+    return len(values) > 0 and values.min() > 0 and values.max() > _DECADES * values.min()
 
 
 def _units(folder):
-    """Return the units of the columns by name; keys of the deck have none there."""
-    text = (pathlib.Path(folder) / "sweep.csv").read_text(encoding="utf-8")
-    lines = [line[2:] for line in text.splitlines() if line.startswith("# ") and " [" in line]
-    return {line.split(" [")[0]: line.split(" [")[1].split("]")[0] for line in lines}
+    """Return the units of the columns by name."""
+    with open(pathlib.Path(folder) / "sweep.csv", encoding="utf-8") as lines:
+        heads = [line[2:] for line in itertools.takewhile(lambda line: line[0] == "#", lines)]
+    return dict(re.findall(r"^(\S+) \[(.*?)\]", "".join(heads), re.MULTILINE))
 
 
 def _label(name, units):
@@ -134,6 +210,8 @@ def _options(parser):
     parser.add_argument("--value", default="max_tension", help="column; default: max_tension")
     parser.add_argument("--per", help="column by which the value is divided")
     parser.add_argument("--over", nargs="+", help="one or two columns; default: the swept keys")
+    parser.add_argument("--where", nargs="+", default=(), metavar="KEY=VALUE",
+                        help="only the cases nearest to this value of a key")
 
 
 if __name__ == "__main__":

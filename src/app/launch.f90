@@ -2,26 +2,40 @@
 module launch
   implicit none
   private
-  public :: started_together
+  public :: started_together, own_rank
 
-  !> What holds the number of processes that were started together: by OpenMPI, by MPICH and its
-  !> relatives, by Slurm's srun.
-  character(len=*), parameter :: names(*) = [character(len=20) :: 'OMPI_COMM_WORLD_SIZE', &
+  !> What holds the number of processes that were started together, and which of them this is: by
+  !> OpenMPI, by MPICH and its relatives, by Slurm's srun.
+  character(len=*), parameter :: sizes(*) = [character(len=20) :: 'OMPI_COMM_WORLD_SIZE', &
     'PMI_SIZE', 'SLURM_STEP_NUM_TASKS']
+  character(len=*), parameter :: numbers(*) = [character(len=20) :: 'OMPI_COMM_WORLD_RANK', &
+    'PMI_RANK', 'SLURM_PROCID']
 
 contains
 
   !> How many processes mpirun or srun has started as one job; 1: this one alone.
-  integer function started_together() result(processes)
+  integer function started_together()
+    started_together = first_set(sizes, 1)
+  end function started_together
+
+  !> Which of them this is, from 0.
+  integer function own_rank()
+    own_rank = first_set(numbers, 0)
+  end function own_rank
+
+  !> The first number that the environment has; `otherwise` where it has none.
+  integer function first_set(names, otherwise) result(number)
+    character(len=*), intent(in) :: names(:)
+    integer, intent(in) :: otherwise
     character(len=12) :: value
     integer :: i, failed
 
     do i = 1, size(names)
       call get_environment_variable(trim(names(i)), value)
-      read (value, '(i12)', iostat=failed) processes
-      if (failed == 0 .and. processes > 1) return
+      read (value, '(i12)', iostat=failed) number
+      if (failed == 0 .and. value /= '') return
     end do
-    processes = 1
-  end function started_together
+    number = otherwise
+  end function first_set
 
 end module launch

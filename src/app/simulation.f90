@@ -29,6 +29,7 @@ module simulation
   use finished_run, only: find_finished
   use progress, only: duration
   use files, only: write_stderr, file_exists
+  use map_command, only: drawing_of
   use clock, only: seconds
   use namelist_writer, only: line_t
   use deck_family, only: deck_family_t, widened
@@ -274,6 +275,7 @@ contains
     type(summary_t), intent(in) :: summary
     type(cost_t), intent(in) :: cost
     character(len=160) :: found, tension
+    character(len=:), allocatable :: command
     real(wp) :: took
     integer :: i
 
@@ -305,8 +307,10 @@ contains
     call destination%say(trim(found)//trim(tension))
     if (allocated(scene%sweep)) then
       write (found, '(i0, a)') scene%sweep%cases(), ' cases, '
+      command = drawing_of(destination%folder)
+      if (command /= '') command = '; to draw it: '//command
       call destination%say(trim(found)//' '//rounded(scene%sweep%cases()/max(took, 1e-3_wp))// &
-        ' a second: sweep.csv; draw them with pywrap/plots/map.py '//destination%folder)
+        ' a second: '//destination%folder//'/sweep.csv'//command)
     end if
 
   contains

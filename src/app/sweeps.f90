@@ -2,61 +2,36 @@
 !> its keys' values and its numbers.
 module sweeps
   use kinds, only: wp
-  use text, only: first_line
-  use failure, only: failure_t
+  use failure, only: failure_t, fail, file_trouble
   use clock, only: clock_now => seconds
   use linear_algebra, only: claim_buffers
-  use dimensionless_problem, only: problem_t
   use scene_groups, only: scene_t
-  use scene, only: swept_scene
-  use sweep_cases, only: sweep_cases_t
-  use experiment_result, only: experiment_result_t
-  use experiment, only: run_experiment
-  use scene_problem, only: problem_of
+  use sweep_case, only: case_t, put_case, take_case, run_case
+  use case_rows, only: case_rows_t
   use equilibrium, only: cost_t
-  use records, only: silent_observer_t
   use progress, only: progress_t
-  use summarise, only: summary_of
-  use summary, only: summary_t
-  use case_columns, only: columns_of, numbers_of, column_width
+  use case_columns, only: columns_of, column_width
   use mesh_store, only: mesh_store_t
   use byte_record, only: byte_record_t
-  use state_records, only: put_cost, take_cost
   use results, only: results_t
   use blas_threads, only: thread_count
   use ranks, only: crew_t
   use dispatch, only: foreman_t, worker_t, hand_out, work_through
   implicit none
   private
-  public :: run_sweep, work_on_sweeps, case_t, take_case, put_case, run_case
+  public :: run_sweep, work_on_sweeps
 
-  !> Characters of what is said of a case that failed.
-  integer, parameter :: failure_width = 160
-
-  !> What is kept of one case until its row is written.
-  type :: case_t
-    !> Its number; 0: none.
-    integer :: number = 0
-    !> Of the sweep's keys.
-    real(wp), allocatable :: values(:)
-    logical :: converged = .false.
-    !> See `numbers_of`.
-    real(wp), allocatable :: numbers(:)
-    !> Why it failed; not of deferred length: compiler note 4.
-    character(len=failure_width) :: failure = ''
-    type(cost_t) :: cost
-  end type case_t
-
-  !> The cases still to come, and those that have ended before others whose rows come first; how
-  !> many rows are written, how many cases have ended and failed, and what all took. A case is in
-  !> `waiting` at its number, all numbers modulo the size.
+  !> The cases still to come, after the last that was handed out, and those that have ended before
+  !> others whose rows come first; how many rows are written, how many cases failed, and what all
+  !> took. A case is in `waiting` at its number, all numbers modulo the size.
   type, extends(foreman_t) :: queue_t
     type(scene_t), pointer :: scene => null()
     type(results_t), pointer :: results => null()
     character(len=column_width), allocatable :: columns(:)
-    type(sweep_cases_t) :: to_come
+    !> Where cases are those of a file.
+    type(case_rows_t) :: rows
     type(case_t), allocatable :: waiting(:)
-    integer :: written = 0, ended = 0, failed = 0
+    integer :: handed_out = 0, written = 0, failed = 0
     type(cost_t) :: cost
   contains
     procedure :: next
@@ -76,14 +51,6 @@ module sweeps
   contains
     procedure :: work
   end type sweep_worker_t
-
-  !> Says what a case is at, beside the others; takes no records.
-  type, extends(silent_observer_t) :: case_observer_t
-    integer :: case = 0
-    type(progress_t), pointer :: progress => null()
-  contains
-    procedure :: hear
-  end type case_observer_t
 
 contains
 
@@ -107,7 +74,8 @@ contains
     queue%results => results
     queue%columns = columns_of(scene)
     call recall_cases(queue)
-    call queue%to_come%begin(scene, error)
+    if (allocated(scene%sweep%file)) &
+      call queue%rows%open(scene%sweep%file%path, scene%deck, error)
     if (allocated(error)) then
       call move_alloc(error, results%trouble)
     else if (crew%workers > 0) then
@@ -182,7 +150,8 @@ contains
     end do
   end subroutine work
 
-  !> The next case that is not complete; not found: there is none, or results cannot be written.
+  !> The next case that is not complete; not found: there is none, or results cannot be written, or
+  !> a file is no longer what it was when the deck was read.
   subroutine next(self, case, found)
     class(queue_t), intent(inout) :: self
     type(case_t), intent(inout) :: case
@@ -191,13 +160,25 @@ contains
 
     found = .false.
     if (allocated(self%results%trouble) .or. allocated(self%results%journal%trouble)) return
-    do
-      call self%to_come%next(self%scene, case%values, found, error)
-      if (allocated(error)) call move_alloc(error, self%results%trouble)
-      if (.not. found) return
-      case%number = self%to_come%number
-      if (.not. self%has(case%number)) return
-    end do
+    associate (sweep => self%scene%sweep)
+      do while (.not. found .and. self%handed_out < sweep%cases())
+        self%handed_out = self%handed_out + 1
+        case%number = self%handed_out
+        if (allocated(sweep%file)) then
+          call self%rows%next(case%values, found, error)
+          if (.not. (found .or. allocated(error))) call fail(error, file_trouble, &
+            sweep%file%path // ' has become shorter since it was read first')
+        else
+          case%values = sweep%values(case%number)
+        end if
+        if (allocated(error)) then
+          found = .false.
+          call move_alloc(error, self%results%trouble)
+          return
+        end if
+        found = .not. self%has(case%number)
+      end do
+    end associate
   end subroutine next
 
   subroutine put_next(self, batch, found)
@@ -230,17 +211,8 @@ contains
     call put_case(case, record)
     call self%results%journal%append(record)
     call self%add(case)
-    call self%results%progress%step(counted(self%failed))
+    call self%results%progress%step('case', failed=.not. case%converged)
   end subroutine enter
-
-  !> 'case', with how many have failed so far.
-  function counted(failed) result(label)
-    integer, intent(in) :: failed
-    character(len=32) :: label
-
-    label = 'case'
-    if (failed > 0) write (label, '(a, i0, a)') 'case, ', failed, ' failed'
-  end function counted
 
   !> Takes the cases that an interrupted run has completed.
   subroutine recall_cases(queue)
@@ -254,36 +226,9 @@ contains
       if (.not. found) exit
       call take_case(case, record)
       call queue%add(case)
-      call queue%results%progress%skip(counted(queue%failed))
+      call queue%results%progress%step('case', failed=.not. case%converged, given=.true.)
     end do
   end subroutine recall_cases
-
-  !> Adds a case to a record, as `take_case` finds it there.
-  subroutine put_case(case, record)
-    type(case_t), intent(in) :: case
-    type(byte_record_t), intent(inout) :: record
-
-    call record%put(case%number)
-    call record%put(case%converged)
-    call record%put(case%numbers)
-    call record%put(trim(case%failure))
-    call put_cost(record, case%cost)
-    call record%put(case%values)
-  end subroutine put_case
-
-  subroutine take_case(case, record)
-    type(case_t), intent(out) :: case
-    type(byte_record_t), intent(inout) :: record
-    character(len=:), allocatable :: failure
-
-    call record%take(case%number)
-    call record%take(case%converged)
-    call record%take(case%numbers)
-    call record%take(failure)
-    call take_cost(record, case%cost)
-    call record%take(case%values)
-    case%failure = failure
-  end subroutine take_case
 
   !> Whether a case has ended, in this run or the one before.
   pure logical function has(self, number)
@@ -300,7 +245,6 @@ contains
     class(queue_t), intent(inout) :: self
     type(case_t), intent(in) :: case
 
-    self%ended = self%ended + 1
     if (.not. case%converged) self%failed = self%failed + 1
     self%cost = sum_of(self%cost, case%cost)
     if (.not. allocated(self%waiting)) allocate (self%waiting(0:15))
@@ -309,8 +253,8 @@ contains
     do
       associate (first => self%waiting(mod(self%written + 1, size(self%waiting))))
         if (first%number /= self%written + 1) exit
-        call self%results%take_case(self%scene%sweep%names, self%scene%sweep%words, first%values, &
-          self%columns, first%numbers, first%failure)
+        call self%results%take_case(self%columns, self%scene%sweep%words, first%values, &
+          first%numbers, first%failure)
         first%number = 0
         deallocate (first%numbers, first%values)
       end associate
@@ -336,56 +280,6 @@ contains
     end do
     call move_alloc(larger, waiting)
   end subroutine make_room
-
-  !> Computes a case of the scene's sweep, which has its number and values, on meshes that the cases
-  !> share.
-  subroutine run_case(scene, progress, store, case)
-    type(scene_t), intent(in) :: scene
-    type(progress_t), intent(in), target :: progress
-    type(mesh_store_t), intent(inout) :: store
-    type(case_t), intent(inout) :: case
-    type(case_observer_t) :: observer
-    type(scene_t) :: variant
-    type(problem_t) :: problem
-    type(experiment_result_t) :: outcome
-    type(summary_t) :: summary
-    type(failure_t), allocatable :: error
-
-    observer%case = case%number
-    observer%progress => progress
-    case%failure = ''
-    ! What makes strings is done by one thread at a time: compiler note 4.
-    !$omp critical (one_at_a_time)
-    call swept_scene(scene, scene%sweep%names, case%values, variant, error)
-    !$omp end critical (one_at_a_time)
-    call summary%set('converged', .false.)
-    if (.not. allocated(error)) then
-      problem = problem_of(variant)
-      call run_experiment(variant, problem, observer, outcome, store=store)
-    end if
-    !$omp critical (one_at_a_time)
-    if (.not. allocated(error)) summary = summary_of(variant, problem, outcome)
-    case%numbers = numbers_of(summary, scene)
-    case%converged = summary%is_true('converged')
-    if (allocated(error)) then
-      case%failure = first_line(error%message)
-    else if (.not. case%converged) then
-      case%failure = 'not converged'
-      if (allocated(summary%warnings)) case%failure = summary%warnings(1)%text
-    end if
-    !$omp end critical (one_at_a_time)
-    case%cost = outcome%cost
-  end subroutine run_case
-
-  !> Into a variable, since threads share strings that are put together: compiler note 4.
-  subroutine hear(self, what)
-    class(case_observer_t), intent(inout) :: self
-    character(len=*), intent(in) :: what
-    character(len=80) :: label
-
-    write (label, '(a, i0, 2a)') 'case ', self%case, ': ', what
-    call self%progress%detail(label)
-  end subroutine hear
 
   !> What two cases took together.
   pure function sum_of(a, b) result(total)

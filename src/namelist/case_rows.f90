@@ -191,8 +191,7 @@ contains
     if (len(bytes) > 0) then
       if (bytes(len(bytes):) == achar(13)) bytes = bytes(:len(bytes) - 1)
     end if
-    call take_source(self%file, bytes, self%line, error)
-    self%line%lines_before = self%lines
+    call take_source(self%file, bytes, self%line, error, lines_before=self%lines)
     self%lines = self%lines + 1
     if (allocated(error)) return
     self%digest = checksum([self%digest, checksum(self%line%text)])

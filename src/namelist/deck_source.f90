@@ -72,18 +72,19 @@ contains
     end if
   end subroutine load_source
 
-  !> Takes the bytes of a deck; messages call it `name`. Fails where they are too many or not plain
-  !> text.
-  subroutine take_source(name, bytes, source, error, most)
+  !> Takes the bytes of a deck; messages call it `name`. lines_before: of the file before these.
+  !> Fails where they are too many or not plain text.
+  subroutine take_source(name, bytes, source, error, most, lines_before)
     character(len=*), intent(in) :: name, bytes
     type(source_t), intent(out) :: source
     type(failure_t), allocatable, intent(out) :: error
-    integer, intent(in), optional :: most
+    integer, intent(in), optional :: most, lines_before
     character(len=12) :: limit
     integer :: n
 
     source%file = printable(name)
     source%text = ''
+    if (present(lines_before)) source%lines_before = lines_before
     source%folder = name(:index(name, '/', back=.true.))
     n = largest_deck
     if (present(most)) n = most

@@ -1,15 +1,18 @@
-!> What a case of a sweep leaves in the table of all cases: the rows of `result_rows` that are
-!> columns there, which follows from the deck, and one number a column, from the case's summary.
+!> What a case of a sweep leaves in the table of all cases: the values of its keys, the rows of
+!> `result_rows` that are columns there, which follows from the deck, and one number a column of
+!> these, from the case's summary.
 module case_columns
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
-  use text, only: brief
+  use failure, only: failure_t
+  use text, only: brief, word_of
+  use deck_numbers, only: find_number
   use result_rows, only: row_t, rows
   use scene_groups, only: scene_t
   use summary, only: summary_t
   implicit none
   private
-  public :: columns_of, numbers_of, column_width, failure_column
+  public :: columns_of, numbers_of, column_width
 
   !> Characters of a column's description.
   integer, parameter :: column_width = 132
@@ -19,21 +22,30 @@ module case_columns
 
 contains
 
-  !> The columns of a sweep of this scene, each described as 'name [unit] what it is'.
-  pure function columns_of(scene) result(columns)
+  !> The columns of this scene's sweep, each described as 'name [unit] what it is': the keys,
+  !> numbers, and `failure`.
+  function columns_of(scene) result(columns)
     type(scene_t), intent(in) :: scene
     character(len=column_width), allocatable :: columns(:)
+    type(failure_t), allocatable :: error
     character(len=:), allocatable :: number
     integer, allocatable :: single(:)
-    integer :: i, k, n
+    integer :: i, k, n, row, term
 
     single = single_columns(scene)
-    ! Filled item by item: compiler note 2.
-    allocate (columns(size(single) + turning_points(scene)*count(each_turn(rows))))
-    do n = 1, size(single)
-      columns(n) = described(rows(single(n)), '')
-    end do
-    n = size(single)
+    associate (keys => size(scene%sweep%words))
+      allocate (columns(keys + size(single) + turning_points(scene)*count(each_turn(rows)) + 1))
+      ! Filled item by item: compiler note 2.
+      do k = 1, keys
+        call find_number(scene%deck, word_of(scene%sweep%names, k), row, term, error, words=.true.)
+        columns(k) = word_of(scene%sweep%names, k) // ' [' // &
+          trim(scene%deck%specs(row)%unit) // '] a key of the deck'
+      end do
+      do i = 1, size(single)
+        columns(keys + i) = described(rows(single(i)), '')
+      end do
+      n = keys + size(single)
+    end associate
     do k = 1, turning_points(scene)
       number = brief(real(k, wp))
       do i = 1, size(rows)
@@ -42,10 +54,11 @@ contains
         columns(n) = described(rows(i), '_' // number)
       end do
     end do
+    columns(n + 1) = failure_column
   end function columns_of
 
-  !> The numbers of a case's summary, one for each of `columns_of(scene)`; NaN for what does not
-  !> exist.
+  !> The numbers of a case's summary, one for each of `columns_of(scene)` between keys and failure;
+  !> NaN for what does not exist.
   pure function numbers_of(summary, scene) result(values)
     type(summary_t), intent(in) :: summary
     type(scene_t), intent(in) :: scene

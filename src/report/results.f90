@@ -24,7 +24,6 @@ module results
   use text_file, only: output_t, partial
   use tables, only: table_t, cells
   use text, only: word_of
-  use case_columns, only: failure_column
   use curve_rows, only: columns_of_curve, curve_row
   use profiles, only: columns_of_profiles, write_profile
   use summary, only: summary_t, summary_text
@@ -170,10 +169,8 @@ contains
 
     if (record%branch == 'path') then
       call self%progress%note(record%branch)
-    else if (self%journal%is_behind()) then
-      call self%progress%skip(record%branch)
     else
-      call self%progress%step(record%branch)
+      call self%progress%step(record%branch, given=self%journal%is_behind())
     end if
     if (allocated(self%trouble)) return
     call self%curve%line(curve_row(record), self%trouble)
@@ -183,26 +180,16 @@ contains
   end subroutine take
 
   !> Adds a case of a sweep to `sweep.csv`: the values of its keys, its numbers, and why it failed,
-  !> blank if it did not. `keys` are blank-separated names, `words` those of which a value is the
-  !> number, `columns` are those of the numbers.
-  subroutine take_case(self, keys, words, values, columns, numbers, failure)
+  !> blank if it did not. `columns` are those of both, `words` those of which a value is the number.
+  subroutine take_case(self, columns, words, values, numbers, failure)
     class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: keys, words(:), columns(:), failure
+    character(len=*), intent(in) :: columns(:), words(:), failure
     real(wp), intent(in) :: values(:), numbers(:)
-    character(len=max(len(columns), len(keys) + 24)) :: header(size(values) + size(columns) + 1)
     character(len=:), allocatable :: line
     integer :: k
 
     if (allocated(self%trouble)) return
-    if (.not. self%cases%is_open()) then
-      do k = 1, size(values)
-        header(k) = word_of(keys, k) // ' in the unit of the key'
-        if (words(k) /= '') header(k) = word_of(keys, k) // ' a word'
-      end do
-      header(k:size(header) - 1) = columns
-      header(size(header)) = failure_column
-      call self%begin(self%cases, 'sweep.csv', header, self%trouble)
-    end if
+    if (.not. self%cases%is_open()) call self%begin(self%cases, 'sweep.csv', columns, self%trouble)
     line = ''
     do k = 1, size(values)
       if (words(k) == '') then

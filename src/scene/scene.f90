@@ -1,8 +1,8 @@
 !> What a deck asks for: this program's groups read, defaults filled in, checked as a whole.
 module scene
   use kinds, only: wp
-  use failure, only: failure_t
-  use text, only: brief, listing, first_line, word_count, word_of
+  use failure, only: failure_t, fail, bad_input
+  use text, only: brief, quoted, listing, first_line, word_count, word_of
   use deck, only: deck_t, read_deck
   use deck_numbers, only: find_number, set_number
   use scene_keys, only: keys_of_scene
@@ -116,12 +116,17 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     type(failure_t), allocatable :: trouble
     type(deck_t) :: trial
-    integer :: k, row, term
+    character(len=:), allocatable :: key
+    integer :: place(2, word_count(scene%sweep%names)), k, i
 
     trial = scene%deck
     call trial%drop_group('sweep')
     do k = 1, word_count(scene%sweep%names)
-      call find_number(trial, word_of(scene%sweep%names, k), row, term, trouble, words=.true.)
+      call find_number(trial, word_of(scene%sweep%names, k), place(1, k), place(2, k), trouble, &
+        words=.true.)
+      place(2, k) = max(1, place(2, k))
+      if (.not. allocated(trouble) .and. any([(all(place(:, i) == place(:, k)), i=1, k - 1)])) &
+        call fail(trouble, bad_input, quoted(word_of(scene%sweep%names, k)) // ' is there twice')
       if (allocated(trouble)) then
         call scene%deck%mistake('sweep', trim(merge('file', 'key ', allocated(scene%sweep%file))), &
           trouble%message, error)
@@ -129,10 +134,11 @@ contains
       end if
       if (allocated(scene%sweep%file)) then
         call try_values(scene, trial, k, scene%sweep%file%telling(:, k), 'file', error)
-      else if (scene%deck%is_set('sweep', 'values')) then
-        call try_values(scene, trial, k, scene%sweep%axis(k)%values, 'values', error)
       else
-        call try_values(scene, trial, k, scene%sweep%axis(k)%values, 'from', error)
+        key = 'from'
+        if (scene%deck%is_set('sweep', 'values')) key = 'values'
+        if (scene%sweep%words(k) /= '') key = 'words'
+        call try_values(scene, trial, k, scene%sweep%axis(k)%values, key, error)
       end if
       if (allocated(error)) return
     end do

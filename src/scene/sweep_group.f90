@@ -8,7 +8,7 @@ module sweep_group
   use deck_numbers, only: words_of, number_of_word
   use case_rows, only: case_rows_t
   use deck_keys, only: key_spec, group, list_key, text_key, names_key
-  use scene_groups, only: scene_t, sweep_t, case_file_t
+  use scene_groups, only: scene_t, sweep_t, axis_t, case_file_t
   implicit none
   private
   public :: sweep_keys, take_sweep
@@ -47,7 +47,6 @@ contains
   subroutine take_sweep(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: values(:)
     integer :: i
 
     if (.not. scene%deck%has_group('sweep')) return
@@ -65,20 +64,11 @@ contains
         return
       end if
       call deck%get('sweep', 'key', sweep%names)
+      sweep%names = trim(adjustl(sweep%names))
       allocate (sweep%axis(word_count(sweep%names)))
       call find_words(deck, sweep)
-      call deck%get('sweep', 'values', values)
-      if (any(sweep%words /= '') .or. deck%is_set('sweep', 'words')) then
-        call take_words(deck, sweep, error)
-      else if (size(values) == 0) then
-        call take_ranges(deck, sweep, error)
-      else if (size(sweep%axis) > 1) then
-        call deck%mistake('sweep', 'values', 'values are those of one key; for several give ' // &
-          'from, to and count, or file', error)
-      else
-        call refuse(deck, of_range, 'values; give from, to and count, or values', error)
-        sweep%axis(1)%values = values
-      end if
+      call take_words(deck, sweep, error)
+      if (.not. allocated(error)) call take_numbers(deck, sweep, error)
       if (allocated(error)) return
       if (product([(real(size(sweep%axis(i)%values), wp), i=1, size(sweep%axis))]) > most_cases) &
         call deck%mistake('sweep', 'count', 'these are more than ' // brief(most_cases) // &
@@ -98,35 +88,58 @@ contains
     end do
   end subroutine find_words
 
-  !> The words of the only key.
+  !> The words of the key that holds one.
   subroutine take_words(deck, sweep, error)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
     type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: words, what
-    integer :: i
+    integer :: i, k
 
     call deck%get('sweep', 'words', words)
-    if (any(sweep%words /= '')) call refuse(deck, ['values', of_range//' '], &
-      'a key that holds a word; give words', error)
-    if (allocated(error)) return
-    if (size(sweep%axis) > 1) then
-      call deck%mistake('sweep', 'key', 'a key that holds a word is swept alone; for several ' // &
-        'give a file', error)
-    else if (sweep%words(1) == '') then
-      call deck%mistake('sweep', 'words', quoted(sweep%names) // ' does not hold a word', error)
+    k = findloc(sweep%words /= '', .true., dim=1)
+    if (count(sweep%words /= '') > 1) then
+      call deck%mistake('sweep', 'key', 'only one of the keys may hold a word; for more give ' // &
+        'a file', error)
+    else if (k == 0) then
+      if (deck%is_set('sweep', 'words')) call deck%mistake('sweep', 'words', &
+        quoted(sweep%names) // ' does not hold a word', error)
     else if (word_count(words) == 0) then
-      call deck%mistake('sweep', 'words', 'missing; ' // quoted(sweep%names) // ' holds a word', &
-        error)
+      call deck%mistake('sweep', 'words', 'missing; ' // quoted(word_of(sweep%names, k)) // &
+        ' holds a word', error)
     else
-      allocate (sweep%axis(1)%values(word_count(words)))
+      allocate (sweep%axis(k)%values(word_count(words)))
       do i = 1, word_count(words)
-        call number_of_word(word_of(words, i), sweep%words(1), sweep%axis(1)%values(i), what)
+        call number_of_word(word_of(words, i), sweep%words(k), sweep%axis(k)%values(i), what)
         if (allocated(what)) call deck%mistake('sweep', 'words', what, error)
         if (allocated(error)) return
       end do
     end if
   end subroutine take_words
+
+  !> The values of the keys that hold numbers: a list for one, else ranges.
+  subroutine take_numbers(deck, sweep, error)
+    type(deck_t), intent(inout) :: deck
+    type(sweep_t), intent(inout) :: sweep
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: values(:)
+    integer, allocatable :: of_numbers(:)
+    integer :: i
+
+    of_numbers = pack([(i, i=1, size(sweep%axis))], sweep%words == '')
+    call deck%get('sweep', 'values', values)
+    if (size(of_numbers) == 0) then
+      call refuse(deck, ['values', of_range//' '], 'a key that holds a word; give words', error)
+    else if (size(values) == 0) then
+      call take_ranges(deck, sweep%axis, of_numbers, error)
+    else if (size(of_numbers) > 1) then
+      call deck%mistake('sweep', 'values', 'values are those of one key; for several give ' // &
+        'from, to and count, or file', error)
+    else
+      call refuse(deck, of_range, 'values; give from, to and count, or values', error)
+      sweep%axis(of_numbers(1))%values = values
+    end if
+  end subroutine take_numbers
 
   !> Refuses keys that make no sense together with `other`.
   subroutine refuse(deck, keys, other, error)
@@ -208,10 +221,11 @@ contains
     is_whole = .not. abs(value - anint(value)) > 0
   end function is_whole
 
-  !> The values of every key from its range; none where these are wrong.
-  subroutine take_ranges(deck, sweep, error)
+  !> The values of keys from their ranges; none where these are wrong.
+  subroutine take_ranges(deck, axis, keys, error)
     type(deck_t), intent(inout) :: deck
-    type(sweep_t), intent(inout) :: sweep
+    type(axis_t), intent(inout) :: axis(:)
+    integer, intent(in) :: keys(:)
     type(failure_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: from(:), to(:), number(:)
     character(len=:), allocatable :: scales
@@ -227,9 +241,9 @@ contains
     call check_size('count', size(number))
     if (word_count(scales) /= 1) call check_size('scale', word_count(scales))
     if (allocated(error)) return
-    do i = 1, size(sweep%axis)
+    do i = 1, size(keys)
       call spread_values(deck, from(i), to(i), number(i), &
-        word_of(scales, min(i, word_count(scales))), sweep%axis(i)%values, error)
+        word_of(scales, min(i, word_count(scales))), axis(keys(i))%values, error)
     end do
 
   contains
@@ -239,12 +253,12 @@ contains
       character(len=*), intent(in) :: key
       integer, intent(in) :: items
 
-      if (items == size(sweep%axis)) return
+      if (items == size(keys)) return
       if (items == 0) then
         call deck%mistake('sweep', key, 'missing; give from, to and count, or values', error)
       else
         call deck%mistake('sweep', key, brief(real(items, wp)) // ' for ' // &
-          brief(real(size(sweep%axis), wp)) // ' of key; each needs one', error)
+          brief(real(size(keys), wp)) // ' of key; each needs one', error)
       end if
     end subroutine check_size
 

@@ -7,7 +7,7 @@ module c_library
   implicit none
   private
   public :: c_open, c_read, c_write, c_sync, c_sync_above, c_close, c_size, c_cut, &
-    c_make_folder, c_current_folder, c_lock, c_kind, c_rename, c_remove, c_free_disk, &
+    c_make_folder, c_current_folder, c_own_path, c_lock, c_kind, c_rename, c_remove, c_free_disk, &
     c_is_terminal, c_prepare, c_end_with_parent, c_pause, &
     c_openblas_threads, c_openblas_end_threads, c_openblas_config, c_build_id
   public :: explain, system_failure, nul
@@ -87,6 +87,13 @@ module c_library
       character(kind=c_char), intent(out) :: path(*)
       integer(c_int), value :: size
     end subroutine c_current_folder
+
+    !> The whole path of this program's file; blank where it is not known.
+    subroutine c_own_path(path, size) bind(c, name='snapin_own_path')
+      import :: c_char, c_int
+      character(kind=c_char), intent(out) :: path(*)
+      integer(c_int), value :: size
+    end subroutine c_own_path
 
     !> Locks a folder without waiting: it fails as `locked_elsewhere` where another has it.
     integer(c_int) function c_lock(folder) bind(c, name='snapin_lock')

@@ -4,11 +4,11 @@ module files
   use, intrinsic :: iso_fortran_env, only: error_unit
   use kinds, only: wp, long
   use failure, only: failure_t
-  use c_library, only: c_make_folder, c_current_folder, c_free_disk, c_is_terminal, c_write, &
-    c_open, c_read, c_sync, c_sync_above, c_close, as_folder, system_failure, nul
+  use c_library, only: c_make_folder, c_current_folder, c_own_path, c_free_disk, c_is_terminal, &
+    c_write, c_open, c_read, c_sync, c_sync_above, c_close, as_folder, system_failure, nul
   implicit none
   private
-  public :: make_folder, sync_names, file_exists, free_disk, whole_path, read_file, &
+  public :: make_folder, sync_names, file_exists, free_disk, whole_path, own_path, read_file, &
     read_standard_input, is_terminal, &
     write_stderr
 
@@ -67,6 +67,13 @@ contains
     call c_current_folder(here, len(here, kind=c_int))
     if (here /= '') whole = trim(here) // '/' // path
   end function whole_path
+
+  !> Where this program's file is; blank where it is not known.
+  function own_path() result(path)
+    character(len=4096) :: path
+
+    call c_own_path(path, len(path, kind=c_int))
+  end function own_path
 
   !> The text of the file `path`; not allocated where it cannot be read.
   subroutine read_file(path, text)

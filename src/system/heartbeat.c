@@ -21,8 +21,9 @@ struct heartbeat {
   pthread_t thread;
   int stop, live, shown, lines;
   char name[longest_label], label[longest_label];
-  /* Steps done, those of them that an earlier run did, and all that there are (0: unknown). */
-  long done, given, total;
+  /* Steps done, those of them that an earlier run did, that failed, and all that there are (0:
+     unknown). */
+  long done, given, failed, total;
   double began, origin, next, interval;
 };
 
@@ -61,11 +62,13 @@ static void show(struct heartbeat *self, double time) {
     /* All done is for the end to say. */
     int percent = (int)(100.0 * self->done / self->total);
     n += snprintf(text + n, size - n, ", %d %%", percent < 99 ? percent : 99);
+    if (self->failed > 0)
+      n += snprintf(text + n, size - n, ", %ld failed", self->failed);
     if (self->done > self->given && self->done <= self->total && time - self->origin >= too_early) {
       double each = (time - self->origin) / (self->done - self->given);
       snapin_duration(each * (self->total - self->done), duration, sizeof duration);
-      if (each < 1)
-        n += snprintf(text + n, size - n, ", %.0f a second", 1 / each);
+      n += snprintf(text + n, size - n, each < 1 ? ", %.0f a second" : ", %.2g s each",
+                    each < 1 ? 1 / each : each);
       n += snprintf(text + n, size - n, ", %s left", duration);
     }
   } else if (self->done > 0)
@@ -131,7 +134,7 @@ void *snapin_begin_progress(const char *name, long total, int live) {
   return NULL;
 }
 
-void snapin_progress(void *of, const char *label, int counted, int given) {
+void snapin_progress(void *of, const char *label, int counted, int given, int failed) {
   struct heartbeat *self = of;
   pthread_mutex_lock(&self->lock);
   /* Nobody can read what a step of less than a second is at. */
@@ -140,6 +143,7 @@ void snapin_progress(void *of, const char *label, int counted, int given) {
     return;
   }
   self->done += counted;
+  self->failed += failed;
   if (given > 0)
     self->given = self->done;
   /* What comes before the first step that is counted is left out of the time of the others. */

@@ -136,6 +136,14 @@ void snapin_current_folder(char *text, int size) {
   hand_over(getcwd(path, sizeof path) != NULL ? path : "", text, size);
 }
 
+/* Of the file that this program is; blank where it is not known. */
+void snapin_own_path(char *text, int size) {
+  char path[PATH_MAX];
+  ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+  path[length > 0 ? length : 0] = 0;
+  hand_over(path, text, size);
+}
+
 int snapin_lock(int folder) { return status_of(flock(folder, LOCK_EX | LOCK_NB)); }
 
 /* 0 where there is nothing of that name, 1 a file, 2 a folder. */

@@ -17,7 +17,6 @@ module progress
   contains
     procedure :: start
     procedure :: step
-    procedure :: skip
     procedure :: note
     procedure :: detail
     procedure :: finish
@@ -33,12 +32,13 @@ module progress
     end function begin_progress
 
     !> What is being done; counted: as how many steps; given: 1 where they took no time, -1 where
-    !> this is part of a step.
-    subroutine show_progress(heartbeat, label, counted, given) bind(c, name='snapin_progress')
+    !> this is part of a step; failed: how many of the steps.
+    subroutine show_progress(heartbeat, label, counted, given, failed) &
+        bind(c, name='snapin_progress')
       import :: c_char, c_int, c_ptr
       type(c_ptr), value :: heartbeat
       character(kind=c_char), intent(in) :: label(*)
-      integer(c_int), value :: counted, given
+      integer(c_int), value :: counted, given, failed
     end subroutine show_progress
 
     !> Ends: the live line disappears; elsewhere a last line follows if there was one before.
@@ -70,28 +70,28 @@ contains
       merge(1_c_int, 0_c_int, is_terminal()))
   end subroutine start
 
-  !> Counts one step, of what `label` names (a branch).
-  subroutine step(self, label)
+  !> Counts one step, of what `label` names (a branch). failed: it did; given: an earlier run has
+  !> done it, and the estimate of the time begins after it.
+  subroutine step(self, label, failed, given)
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
+    logical, intent(in), optional :: failed, given
+    integer(c_int) :: of_failed, of_given
 
-    if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, trim(label) // nul, 1, 0)
+    of_failed = 0
+    if (present(failed)) of_failed = merge(1, 0, failed)
+    of_given = 0
+    if (present(given)) of_given = merge(1, 0, given)
+    if (c_associated(self%heartbeat)) &
+      call show_progress(self%heartbeat, trim(label) // nul, 1, of_given, of_failed)
   end subroutine step
-
-  !> Counts one step that an earlier run has done; the estimate of the time begins after it.
-  subroutine skip(self, label)
-    class(progress_t), intent(inout) :: self
-    character(len=*), intent(in) :: label
-
-    if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, trim(label) // nul, 1, 1)
-  end subroutine skip
 
   !> Says what is being done without counting it.
   subroutine note(self, label)
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
 
-    if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, label // nul, 0, 0)
+    if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, label // nul, 0, 0, 0)
   end subroutine note
 
   !> The same of a part of a step, whose time belongs to the step. Threads may call it at once.
@@ -102,7 +102,7 @@ contains
 
     if (.not. c_associated(self%heartbeat)) return
     ended = trim(label) // nul
-    call show_progress(self%heartbeat, ended, 0, -1)
+    call show_progress(self%heartbeat, ended, 0, -1, 0)
   end subroutine detail
 
   subroutine finish(self)

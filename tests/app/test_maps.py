@@ -1,9 +1,13 @@
 """Claims about sweeps over several keys: every combination, or the cases of a table."""
 
+import contextlib
 import itertools
 import os
+import pty
+import re
 import subprocess
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +21,11 @@ PATH = {"h0_end": -1e-9}
 GRID = {"key": ["bodies.stiffness", "force.hamaker"], "from": [1e9, 1e-20], "to": [1e11, 1e-19],
         "count": [3, 4], "scale": ["log", "linear"]}
 CASES = list(itertools.product([1e9, 1e10, 1e11], [1e-20, 4e-20, 7e-20, 1e-19]))
+
+
+# Quick.
+RIGID = {"bodies": {"radius": 1e-6, "rigid": True}, "equilibrium_path": None,
+         "loading": loading(3e-9, 2e-9, 1e-9)}
 
 
 def scene(sweep=None, **groups):
@@ -71,13 +80,11 @@ def test_a_file_is_read_in_pieces_whatever_its_line_ends(run, folder):
     """The pieces have 64 kB: rows lie across their ends."""
     count = 4000
     rows = [f"{1e-6 * (1 + i / count)!r},\t{1e-20 * (i + 1)!r} # {i}" for i in range(count)]
-    rigid = {"bodies": {"radius": 1e-6, "rigid": True}, "equilibrium_path": None,
-             "loading": loading(3e-9, 2e-9, 1e-9)}
     tables = []
     for ends in ("\n", "\r\n"):
         (folder / "many.csv").write_bytes(
             ends.join(["\ufeff# all", "Bodies.Radius, force.hamaker", "", *rows]).encode())
-        tables.append(run(scene({"file": "many.csv"}, **rigid)).table("sweep.csv"))
+        tables.append(run(scene({"file": "many.csv"}, **RIGID)).table("sweep.csv"))
     for table in tables:
         np.testing.assert_array_equal(table["bodies.radius"],
                                       [1e-6 * (1 + i / count) for i in range(count)])
@@ -97,9 +104,9 @@ def test_an_interrupted_file_of_cases_goes_on_to_the_same_bytes(snapin, snapin_p
 
 
 def test_a_file_that_becomes_shorter_meanwhile_stops_the_sweep(snapin_path, tmp_path):
-    rows = "".join(f"{1e-20 * (i + 1)!r}\n" for i in range(6000))
+    rows = "".join(f"{1e-20 * (i + 1)!r}\n" for i in range(60000))
     (tmp_path / "cases.csv").write_text("force.hamaker\n" + rows)
-    (tmp_path / "d.nml").write_text(scene({"file": "cases.csv"}))
+    (tmp_path / "d.nml").write_text(scene({"file": "cases.csv"}, **RIGID))
     with subprocess.Popen([snapin_path, "d.nml"], cwd=tmp_path, stderr=subprocess.PIPE,
                           text=True) as run:
         while not (tmp_path / "results/d/sweep.csv.partial").exists():
@@ -114,6 +121,27 @@ def test_a_file_that_becomes_shorter_meanwhile_stops_the_sweep(snapin_path, tmp_
 def test_two_threads_leave_the_same_bytes(run):
     one, two = (run(scene(GRID), threads=threads) for threads in (1, 2))
     assert rows_of(one) == rows_of(two)
+
+
+@pytest.mark.long
+@pytest.mark.alone
+def test_two_threads_hardly_wait_for_each_other(snapin_path, tmp_path):
+    """1,200 cases are done nearly twice as fast where there are two cores: what counts is the time
+    that threads compute or ask for a core, however many others there are."""
+    (tmp_path / "d.nml").write_text(scene({
+        **GRID, "from": [1e8, 1e-20], "count": [40, 30]}))
+    began, busy = time.monotonic(), {}
+    with subprocess.Popen([snapin_path, "--quiet", "d.nml"], cwd=tmp_path,
+                          env=dict(os.environ, OMP_NUM_THREADS="2")) as run:
+        while run.poll() is None:
+            for thread in Path(f"/proc/{run.pid}/task").glob("*"):
+                with contextlib.suppress(OSError):
+                    runs, waits, _ = (thread / "schedstat").read_text().split()
+                    busy[thread.name] = 1e-9 * (int(runs) + int(waits))
+            took = time.monotonic() - began
+            time.sleep(0.02)
+    assert run.returncode == 0
+    assert sum(sorted(busy.values())[-2:]) > 0.95 * 2 * took
 
 
 def test_an_interrupted_map_goes_on_to_the_same_bytes(snapin, snapin_path, tmp_path):
@@ -137,6 +165,28 @@ def test_a_case_that_fails_is_a_row_that_says_why(run):
     assert any("1 of 4 cases failed" in text for text in result.warnings)
 
 
+def test_a_terminal_shows_how_far_a_sweep_is(snapin_path, tmp_path):
+    """In half of the cases the loading would go the wrong way."""
+    sweep = {"key": ["loading.h0_start", "loading.h0_end"], "from": [2e-9, 1e-9],
+             "to": [5e-9, 4e-9], "count": [160, 160]}
+    (tmp_path / "d.nml").write_text(scene(sweep, **RIGID))
+    ours, theirs = pty.openpty()
+    with subprocess.Popen([snapin_path, "d.nml"], cwd=tmp_path, stderr=theirs) as run:
+        os.close(theirs)
+        said = b""
+        with contextlib.suppress(OSError):  # the other end is closed
+            while part := os.read(ours, 65536):
+                said += part
+    os.close(ours)
+    assert run.returncode == 1
+    *lines, last, _ = re.split("[\r\n]+", said.decode())
+    line = r"d: case, \d+ %, \d+ failed, \d+ a second, \d+ (s|min) left, \d+ (s|min) so far *"
+    assert any(re.fullmatch(line, text) for text in lines), lines
+    command = re.fullmatch(r"results/d: 25600 cases, \d+ a second: results/d/sweep.csv; "
+                           r"to draw it: (\S+) (\S+/map.py) results/d", last)
+    assert command and all(map(os.path.exists, command.groups())), last
+
+
 WRONG = {
     "count": ({**GRID, "count": [3]}, "1 for 2 of key"),
     "fraction": ({**GRID, "count": [3, 2.5]}, "not a whole number"),
@@ -157,6 +207,9 @@ WRONG = {
     "columns": ({"file": "columns.csv"}, "2 columns where 1 column are expected"),
     "whole": ({"file": "whole.csv"}, "case 3: 2.5"),
     "folder": ({"file": "."}, "cannot be"),
+    "twice": ({**GRID, "key": ["force.hamaker", "Force.Hamaker"]}, "is there twice"),
+    "column twice": ({"file": "twice.csv"}, "'bodies.stiffness' is there twice"),
+    "nul": ({"file": "nul.csv"}, "nul.csv:3: a NUL byte"),
 }
 
 
@@ -167,7 +220,9 @@ def test_a_wrong_sweep_is_refused(snapin, tmp_path, case):
                        ("sign", "bodies.stiffness\n1\n-1\n"), ("empty", "bodies.stiffness\n"),
                        ("void", ""), ("late", "bodies.stiffness\n" + "1e9\n" * 20000 + "1e\n"),
                        ("columns", "bodies.stiffness\n1e9, 2\n"),
-                       ("whole", "numerics.nodes\n100\n200\n2.5\n")):
+                       ("whole", "numerics.nodes\n100\n200\n2.5\n"),
+                       ("twice", "bodies.stiffness, bodies.stiffness\n1e9, 2e9\n"),
+                       ("nul", "bodies.stiffness\n1e9\n2e9\0\n")):
         (tmp_path / f"{name}.csv").write_text(text)
     (tmp_path / "d.nml").write_text(scene(sweep))
     result = snapin("d.nml", cwd=tmp_path)
@@ -176,34 +231,40 @@ def test_a_wrong_sweep_is_refused(snapin, tmp_path, case):
     assert not (tmp_path / "results").exists()
 
 
-@pytest.mark.parametrize("name", ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"])
-def test_several_at_once_are_refused_without_mpi(snapin, tmp_path, name, monkeypatch):
-    monkeypatch.setenv(name, "3")
+@pytest.mark.parametrize("size, rank", [
+    ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"), ("PMI_SIZE", "PMI_RANK"),
+    ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID")])
+def test_several_at_once_are_refused_without_mpi(snapin, tmp_path, size, rank, monkeypatch):
+    """All of them end; the first says why."""
+    monkeypatch.setenv(size, "3")
     (tmp_path / "d.nml").write_text(scene())
-    result = snapin("d.nml", cwd=tmp_path)
-    assert result.returncode == 2
-    assert "this build has no MPI" in result.stderr
+    for number in "01":
+        monkeypatch.setenv(rank, number)
+        result = snapin("d.nml", cwd=tmp_path)
+        assert result.returncode == 2
+        assert ("this build has no MPI" in result.stderr) == (number == "0")
     assert not (tmp_path / "results").exists()
 
 
 @pytest.mark.alone
-def test_memory_does_not_grow_with_the_number_of_cases(snapin, snapin_path, tmp_path, monkeypatch):
+@pytest.mark.parametrize("counts", [(2000, 42000),
+                                    pytest.param((1000, 1000000), marks=pytest.mark.long)])
+def test_memory_does_not_grow_with_the_number_of_cases(snapin, snapin_path, tmp_path, monkeypatch,
+                                                       counts):
     # What threads have of memory varies by a megabyte.
     monkeypatch.setenv("OMP_NUM_THREADS", "1")
     # Less than the two numbers that each case has in the file, of which none stays. What flang 22
     # makes of the same sources loses half a kB.
     most = 1000 if "flang" in snapin("--version").stdout else 16
     used = []
-    for count in (2000, 42000):
+    for count in counts:
         (tmp_path / "cases.csv").write_text("bodies.radius, force.hamaker\n" + "".join(
             f"{1e-6 + 1e-12 * i!r}, {1e-20 + 1e-25 * i!r}\n" for i in range(count)))
-        (tmp_path / "d.nml").write_text(scene(
-            {"file": "cases.csv"}, bodies={"radius": 1e-6, "rigid": True},
-            equilibrium_path=None, loading=loading(3e-9, 2e-9, 1e-9)))
+        (tmp_path / "d.nml").write_text(scene({"file": "cases.csv"}, **RIGID))
         status, memory = status_and_memory(snapin_path, "--quiet", "d.nml", cwd=tmp_path)
         assert status == 0
         used.append(memory)
-    assert used[1] - used[0] < most * 40000
+    assert used[1] - used[0] < most * (counts[1] - counts[0])
 
 
 MODELS = ["linear", "superposition", "nonlinear"]
@@ -227,6 +288,19 @@ def test_words_are_swept(run, models):
     assert len(set(table["end_load"])) == 3
 
 
+def test_every_word_is_combined_with_every_number(run, models):
+    sweep = {"key": ["double_layer.salt", "double_layer.model"], "words": MODELS,
+             "from": [1.0], "to": [10.0], "count": [2]}
+    result = run(scene(sweep, **COLLOID, double_layer=LAYER))
+    table = result.table("sweep.csv")
+    assert list(table["double_layer.model"]) == 2 * MODELS
+    np.testing.assert_array_equal(table["double_layer.salt"], 3 * [1] + 3 * [10])
+    np.testing.assert_array_equal(table["end_load"][:3], models.table("sweep.csv")["end_load"])
+    assert len(set(table["end_load"])) == 6
+    text = (result.folder / "sweep.csv").read_text()
+    assert "# double_layer.salt [mol/m^3] " in text and "# double_layer.model [] " in text
+
+
 def test_a_table_has_words_in_columns_of_words(run, folder, models):
     salts = {"Nonlinear": 10, "linear": 1, "superposition": 1}
     (folder / "models.csv").write_text("double_layer.salt, double_layer.model\n" + "".join(
@@ -241,10 +315,12 @@ WRONG_WORDS = {
     "unknown": ({"key": "force.law", "words": ["lennard_jones", "exponentail"]},
                 'did you mean "exponential"'),
     "none": ({"key": "force.law"}, "missing"),
-    "values": ({"key": "force.law", "values": [1.0]}, "holds a word; give words"),
+    "values": ({"key": "force.law", "words": "exponential", "values": [1.0]}, "give words"),
     "number": ({"key": "force.hamaker", "words": ["linear"]}, "does not hold a word"),
-    "several": ({"key": ["force.law", "force.hamaker"], "words": ["lennard_jones"]},
-                "swept alone"),
+    "several": ({"key": ["force.law", "numerics.method"], "words": ["lennard_jones"]},
+                "only one of the keys may hold a word"),
+    "no range": ({"key": ["force.law", "force.hamaker"], "words": ["lennard_jones"]},
+                 "missing; give from"),
     "cell": ({"file": "laws.csv"}, "laws.csv:3"),
     "with file": ({"file": "laws.csv", "words": ["exponential"]}, "not together with file"),
     "deck": ({"key": "force.law", "words": ["exponential"]}, "with force.law = exponential"),

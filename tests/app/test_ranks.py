@@ -47,7 +47,10 @@ class Ranks:
         return [*start, str(self.program), "--quiet", *arguments]
 
     def run(self, count, *arguments, threads=1, **options):
-        return subprocess.run(self.command(count, *arguments), cwd=self.folder, text=True,
+        return self.start_up(self.command(count, *arguments), threads, **options)
+
+    def start_up(self, command, threads=1, **options):
+        return subprocess.run(command, cwd=self.folder, text=True,
                               env=dict(ENVIRONMENT, OMP_NUM_THREADS=str(threads)), timeout=300,
                               capture_output=True, check=False, **options)
 
@@ -96,6 +99,15 @@ def test_any_number_of_processes_leaves_the_same_bytes(ranks, count, threads):
     done = ranks.run(count, "--out", f"on{count}", "map.nml", threads=threads)
     assert done.returncode == 0, done.stderr
     assert ranks.results(f"on{count}") == ranks.results("whole")
+
+
+def test_a_million_empty_cases_are_handed_out_in_few_messages(ranks):
+    """In seconds, of which nothing can be claimed."""
+    program = str(ranks.program.with_name("dispatcher"))
+    done = ranks.start_up([*ranks.start, "-n", "3", program, "1000000", "0"])
+    workers, cases, _, _, messages = done.stdout.split()
+    assert (workers, cases) == ("2", "1000000")
+    assert int(messages) < 150
 
 
 def test_several_decks_one_after_the_other(ranks):

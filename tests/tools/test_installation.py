@@ -16,6 +16,20 @@ DECK = """&bodies radius = 1e-6, stiffness = 1e10 /
 &force law = 'lennard_jones', hamaker = 1e-19, z0 = 3e-10 /
 &equilibrium_path h0_end = -1e-9 /
 """
+PAGES = ("share/man/man1/snapin.1", "share/zsh/site-functions/_snapin",
+         "share/bash-completion/completions/snapin.bash", "share/licenses/snapin/LICENSE")
+SWEEP = "&sweep key = 'force.hamaker', values = 1e-20, 1e-19 /\n"
+
+
+# A shell in a terminal of its own completes "$2"; shows all until "$3" comes.
+TYPED_IN_ZSH = """
+zmodload zsh/zpty
+zpty z zsh -f -i
+zpty -w z "fpath=($1 \\$fpath); autoload -Uz compinit; compinit -u -D; PS1='ready> '"
+zpty -r z shown '*ready> *ready> *'
+zpty -w -n z "$2"$'\\t\\t'
+zpty -r z shown "*$3*" && print -r -- "$shown"
+"""
 
 
 def run(*command, cwd=None, **variables):
@@ -43,7 +57,8 @@ def checkout(tmp_path_factory):
 def test_pip_installs_package_and_command(checkout, tmp_path):
     venv.create(tmp_path / "new", with_pip=True)
     binaries = tmp_path / "new/bin"
-    run(binaries / "python", "-m", "pip", "install", "--disable-pip-version-check", checkout)
+    run(binaries / "python", "-m", "pip", "install", "--disable-pip-version-check",
+        f"{checkout}[plots]")
     (tmp_path / "deck.nml").write_text(DECK)
     code = "import snapin; print(repr(snapin.run(open('deck.nml').read()).summary['max_tension']))"
     from_python = float(run(binaries / "python", "-c", code, cwd=tmp_path))
@@ -52,6 +67,13 @@ def test_pip_installs_package_and_command(checkout, tmp_path):
     from_program = float(run(binaries / "python", "-c", code, cwd=tmp_path))
     assert from_python == pytest.approx(from_program, rel=1e-9)
     assert from_program > 0
+    (tmp_path / "map.nml").write_text(DECK + SWEEP)
+    said = subprocess.run([binaries / "snapin", "map.nml"], cwd=tmp_path, capture_output=True,
+                          text=True, check=True).stderr
+    run(*said.splitlines()[-1].partition("to draw it: ")[2].split(), cwd=tmp_path)
+    assert (tmp_path / "results/map/map.png").stat().st_size > 0
+    for name in PAGES:
+        assert (tmp_path / "new" / name).stat().st_size > 0
     about = run(binaries / "python", "-m", "pip", "show", "snapin")
     version = run(binaries / "snapin", "--version").split()[1]
     assert f"Version: {version}\n" in about
@@ -64,8 +86,7 @@ def test_meson_installs_pages_and_completions_beside_the_program(checkout, tmp_p
     run(*MESON, "compile", "-C", build)
     run(*MESON, "install", "-C", build, DESTDIR=str(root))
     program = root / "usr/bin/snapin"
-    for name in ("share/man/man1/snapin.1", "share/zsh/site-functions/_snapin",
-                 "share/bash-completion/completions/snapin.bash", "share/licenses/snapin/LICENSE"):
+    for name in PAGES:
         assert (root / "usr" / name).stat().st_size > 0
     options = {word.strip("[]") for word in run(program, "--help").splitlines()[0].split()
                if "--" in word}
@@ -76,6 +97,10 @@ def test_meson_installs_pages_and_completions_beside_the_program(checkout, tmp_p
     assert {"bodies", "bodies.radius"} <= offered(root, "b", after="--keys")
     zsh = (root / "usr/share/zsh/site-functions/_snapin").read_text()
     assert " double_layer.salt " in zsh
+    if shutil.which("zsh"):
+        shown = run("timeout", 100, "zsh", "-f", "-c", TYPED_IN_ZSH, "zsh",
+                    root / "usr/share/zsh/site-functions", "snapin --re", "--resume ")
+        assert "--results " in shown and "--version" not in shown
     page = (root / "usr/share/man/man1/snapin.1").read_text()
     for group in ("&bodies", "&sweep", "&double_layer"):
         assert group in page

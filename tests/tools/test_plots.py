@@ -31,6 +31,11 @@ DECKS = {
     "&sweep key = 'force.hamaker', values = 1e-21, 1e-20 /\n",
     "map": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n&sweep key = 'force.hamaker', "
     "'bodies.radius', from = 1e-21, 1e-3, to = 1e-20, 1e-1, count = 3, 9, scale = 'log' /\n",
+    "three": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n&sweep key = 'force.hamaker', "
+    "'bodies.radius', 'bodies.stiffness', from = 1e-21, 1e-3, 1e9, to = 1e-20, 1e-1, 1e10, "
+    "count = 3, 8, 2, scale = 'log' /\n",
+    "words": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n&sweep key = 'numerics.method', "
+    "'force.hamaker', words = 'newton', 'anderson', values = 1e-21, 1e-20 /\n",
     "regime": BODIES + FORCE + "&equilibrium_path h0_end = -1e-9 /\n&regime /\n",
     "theories": BODIES + FORCE + "&classical h0_start = 1e-9, h0_end = -1e-9 /\n",
 }
@@ -118,12 +123,26 @@ def test_the_map_of_theories_shows_the_scene(plot, results):
 @pytest.mark.parametrize("args", [
     ("map",), ("sweep",), ("map", "--value", "jump_in_h0"),
     ("map", "--value", "max_tension", "--per", "jkr_pull_off", "--over", "tabor"),
-    ("map", "--over", "bodies.radius", "force.hamaker"),
+    ("map", "--over", "bodies.radius", "force.hamaker"), ("map", "--over", "bodies.radius"),
+    ("three", "--where", "bodies.stiffness=3e9"), ("three", "--over", "force.hamaker"), ("words",),
 ])
 def test_sweeps_are_drawn_as_maps_and_curves(plot, results, tmp_path, args):
     done = plot("map.py", results / args[0], *args[1:], "-o", "map.png")
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
     assert size_of(tmp_path / "map.png") == (960, 690)
+
+
+def test_nothing_is_drawn_where_a_column_has_no_value(monkeypatch, tmp_path):
+    """Colours end at cases that have no value, and do not span them."""
+    monkeypatch.syspath_prepend(SCRIPTS)
+    draw_map = runpy.run_path(str(SCRIPTS / "map.py"))["draw_map"]
+    rows = [f"{i},{j},1,{'nan' if 3 <= i <= 6 else i + j},\n" for i in range(10) for j in range(10)]
+    (tmp_path / "sweep.csv").write_text("a.x,a.y,converged,max_tension,failure\n" + "".join(rows))
+    (tmp_path / "summary.nml").write_text("&summary\n  converged = .true.\n/\n&cost\n/\n")
+    (axes, _) = draw_map(tmp_path).axes
+    corners = axes.collections[0].get_paths()
+    spans = [path.vertices[:, 0] for path in corners]
+    assert spans and all(max(x) <= 2 or min(x) >= 7 for x in spans)
 
 
 def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):
@@ -143,6 +162,10 @@ def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):
         (("map.py", "theories"), "no sweep.csv in .*&sweep"),
         (("map.py", "sweep", "--value", "speed"), "no column 'speed'; it has force.hamaker"),
         (("map.py", "sweep", "--value", "failure"), "failure has words"),
+        (("map.py", "three"), "bodies.stiffness was swept too: .*--where bodies.stiffness=VALUE"),
+        (("map.py", "map", "--where", "bodies.size=1"), "no KEY=VALUE; keys are force.hamaker"),
+        (("map.py", "words", "--where", "numerics.method=mixing"), "has anderson, newton"),
+        (("map.py", "map", "--over", "jkr_pull_off", "dmt_pull_off"), "lie on one line"),
         (("profiles.py", "theories"), "no profiles.csv in .*no &profiles group"),
         (("profiles.py", "cycle", "--branch", "path"), "loading, unloading_1, unloading_2"),
         (("force_curve.py", "cycle", "-o", "no/such/folder.png"), "no/such"),

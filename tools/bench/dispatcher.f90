@@ -6,7 +6,7 @@ module empty_cases
   use c_library, only: c_pause
   use byte_record, only: byte_record_t
   use dispatch, only: foreman_t, worker_t
-  use sweeps, only: case_t, put_case
+  use sweep_case, only: case_t, put_case
   implicit none
   private
   public :: counter_t, sleeper_t
@@ -96,7 +96,8 @@ program dispatcher
   use ranks, only: crew_t
   use empty_cases, only: counter_t, sleeper_t
   use dispatch, only: hand_out, work_through, dismiss
-  use sweeps, only: run_case, run_sweep
+  use sweep_case, only: run_case
+  use sweeps, only: run_sweep
   implicit none
 
   !> A million cases at most; so many are handed out as are asked for.

@@ -2,7 +2,7 @@
 module ranks
   use failure, only: failure_t, fail, bad_input
   use byte_record, only: byte_record_t
-  use launch, only: started_together
+  use launch, only: started_together, own_rank
   implicit none
   private
   public :: crew_t
@@ -27,9 +27,10 @@ contains
     type(failure_t), allocatable, intent(out) :: error
 
     self%workers = 0
-    if (started_together() > 1) call fail(error, bad_input, 'mpirun has started several of ' // &
-      'these, and this build has no MPI; start one, which uses all cores of the machine, or ' // &
-      'build with -Dmpi=enabled')
+    if (started_together() <= 1) return
+    self%rank = own_rank()
+    call fail(error, bad_input, 'mpirun or srun has started several of these, and this build ' // &
+      'has no MPI; start one, which uses all cores of the machine, or build with -Dmpi=enabled')
   end subroutine begin
 
   !> Nobody is waited for.

@@ -8,7 +8,7 @@ module ranks
   use failure, only: failure_t, fail, bad_input
   use byte_record, only: byte_record_t
   use c_library, only: c_pause
-  use launch, only: started_together
+  use launch, only: started_together, own_rank
   implicit none
   private
   public :: crew_t
@@ -41,13 +41,14 @@ contains
     integer :: processes
 
     self%workers = 0
-    if (started_together() == 1) return
+    if (started_together() <= 1) return
     call mpi_init()
     call mpi_comm_size(mpi_comm_world, processes)
     call mpi_comm_rank(mpi_comm_world, self%rank)
     self%workers = processes - 1
     if (processes > 1) return
     call mpi_finalize()
+    self%rank = own_rank()
     call fail(error, bad_input, 'started several times by the mpirun of another MPI than this ' // &
       'was built with; use the one that belongs to it')
   end subroutine begin

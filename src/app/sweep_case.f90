@@ -1,0 +1,129 @@
+!> One case of a sweep: computed, and as a record.
+module sweep_case
+  use kinds, only: wp
+  use text, only: first_line
+  use failure, only: failure_t
+  use dimensionless_problem, only: problem_t
+  use scene_groups, only: scene_t
+  use scene, only: swept_scene
+  use experiment_result, only: experiment_result_t
+  use experiment, only: run_experiment
+  use scene_problem, only: problem_of
+  use equilibrium, only: cost_t
+  use records, only: silent_observer_t
+  use progress, only: progress_t
+  use summarise, only: summary_of
+  use summary, only: summary_t
+  use case_columns, only: numbers_of
+  use mesh_store, only: mesh_store_t
+  use byte_record, only: byte_record_t
+  use state_records, only: put_cost, take_cost
+  implicit none
+  private
+  public :: case_t, take_case, put_case, run_case
+
+  !> Characters of what is said of a case that failed.
+  integer, parameter :: failure_width = 160
+
+  !> What is kept of one case until its row is written.
+  type :: case_t
+    !> Its number; 0: none.
+    integer :: number = 0
+    !> Of the sweep's keys.
+    real(wp), allocatable :: values(:)
+    logical :: converged = .false.
+    !> See `numbers_of`.
+    real(wp), allocatable :: numbers(:)
+    !> Why it failed; not of deferred length: compiler note 4.
+    character(len=failure_width) :: failure = ''
+    type(cost_t) :: cost
+  end type case_t
+
+  !> Says what a case is at, beside the others; takes no records.
+  type, extends(silent_observer_t) :: case_observer_t
+    integer :: case = 0
+    type(progress_t), pointer :: progress => null()
+  contains
+    procedure :: hear
+  end type case_observer_t
+
+contains
+
+  !> Computes a case of the scene's sweep, which has its number and values, on meshes that the cases
+  !> share.
+  subroutine run_case(scene, progress, store, case)
+    type(scene_t), intent(in) :: scene
+    type(progress_t), intent(in), target :: progress
+    type(mesh_store_t), intent(inout) :: store
+    type(case_t), intent(inout) :: case
+    type(case_observer_t) :: observer
+    type(scene_t) :: variant
+    type(problem_t) :: problem
+    type(experiment_result_t) :: outcome
+    type(summary_t) :: summary
+    type(failure_t), allocatable :: error
+
+    observer%case = case%number
+    observer%progress => progress
+    case%failure = ''
+    ! What makes strings is done by one thread at a time: compiler note 4.
+    !$omp critical (one_at_a_time)
+    call swept_scene(scene, scene%sweep%names, case%values, variant, error)
+    !$omp end critical (one_at_a_time)
+    call summary%set('converged', .false.)
+    if (.not. allocated(error)) then
+      problem = problem_of(variant)
+      call run_experiment(variant, problem, observer, outcome, store=store)
+    end if
+    !$omp critical (one_at_a_time)
+    if (.not. allocated(error)) summary = summary_of(variant, problem, outcome)
+    case%numbers = numbers_of(summary, scene)
+    case%converged = summary%is_true('converged')
+    if (allocated(error)) then
+      case%failure = first_line(error%message)
+    else if (.not. case%converged) then
+      case%failure = 'not converged'
+      if (allocated(summary%warnings)) case%failure = summary%warnings(1)%text
+    end if
+    !$omp end critical (one_at_a_time)
+    case%cost = outcome%cost
+  end subroutine run_case
+
+  !> Into a variable, since threads share strings that are put together: compiler note 4.
+  subroutine hear(self, what)
+    class(case_observer_t), intent(inout) :: self
+    character(len=*), intent(in) :: what
+    character(len=80) :: label
+
+    write (label, '(a, i0, 2a)') 'case ', self%case, ': ', what
+    call self%progress%detail(label)
+  end subroutine hear
+
+  !> Adds a case to a record, as `take_case` finds it there.
+  subroutine put_case(case, record)
+    type(case_t), intent(in) :: case
+    type(byte_record_t), intent(inout) :: record
+
+    call record%put(case%number)
+    call record%put(case%converged)
+    call record%put(case%numbers)
+    call record%put(trim(case%failure))
+    call put_cost(record, case%cost)
+    call record%put(case%values)
+  end subroutine put_case
+
+  subroutine take_case(case, record)
+    type(case_t), intent(out) :: case
+    type(byte_record_t), intent(inout) :: record
+    character(len=:), allocatable :: failure
+
+    call record%take(case%number)
+    call record%take(case%converged)
+    call record%take(case%numbers)
+    call record%take(failure)
+    call take_cost(record, case%cost)
+    call record%take(case%values)
+    case%failure = failure
+  end subroutine take_case
+
+end module sweep_case
