@@ -35,7 +35,7 @@ module simulation
   use fit_group, only: family_of_fit
   use fit_run, only: run_fit, fit_outcome_t
   use fit_doubts, only: doubts_of
-  use fit_rows, only: fit_columns, write_fit_rows, fit_text, fit_words
+  use fit_rows, only: write_fit_rows, fit_text, fit_words
   implicit none
   private
   public :: run_scene
@@ -240,9 +240,8 @@ contains
       call summary%fail_with('no fit: ' // outcome%trouble)
       return
     end if
-    call results%begin_table('fit.csv', fit_columns)
+    call results%begin_table('fit.csv')
     call write_fit_rows(outcome, results)
-    call results%end_table()
     call results%write_text('fit.nml', fit_text(outcome, scene%title))
     if (allocated(outcome%problem)) call describe_problem(scene, outcome%problem, summary)
     lines = doubts_of(outcome)
