@@ -31,8 +31,8 @@ module publication
   character(len=1), parameter :: nl = new_line('a')
   character(len=*), parameter :: explanation = &
     'The files in this folder may not belong together: new results were given their names,' // &
-    nl // 'in place of older ones, when the program was stopped. Do not use them like this. Run' // &
-    nl // 'the deck again, best with --resume: that first gives all new results their names.' // &
+    nl // 'in place of older ones, when the program was stopped. Do not use them like this.' // &
+    nl // 'Run the deck again, best with --resume: that first gives new results their names.' // &
     nl // 'By hand: of each file listed below NAME.partial is the newer one where it exists,' // &
     nl // 'and is to be renamed to NAME. Then remove other results, what is called .partial,' // &
     nl // 'and this file.' // nl
