@@ -38,8 +38,8 @@ _NO_NUMBERS = (
     "namelist_writer", "clock", "command_line", "c_library", "decimal", "deck", "deck_keys",
     "deck_number", "deck_numbers", "deck_scan", "deck_source", "deck_store", "text",
     "deck_values",
-    "failure", "checksums", "files", "finished_run", "folder_lock", "journal", "memory",
-    "case_rows", "dispatch", "launch", "preflight", "ranks", "result_listing", "result_rows", "state_records", "byte_record", "progress",
+    "failure", "checksums", "files", "folder_lock", "journal", "memory",
+    "case_rows", "dispatch", "launch", "preflight", "ranks", "result_listing", "result_rows", "result_tables", "state_records", "byte_record", "progress",
     "publication", "run_identity", "snapin", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")

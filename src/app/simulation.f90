@@ -25,8 +25,7 @@ module simulation
   use summary, only: summary_t
   use results, only: results_t, journal_of, to_stream
   use publication, only: mend
-  use run_identity, only: identity_of
-  use finished_run, only: find_finished
+  use run_identity, only: identity_of, find_finished
   use progress, only: duration
   use files, only: write_stderr, file_exists
   use clock, only: seconds
@@ -118,7 +117,7 @@ contains
     if (mended) call destination%say('put results in place that an interrupted run had completed')
     if (file_exists(journal_of(destination%folder))) return
     if (.not. resume) return
-    call find_finished(destination%folder, scene%deck%resolved(), version, finished, converged)
+    call find_finished(destination%folder, scene%deck%resolved(), finished, converged)
     if (finished) then
       call destination%say('complete since an earlier run; nothing to do')
       if (.not. converged) call destination%say('its summary says what failed then')

@@ -33,10 +33,10 @@ module slow_jumps
 contains
 
   !> The largest gap on the axis at which this form of the approximation has what is searched for;
-  !> NaN where it has it nowhere. An h0 is looked for down to the gap `nearest`, a jump as far as the
-  !> law attracts. With the attraction of Lennard-Jones alone p'/p = -3/h, and -delta = C h^(-5/2)
-  !> by (35b), so that (29) is there in closed form, (37), where 3 C h^(-7/2) is 1; the fold has the
-  !> exponent 5/2 for the 3. These do not tell whether the full law has a jump.
+  !> NaN where it has it nowhere. An h0 is looked for down to the gap `nearest`, a jump as far as
+  !> the law attracts. With the attraction of Lennard-Jones alone p'/p = -3/h, and -delta =
+  !> C h^(-5/2) by (35b), so that (29) is there in closed form, (37), where 3 C h^(-7/2) is 1; the
+  !> fold has the exponent 5/2 for the 3. These do not tell whether the full law has a jump.
   pure real(wp) function slow_gap(problem, form, condition, h0, nearest) result(gap)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form, condition
