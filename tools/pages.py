@@ -36,11 +36,11 @@ PAGES = {
 # What reads decks, writes files or talks changes no number. A new file counts until it is here.
 _NO_NUMBERS = (
     "namelist_writer", "clock", "command_line", "c_library", "decimal", "deck", "deck_keys",
-    "deck_number", "deck_numbers", "deck_scan", "deck_source", "deck_store", "text", "deck_token",
+    "deck_number", "deck_numbers", "deck_scan", "deck_source", "deck_store", "text",
     "deck_values",
-    "failure", "checksums", "files", "finished_run", "folder_lock", "journal", "memory",
-    "case_rows", "dispatch", "launch", "preflight", "ranks", "result_listing", "result_rows", "state_records", "byte_record", "progress",
-    "publication", "replacement", "result_names", "run_identity", "snapin", "text_file",
+    "failure", "checksums", "files", "folder_lock", "journal", "memory",
+    "case_rows", "dispatch", "launch", "preflight", "ranks", "result_listing", "result_rows", "result_tables", "state_records", "byte_record", "progress",
+    "publication", "run_identity", "snapin", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")
 

@@ -56,17 +56,13 @@ contains
         cycle
       end if
       select case (argument)
-      case ('-q')
-        options%quiet = .true.
-      case ('-h')
-        options%help = .true.
       case ('--')
         only_decks = .true.
       case ('--check')
         options%check = .true.
       case ('--resume')
         options%resume = .true.
-      case ('--quiet')
+      case ('--quiet', '-q')
         options%quiet = .true.
       case ('--keys')
         options%keys = .true.
@@ -74,7 +70,7 @@ contains
         options%results = .true.
       case ('--version')
         options%version = .true.
-      case ('--help')
+      case ('--help', '-h')
         options%help = .true.
       case ('--out', '-o')
         call take_folder(argument, options%out)

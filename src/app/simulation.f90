@@ -25,8 +25,7 @@ module simulation
   use summary, only: summary_t
   use results, only: results_t, journal_of, to_stream
   use publication, only: mend
-  use run_identity, only: identity_of
-  use finished_run, only: find_finished
+  use run_identity, only: identity_of, find_finished
   use progress, only: duration
   use files, only: write_stderr, file_exists
   use map_command, only: drawing_of
@@ -36,7 +35,7 @@ module simulation
   use fit_group, only: family_of_fit
   use fit_run, only: run_fit, fit_outcome_t
   use fit_doubts, only: doubts_of
-  use fit_rows, only: fit_columns, write_fit_rows, fit_text, fit_words
+  use fit_rows, only: write_fit_rows, fit_text, fit_words
   implicit none
   private
   public :: run_scene
@@ -119,7 +118,7 @@ contains
     if (mended) call destination%say('put results in place that an interrupted run had completed')
     if (file_exists(journal_of(destination%folder))) return
     if (.not. resume) return
-    call find_finished(destination%folder, scene%deck%resolved(), version, finished, converged)
+    call find_finished(destination%folder, scene%deck%resolved(), finished, converged)
     if (finished) then
       call destination%say('complete since an earlier run; nothing to do')
       if (.not. converged) call destination%say('its summary says what failed then')
@@ -241,9 +240,8 @@ contains
       call summary%fail_with('no fit: ' // outcome%trouble)
       return
     end if
-    call results%begin_table('fit.csv', fit_columns)
+    call results%begin_table('fit.csv')
     call write_fit_rows(outcome, results)
-    call results%end_table()
     call results%write_text('fit.nml', fit_text(outcome, scene%title))
     if (allocated(outcome%problem)) call describe_problem(scene, outcome%problem, summary)
     lines = doubts_of(outcome)

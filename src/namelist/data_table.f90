@@ -4,15 +4,16 @@
 !> a number is a decimal one.
 module data_table
   use kinds, only: wp
+  use checksums, only: checksum
   use failure, only: failure_t
   use text, only: lower, quoted, clip, guess
   use deck_number, only: parse_real, parse_integer
   use deck_source, only: source_t, load_source
-  use number_columns, only: uncommented, between
+  use deck_store, only: deck_t
   implicit none
   private
-  public :: data_table_t, read_data_table, largest_table
-  public :: cell_t, split, is_header, after_mark, point_decimals, counted
+  public :: data_table_t, read_data_table, largest_table, columns_t, read_columns
+  public :: cell_t, split, is_header, after_mark, uncommented, point_decimals, counted
 
   !> The columns asked for, value(row, column), and where in the file's text each row stands.
   type :: data_table_t
@@ -20,6 +21,13 @@ module data_table
     real(wp), allocatable :: value(:, :)
     integer, allocatable :: place(:)
   end type data_table_t
+
+  !> A file of two columns of numbers, and where in its text each row stands.
+  type :: columns_t
+    type(source_t) :: source
+    real(wp), allocatable :: first(:), second(:)
+    integer, allocatable :: place(:)
+  end type columns_t
 
   !> A cell: its first and last character in a line.
   type :: cell_t
@@ -29,6 +37,8 @@ module data_table
   !> Bytes of a table.
   integer, parameter :: largest_table = 64*2**20
   character(len=*), parameter :: newline = new_line('a')
+  !> Blank and tab, comma, semicolon.
+  character(len=*), parameter :: between = ' '//achar(9)//',;'
 
 contains
 
@@ -43,45 +53,37 @@ contains
     integer, allocatable :: at(:)
     logical, allocatable :: turned(:)
     integer :: first, next, n, columns, named
+    logical :: header
 
     call load_source(file, table%source, error, largest_table)
     if (allocated(error)) return
     call point_decimals(table%source%text)
-    n = count([(table%source%text(first:first) == newline, first=1, &
-      len(table%source%text))]) + 1
-    allocate (table%place(n), at(size(wanted)))
+    n = lines_of(table%source%text)
+    allocate (table%place(n), table%value(n, size(wanted)), at(size(wanted)))
     turned = index(adjustl(wanted), '-') == 1
     n = 0
-    columns = 0
     named = 0
     next = 1
-    do while (next <= len(table%source%text))
-      first = next
-      next = first + scan(table%source%text(first:), newline)
-      if (next == first) next = len(table%source%text) + 2
-      call split(uncommented(table%source%part(first, next - 2)), cells)
-      if (size(cells) == 0) then
-        ! The last comment before the rows may have the names.
-        if (columns == 0 .and. index(table%source%part(first, next - 2), '#') > 0) named = first
-        cycle
+    call next_row(table%source, next, first, cells, named)
+    if (first > 0) then
+      columns = size(cells)
+      header = is_header(table%source, first, cells)
+      ! The last comment before the rows may have the names.
+      if (named > 0 .and. .not. header) then
+        call split(after_mark(table%source%part(named, first - 2)), names)
+        if (size(names) /= columns) named = 0
+      else
+        named = 0
       end if
-      if (columns == 0) then
-        columns = size(cells)
-        if (.not. is_header(table%source, first, cells) .and. named > 0) then
-          call split(after_mark(table%source%part(named, first - 2)), names)
-          if (size(names) /= columns) named = 0
-        else
-          named = 0
-        end if
-        if (named == 0) then
-          names = cells
-          named = first
-        end if
-        call find_columns(table%source, named, names, wanted, at, error)
-        if (allocated(error)) return
-        allocate (table%value(size(table%place), size(at)))
-        if (is_header(table%source, first, cells)) cycle
+      if (named == 0) then
+        names = cells
+        named = first
       end if
+      call find_columns(table%source, named, names, wanted, at, error)
+      if (allocated(error)) return
+      if (header) call next_row(table%source, next, first, cells, named)
+    end if
+    do while (first > 0)
       if (size(cells) /= columns) then
         call table%source%complain(first, '', '', counted(size(cells)) // ' where ' // &
           counted(columns) // ' are expected', error)
@@ -91,11 +93,85 @@ contains
       call read_row(table%source, first, cells(at), turned, table%value(n, :), error)
       if (allocated(error)) return
       table%place(n) = first
+      call next_row(table%source, next, first, cells, named)
     end do
-    if (.not. allocated(table%value)) allocate (table%value(0, size(at)))
     table%value = table%value(:n, :)
     table%place = table%place(:n)
   end subroutine read_data_table
+
+  !> Reads the file of two columns that a key of the deck names; `error` says what is not two
+  !> numbers, and where. No comma is a decimal one there.
+  subroutine read_columns(deck, group, key, columns, error)
+    type(deck_t), intent(inout) :: deck
+    character(len=*), intent(in) :: group, key
+    type(columns_t), intent(out) :: columns
+    type(failure_t), allocatable, intent(out) :: error
+    type(cell_t), allocatable :: cells(:)
+    real(wp) :: pair(2)
+    integer :: first, next, n, comment
+
+    call load_source(deck%path_of(group, key), columns%source, error)
+    if (allocated(error)) return
+    call deck%note_file(group, key, checksum(columns%source%text))
+    n = lines_of(columns%source%text)
+    allocate (columns%first(n), columns%second(n), columns%place(n))
+    n = 0
+    next = 1
+    do
+      call next_row(columns%source, next, first, cells, comment)
+      if (first == 0) exit
+      call read_row(columns%source, first, cells(:min(2, size(cells))), [.false., .false.], pair, &
+        error)
+      if (allocated(error)) return
+      if (size(cells) == 1) call columns%source%complain(first, '', '', &
+        'one number where two are expected', error)
+      if (size(cells) > 2) call columns%source%complain(first + cells(3)%first - 1, '', '', &
+        'more than two numbers', error)
+      if (allocated(error)) return
+      n = n + 1
+      columns%first(n) = pair(1)
+      columns%second(n) = pair(2)
+      columns%place(n) = first
+    end do
+    columns%first = columns%first(:n)
+    columns%second = columns%second(:n)
+    columns%place = columns%place(:n)
+  end subroutine read_columns
+
+  !> How many lines a text has, at most.
+  pure integer function lines_of(text)
+    character(len=*), intent(in) :: text
+    integer :: i
+
+    lines_of = count([(text(i:i) == newline, i=1, len(text))]) + 1
+  end function lines_of
+
+  !> Finds the next line with cells from the position `next` on, which moves behind it. first: where
+  !> it begins; 0: there are no more. comment: where the last line before it begins that is one.
+  subroutine next_row(source, next, first, cells, comment)
+    type(source_t), intent(in) :: source
+    integer, intent(inout) :: next, comment
+    integer, intent(out) :: first
+    type(cell_t), allocatable, intent(out) :: cells(:)
+
+    do while (next <= len(source%text))
+      first = next
+      next = first + scan(source%text(first:), newline)
+      if (next == first) next = len(source%text) + 2
+      call split(uncommented(source%part(first, next - 2)), cells)
+      if (size(cells) > 0) return
+      if (index(source%part(first, next - 2), '#') > 0) comment = first
+    end do
+    first = 0
+  end subroutine next_row
+
+  !> A line without its comment.
+  pure function uncommented(line) result(text)
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: text
+
+    text = line(:index(line//'#', '#') - 1)
+  end function uncommented
 
   !> The first line of some, with its comment mark a blank.
   pure function after_mark(lines) result(line)

@@ -4,11 +4,14 @@
 module deck_scan
   use failure, only: failure_t
   use text, only: lower
-  use deck_source, only: source_t
-  use deck_token, only: skip_blank, next_is_equals, take_word, take_string, is_name
+  use deck_source, only: source_t, unprintable
   implicit none
   private
   public :: span_t, entry_t, scan_t, scan_deck
+
+  character(len=*), parameter :: newline = new_line('a')
+  character(len=*), parameter :: blank = ' ' // achar(9) // newline
+  character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz'
 
   !> A piece of the text: its first and last position.
   type :: span_t
@@ -25,54 +28,226 @@ module deck_scan
     integer :: n_items = 0
   end type entry_t
 
-  !> What a deck says, in the order in which it says it.
+  !> What a deck says, in the order in which it says it: names of groups without `&`, assignments,
+  !> and values with their quotes. There is room for more than there are.
   type :: scan_t
     integer :: n_groups = 0, n_entries = 0, n_items = 0
-    !> Names of the groups, without `&`.
     type(span_t), allocatable :: groups(:)
     type(entry_t), allocatable :: entries(:)
-    !> Values, quotes included.
     type(span_t), allocatable :: items(:)
   end type scan_t
-
-  !> Where in a group the scanner is: the group and where its `&` stands, the key whose values are
-  !> being read, and whether the last thing was a comma.
-  type :: place_t
-    character(len=:), allocatable :: group, key
-    integer :: group_at = 0
-    logical :: assigned = .false., after_comma = .false.
-  end type place_t
 
 contains
 
   !> Splits the text into groups and assignments; fails at the first break of the grammar.
-  subroutine scan_deck(source, scan, error)
+  subroutine scan_deck(source, found, error)
     type(source_t), intent(in) :: source
-    type(scan_t), intent(out) :: scan
+    type(scan_t), intent(out) :: found
     type(failure_t), allocatable, intent(out) :: error
-    integer :: at, start
+    !> The group, and the key whose values are being read.
+    character(len=:), allocatable :: group, key
+    !> Where the scanner is, where the present thing begins, and where the `&` of its group is.
+    integer :: at, start, group_at
+    !> Whether the group has an assignment already, and whether the last thing was a comma.
+    logical :: assigned, after_comma
 
-    allocate (scan%groups(8), scan%entries(32), scan%items(32))
+    allocate (found%groups(8), found%entries(32), found%items(32))
     at = 1
     do
       call skip_blank(source%text, at)
       if (at > len(source%text)) exit
       start = at
+      group = ''
+      key = ''
       if (source%text(at:at) /= '&') then
-        call source%complain(at, '', '', stray(source%text, at, scan%n_groups), error)
+        call complain(at, '', stray(source%text, at, found%n_groups))
         return
       end if
       at = at + 1
-      call take_word(source, at, '', error)
+      call take_word()
       if (allocated(error)) return
       if (.not. is_name(source%text(start + 1:at - 1))) then
-        call source%complain(start, '', '', 'a group name must follow "&" at once', error)
+        call complain(start, '', 'a group name must follow "&" at once')
         return
       end if
-      call push(scan%groups, scan%n_groups, span_t(start + 1, at - 1))
-      call scan_group(source, at, scan, error)
+      if (found%n_groups == size(found%groups)) found%groups = [found%groups, found%groups]
+      found%n_groups = found%n_groups + 1
+      found%groups(found%n_groups) = span_t(start + 1, at - 1)
+      group = lower(source%text(start + 1:min(at - 1, start + 41)))
+      group_at = start
+      call scan_group()
       if (allocated(error)) return
     end do
+
+  contains
+
+    !> Reads the assignments of the group just opened, up to its `/` or `&end`.
+    subroutine scan_group()
+      assigned = .false.
+      after_comma = .false.
+      do while (.not. allocated(error))
+        call skip_blank(source%text, at)
+        start = at
+        if (at > len(source%text)) then
+          call complain(group_at, '', 'not closed: no "/" before the end of the file')
+          return
+        end if
+        select case (source%text(at:at))
+        case ('/')
+          at = at + 1
+          call close_entry('no value after "="')
+          return
+        case ('&')
+          call end_by_name()
+          return
+        case (',')
+          at = at + 1
+          call take_comma()
+        case ('=')
+          call complain(start, key, '"=" without the name of a key before it')
+        case ('''', '"')
+          call take_string()
+          if (.not. allocated(error)) call add_value()
+        case default
+          call take_word()
+          if (allocated(error)) return
+          if (next_is_equals(source%text, at)) then
+            call close_entry('no value between "=" and the next key "' // present_thing() // '"')
+            if (.not. allocated(error)) call open_entry()
+          else
+            call add_value()
+          end if
+        end select
+      end do
+    end subroutine scan_group
+
+    !> At an `&` inside a group: the old end `&end`, or another group's beginning.
+    subroutine end_by_name()
+      at = at + 1
+      call take_word()
+      if (allocated(error)) return
+      if (lower(source%text(start:at - 1)) == '&end') then
+        call close_entry('no value after "="')
+      else
+        call complain(group_at, '', 'not closed: no "/" before the next "' // present_thing() // &
+          '"')
+      end if
+    end subroutine end_by_name
+
+    !> Checks that a comma follows a value.
+    subroutine take_comma()
+      if (.not. assigned .or. after_comma) then
+        call complain(start, key, 'a comma with no value before it')
+      else if (found%entries(found%n_entries)%n_items == 0) then
+        call complain(start, key, 'no value between "=" and the comma')
+      end if
+      after_comma = .true.
+    end subroutine take_comma
+
+    !> Checks that the assignment that ends here has a value; what: what is wrong otherwise.
+    subroutine close_entry(what)
+      character(len=*), intent(in) :: what
+
+      if (.not. assigned) return
+      associate (entry => found%entries(found%n_entries))
+        if (entry%n_items == 0) call complain(entry%name%first, key, what)
+      end associate
+    end subroutine close_entry
+
+    !> Begins the assignment to the key that was read last and goes beyond its "=".
+    subroutine open_entry()
+      key = lower(present_thing())
+      if (index(key, '(') > 0) then
+        key = key(:index(key, '(') - 1)
+        call complain(start, key, 'subscripts are not accepted; give the whole list after "="')
+      else if (.not. is_name(source%text(start:at - 1))) then
+        call complain(start, key, 'not the name of a key: letters, digits and "_" only')
+      else
+        if (found%n_entries == size(found%entries)) found%entries = [found%entries, found%entries]
+        found%n_entries = found%n_entries + 1
+        found%entries(found%n_entries) = entry_t(found%n_groups, span_t(start, at - 1), &
+          found%n_items + 1, 0)
+        call skip_blank(source%text, at)
+        at = at + 1
+        assigned = .true.
+        after_comma = .false.
+      end if
+    end subroutine open_entry
+
+    !> Adds the value that was read last to the present assignment.
+    subroutine add_value()
+      if (.not. assigned) then
+        call complain(start, key, 'a value without a key; write key = value')
+        return
+      end if
+      if (found%n_items == size(found%items)) found%items = [found%items, found%items]
+      found%n_items = found%n_items + 1
+      found%items(found%n_items) = span_t(start, at - 1)
+      associate (entry => found%entries(found%n_entries))
+        entry%n_items = entry%n_items + 1
+      end associate
+      after_comma = .false.
+    end subroutine add_value
+
+    !> Moves `at` behind a word. What stands in parentheses belongs to it, so that a subscript can
+    !> be named as such.
+    subroutine take_word()
+      character(len=1) :: c
+      logical :: inside
+
+      inside = .false.
+      do while (at <= len(source%text))
+        c = source%text(at:at)
+        if (c == newline) exit
+        if (index(blank // ',=/!&', c) > 0 .and. .not. inside) exit
+        if (c == '''' .or. c == '"') call complain(at, '', 'a quote in the middle of a word')
+        if (.not. plain(c)) call complain(at, '', unprintable(source%text(at:)))
+        if (allocated(error)) return
+        if (c == '(') inside = .true.
+        if (c == ')') inside = .false.
+        at = at + 1
+      end do
+    end subroutine take_word
+
+    !> Moves `at` behind a string, quotes included.
+    subroutine take_string()
+      character(len=1) :: quote, c
+
+      quote = source%text(at:at)
+      do
+        at = at + 1
+        c = newline
+        if (at <= len(source%text)) c = source%text(at:at)
+        if (c == newline) then
+          call complain(start, key, 'this string has no closing ' // quote // ' on its line')
+          return
+        else if (c == quote) then
+          at = at + 1
+          if (at > len(source%text)) return
+          if (source%text(at:at) /= quote) exit
+        else if (.not. plain(c)) then
+          call complain(at, key, unprintable(source%text(at:)))
+          return
+        end if
+      end do
+      if (index(blank // ',/!', source%text(at:at)) == 0) call complain(at, key, &
+        'text right after a closing quote; a quote inside a string is written twice')
+    end subroutine take_string
+
+    !> The beginning of what was read last.
+    pure function present_thing() result(text)
+      character(len=:), allocatable :: text
+
+      text = source%text(start:min(at - 1, start + 40))
+    end function present_thing
+
+    subroutine complain(where, key, what)
+      integer, intent(in) :: where
+      character(len=*), intent(in) :: key, what
+
+      call source%complain(where, group, key, what, error)
+    end subroutine complain
+
   end subroutine scan_deck
 
   !> Says what is wrong with text that stands outside every group.
@@ -93,191 +268,52 @@ contains
     end if
   end function stray
 
-  !> Reads the assignments of the group just opened, up to its `/` or `&end`.
-  subroutine scan_group(source, at, scan, error)
-    type(source_t), intent(in) :: source
+  !> Moves `at` to the next character that is neither blank nor part of a comment.
+  pure subroutine skip_blank(text, at)
+    character(len=*), intent(in) :: text
     integer, intent(inout) :: at
-    type(scan_t), intent(inout) :: scan
-    type(failure_t), allocatable, intent(inout) :: error
-    type(place_t) :: place
-    integer :: start
 
-    place%group_at = scan%groups(scan%n_groups)%first - 1
-    place%group = lower(source%text(place%group_at + 1: &
-      min(scan%groups(scan%n_groups)%last, place%group_at + 41)))
-    place%key = ''
-    do
-      call skip_blank(source%text, at)
-      start = at
-      if (at > len(source%text)) then
-        call source%complain(place%group_at, place%group, '', &
-                             'not closed: no "/" before the end of the file', error)
+    do while (at <= len(text))
+      if (text(at:at) == '!') then
+        do while (at <= len(text))
+          if (text(at:at) == newline) exit
+          at = at + 1
+        end do
+      else if (index(blank, text(at:at)) > 0) then
+        at = at + 1
+      else
         return
       end if
-      select case (source%text(at:at))
-      case ('/')
-        at = at + 1
-        call close_entry(source, start, at, scan, place, .true., error)
-        return
-      case ('&')
-        call end_by_name(source, at, scan, place, error)
-        return
-      case (',')
-        at = at + 1
-        call take_comma(source, start, scan, place, error)
-      case ('=')
-        call source%complain(start, place%group, place%key, &
-                             '"=" without the name of a key before it', error)
-      case ('''', '"')
-        call take_string(source, at, place%group, place%key, error)
-        if (.not. allocated(error)) call add_value(source, start, at, scan, place, error)
-      case default
-        call take_word(source, at, place%group, error)
-        if (allocated(error)) return
-        if (next_is_equals(source%text, at)) then
-          call close_entry(source, start, at, scan, place, .false., error)
-          if (.not. allocated(error)) call open_entry(source, start, at, scan, place, error)
-        else
-          call add_value(source, start, at, scan, place, error)
-        end if
-      end select
-      if (allocated(error)) return
     end do
-  end subroutine scan_group
+  end subroutine skip_blank
 
-  !> At an `&` inside a group: the old end `&end`, or another group's beginning.
-  subroutine end_by_name(source, at, scan, place, error)
-    type(source_t), intent(in) :: source
-    integer, intent(inout) :: at
-    type(scan_t), intent(in) :: scan
-    type(place_t), intent(in) :: place
-    type(failure_t), allocatable, intent(inout) :: error
-    integer :: start
+  !> Whether the next character after blanks and comments is `=`.
+  pure logical function next_is_equals(text, at)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: at
+    integer :: ahead
 
-    start = at
-    at = at + 1
-    call take_word(source, at, place%group, error)
-    if (allocated(error)) return
-    if (lower(source%text(start:at - 1)) == '&end') then
-      call close_entry(source, start, at, scan, place, .true., error)
-    else
-      call source%complain(place%group_at, place%group, '', 'not closed: no "/" before the next "' &
-                           // source%text(start:min(at - 1, start + 40)) // '"', error)
-    end if
-  end subroutine end_by_name
+    ahead = at
+    call skip_blank(text, ahead)
+    next_is_equals = .false.
+    if (ahead <= len(text)) next_is_equals = text(ahead:ahead) == '='
+  end function next_is_equals
 
-  !> Checks that the comma at `start` follows a value.
-  subroutine take_comma(source, start, scan, place, error)
-    type(source_t), intent(in) :: source
-    integer, intent(in) :: start
-    type(scan_t), intent(in) :: scan
-    type(place_t), intent(inout) :: place
-    type(failure_t), allocatable, intent(inout) :: error
+  !> Whether a character may stand outside comments.
+  pure logical function plain(c)
+    character(len=1), intent(in) :: c
 
-    if (.not. place%assigned .or. place%after_comma) then
-      call source%complain(start, place%group, place%key, 'a comma with no value before it', error)
-    else if (scan%entries(scan%n_entries)%n_items == 0) then
-      call source%complain(start, place%group, place%key, 'no value between "=" and the comma', &
-                           error)
-    end if
-    place%after_comma = .true.
-  end subroutine take_comma
+    plain = (iachar(c) >= 32 .and. iachar(c) <= 126) .or. iachar(c) == 9
+  end function plain
 
-  !> Checks that the assignment has a value that ends before text(start:at - 1): another key or, if
-  !> `closing`, the end of the group.
-  subroutine close_entry(source, start, at, scan, place, closing, error)
-    type(source_t), intent(in) :: source
-    integer, intent(in) :: start, at
-    type(scan_t), intent(in) :: scan
-    type(place_t), intent(in) :: place
-    logical, intent(in) :: closing
-    type(failure_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: what
+  !> Whether `text` can name a group or a key.
+  pure logical function is_name(text)
+    character(len=*), intent(in) :: text
 
-    if (.not. place%assigned) return
-    if (scan%entries(scan%n_entries)%n_items > 0) return
-    what = 'no value after "="'
-    if (.not. closing) what = 'no value between "=" and the next key "' // &
-      source%text(start:min(at - 1, start + 40)) // '"'
-    call source%complain(scan%entries(scan%n_entries)%name%first, place%group, place%key, what, &
-                         error)
-  end subroutine close_entry
-
-  !> Begins the assignment to the key text(start:at - 1) and goes beyond its "=".
-  subroutine open_entry(source, start, at, scan, place, error)
-    type(source_t), intent(in) :: source
-    integer, intent(in) :: start
-    integer, intent(inout) :: at
-    type(scan_t), intent(inout) :: scan
-    type(place_t), intent(inout) :: place
-    type(failure_t), allocatable, intent(inout) :: error
-
-    place%key = lower(source%text(start:min(at - 1, start + 40)))
-    if (index(place%key, '(') > 0) then
-      place%key = place%key(:index(place%key, '(') - 1)
-      call source%complain(start, place%group, place%key, &
-                           'subscripts are not accepted; give the whole list after "="', error)
-    else if (.not. is_name(source%text(start:at - 1))) then
-      call source%complain(start, place%group, place%key, &
-                           'not the name of a key: letters, digits and "_" only', error)
-    end if
-    if (allocated(error)) return
-    call add_entry(scan, span_t(start, at - 1))
-    call skip_blank(source%text, at)
-    at = at + 1
-    place%assigned = .true.
-    place%after_comma = .false.
-  end subroutine open_entry
-
-  !> Adds the value text(start:at - 1) to the present assignment.
-  subroutine add_value(source, start, at, scan, place, error)
-    type(source_t), intent(in) :: source
-    integer, intent(in) :: start, at
-    type(scan_t), intent(inout) :: scan
-    type(place_t), intent(inout) :: place
-    type(failure_t), allocatable, intent(inout) :: error
-
-    if (.not. place%assigned) then
-      call source%complain(start, place%group, place%key, &
-                           'a value without a key; write key = value', error)
-      return
-    end if
-    call push(scan%items, scan%n_items, span_t(start, at - 1))
-    associate (entry => scan%entries(scan%n_entries))
-      entry%n_items = entry%n_items + 1
-    end associate
-    place%after_comma = .false.
-  end subroutine add_value
-
-  !> Appends `span` to the first `n` of `list`, which grows as needed.
-  pure subroutine push(list, n, span)
-    type(span_t), allocatable, intent(inout) :: list(:)
-    integer, intent(inout) :: n
-    type(span_t), intent(in) :: span
-    type(span_t), allocatable :: more(:)
-
-    if (n == size(list)) then
-      allocate (more(2*n))
-      more(:n) = list
-      call move_alloc(more, list)
-    end if
-    n = n + 1
-    list(n) = span
-  end subroutine push
-
-  !> Appends an assignment to the group now open; its values follow.
-  subroutine add_entry(scan, name)
-    type(scan_t), intent(inout) :: scan
-    type(span_t), intent(in) :: name
-    type(entry_t), allocatable :: more(:)
-
-    if (scan%n_entries == size(scan%entries)) then
-      allocate (more(2*scan%n_entries))
-      more(:scan%n_entries) = scan%entries
-      call move_alloc(more, scan%entries)
-    end if
-    scan%n_entries = scan%n_entries + 1
-    scan%entries(scan%n_entries) = entry_t(scan%n_groups, name, scan%n_items + 1, 0)
-  end subroutine add_entry
+    is_name = .false.
+    if (len(text) == 0) return
+    is_name = index(letters, lower(text(1:1))) > 0 .and. &
+      verify(lower(text), letters // '0123456789_') == 0
+  end function is_name
 
 end module deck_scan

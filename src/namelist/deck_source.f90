@@ -9,7 +9,7 @@ module deck_source
   use text, only: printable
   implicit none
   private
-  public :: source_t, load_source, take_source
+  public :: source_t, load_source, take_source, unprintable
 
   character(len=*), parameter :: newline = new_line('a')
   !> Ten thousand sweep values take a quarter of this; anything larger is not a deck.
@@ -196,5 +196,44 @@ contains
     lines = newline // '    ' // number // ' | ' // trim(shown) // &
             newline // '    ' // repeat(' ', len(number)) // ' | ' // repeat(' ', caret) // '^'
   end function excerpt
+
+  !> Names the character at the beginning of a text, which may not stand in a group, and the one
+  !> that is meant where word processors put it: quotes, a minus, a blank.
+  pure function unprintable(text) result(what)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: what
+    character(len=*), parameter :: e2 = char(226)//char(128), single(2) = [e2//char(152), &
+      e2//char(153)], double(2) = [e2//char(156), e2//char(157)], minus(3) = &
+      [char(226)//char(136)//char(146), e2//char(147), e2//char(148)]
+    character(len=4) :: code
+    integer :: length
+
+    length = max(1, bytes_of(text))
+    if (length == 1) then
+      write (code, '(i0)') iachar(text(1:1))
+      what = 'a byte that is not plain ASCII (code ' // trim(code) // ')'
+    else
+      what = 'the character ' // text(:length) // ', which is not plain ASCII'
+    end if
+    if (length == 3) then
+      if (any(text(:3) == single)) what = what // "; write a straight quote: '"
+      if (any(text(:3) == double)) what = what // '; write a straight quote: "'
+      if (any(text(:3) == minus)) what = what // '; write a minus: -'
+    else if (text(:length) == char(194) // char(160)) then
+      what = 'a blank that does not break lines, which is not plain ASCII; write a blank'
+    end if
+    what = what // '; only comments may hold such characters'
+  end function unprintable
+
+  !> Bytes of the UTF-8 character at the beginning of a text; 0 where there is none.
+  pure integer function bytes_of(text)
+    character(len=*), intent(in) :: text
+    integer :: i
+
+    bytes_of = 0
+    if (iachar(text(1:1)) <= 244) bytes_of = count(iachar(text(1:1)) >= [194, 194, 224, 240])
+    if (len(text) < bytes_of) bytes_of = 0
+    if (any([(iand(iachar(text(i:i)), 192) /= 128, i=2, bytes_of)])) bytes_of = 0
+  end function bytes_of
 
 end module deck_source

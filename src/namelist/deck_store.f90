@@ -49,14 +49,11 @@ contains
   pure logical function has_group(self, group)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group
-    integer :: row
 
-    has_group = .false.
-    row = self%row_of(group, '')
-    if (row > 0) has_group = self%values(row)%status == given
+    has_group = self%is_set(group, '')
   end function has_group
 
-  !> Whether the deck itself, not a default, gives the key a value.
+  !> Whether the deck itself, not a default, gives the key a value or, for '', opens the group.
   pure logical function is_set(self, group, key)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key

@@ -6,28 +6,25 @@ module approximation_tables
   use dimensionless_problem, only: problem_t
   use slow_deformation, only: by_quadrature, closed_form, attraction_only, has_form, &
     slow_displacement, slow_load
-  use slow_jumps, only: gap_of_h0, criterion_gap, equation_37_gap, fold_gap
+  use slow_jumps, only: slow_gap, at_h0, at_criterion, at_fold
   use scene_groups, only: range_t
+  use result_rows, only: row_of
   use results, only: results_t
   use summary, only: summary_t
   implicit none
   private
-  public :: write_approximations, summarise_approximations, jump_t
+  public :: write_approximations, summarise_approximations
 
-  !> A state at which approaching bodies jump, by some criterion [m], [m], [m], [N]; `theory` is the
-  !> name of its row in the table.
-  type :: jump_t
-    character(len=:), allocatable :: theory
+  !> A state [m], [m], [m], [N]; `theory` is the name of its row in the table, '' of none.
+  type :: slow_state_t
+    character(len=24) :: theory = ''
     real(wp) :: gap = 0, h0 = 0, displacement = 0, load = 0
-  end type jump_t
+  end type slow_state_t
 
-  !> The jumps that the approximation knows; what does not exist is not allocated. By the stability
-  !> criterion (29); by (37), which is (29) for the attraction of Lennard-Jones alone; where h0
-  !> turns round along (35b); and where it does so along (35a), or along (22) for a law without
-  !> closed form.
-  type :: jumps_t
-    type(jump_t), allocatable :: criterion, equation_37, fold_attraction, fold
-  end type jumps_t
+  !> Where approaching bodies jump, in the order of the rows: by the stability criterion (29); by
+  !> (37), which is (29) for the attraction of Lennard-Jones alone; where h0 turns round along
+  !> (35b); and where it does so along (35a), or along (22) for a law without closed form.
+  integer, parameter :: of_criterion = 1, of_equation_37 = 2, of_attraction = 3, of_fold = 4
 
   !> Names of the curves, in the order of the forms.
   character(len=*), parameter :: names(3) = [character(len=16) :: 'slow_deformation', &
@@ -49,22 +46,22 @@ contains
     type(range_t), intent(in) :: range
     real(wp), intent(in) :: from
     type(results_t), intent(inout) :: results
-    type(jumps_t) :: jumps
+    type(slow_state_t) :: jumps(of_fold)
     real(wp) :: start, nearest
+    integer :: k
 
     start = from
     if (allocated(range%h0_start)) start = range%h0_start
     jumps = jumps_of(problem)
     nearest = -huge(1.0_wp)
-    if (allocated(jumps%criterion)) nearest = problem%law%gap_of(jumps%criterion%gap)
+    if (jumps(of_criterion)%theory /= '') nearest = problem%law%gap_of(jumps(of_criterion)%gap)
     call add_curve(by_quadrature)
     call add_curve(closed_form)
-    if (allocated(jumps%equation_37)) nearest = problem%law%gap_of(jumps%equation_37%gap)
+    if (jumps(of_equation_37)%theory /= '') nearest = problem%law%gap_of(jumps(of_equation_37)%gap)
     call add_curve(attraction_only)
-    call add_jump(jumps%criterion)
-    call add_jump(jumps%equation_37)
-    call add_jump(jumps%fold_attraction)
-    call add_jump(jumps%fold)
+    do k = 1, size(jumps)
+      if (jumps(k)%theory /= '') call write_row(results, jumps(k))
+    end do
 
   contains
 
@@ -82,95 +79,77 @@ contains
       end do
     end subroutine add_curve
 
-    subroutine add_jump(jump)
-      type(jump_t), allocatable, intent(in) :: jump
-
-      if (allocated(jump)) call write_row(results, jump)
-    end subroutine add_jump
-
   end subroutine write_approximations
 
   !> The jumps of approaching bodies; none for rigid ones or without attraction.
   pure function jumps_of(problem) result(jumps)
     type(problem_t), intent(in) :: problem
-    type(jumps_t) :: jumps
+    type(slow_state_t) :: jumps(of_fold)
     integer :: form
 
     form = by_quadrature
     if (has_form(problem, closed_form)) form = closed_form
-    call set(jumps%criterion, form, criterion_gap(problem, form), 'jump_criterion_29')
-    call set(jumps%equation_37, attraction_only, equation_37_gap(problem), 'jump_equation_37')
-    call set(jumps%fold_attraction, attraction_only, fold_gap(problem, attraction_only), &
-      'fold_attractive_only')
-    call set(jumps%fold, form, fold_gap(problem, form), 'fold_'//trim(names(form)))
+    call set(of_criterion, form, at_criterion, 'jump_criterion_29')
+    call set(of_equation_37, attraction_only, at_criterion, 'jump_equation_37')
+    call set(of_attraction, attraction_only, at_fold, 'fold_attractive_only')
+    call set(of_fold, form, at_fold, 'fold_'//trim(names(form)))
 
   contains
 
-    pure subroutine set(jump, form, gap, theory)
-      type(jump_t), allocatable, intent(out) :: jump
-      integer, intent(in) :: form
-      real(wp), intent(in) :: gap
+    pure subroutine set(which, form, condition, theory)
+      integer, intent(in) :: which, form, condition
       character(len=*), intent(in) :: theory
+      real(wp) :: gap
 
-      if (.not. ieee_is_nan(gap)) jump = state_at(problem, form, gap, theory)
+      gap = slow_gap(problem, form, condition)
+      if (.not. ieee_is_nan(gap)) jumps(which) = state_at(problem, form, gap, theory)
     end subroutine set
 
   end function jumps_of
 
-  !> Where approaching bodies jump in the approximation of slow deformation.
+  !> Where approaching bodies jump in the approximation of slow deformation; the fold of a law
+  !> without a closed form is in approximations.csv alone.
   subroutine summarise_approximations(problem, summary)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
-    type(jumps_t) :: jumps
+    type(slow_state_t) :: jumps(of_fold)
+    character(len=:), allocatable :: key
+    integer :: k
 
     jumps = jumps_of(problem)
-    call take(jumps%criterion, 'jump_criterion_29')
-    call take(jumps%equation_37, 'jump_equation_37')
-    if (allocated(jumps%equation_37)) &
-      call summary%set('jump_equation_37_gap', jumps%equation_37%gap)
-    call take(jumps%fold_attraction, 'fold_attractive_only')
-    if (allocated(jumps%fold)) then
-      ! That of a law without a closed form has another name, in approximations.csv alone.
-      if (jumps%fold%theory == 'fold_closed_form') &
-        call take(jumps%fold, 'fold_closed_form')
-    end if
-
-  contains
-
-    subroutine take(jump, key)
-      type(jump_t), allocatable, intent(in) :: jump
-      character(len=*), intent(in) :: key
-
-      if (.not. allocated(jump)) return
-      call summary%set(key//'_h0', jump%h0)
-      call summary%set(key//'_load', jump%load)
-    end subroutine take
-
+    do k = 1, size(jumps)
+      key = trim(jumps(k)%theory)
+      if (row_of(key//'_h0') == 0) cycle
+      call summary%set(key//'_h0', jumps(k)%h0)
+      call summary%set(key//'_load', jumps(k)%load)
+    end do
+    if (jumps(of_equation_37)%theory /= '') &
+      call summary%set('jump_equation_37_gap', jumps(of_equation_37)%gap)
   end subroutine summarise_approximations
 
   !> The state of a form at a gap on the axis (law's lengths).
-  pure function state_at(problem, form, gap, theory) result(jump)
+  pure function state_at(problem, form, gap, theory) result(state)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
     real(wp), intent(in) :: gap
     character(len=*), intent(in) :: theory
-    type(jump_t) :: jump
+    type(slow_state_t) :: state
     real(wp) :: delta
 
     delta = slow_displacement(problem, form, gap)
-    jump%theory = theory
-    jump%gap = problem%law%separation_of(gap)
-    jump%h0 = problem%law%separation_of(gap - delta)
-    jump%displacement = delta*problem%length
-    jump%load = slow_load(problem, form, gap)*problem%load
+    state%theory = theory
+    state%gap = problem%law%separation_of(gap)
+    state%h0 = problem%law%separation_of(gap - delta)
+    state%displacement = delta*problem%length
+    state%load = slow_load(problem, form, gap)*problem%load
   end function state_at
 
   !> Writes the row of a state; these theories give no contact radius.
   subroutine write_row(results, state)
     type(results_t), intent(inout) :: results
-    type(jump_t), intent(in) :: state
+    type(slow_state_t), intent(in) :: state
 
-    call results%row(state%theory, [state%h0, state%displacement, state%load, &
+    call results%row(trim(state%theory), [state%h0, state%displacement, state%load, &
       ieee_value(1.0_wp, ieee_quiet_nan)])
   end subroutine write_row
 
@@ -192,9 +171,9 @@ contains
       gap = pack(gap, gap >= problem%law%smallest_gap)
       return
     end if
-    high = gap_of_h0(problem, form, start, nearest)
+    high = slow_gap(problem, form, at_h0, start, nearest)
     if (ieee_is_nan(high)) return
-    low = gap_of_h0(problem, form, finish, nearest)
+    low = slow_gap(problem, form, at_h0, finish, nearest)
     if (ieee_is_nan(low)) low = max(nearest, problem%law%smallest_gap)
     if (high > low) gap = spaced(problem, form, high, low, count)
   end function gaps_between

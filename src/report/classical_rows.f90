@@ -40,24 +40,27 @@ contains
     type(range_t), intent(in) :: range
     real(wp), intent(in) :: from
     type(results_t), intent(inout) :: results
+    type(layered_contact_t) :: contact
     real(wp) :: start, h0, delta, gamma, strength, narrowest, a
+    logical :: layered
     integer :: i
 
     if (problem%rigid) return
-    if (is_layered(problem)) then
-      call write_layered(problem, range, from, results)
-      return
-    end if
+    layered = is_layered(problem)
+    if (layered) contact = layered_contact_of(problem, range%h0_end)
     start = from
     if (allocated(range%h0_start)) start = range%h0_start
     gamma = surface_energy(problem)
     strength = largest_tension(problem)
-    if (gamma > 0 .and. .not. problem%shape%parabolic) &
+    if (gamma > 0 .and. .not. (layered .or. problem%shape%parabolic)) &
       narrowest = detachment_radius(problem%shape, problem%coupling*problem%law%work)
     do i = 1, range%count
       h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
       delta = problem%law%origin - h0
-      if (problem%shape%parabolic) then
+      if (layered) then
+        call add_layered(hertz)
+        if (problem%law%work > 0) call add_layered(jkr)
+      else if (problem%shape%parabolic) then
         call add_parabola()
       else
         call add_convex()
@@ -106,6 +109,15 @@ contains
         call add(jkr, jkr_like_load(problem, a)*problem%load, a*problem%lateral)
     end subroutine add_convex
 
+    subroutine add_layered(theory)
+      integer, intent(in) :: theory
+
+      if (.not. range%shown(theory)) return
+      a = contact%radius_at(theory, delta/problem%length)
+      if (.not. ieee_is_nan(a)) call results%row(trim(theories(theory))//'_layered', &
+        [h0, delta, contact%load(theory, a)*problem%load, a*problem%lateral])
+    end subroutine add_layered
+
     subroutine add(theory, load, contact_radius)
       integer, intent(in) :: theory
       real(wp), intent(in) :: load, contact_radius
@@ -117,41 +129,6 @@ contains
     end subroutine add
 
   end subroutine write_classical
-
-  !> Writes Hertz and, for a law that attracts, JKR of layered bodies, in the same way.
-  subroutine write_layered(problem, range, from, results)
-    type(problem_t), intent(in) :: problem
-    type(range_t), intent(in) :: range
-    real(wp), intent(in) :: from
-    type(results_t), intent(inout) :: results
-    type(layered_contact_t) :: contact
-    real(wp) :: start, h0, delta
-    integer :: i
-
-    start = from
-    if (allocated(range%h0_start)) start = range%h0_start
-    contact = layered_contact_of(problem, range%h0_end)
-    do i = 1, range%count
-      h0 = start + (range%h0_end - start)*(i - 1)/(range%count - 1)
-      delta = problem%law%origin - h0
-      call add(hertz)
-      if (problem%law%work > 0) call add(jkr)
-    end do
-
-  contains
-
-    subroutine add(theory)
-      integer, intent(in) :: theory
-      real(wp) :: a
-
-      if (.not. range%shown(theory)) return
-      a = contact%radius_at(theory, delta/problem%length)
-      if (ieee_is_nan(a)) return
-      call results%row(trim(theories(theory))//'_layered', &
-        [h0, delta, contact%load(theory, a)*problem%load, a*problem%lateral])
-    end subroutine add
-
-  end subroutine write_layered
 
   !> Whether bodies have layers, of whatever material.
   pure logical function is_layered(problem)

@@ -3,32 +3,12 @@ module curve_rows
   use records, only: record_t
   use decimal, only: put_whole, longest_real
   use tables, only: put_cells
+  use result_tables, only: columns_of
   implicit none
   private
-  public :: columns_of_curve, curve_row, curve_columns, stability_columns, drive_columns
+  public :: columns_of_curve, curve_row
 
-  !> Columns of curve.csv, each described as 'name [unit] meaning'.
-  character(len=*), parameter :: curve_columns(*) = [character(len=96) :: &
-    'branch [] loading, unloading_1, unloading_2, ..., or path', &
-    'h0 [m] separation that undeformed bodies would have on the axis', &
-    'h_centre [m] separation on the axis', &
-    'displacement [m] h_centre - h0', &
-    'load [N] negative: tension', &
-    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
-    'stable [] 1: stable; 0: unstable, or a fold; -1: not examined', &
-    'residual [] largest error of the equations, in units of the length of the force law', &
-    'iterations [] products with the elastic operator', &
-    'converged [] 1; 0 where the residual is larger than asked for: the row is no equilibrium']
-  !> Added by &stability.
-  character(len=*), parameter :: stability_columns(*) = [character(len=96) :: &
-    'smallest_eigenvalue [] of the operator at fixed h0; negative: unstable', &
-    'criterion_28 [] largest |2 u p''/p| where surfaces attract; above 1: unstable by (28)', &
-    'criterion_29 [] 2 p'' u/p on an axis that attracts; below -1: unstable by (29)']
 
-  !> Added by &drive, the second where there is a spring.
-  character(len=*), parameter :: drive_columns(*) = [character(len=96) :: &
-    'time [s] since the drive began to move', &
-    'z [m] position of the base of the spring']
 
 contains
 
@@ -37,11 +17,13 @@ contains
   pure function columns_of_curve(eigenvalues, of_drive) result(columns)
     logical, intent(in) :: eigenvalues
     integer, intent(in) :: of_drive
-    character(len=96), allocatable :: columns(:)
+    character(len=96), allocatable :: columns(:), more(:)
 
-    columns = curve_columns
-    if (eigenvalues) columns = [curve_columns, stability_columns]
-    columns = [columns, drive_columns(:of_drive)]
+    columns = columns_of('curve.csv')
+    more = columns_of('curve.csv', 'with &stability')
+    if (eigenvalues) columns = [columns, more]
+    more = columns_of('curve.csv', 'with &drive')
+    columns = [columns, more(:of_drive)]
   end function columns_of_curve
 
   !> The row of a record; columns of stability where the record has them.

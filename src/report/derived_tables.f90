@@ -10,22 +10,14 @@ module derived_tables
   use results, only: results_t
   use classical_rows, only: write_classical
   use approximation_tables, only: write_approximations
-  use device_rows, only: device_columns, jump_columns, write_device, write_jumps
-  use fixed_load_rows, only: fixed_load_columns, write_fixed_loads
-  use table_rows, only: table_columns, write_contact_table
-  use sensitivity_rows, only: sensitivity_columns, curve_sensitivity_columns, write_sensitivity, &
-    write_curve_sensitivity
+  use device_rows, only: write_device, write_jumps
+  use fixed_load_rows, only: write_fixed_loads
+  use table_rows, only: write_contact_table
+  use sensitivity_rows, only: write_sensitivity, write_curve_sensitivity
   implicit none
   private
-  public :: write_derived_tables, write_path_tables, write_sensitivities, theory_columns
+  public :: write_derived_tables, write_path_tables, write_sensitivities
 
-  !> Columns of classical.csv and approximations.csv.
-  character(len=*), parameter :: theory_columns(*) = [character(len=96) :: &
-    'theory [] where the row comes from', &
-    'h0 [m] separation that undeformed bodies would have on the axis', &
-    'displacement [m] separation on the axis less h0', &
-    'load [N] negative: tension', &
-    'contact_radius [m] NaN where the theory does not give one']
 
 contains
 
@@ -36,14 +28,12 @@ contains
     type(results_t), intent(inout) :: results
 
     if (allocated(scene%classical)) then
-      call results%begin_table('classical.csv', theory_columns)
+      call results%begin_table('classical.csv')
       call write_classical(problem, scene%classical, path_start(scene, problem), results)
-      call results%end_table()
     end if
     if (.not. allocated(scene%approximations)) return
-    call results%begin_table('approximations.csv', theory_columns)
+    call results%begin_table('approximations.csv')
     call write_approximations(problem, scene%approximations, path_start(scene, problem), results)
-    call results%end_table()
   end subroutine write_derived_tables
 
   !> Writes those that are read from the path.
@@ -55,22 +45,18 @@ contains
     if (.not. allocated(outcome%readings)) return
     associate (readings => outcome%readings)
       if (allocated(readings%device)) then
-        call results%begin_table('device.csv', device_columns)
+        call results%begin_table('device.csv')
         call write_device(problem, readings, results)
-        call results%end_table()
-        call results%begin_table('device_jumps.csv', jump_columns)
+        call results%begin_table('device_jumps.csv')
         call write_jumps(problem, readings, results)
-        call results%end_table()
       end if
       if (allocated(readings%loaded)) then
-        call results%begin_table('fixed_load.csv', fixed_load_columns)
+        call results%begin_table('fixed_load.csv')
         call write_fixed_loads(problem, readings, results)
-        call results%end_table()
       end if
       if (.not. allocated(readings%prescribed)) return
-      call results%begin_table('table.csv', table_columns)
+      call results%begin_table('table.csv')
       call write_contact_table(problem, readings, results)
-      call results%end_table()
     end associate
   end subroutine write_path_tables
 
@@ -83,15 +69,13 @@ contains
     type(results_t), intent(inout) :: results
 
     if (.not. (allocated(outcome%readings) .or. allocated(outcome%timed))) return
-    call results%begin_table('sensitivity.csv', sensitivity_columns)
+    call results%begin_table('sensitivity.csv')
     call write_sensitivity(problem, sensitivity%varied, summary, outcome%readings, results)
-    call results%end_table()
     if (.not. allocated(outcome%readings)) return
     associate (readings => outcome%readings)
       if (.not. allocated(readings%rate)) return
-      call results%begin_table('curve_sensitivity.csv', curve_sensitivity_columns)
+      call results%begin_table('curve_sensitivity.csv')
       call write_curve_sensitivity(problem, sensitivity%varied, readings, results)
-      call results%end_table()
     end associate
   end subroutine write_sensitivities
 

@@ -16,31 +16,8 @@ module device_rows
   use summary, only: summary_t
   implicit none
   private
-  public :: device_columns, jump_columns, write_device, write_jumps, summarise_device
+  public :: write_device, write_jumps, summarise_device
 
-  !> Columns of device.csv and of device_jumps.csv.
-  character(len=*), parameter :: device_columns(*) = [character(len=96) :: &
-    'stiffness [N/m] of the spring; 0: dead load; Infinity: h0 is prescribed', &
-    'direction [] path: all equilibria; approach and retreat: what the drive goes through', &
-    'z [m] position of the drive, h0 - load/stiffness; NaN under a dead load', &
-    'h0 [m] separation that undeformed bodies would have on the axis', &
-    'load [N] negative: tension', &
-    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
-    'stable [] 1: stable at this z; 0: unstable, or where a jump starts']
-  character(len=*), parameter :: jump_columns(*) = [character(len=96) :: &
-    'stiffness [N/m] of the spring; 0: dead load; Infinity: h0 is prescribed', &
-    'direction [] approach or retreat', &
-    'z [m] position of the drive; NaN under a dead load', &
-    'h0 [m] before the jump', &
-    'load [N] before the jump', &
-    'contact_radius [m] before the jump', &
-    'h0_after [m] NaN where no stable state is known, here and below', &
-    'load_after [N] after the jump', &
-    'contact_radius_after [m] after the jump', &
-    'energy [J] lost in the jump', &
-    'z_error [m] estimated error of z', &
-    'load_error [N] estimated error of load', &
-    'load_after_error [N] estimated error of load_after']
   !> An energy is worth having where the two routes to it differ by less than this part.
   real(wp), parameter :: known_energy = 1.0e-4_wp
 

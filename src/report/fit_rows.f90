@@ -13,18 +13,8 @@ module fit_rows
   use fit_doubts, only: doubts_of
   implicit none
   private
-  public :: fit_columns, write_fit_rows, fit_text, fit_words
+  public :: write_fit_rows, fit_text, fit_words
 
-  !> Columns of fit.csv.
-  character(len=*), parameter :: fit_columns(*) = [character(len=96) :: &
-    'direction [] approach or retreat', &
-    'z [m] position of the base, as measured', &
-    'measured [] the signal: N, or V where the deck has a sensitivity', &
-    'model [] the same by the model, with its baseline', &
-    'baseline [] the signal without force', &
-    'residual [] measured less model', &
-    'used [] 1: the sample counts; 0: an outlier, skipped, last before a jump, or within it', &
-    'outlier [] 1: it stands apart from its neighbours by more than noise']
 
   !> More that a theory may leave, in chi squared, and still do as well.
   real(wp), parameter :: as_well = 4
@@ -57,10 +47,8 @@ contains
   function fit_text(outcome, title) result(text)
     type(fit_outcome_t), intent(in) :: outcome
     character(len=*), intent(in) :: title
-    character(len=:), allocatable :: text
-    character(len=:), allocatable :: name
+    character(len=:), allocatable :: text, name
     type(line_t), allocatable :: doubts(:)
-    real(wp), allocatable :: numbers(:)
     integer :: i
 
     name = title
@@ -68,18 +56,13 @@ contains
       '&fit' // nl // assignment_of('title', name) // &
       of_fitted(outcome%curve%unknown, outcome%fitted)
     associate (curve => outcome%curve)
-      numbers = [real(count(curve%data%measured%outlier()), wp)]
-      text = text // assignment_of('outliers', numbers)
+      text = text // numbers('outliers', [real(count(curve%data%measured%outlier()), wp)])
       if (allocated(outcome%problem)) then
-        numbers = [adhesion_strength(outcome%problem)]
-        text = text // assignment_of('sigma', numbers)
-        numbers = [tabor_parameter(outcome%problem)]
-        text = text // assignment_of('tabor', numbers)
+        text = text // numbers('sigma', [adhesion_strength(outcome%problem)])
+        text = text // numbers('tabor', [tabor_parameter(outcome%problem)])
       end if
-      numbers = [curve%data%noise%deviation]
-      text = text // assignment_of('noise', numbers)
-      numbers = curve%data%noise%correlation(1:)
-      text = text // assignment_of('noise_correlation', numbers)
+      text = text // numbers('noise', [curve%data%noise%deviation])
+      text = text // numbers('noise_correlation', curve%data%noise%correlation(1:))
       text = text // of_jump('jump_in', curve%data%jump(1), outcome%fitted%jump_z(1)) // &
         of_jump('jump_out', curve%data%jump(2), outcome%fitted%jump_z(2))
     end associate
@@ -101,38 +84,32 @@ contains
     type(fitted_t), intent(in) :: fitted
     character(len=:), allocatable :: text
     type(line_t), allocatable :: names(:)
-    real(wp), allocatable :: numbers(:)
     logical, allocatable :: found
     integer :: i
 
+    found = fitted%found
     allocate (names(size(unknown)))
     do i = 1, size(unknown)
       names(i)%text = unknown(i)%name
     end do
-    found = fitted%found
     text = assignment_of('converged', found) // assignment_of('parameters', names) // &
       assignment_of('estimate', fitted%value) // &
       assignment_of('standard_error', fitted%deviation)
-    numbers = [(fitted%end_of(i, unknown(i), -1.0_wp), i=1, size(unknown))]
-    text = text // assignment_of('lower_68', numbers)
-    numbers = [(fitted%end_of(i, unknown(i), 1.0_wp), i=1, size(unknown))]
-    text = text // assignment_of('upper_68', numbers)
-    numbers = [(fitted%end_of(i, unknown(i), -most), i=1, size(unknown))]
-    text = text // assignment_of('lower_95', numbers)
-    numbers = [(fitted%end_of(i, unknown(i), most), i=1, size(unknown))]
-    text = text // assignment_of('upper_95', numbers)
-    numbers = reshape(fitted%correlation, [size(fitted%correlation)])
-    text = text // assignment_of('correlation', numbers)
-    numbers = [fitted%identifiable]
-    text = text // assignment_of('identifiable', numbers)
-    numbers = [fitted%chi_squared]
-    text = text // assignment_of('chi_squared', numbers)
-    numbers = [real(fitted%freedom, wp)]
-    text = text // assignment_of('degrees_of_freedom', numbers)
-    numbers = [fitted%lack%excess]
-    text = text // assignment_of('excess', numbers)
-    numbers = [real(fitted%lack%width, wp)]
-    text = text // assignment_of('excess_width', numbers)
+    text = text // numbers('lower_68', &
+      [(fitted%end_of(i, unknown(i), -1.0_wp), i=1, size(unknown))])
+    text = text // numbers('upper_68', &
+      [(fitted%end_of(i, unknown(i), 1.0_wp), i=1, size(unknown))])
+    text = text // numbers('lower_95', &
+      [(fitted%end_of(i, unknown(i), -most), i=1, size(unknown))])
+    text = text // numbers('upper_95', &
+      [(fitted%end_of(i, unknown(i), most), i=1, size(unknown))])
+    text = text // numbers('correlation', &
+      reshape(fitted%correlation, [size(fitted%correlation)]))
+    text = text // numbers('identifiable', [fitted%identifiable])
+    text = text // numbers('chi_squared', [fitted%chi_squared])
+    text = text // numbers('degrees_of_freedom', [real(fitted%freedom, wp)])
+    text = text // numbers('excess', [fitted%lack%excess])
+    text = text // numbers('excess_width', [real(fitted%lack%width, wp)])
   end function of_fitted
 
   !> What the data say of numbers that were held.
@@ -140,15 +117,13 @@ contains
     type(held_t), intent(in) :: held(:)
     character(len=:), allocatable :: text
     type(line_t), allocatable :: names(:)
-    real(wp), allocatable :: asked(:)
     integer :: i
 
     allocate (names(size(held)))
     do i = 1, size(held)
       names(i)%text = held(i)%name
     end do
-    asked = held%asked
-    text = assignment_of('held', names) // assignment_of('held_asked', asked)
+    text = assignment_of('held', names) // numbers('held_asked', held%asked)
   end function of_held
 
   !> Where the base was at a jump, as measured and by the model; nothing where none was seen.
@@ -157,18 +132,24 @@ contains
     type(measured_jump_t), intent(in) :: jump
     real(wp), intent(in) :: model
     character(len=:), allocatable :: text
-    real(wp), allocatable :: numbers(:)
 
-    numbers = [model]
-    text = assignment_of(name // '_z_model', numbers)
+    text = numbers(name // '_z_model', [model])
     if (jump%before == 0) return
-    numbers = [jump%z]
-    text = text // assignment_of(name // '_z', numbers)
-    numbers = [jump%uncertainty]
-    text = text // assignment_of(name // '_z_uncertainty', numbers)
-    numbers = [jump%change]
-    text = text // assignment_of(name // '_change', numbers)
+    text = text // numbers(name // '_z', [jump%z])
+    text = text // numbers(name // '_z_uncertainty', [jump%uncertainty])
+    text = text // numbers(name // '_change', [jump%change])
   end function of_jump
+
+  !> Numbers as the entry of a key.
+  function numbers(key, values) result(text)
+    character(len=*), intent(in) :: key
+    real(wp), intent(in) :: values(:)
+    character(len=:), allocatable :: text
+    real(wp), allocatable :: written(:)
+
+    written = values
+    text = assignment_of(key, written)
+  end function numbers
 
   !> The fit in words, for the terminal.
   function fit_words(outcome) result(lines)

@@ -9,18 +9,8 @@ module fixed_load_rows
   use summary, only: summary_t
   implicit none
   private
-  public :: fixed_load_columns, write_fixed_loads, summarise_fixed_loads
+  public :: write_fixed_loads, summarise_fixed_loads
 
-  !> Columns of fixed_load.csv.
-  character(len=*), parameter :: fixed_load_columns(*) = [character(len=96) :: &
-    'load [N] negative: tension', &
-    'h0 [m] separation that undeformed bodies would have on the axis', &
-    'displacement [m] separation on the axis less h0', &
-    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
-    'stable [] 1: stable under this load; 0: unstable', &
-    'h0_error [m] estimated error of h0', &
-    'displacement_error [m] estimated error of displacement', &
-    'contact_radius_error [m] estimated error of contact_radius']
 
 contains
 

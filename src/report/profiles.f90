@@ -7,37 +7,23 @@ module profiles
   use elastic_operator, only: elastic_operator_t
   use contact_state, only: state_t
   use tables, only: table_t, cells
+  use result_tables, only: columns_of
   implicit none
   private
-  public :: columns_of_profiles, write_profile, profile_columns, unlike_columns
+  public :: columns_of_profiles, write_profile
 
-  !> Columns of the table of profiles.
-  character(len=*), parameter :: profile_columns(*) = [character(len=96) :: &
-    'branch [] as in curve.csv', &
-    'h0 [m] separation that undeformed bodies would have on the axis', &
-    'r [m] distance from the axis', &
-    'separation [m] between the surfaces at r', &
-    'deformation [m] of each surface, outward positive; of unlike bodies the mean', &
-    'pressure [Pa] negative: attraction', &
-    'energy [J/m^2] of the surface force']
 
-  !> Of bodies that are not alike.
-  character(len=*), parameter :: unlike_columns(*) = [character(len=96) :: &
-    'deformation_1 [m] of the first body''s surface, outward positive', &
-    'deformation_2 [m] of the second body''s surface, outward positive']
 
 contains
 
   !> The columns of the table.
   pure function columns_of_profiles(problem) result(columns)
     type(problem_t), intent(in) :: problem
-    character(len=96), allocatable :: columns(:)
+    character(len=96), allocatable :: columns(:), more(:)
 
-    if (alike(problem)) then
-      columns = profile_columns
-    else
-      columns = [profile_columns, unlike_columns]
-    end if
+    columns = columns_of('profiles.csv')
+    more = columns_of('profiles.csv', 'of bodies that are not alike')
+    if (.not. alike(problem)) columns = [columns, more]
   end function columns_of_profiles
 
   !> Whether both bodies deform by as much.

@@ -17,12 +17,12 @@ module results
   use deck, only: deck_t
   use files, only: make_folder, file_exists
   use folder_lock, only: folder_lock_t
-  use result_names, only: result_files, journal_name, summary_name
-  use publication, only: publish
+  use publication, only: publish, result_files, journal_name, summary_name
   use journal, only: journal_t
   use run_identity, only: difference_between
   use text_file, only: output_t, partial
   use tables, only: table_t, cells
+  use result_tables, only: columns_of
   use text, only: word_of
   use curve_rows, only: columns_of_curve, curve_row
   use profiles, only: columns_of_profiles, write_profile
@@ -61,7 +61,6 @@ module results
     procedure :: take_case
     procedure :: begin_table
     procedure :: row
-    procedure :: end_table
     procedure :: write_text
     procedure :: write_summary
     procedure :: finish
@@ -216,15 +215,14 @@ contains
     end do
   end function without_commas
 
-  !> Begins the table `name`, one of `result_files`, of which there is one at a time: its columns,
-  !> each described as 'name [unit] what it is'. Rows follow, then its end.
-  subroutine begin_table(self, name, columns)
+  !> Begins one of `result_tables`, and ends the one before. Rows follow.
+  subroutine begin_table(self, name)
     class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: name, columns(:)
+    character(len=*), intent(in) :: name
 
     if (allocated(self%trouble)) return
     call self%progress%note('writing ' // name)
-    call self%begin(self%beside, name, columns, self%trouble)
+    call self%begin(self%beside, name, columns_of(name), self%trouble)
   end subroutine begin_table
 
   !> Adds a row: text first, then numbers, then 1 or 0 for each of `truths`; text may be absent.
@@ -247,18 +245,14 @@ contains
     call self%beside%line(line, self%trouble)
   end subroutine row
 
-  subroutine end_table(self)
-    class(results_t), intent(inout) :: self
-
-    if (.not. allocated(self%trouble)) call self%beside%close(self%trouble)
-  end subroutine end_table
-
   !> Writes the file `name`, one of `result_files`, whole.
   subroutine write_text(self, name, text)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: name, text
     type(output_t) :: file
 
+    if (allocated(self%trouble)) return
+    call self%beside%close(self%trouble)
     if (allocated(self%trouble)) return
     where (result_files == name) self%made = .true.
     if (allocated(self%stream)) then

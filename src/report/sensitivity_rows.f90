@@ -14,24 +14,8 @@ module sensitivity_rows
   use summary, only: summary_t
   implicit none
   private
-  public :: sensitivity_columns, curve_sensitivity_columns, write_sensitivity, &
-    write_curve_sensitivity
+  public :: write_sensitivity, write_curve_sensitivity
 
-  !> Columns of sensitivity.csv and of curve_sensitivity.csv.
-  character(len=*), parameter :: sensitivity_columns(*) = [character(len=96) :: &
-    'quantity [] entry of &summary, or column of a table; with a number, of which value or row', &
-    'parameter [] key of the deck', &
-    'value [] of the quantity, in its unit', &
-    'derivative [] by the parameter, SI units', &
-    'logarithmic [] derivative of the logarithm of the quantity by that of the parameter']
-  character(len=*), parameter :: curve_sensitivity_columns(*) = [character(len=96) :: &
-    'parameter [] key of the deck', &
-    'stiffness [N/m] of the spring; 0: dead load; Infinity: h0 is prescribed', &
-    'z [m] position of the drive, h0 - load/stiffness; NaN under a dead load', &
-    'h0 [m] separation that undeformed bodies would have on the axis', &
-    'load [N] negative: tension', &
-    'h0_derivative [] by the parameter at this z, under a dead load at this load; SI units', &
-    'load_derivative [] the same of the load; NaN, as h0_derivative, where z turns round']
 
   !> Where z changes along the path by less than this part of its terms, or of the law's units, it
   !> turns round.

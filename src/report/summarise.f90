@@ -53,7 +53,7 @@ contains
       call summarise_timed(scene, problem, outcome%timed, summary)
     if (allocated(outcome%path)) call summarise_path(problem, outcome%path, summary)
     if (allocated(outcome%readings)) call take_readings(scene, problem, outcome, summary)
-    if (allocated(scene%regime)) call summarise_regime(problem, outcome, summary)
+    if (scene%regime) call summarise_regime(problem, outcome, summary)
     call take_energy(problem, outcome, summary)
     call take_end(problem, outcome, summary)
     call judge_extent(problem, outcome, summary)

@@ -285,8 +285,6 @@ contains
 
     text = '! Results of snapin, SI units. What does not exist is NaN or left out.' // nl // &
       '! The groups after the first two are the deck, defaults included: run it again.' // nl // &
-      '! If this is called INCOMPLETE.txt, other files may lack their names: run the deck again.' &
-      // nl // &
       '&summary' // nl // group_text(self, in_summary) // '/' // nl // &
       '&cost' // nl // group_text(self, in_cost) // '/' // nl
   end function summary_text

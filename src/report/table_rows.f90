@@ -11,19 +11,8 @@ module table_rows
   use results, only: results_t
   implicit none
   private
-  public :: table_columns, write_contact_table
+  public :: write_contact_table
 
-  !> Columns of table.csv.
-  character(len=*), parameter :: table_columns(*) = [character(len=96) :: &
-    'branch [] approach or retreat; where h0 stays and the load changes the bodies jump', &
-    'indentation [m] of undeformed bodies, minus h0', &
-    'load [N] negative: tension', &
-    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
-    'stiffness [N/m] derivative of load by indentation; NaN where a jump starts', &
-    'indentation_jkr [] over (pi^2 w^2 R/K^2)^(1/3), w surface energy, K = 4/3 E*', &
-    'load_jkr [] over pi w R', &
-    'contact_radius_jkr [] over (pi w R^2/K)^(1/3)', &
-    'stiffness_jkr [] derivative of load_jkr by indentation_jkr']
 
 contains
 

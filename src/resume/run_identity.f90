@@ -6,10 +6,11 @@ module run_identity
   use build_info, only: version, compiler, blas, options
   use c_library, only: c_openblas_config, c_build_id
   use text, only: brief
+  use files, only: read_file
   use deck_number, only: parse_real
   implicit none
   private
-  public :: identity_of, difference_between
+  public :: identity_of, difference_between, find_finished
 
   character(len=1), parameter :: nl = new_line('a')
   !> How the lines before the deck begin.
@@ -130,5 +131,27 @@ contains
     text = trim(digits)
     if (text == '') text = 'unknown'
   end function build_number
+
+  !> Whether the folder's summary is that of the deck `resolved` (as text) by this version of the
+  !> program; the summary is the last thing that a run writes. converged: whether all of that
+  !> went well.
+  subroutine find_finished(folder, resolved, finished, converged)
+    character(len=*), intent(in) :: folder, resolved
+    logical, intent(out) :: finished, converged
+    character(len=:), allocatable :: text
+    integer :: start
+
+    finished = .false.
+    converged = .false.
+    call read_file(folder // '/summary.nml', text)
+    if (.not. allocated(text)) return
+    start = len(text) - len(resolved)
+    if (start < 1) return
+    ! The groups of results, then the deck.
+    finished = text(start + 1:) == resolved .and. &
+      index(text(:start), nl // '  version = ''' // version // '''' // nl) > 0
+    converged = finished .and. &
+      index(text(:start), nl // '  converged = .true.' // nl) > 0
+  end subroutine find_finished
 
 end module run_identity

@@ -6,6 +6,7 @@ module cycle_groups
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key, list_key
   use scene_groups, only: scene_t
+  use path_groups, only: check_order
   implicit none
   private
   public :: cycle_keys, take_loading, take_unloading
@@ -47,13 +48,9 @@ contains
       call deck%get('loading', 'h0_start', loading%h0_start)
       call deck%get('loading', 'h0_end', loading%h0_end)
       call deck%get('loading', 'h0_step', loading%h0_step)
-      if (loading%h0_end >= loading%h0_start) then
-        call deck%mistake('loading', 'h0_end', brief(loading%h0_end) // ' is not below ' // &
-                          'h0_start = ' // brief(loading%h0_start) // ' m', error)
-      else
-        call check_steps(deck, 'loading', loading%h0_start - loading%h0_end, loading%h0_step, &
-                         error)
-      end if
+      call check_order(deck, 'loading', 'h0_end', loading%h0_end, 'below', 'h0_start', &
+        loading%h0_start, error)
+      call check_steps(deck, 'loading', loading%h0_start - loading%h0_end, loading%h0_step, error)
     end associate
   end subroutine take_loading
 

@@ -9,16 +9,10 @@ module scene
   use scene_groups, only: scene_t
   use scene_problem, only: take_model
   use cycle_groups, only: take_loading, take_unloading
-  use path_group, only: take_path
-  use device_group, only: take_device
-  use fixed_load_group, only: take_fixed_load
-  use table_group, only: take_table
+  use path_groups, only: take_path, take_readings, take_regime, take_profiles, take_stability
   use sensitivity_group, only: take_sensitivity
-  use regime_group, only: take_regime
   use rate_groups, only: take_rates
-  use profiles_group, only: take_profiles
   use theory_groups, only: take_theories
-  use stability_group, only: take_stability
   use sweep_group, only: take_sweep
   use fit_group, only: take_fit
   use numerics_group, only: take_numerics
@@ -68,9 +62,7 @@ contains
     call take_unloading(scene, error)
     call take_path(scene, error)
     if (allocated(error)) return
-    call take_device(scene, error)
-    call take_fixed_load(scene, error)
-    call take_table(scene, error)
+    call take_readings(scene, error)
     call take_sensitivity(scene, error)
     call take_regime(scene, error)
     call take_rates(scene, error)

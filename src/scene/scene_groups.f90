@@ -13,7 +13,7 @@ module scene_groups
   use theory_names, only: theories, usual
   implicit none
   private
-  public :: scene_t, bodies_t, range_t, stability_t, regime_t, sweep_t, axis_t, case_file_t
+  public :: scene_t, bodies_t, range_t, sweep_t, axis_t, case_file_t
 
   !> &bodies
   type :: bodies_t
@@ -37,14 +37,6 @@ module scene_groups
     !> Of &classical: which of `theories`.
     logical :: shown(size(theories)) = usual
   end type range_t
-
-  !> &stability has no keys.
-  type :: stability_t
-  end type stability_t
-
-  !> &regime has no keys.
-  type :: regime_t
-  end type regime_t
 
   !> The values of one key.
   type :: axis_t
@@ -86,8 +78,8 @@ module scene_groups
     !> In the units of that law.
     class(shape_t), allocatable :: shape
     type(range_t), allocatable :: approximations, classical
-    type(stability_t), allocatable :: stability
-    type(regime_t), allocatable :: regime
+    !> &stability and &regime have no keys.
+    logical :: stability = .false., regime = .false.
     type(sweep_t), allocatable :: sweep
     type(measurement_t), allocatable :: measurement
     type(measured_t), allocatable :: measured
@@ -166,7 +158,7 @@ contains
   pure logical function has_eigenvalues(self)
     class(scene_t), intent(in) :: self
 
-    has_eigenvalues = self%has_curve() .and. allocated(self%stability)
+    has_eigenvalues = self%has_curve() .and. self%stability
   end function has_eigenvalues
 
   !> How many columns of the curve a drive in time adds.

@@ -5,16 +5,10 @@ module scene_keys
   use deck_keys, only: key_spec, group, text_key
   use scene_problem, only: keys_of_model
   use cycle_groups, only: cycle_keys
-  use path_group, only: path_keys
-  use device_group, only: device_keys
-  use fixed_load_group, only: fixed_load_keys
-  use table_group, only: table_keys
+  use path_groups, only: path_keys, regime_keys, profiles_keys, stability_keys
   use sensitivity_group, only: sensitivity_keys
-  use regime_group, only: regime_keys
   use rate_groups, only: rate_keys
-  use profiles_group, only: profiles_keys
   use theory_groups, only: theory_keys
-  use stability_group, only: stability_keys
   use sweep_group, only: sweep_keys
   use fit_group, only: fit_keys
   use numerics_group, only: numerics_keys
@@ -35,9 +29,6 @@ contains
       keys_of_model(), &
       cycle_keys(), &
       path_keys(), &
-      device_keys(), &
-      fixed_load_keys(), &
-      table_keys(), &
       sensitivity_keys(), &
       regime_keys(), &
       rate_keys(), &

@@ -6,7 +6,7 @@ module sensitivity_group
   use deck_keys, only: key_spec, group, names_key
   use variation, only: vary, to_report
   use scene_groups, only: scene_t
-  use path_group, only: check_path
+  use path_groups, only: check_path
   use deck_family, only: deck_family_t, new_deck_family
   implicit none
   private

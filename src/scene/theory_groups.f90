@@ -1,10 +1,11 @@
 !> &approximations and &classical: closed forms beside the curve, over a range of h0.
 module theory_groups
   use failure, only: failure_t
-  use text, only: brief, clip, guess, listing, lower, quoted, word_count, word_of
+  use text, only: clip, guess, listing, lower, quoted, word_count, word_of
   use deck_keys, only: key_spec, group, names_key, real_key, integer_key
   use theory_names, only: convex, theories
   use scene_groups, only: scene_t, range_t
+  use path_groups, only: check_order
   implicit none
   private
   public :: theory_keys, take_theories
@@ -122,10 +123,8 @@ contains
       call deck%get_optional(group, 'h0_start', range%h0_start)
       call deck%get(group, 'h0_end', range%h0_end)
       call deck%get(group, 'count', range%count)
-      if (.not. allocated(range%h0_start)) return
-      if (range%h0_start <= range%h0_end) &
-        call deck%mistake(group, 'h0_end', brief(range%h0_end) // ' is not below h0_start = ' // &
-                          brief(range%h0_start) // ' m', error)
+      if (allocated(range%h0_start)) call check_order(deck, group, 'h0_end', range%h0_end, &
+        'below', 'h0_start', range%h0_start, error)
     end associate
   end subroutine take_range
 

@@ -1,29 +1,41 @@
-!> A set of results gets its names: whole or not at all, or `INCOMPLETE.txt`, the file of intent, is
-!> there. Without that file, those that are not called `.partial` are one set of results, and are on
-!> the disk.
+!> A set of results gets its names. `INCOMPLETE.txt`, the file of intent, is there while it does:
+!> without that file, the results that are not called `.partial` are one set and on the disk.
 !>
-!> How old results are replaced is in `replacement`. Where there are none, nothing can be mixed, and
-!> what was interrupted can be taken back. The summary itself then is the file of intent. The steps,
+!> The folder may hold files of others, so that it cannot be exchanged for another as a whole. The
+!> file of intent lists the new set: while it is there, the new file NAME is NAME.partial where that
+!> exists and NAME otherwise, and what was interrupted is done again from the beginning. The steps,
 !> each on the disk before the next begins:
 !>
-!> 1. the new files;
-!> 2. the summary is called `INCOMPLETE.txt`; so are the partial names and the folder's own;
-!> 3. the tables get their names;
-!> 4. `INCOMPLETE.txt` is called summary.nml: at one stroke the set is complete;
-!> 5. the journal is removed. Nobody waits for that: if it is back after a power failure, a run goes
-!>    on from its end.
-!>
-!> Either way the summary never stands beside tables that are not its own.
+!> 1. the new files, the list, their partial names, and the name of the folder;
+!> 2. the list is called `INCOMPLETE.txt`;
+!> 3. new files get their names, the summary last; results of an earlier run that have no successor,
+!>    other partial files and the journal are removed;
+!> 4. `INCOMPLETE.txt` is removed.
 module publication
   use failure, only: failure_t, fail, file_trouble
   use files, only: read_file, file_exists
   use folder_lock, only: folder_lock_t
-  use text_file, only: partial
-  use result_names, only: result_files, summary_name, intent_name, holds_results
-  use replacement, only: replace_results, complete_replacement, remove_leftovers
+  use text_file, only: output_t, partial
   implicit none
   private
-  public :: publish, mend
+  public :: publish, mend, result_files, summary_name, journal_name
+
+  character(len=*), parameter :: summary_name = 'summary.nml'
+  !> The files of a folder of results, the summary last.
+  character(len=*), parameter :: result_files(*) = [character(len=21) :: 'curve.csv', &
+    'profiles.csv', 'approximations.csv', 'classical.csv', 'device.csv', &
+    'device_jumps.csv', 'fixed_load.csv', 'table.csv', 'sensitivity.csv', &
+    'curve_sensitivity.csv', 'fit.csv', 'fit.nml', 'sweep.csv', summary_name]
+  character(len=*), parameter :: journal_name = 'journal' // partial
+  character(len=*), parameter :: intent_name = 'INCOMPLETE.txt'
+  character(len=1), parameter :: nl = new_line('a')
+  character(len=*), parameter :: explanation = &
+    'The files in this folder may not belong together: new results were given their names,' // &
+    nl // 'in place of older ones, when the program was stopped. Do not use them like this.' // &
+    nl // 'Run the deck again, best with --resume: that first gives new results their names.' // &
+    nl // 'By hand: of each file listed below NAME.partial is the newer one where it exists,' // &
+    nl // 'and is to be renamed to NAME. Then remove other results, what is called .partial,' // &
+    nl // 'and this file.' // nl
 
 contains
 
@@ -34,61 +46,48 @@ contains
     type(folder_lock_t), intent(in) :: folder
     logical, intent(in) :: new(:)
     type(failure_t), allocatable, intent(out) :: error
-    logical :: complete
+    type(failure_t), allocatable :: again
+    integer :: i
 
-    complete = .false.
-    call refuse_folders(folder, error)
+    do i = 1, size(result_files)
+      if (folder%contains_folder(trim(result_files(i)))) call fail(error, file_trouble, &
+        folder%path_of(trim(result_files(i))) // ' is a folder; move away what is in the way')
+    end do
     if (.not. allocated(error)) then
-      if (holds_results(folder)) then
-        call replace_results(folder, new, complete, error)
+      call declare(folder, new, error)
+      if (allocated(error)) then
+        call withdraw(folder, again)
       else
-        call publish_first(folder, new, complete, error)
+        call put_in_place(folder, new, error)
+        if (allocated(error)) call tell(folder, 'the new results are complete, but ', error)
+        return
       end if
     end if
-    if (.not. allocated(error)) return
-    if (complete) then
-      call tell(folder, 'the new results are complete, but ', error)
-    else
-      call tell(folder, 'no results were replaced: ', error)
-    end if
+    if (allocated(error)) call tell(folder, 'no results were replaced: ', error)
   end subroutine publish
 
-  !> Completes or takes back what was interrupted in the folder `path`, if anything was. mended: it
-  !> now has complete results.
+  !> Completes what was interrupted in the folder `path`, if anything was. mended: it now has
+  !> complete results.
   subroutine mend(path, mended, error)
     character(len=*), intent(in) :: path
     logical, intent(out) :: mended
     type(failure_t), allocatable, intent(out) :: error
     type(folder_lock_t) :: folder
+    logical :: new(size(result_files))
 
     mended = .false.
     if (.not. file_exists(path // '/' // intent_name)) return
     call folder%take(path, error)
     if (allocated(error)) return
     ! The run that was at it may have ended meanwhile.
-    if (folder%contains_file(intent_name)) call mend_locked(folder, mended, error)
-    call folder%release()
-  end subroutine mend
-
-  subroutine mend_locked(folder, mended, error)
-    type(folder_lock_t), intent(in) :: folder
-    logical, intent(out) :: mended
-    type(failure_t), allocatable, intent(out) :: error
-    character(len=1), parameter :: nl = new_line('a')
-    character(len=:), allocatable :: text
-
-    mended = .false.
-    call read_file(folder%path_of(intent_name), text)
-    if (.not. allocated(text)) text = ''
-    if (index(text, nl // '&summary' // nl) > 0) then
-      call take_back(folder, error)
-      if (allocated(error)) call tell(folder, 'there are no results yet: ', error)
-    else
-      call complete_replacement(folder, text, error)
+    if (folder%contains_file(intent_name)) then
+      call read_intent(folder, new, error)
+      if (.not. allocated(error)) call put_in_place(folder, new, error)
       mended = .not. allocated(error)
       if (allocated(error)) call tell(folder, 'the results are complete, but ', error)
     end if
-  end subroutine mend_locked
+    call folder%release()
+  end subroutine mend
 
   !> Says what a folder holds after an error: `otherwise`, unless the file of intent is there.
   subroutine tell(folder, otherwise, error)
@@ -104,45 +103,54 @@ contains
     end if
   end subroutine tell
 
-  !> Fails where a folder has a name that a file is to be given, or that is to be free.
-  subroutine refuse_folders(folder, error)
-    type(folder_lock_t), intent(in) :: folder
-    type(failure_t), allocatable, intent(inout) :: error
-    integer :: i
-
-    do i = 1, size(result_files)
-      if (folder%contains_folder(trim(result_files(i)))) call fail(error, file_trouble, &
-        folder%path_of(trim(result_files(i))) // ' is a folder; move away what is in the way')
-    end do
-  end subroutine refuse_folders
-
-  !> Gives the files marked in `new` their names in a folder that holds no results. complete: that
-  !> was done, whatever `error` says; otherwise it was taken back, or the file of intent is there.
-  subroutine publish_first(folder, new, complete, error)
+  !> Writes the file of intent.
+  subroutine declare(folder, new, error)
     type(folder_lock_t), intent(in) :: folder
     logical, intent(in) :: new(:)
-    logical, intent(out) :: complete
     type(failure_t), allocatable, intent(out) :: error
-    type(failure_t), allocatable :: again
+    type(output_t) :: file
+    integer :: i
 
-    complete = .false.
-    call folder%rename_file(summary_name // partial, intent_name, error)
+    call file%open(folder%path_of(intent_name // partial), error)
+    if (.not. allocated(error)) call file%put(explanation, error)
+    do i = 1, size(new)
+      if (allocated(error)) return
+      if (new(i)) call file%line(trim(result_files(i)), error)
+    end do
+    if (.not. allocated(error)) call file%close(error)
+    ! The names of the new set must be on the disk before the file that counts on them.
     if (.not. allocated(error)) call folder%sync_above(error)
     if (.not. allocated(error)) call folder%sync(error)
-    if (.not. allocated(error)) call name_tables(folder, new, error)
+    if (.not. allocated(error)) call folder%rename_file(intent_name // partial, intent_name, error)
     if (.not. allocated(error)) call folder%sync(error)
-    if (.not. allocated(error)) call folder%rename_file(intent_name, summary_name, error)
-    if (allocated(error)) then
-      call take_back(folder, again)
-      return
-    end if
-    complete = .true.
-    call folder%sync(error)
-    if (.not. allocated(error)) call remove_leftovers(folder, new, error)
-  end subroutine publish_first
+  end subroutine declare
 
-  !> Gives the tables marked in `new` their names.
-  subroutine name_tables(folder, new, error)
+  !> Which files are new, by the file that `declare` wrote.
+  subroutine read_intent(folder, new, error)
+    type(folder_lock_t), intent(in) :: folder
+    logical, intent(out) :: new(:)
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: advice = '; if ' // intent_name // &
+      ' is removed the deck can be run again from the beginning'
+    character(len=:), allocatable :: text, name
+    integer :: i
+
+    call read_file(folder%path_of(intent_name), text)
+    if (.not. allocated(text)) text = ''
+    do i = 1, size(new)
+      name = trim(result_files(i))
+      new(i) = index(text, nl // name // nl) > 0
+      if (new(i) .and. .not. (folder%contains_file(name) .or. &
+        folder%contains_file(name // partial))) call fail(error, file_trouble, &
+        folder%path_of(name) // ' is missing' // advice)
+    end do
+    if (.not. any(new)) call fail(error, file_trouble, folder%path_of(intent_name) // &
+      ' lists no results' // advice)
+  end subroutine read_intent
+
+  !> Gives new files their names, removes what the new set has no use for, and then says that it is
+  !> complete.
+  subroutine put_in_place(folder, new, error)
     type(folder_lock_t), intent(in) :: folder
     logical, intent(in) :: new(:)
     type(failure_t), allocatable, intent(out) :: error
@@ -151,30 +159,27 @@ contains
 
     do i = 1, size(new)
       name = trim(result_files(i))
-      if (.not. new(i) .or. name == summary_name) cycle
-      call folder%rename_file(name // partial, name, error)
+      if (.not. new(i)) then
+        call folder%remove_file(name, error)
+        if (.not. allocated(error)) call folder%remove_file(name // partial, error)
+      else if (folder%contains_file(name // partial)) then
+        call folder%rename_file(name // partial, name, error)
+      end if
       if (allocated(error)) return
     end do
-  end subroutine name_tables
+    call folder%remove_file(journal_name, error)
+    if (.not. allocated(error)) call folder%sync(error)
+    if (.not. allocated(error)) call withdraw(folder, error)
+  end subroutine put_in_place
 
-  !> Takes back what `publish_first` has done before the set was complete: all files are partial by
-  !> name. Where that fails the file of intent stays.
-  subroutine take_back(folder, error)
+  !> Removes the file of intent. It must not come back when files have partial names again.
+  subroutine withdraw(folder, error)
     type(folder_lock_t), intent(in) :: folder
     type(failure_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: name
-    integer :: i
 
-    if (.not. folder%contains_file(intent_name)) return
-    do i = 1, size(result_files)
-      name = trim(result_files(i))
-      if (folder%contains_file(name)) call folder%rename_file(name, name // partial, error)
-      if (allocated(error)) return
-    end do
-    call folder%sync(error)
-    if (.not. allocated(error)) &
-      call folder%rename_file(intent_name, summary_name // partial, error)
+    call folder%remove_file(intent_name // partial, error)
+    if (.not. allocated(error)) call folder%remove_file(intent_name, error)
     if (.not. allocated(error)) call folder%sync(error)
-  end subroutine take_back
+  end subroutine withdraw
 
 end module publication

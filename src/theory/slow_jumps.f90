@@ -10,10 +10,12 @@ module slow_jumps
   use slow_deformation, only: attraction_only, has_form, slow_displacement, slow_slope
   implicit none
   private
-  public :: gap_of_h0, criterion_gap, equation_37_gap, fold_gap
+  public :: slow_gap, at_h0, at_criterion, at_fold
 
-  !> What a gap is searched for: an h0, a fold of h0, the stability criterion (29).
-  integer, parameter :: at_h0 = 1, at_fold = 2, at_criterion = 3
+  !> What a gap is searched for: an h0; the stability criterion (29), 2 p' u(0)/p = -1, which
+  !> approaching bodies come to violate there; the fold of h0 = gap - delta, where they lose their
+  !> equilibrium in the approximation itself.
+  integer, parameter :: at_h0 = 1, at_criterion = 2, at_fold = 3
 
   !> A search: in which form of the approximation, and for what (the h0, where that is it).
   type :: search_t
@@ -30,61 +32,28 @@ module slow_jumps
 
 contains
 
-  !> The largest gap on the axis, not below `lowest`, at which the approximation has this h0; NaN
-  !> where there is none.
-  pure real(wp) function gap_of_h0(problem, form, h0, lowest) result(gap)
+  !> The largest gap on the axis at which this form of the approximation has what is searched for;
+  !> NaN where it has it nowhere. An h0 is looked for down to the gap `nearest`, a jump as far as
+  !> the law attracts. With the attraction of Lennard-Jones alone p'/p = -3/h, and -delta =
+  !> C h^(-5/2) by (35b), so that (29) is there in closed form, (37), where 3 C h^(-7/2) is 1; the
+  !> fold has the exponent 5/2 for the 3. These do not tell whether the full law has a jump.
+  pure real(wp) function slow_gap(problem, form, condition, h0, nearest) result(gap)
     type(problem_t), intent(in) :: problem
-    integer, intent(in) :: form
-    real(wp), intent(in) :: h0, lowest
-
-    gap = largest_gap(problem, search_t(form, at_h0, h0), lowest)
-  end function gap_of_h0
-
-  !> The gap on the axis at which approaching bodies come to violate the stability criterion (29),
-  !> 2 p' u(0)/p = -1, with the displacement of this form. NaN where they never do: the law does
-  !> not attract, or too little for these bodies.
-  pure real(wp) function criterion_gap(problem, form) result(gap)
-    type(problem_t), intent(in) :: problem
-    integer, intent(in) :: form
+    integer, intent(in) :: form, condition
+    real(wp), intent(in), optional :: h0, nearest
 
     gap = nan()
-    if (problem%law%adhesion > 0) gap = largest_gap(problem, search_t(form, at_criterion), &
-      rest_of(problem))
-  end function criterion_gap
-
-  !> The same for the attraction of Lennard-Jones alone, where p'/p = -3/h, in closed form, (37).
-  !> NaN without attraction. It does not tell whether the full law has a jump.
-  pure real(wp) function equation_37_gap(problem) result(gap)
-    type(problem_t), intent(in) :: problem
-
-    gap = nan()
-    if (problem%coupling > 0 .and. has_form(problem, attraction_only)) &
+    if (condition == at_h0) then
+      gap = largest_gap(problem, search_t(form, at_h0, h0), nearest)
+    else if (form == attraction_only) then
+      if (.not. (problem%coupling > 0 .and. has_form(problem, form))) return
       gap = (6*sqrt(2.0_wp)*pi*problem%coupling)**(2.0_wp/7)
-  end function equation_37_gap
-
-  !> The gap on the axis at which h0 = gap - delta has its fold: there approaching bodies lose their
-  !> equilibrium in the approximation itself. NaN where there is none. With -delta = C h^(-5/2),
-  !> (35b), it is at 1 = (5/2) C h^(-7/2); (37) has 3, the pressure's exponent, for 5/2.
-  pure real(wp) function fold_gap(problem, form) result(gap)
-    type(problem_t), intent(in) :: problem
-    integer, intent(in) :: form
-
-    if (form == attraction_only) then
-      gap = equation_37_gap(problem)*(5.0_wp/6)**(2.0_wp/7)
-      return
+      if (condition == at_fold) gap = gap*(5.0_wp/6)**(2.0_wp/7)
+    else if (problem%law%adhesion > 0) then
+      gap = largest_gap(problem, search_t(form, condition), &
+        merge(problem%law%rest_gap, -huge(gap), problem%law%rest_gap > 0))
     end if
-    gap = nan()
-    if (problem%law%adhesion > 0) gap = largest_gap(problem, search_t(form, at_fold), &
-      rest_of(problem))
-  end function fold_gap
-
-  !> How near jumps are looked for: to where the law stops attracting, if it does.
-  pure real(wp) function rest_of(problem)
-    type(problem_t), intent(in) :: problem
-
-    rest_of = -huge(1.0_wp)
-    if (problem%law%rest_gap > 0) rest_of = problem%law%rest_gap
-  end function rest_of
+  end function slow_gap
 
   !> The largest gap not below `nearest` at which the excess is zero; far away it is negative. NaN
   !> where there is none.

@@ -149,7 +149,7 @@ program ring_image
       end do
     end do
   end if
-  observer%eigenvalues = allocated(scene%stability)
+  observer%eigenvalues = scene%stability
   call run_experiment(scene, problem, observer, outcome)
   summary = summary_of(scene, problem, outcome)
   print '(a)', summary_text(summary)

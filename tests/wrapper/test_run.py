@@ -185,10 +185,11 @@ def test_results_are_written_where_they_are_asked_for_and_read_again(tmp_path):
 
 def test_results_that_lack_their_names_are_not_read(tmp_path):
     snapin.run(CURVE, out=tmp_path)
-    (tmp_path / "summary.nml").rename(tmp_path / "INCOMPLETE.txt")
+    (tmp_path / "curve.csv").rename(tmp_path / "curve.csv.partial")
+    (tmp_path / "INCOMPLETE.txt").write_text("The new results:\ncurve.csv\nsummary.nml\n")
     with pytest.raises(snapin.SnapinError, match="see INCOMPLETE.txt there"):
         snapin.read_results(tmp_path)
-    # What the tables belong to cannot be known: the next run takes them back and makes its own.
+    # The next run gives them their names, and then makes its own.
     assert len(snapin.run(CURVE, out=tmp_path).curve)
     assert sorted(os.listdir(tmp_path)) == ["curve.csv", "summary.nml"]
 

@@ -4,7 +4,7 @@ module tabulated
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key, text_key, word_key
-  use number_columns, only: columns_t, read_columns
+  use data_table, only: columns_t, read_columns
   use force_law, only: force_law_t
   use force_table, only: force_table_t, new_force_table, largest_step
   use law_reading, only: check_decades

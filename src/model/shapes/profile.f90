@@ -5,7 +5,7 @@ module profile
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, text_key
-  use number_columns, only: columns_t, read_columns
+  use data_table, only: columns_t, read_columns
   use cubic, only: spline
   use law_reading, only: check_decades
   use shape, only: shape_t

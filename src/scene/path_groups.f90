@@ -1,0 +1,206 @@
+!> &equilibrium_path, and what is read from the states of the path or of a cycle: &device,
+!> &fixed_load, &table, &regime, &profiles, &stability.
+module path_groups
+  use kinds, only: wp
+  use failure, only: failure_t
+  use text, only: brief
+  use deck, only: deck_t
+  use deck_keys, only: key_spec, group, list_key, real_key
+  use scene_groups, only: scene_t
+  implicit none
+  private
+  public :: path_keys, regime_keys, profiles_keys, stability_keys
+  public :: take_path, take_readings, take_regime, take_profiles, take_stability
+  public :: check_path, check_order
+
+contains
+
+  !> The rows of &equilibrium_path, &device, &fixed_load and &table.
+  pure function path_keys() result(specs)
+    type(key_spec), allocatable :: specs(:)
+
+    specs = [ &
+      group('equilibrium_path', 'The whole path of equilibria, stable and unstable, with ' // &
+            'exact folds.'), &
+      real_key('equilibrium_path', 'h0_start', 'm', 'Where the path starts, above h0_end.', &
+               otherwise='chosen by the program'), &
+      real_key('equilibrium_path', 'h0_end', 'm', 'Where it ends; needed without &loading.', &
+               otherwise='h0_end of &loading'), &
+      group('device', 'Bodies driven through a spring, in and out, from the path; needs ' // &
+            '&equilibrium_path.'), &
+      list_key('device', 'stiffness', 'N/m', 'Stiffness of each spring; 0: a dead load.', &
+               most=100, low=0.0_wp, otherwise='h0 is prescribed'), &
+      real_key('device', 'z_start', 'm', 'Position of the drive from which it starts.', &
+               otherwise='where the path starts'), &
+      real_key('device', 'z_end', 'm', 'Position at which it turns round.', &
+               otherwise='where the path ends'), &
+      group('fixed_load', 'All equilibria under given loads, stable or not; needs ' // &
+            '&equilibrium_path.'), &
+      list_key('fixed_load', 'load', 'N', 'The loads; negative: tension.', most=1000, &
+               required=.true.), &
+      group('table', 'Load, contact radius and stiffness against indentation, for discrete or ' // &
+            'finite elements; needs &equilibrium_path.')]
+  end function path_keys
+
+  pure function regime_keys() result(specs)
+    type(key_spec), allocatable :: specs(:)
+
+    specs = [group('regime', 'Which theory of contact describes the scene: parameters, and ' // &
+      'errors against the path; needs &equilibrium_path.')]
+  end function regime_keys
+
+  pure function profiles_keys() result(specs)
+    type(key_spec), allocatable :: specs(:)
+
+    specs = [ &
+      group('profiles', 'Separation, deformation, pressure and energy against r; needs &loading ' &
+            // 'or &equilibrium_path.'), &
+      list_key('profiles', 'h0', 'm', 'The h0 at which they are written.', most=1000, &
+               required=.true.)]
+  end function profiles_keys
+
+  pure function stability_keys() result(specs)
+    type(key_spec), allocatable :: specs(:)
+
+    specs = [group('stability', 'Stability of every equilibrium, by criterion and by smallest ' // &
+      'eigenvalue; needs &loading or &equilibrium_path.')]
+  end function stability_keys
+
+  !> &equilibrium_path.
+  subroutine take_path(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (.not. scene%deck%has_group('equilibrium_path')) return
+    allocate (scene%path)
+    associate (deck => scene%deck, path => scene%path)
+      if (allocated(scene%loading)) then
+        call deck%assume('equilibrium_path', 'h0_end', scene%loading%h0_end)
+      else if (.not. deck%is_set('equilibrium_path', 'h0_end')) then
+        call deck%mistake('equilibrium_path', 'h0_end', &
+                          'missing; give it, or a &loading to take it from', error)
+      end if
+      call deck%get('equilibrium_path', 'h0_end', path%h0_end)
+      call deck%get_optional('equilibrium_path', 'h0_start', path%h0_start)
+      if (allocated(path%h0_start)) call check_order(deck, 'equilibrium_path', 'h0_start', &
+        path%h0_start, 'above', 'h0_end', path%h0_end, error)
+    end associate
+  end subroutine take_path
+
+  !> &device, &fixed_load and &table.
+  subroutine take_readings(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+
+    associate (deck => scene%deck)
+      if (deck%has_group('device')) then
+        call check_path(scene, 'device', error)
+        allocate (scene%device)
+        associate (device => scene%device)
+          call deck%get('device', 'stiffness', device%stiffness)
+          call deck%get_optional('device', 'z_start', device%z_start)
+          call deck%get_optional('device', 'z_end', device%z_end)
+          if (allocated(device%z_start) .and. allocated(device%z_end)) call check_order(deck, &
+            'device', 'z_start', device%z_start, 'above', 'z_end', device%z_end, error)
+        end associate
+      end if
+      if (deck%has_group('fixed_load')) then
+        call check_path(scene, 'fixed_load', error)
+        allocate (scene%fixed_load)
+        call deck%get('fixed_load', 'load', scene%fixed_load%load)
+      end if
+      scene%table = deck%has_group('table')
+      if (scene%table) call check_path(scene, 'table', error)
+    end associate
+  end subroutine take_readings
+
+  !> &regime.
+  subroutine take_regime(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+
+    scene%regime = scene%deck%has_group('regime')
+    if (.not. scene%regime) return
+    if (.not. scene%shape%parabolic) call scene%deck%mistake('regime', '', &
+      'the theories are those of the parabola; leave out this group or &shape', error)
+    call check_path(scene, 'regime', error)
+  end subroutine take_regime
+
+  !> &profiles: every h0 must be passed on the way.
+  subroutine take_profiles(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    integer :: i
+
+    if (.not. has_states(scene, 'profiles', error)) return
+    allocate (scene%profiles)
+    call scene%deck%get('profiles', 'h0', scene%profiles%h0)
+    do i = 1, size(scene%profiles%h0)
+      if (reached(scene%profiles%h0(i))) cycle
+      call scene%deck%mistake('profiles', 'h0', brief(scene%profiles%h0(i)) // &
+                              ' m is outside the range of &loading and &equilibrium_path', error)
+      return
+    end do
+
+  contains
+
+    !> Whether the loading or the path passes this h0. A path that chooses its own start may start
+    !> as high as need be.
+    pure logical function reached(h0)
+      real(wp), intent(in) :: h0
+
+      reached = .false.
+      if (allocated(scene%loading)) &
+        reached = h0 >= scene%loading%h0_end .and. h0 <= scene%loading%h0_start
+      if (reached .or. .not. allocated(scene%path)) return
+      reached = h0 >= scene%path%h0_end
+      if (allocated(scene%path%h0_start)) reached = reached .and. h0 <= scene%path%h0_start
+    end function reached
+
+  end subroutine take_profiles
+
+  !> &stability.
+  subroutine take_stability(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+
+    scene%stability = has_states(scene, 'stability', error)
+  end subroutine take_stability
+
+  !> Whether the deck has a group that shows states; complains where there are none to show.
+  logical function has_states(scene, group, error)
+    type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: group
+    type(failure_t), allocatable, intent(inout) :: error
+
+    has_states = scene%deck%has_group(group) .and. scene%finds_states()
+    if (scene%deck%has_group(group) .and. .not. has_states) &
+      call scene%deck%mistake(group, '', 'needs &loading or &equilibrium_path', error)
+  end function has_states
+
+  !> Complains where a group that is read from the path has none, or one without jumps.
+  subroutine check_path(scene, group, error)
+    type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: group
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (.not. allocated(scene%path)) then
+      call scene%deck%mistake(group, '', 'needs &equilibrium_path', error)
+    else if (scene%bodies%rigid .or. .not. scene%law%adhesion > 0) then
+      call scene%deck%mistake(group, '', 'needs elastic bodies and a force that attracts', error)
+    end if
+  end subroutine check_path
+
+  !> Complains where a position [m] is not `word`, above or below, that of another key.
+  subroutine check_order(deck, group, key, position, word, other, limit, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: group, key, word, other
+    real(wp), intent(in) :: position, limit
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (merge(position > limit, position < limit, word == 'above')) return
+    call deck%mistake(group, key, brief(position) // ' is not ' // word // ' ' // other // ' = ' &
+      // brief(limit) // ' m', error)
+  end subroutine check_order
+
+end module path_groups
