@@ -1,15 +1,11 @@
 """Claims about the documents: tables and figures are the program's, links lead somewhere."""
 
 import re
-import sys
 
 import f90nml
 import pytest
+import reference_tables
 from conftest import ROOT
-
-sys.path.append(str(ROOT / "tools"))
-
-import reference_tables  # noqa: E402 (found through the line above)
 
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
 PAGES += sorted((ROOT / "docs").rglob("*.md"))

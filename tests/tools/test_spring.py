@@ -1,15 +1,9 @@
 """Claims about the spring of Fig. 11: where it jumps, where jumps end, and what lies between."""
 
-import sys
-
 import numpy as np
 import pytest
 import snapin
-from conftest import ROOT
-
-sys.path.append(str(ROOT / "tools" / "reproduce"))
-
-import spring  # noqa: E402 (found through the line above)
+import spring
 
 Z0, HAMAKER = 0.5e-9, 1e-19
 # The slope of the Lennard-Jones law is largest where its second derivative vanishes.
