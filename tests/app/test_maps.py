@@ -97,9 +97,11 @@ def test_an_interrupted_file_of_cases_goes_on_to_the_same_bytes(snapin, snapin_p
 
 
 def test_a_file_that_becomes_shorter_meanwhile_stops_the_sweep(snapin_path, tmp_path):
-    rows = "".join(f"{1e-20 * (i + 1)!r}\n" for i in range(6000))
+    rows = "".join(f"{1e-20 * (i + 1)!r}\n" for i in range(60000))
     (tmp_path / "cases.csv").write_text("force.hamaker\n" + rows)
-    (tmp_path / "d.nml").write_text(scene({"file": "cases.csv"}))
+    (tmp_path / "d.nml").write_text(scene(
+        {"file": "cases.csv"}, bodies={"radius": 1e-6, "rigid": True}, equilibrium_path=None,
+        loading=loading(3e-9, 1e-9, 1e-10)))
     with subprocess.Popen([snapin_path, "d.nml"], cwd=tmp_path, stderr=subprocess.PIPE,
                           text=True) as run:
         while not (tmp_path / "results/d/sweep.csv.partial").exists():

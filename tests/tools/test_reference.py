@@ -83,7 +83,7 @@ def test_published_parameters_give_the_known_table(tabor):
         assert one == pytest.approx(other, abs=tolerance)
 
 
-@pytest.mark.parametrize("sigma", [1e-3, 0.05, 0.35, 2.0, 30.0])
+@pytest.mark.parametrize("sigma", [1e-3, 0.35, 30.0])
 def test_two_resolutions_agree_to_nine_digits(sigma):
     usual = np.array(numbers(Path(sigma, DEPTH, resolution=USUAL)))
     fine = np.array(numbers(Path(sigma, DEPTH, resolution=FINE)))
@@ -133,7 +133,7 @@ def test_the_table_has_every_strength_and_says_how_good_it_is():
         assert float(row["difference"]) < allowed, sigma
 
 
-@pytest.mark.parametrize("sigma", [0.001, 0.33, 1.0, 100.0])
+@pytest.mark.parametrize("sigma", [0.33, 100.0])
 def test_the_table_is_what_the_reference_computes(sigma):
     row = table()[sigma]
     stored = [float(row[name]) for name in COLUMNS]

@@ -11,7 +11,7 @@ import pytest
 import snapin
 from support.processes import answer
 from support.wrapper_registry import LAW, REGISTRY, UNIT, law_of
-from support.wrapper_values import CASES, REFUSED
+from support.wrapper_values import REFUSED, cases
 
 CALLS = 200
 # What a process may grow by over the second half of the calls [bytes]: pages of the allocator here
@@ -37,7 +37,7 @@ def large(entry):
 def bad_calls(entry):
     """Arguments that are refused, one for each kind of refusal of the first few arguments."""
     for name, kind in list(entry.kinds.items())[:4]:
-        for label, value, clean in CASES[kind](entry.good[name]):
+        for label, value, clean in cases(kind, entry.good[name], every=False):
             if clean is REFUSED and label not in ("huge", "enormous", "None", "generator"):
                 yield {**entry.good, name: value}
 
