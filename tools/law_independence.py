@@ -44,8 +44,7 @@ def pull_offs(law, tabor, accuracy=1e-8):
         summary = snapin.run({
             "bodies": {"radius": 1.0, "stiffness": 2 * modulus}, **law,
             "equilibrium_path": {"h0_end": -1.0}, "regime": {}, "classical": {},
-            "numerics": {"accuracy": accuracy},
-        }).summary
+            "numerics": {"accuracy": accuracy}}).summary
     if abs(summary["regime_tabor_range"] / tabor - 1) > 1e-9:
         raise ArithmeticError(f"Tabor's parameter is {summary['regime_tabor_range']}, not {tabor}")
     return summary["max_tension"] / math.pi, summary["maugis_pull_off"] / math.pi

@@ -8,20 +8,7 @@ import itertools
 
 import numpy as np
 from drawing import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    dress,
-    run,
-    scale,
-    smooth,
-    title_of,
-)
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, dress, run, scale, smooth, title_of)
 from matplotlib.figure import Figure
 from snapin.results import ResultsError, read_summary, read_table
 
@@ -35,8 +22,7 @@ _THEORIES = {
     "jkr": ("JKR", {"color": VERMILION, "linestyle": (0, (6, 2))}),
     "dmt": ("DMT", {"color": GREEN, "linestyle": (0, (6, 2, 1, 2))}),
     "maugis_dugdale": (
-        "Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}
-    ),
+        "Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}),
 }
 # What a curve may be drawn against.
 NAMES = {"displacement": "displacement $h(0) - h_0$", "h0": "$h_0$"}

@@ -50,9 +50,8 @@ def draw_profiles(folder, branch=None):
     figure = Figure(figsize=(9, 4.2), layout="constrained")
     panels = figure.subplots(1, 2)
     for panel, y, name, (factor, unit) in (
-        (panels[0], "separation", "separation $h$", gaps),
-        (panels[1], "pressure", "pressure $p$", pressures),
-    ):
+            (panels[0], "separation", "separation $h$", gaps),
+            (panels[1], "pressure", "pressure $p$", pressures)):
         dress(panel, f"$r$ [{radii[1]}]", f"{name} [{unit}]")
         for state in states:
             # One point more, so that lines end at the frame.

@@ -49,10 +49,8 @@ def _group_text(group, keys):
     if not isinstance(keys, Mapping):
         raise TypeError(f"{_name(group)}: a dictionary of keys is needed, not {shown(keys)}")
     lines = [
-        f"  {_name(key)} = {_value_text(key, value)}\n"
-        for key, value in keys.items()
-        if value is not None
-    ]
+        f"  {_name(key)} = {_value_text(key, value)}\n" for key,
+        value in keys.items() if value is not None]
     return f"&{_name(group)}\n{''.join(lines)}/\n"
 
 
@@ -114,11 +112,7 @@ def scene(law, radius, stiffness, rigid, **groups):
     """Return the groups of a deck: a law's, the two bodies, and others."""
     if not isinstance(law, Mapping):
         raise TypeError(f"law: a dictionary of groups is needed, not {shown(law)}")
-    return {
-        "bodies": {"radius": radius, "stiffness": stiffness, "rigid": rigid},
-        **law,
-        **groups,
-    }
+    return {"bodies": {"radius": radius, "stiffness": stiffness, "rigid": rigid}, **law, **groups}
 
 
 def problem_deck(law, radius=1.0, stiffness=None, rigid=True):

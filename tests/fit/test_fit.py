@@ -29,19 +29,14 @@ SCENES = {
     "lennard_jones": (LENNARD_JONES, {STRENGTH: 1.0e-19, STIFFNESS: 1e10}),
     "stronger": (
         {"bodies": {"radius": 50e-9, "stiffness": 2e9}, "force": LENNARD_JONES["force"]},
-        {"force.z0": 3e-10, STRENGTH: 1.0e-19},
-    ),
+        {"force.z0": 3e-10, STRENGTH: 1.0e-19}),
     "morse": (
         {"bodies": BODIES, "morse": {"surface_energy": 0.03, "z0": 3e-10, "decay_length": 2e-10}},
-        {"morse.surface_energy": 0.03, "morse.decay_length": 2e-10, STIFFNESS: 1e10},
-    ),
+        {"morse.surface_energy": 0.03, "morse.decay_length": 2e-10, STIFFNESS: 1e10}),
     "sum": (
         {
-            "bodies": {"radius": 50e-9, "stiffness": 1e10},
-            "van_der_waals": {"hamaker": 1e-19},
-            "born": {"z0": 3e-10},
-            "hydration": {"energy": 2e-3, "decay_length": 3e-10},
-        },
+            "bodies": {"radius": 50e-9, "stiffness": 1e10}, "van_der_waals": {"hamaker": 1e-19},
+            "born": {"z0": 3e-10}, "hydration": {"energy": 2e-3, "decay_length": 3e-10}},
         {"van_der_waals.hamaker": 1e-19, STIFFNESS: 1e10},
     ),
     "double layer": (
@@ -340,8 +335,7 @@ def test_jkr_data_give_the_values_of_jkr_back_and_the_path_agrees(tmp_path):
     file = write(tmp_path / "jkr.csv", np.append(z, far), np.append(load, 0 * far))
     groups = {
         "bodies": {"radius": radius, "stiffness": 1.2e8},
-        "force": {"law": "lennard_jones", "surface_energy": 0.06, "z0": 2e-10},
-    }
+        "force": {"law": "lennard_jones", "surface_energy": 0.06, "z0": 2e-10}}
     result = run(fit_deck(groups, file, ["force.surface_energy", STIFFNESS, POINT],
                           {"noise": 1e-12},
                           {"columns": ["z", "force"], "segment": "retreat"}))

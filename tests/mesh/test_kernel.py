@@ -9,8 +9,7 @@ import snapin
 
 # Distances over sums: far (1 is t = 0) and near, down to the last digit of r and t.
 RATIOS = np.concatenate(
-    [[1.0], 1 - np.logspace(-15, -1, 15), np.logspace(-1, -15, 57), np.linspace(0.02, 0.98, 49)]
-)
+    [[1.0], 1 - np.logspace(-15, -1, 15), np.logspace(-1, -15, 57), np.linspace(0.02, 0.98, 49)])
 
 
 def reference(total, distance):

@@ -24,16 +24,12 @@ LAWS = {
     "dugdale": {"dugdale": {"stress": 1e7, "range": 1e-9, "smoothing": 0.4e-9}},
     "double_layer": {
         "double_layer": {
-            "potential": [0.1, 0.06],
-            "regulation": [0.8, 0.3],
-            "debye_length": 2e-9,
-            "model": "nonlinear",
-        }
+            "potential": [0.1, 0.06], "regulation": [0.8, 0.3], "debye_length": 2e-9,
+            "model": "nonlinear"}
     },
     "tabulated": {
         "tabulated": {
-            "file": str(ROOT / "inputs" / "examples" / "tabulated.txt"), "tail_exponent": 3,
-        },
+            "file": str(ROOT / "inputs" / "examples" / "tabulated.txt"), "tail_exponent": 3},
     },
 }
 # Separations at which a law is not smooth.

@@ -79,10 +79,8 @@ def scene():
     layers = keys["double_layer"]
     law = Dlvo(
         hamaker=keys["van_der_waals"]["hamaker"],
-        retardation_length=keys["van_der_waals"]["retardation_length"],
-        z0=keys["born"]["z0"],
-        potential=layers["potential"], regulation=layers["regulation"], salt=layers["salt"],
-    )
+        retardation_length=keys["van_der_waals"]["retardation_length"], z0=keys["born"]["z0"],
+        potential=layers["potential"], regulation=layers["regulation"], salt=layers["salt"])
     return snapin.run(DECK), keys["bodies"], law
 
 
@@ -148,8 +146,7 @@ def test_dlvo_jumps_are_those_of_independent_states():
     layers = {name: keys["double_layer"][name] for name in ("potential", "regulation", "salt")}
     _, (h0, load) = path_by_axis(
         "dlvo", sigma, (20.0, 16.0, *AXIS), ENDS, z0=z0, hamaker=law.hamaker,
-        retardation_length=keys["van_der_waals"]["retardation_length"], **layers,
-    )
+        retardation_length=keys["van_der_waals"]["retardation_length"], **layers)
     summary = result.summary
     # The pushing load before the jump: the bodies are over the barrier under compression.
     assert summary["jump_in_load"] > 0

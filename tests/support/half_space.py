@@ -235,10 +235,7 @@ def exponential(gap):
 def lennard_jones(gap):
     """Pressure, slope and energy of the Lennard-Jones law."""
     return (
-        8 / 3 * (gap**-9 - gap**-3),
-        8 * (gap**-4 - 3 * gap**-10),
-        gap**-8 / 3 - 4 / 3 * gap**-2,
-    )
+        8 / 3 * (gap**-9 - gap**-3), 8 * (gap**-4 - 3 * gap**-10), gap**-8 / 3 - 4 / 3 * gap**-2)
 
 
 def behind_a_barrier(gap):
@@ -282,15 +279,9 @@ def carried_out(task):
     """
     environment = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")
     done = subprocess.run(
-        [sys.executable, "-m", "support.half_space"],
-        cwd=pathlib.Path(__file__).parents[1],
-        input=json.dumps(task),
-        capture_output=True,
-        text=True,
-        check=True,
-        env=environment,
-        timeout=HANG,
-    )
+        [sys.executable, "-m", "support.half_space"], cwd=pathlib.Path(__file__).parents[1],
+        input=json.dumps(task), capture_output=True, text=True, check=True, env=environment,
+        timeout=HANG)
     return json.loads(done.stdout)
 
 

@@ -21,8 +21,7 @@ FOREIGN = {
     "masked": np.ma.masked, "bytes": b"1", "object": object(), "dict": {}, "set": {1.0},
     "datetime": np.datetime64("2020-01-01"), "timedelta": np.timedelta64(3, "s"),
     "structured": np.zeros((), dtype=[("x", float), ("y", float)]), "type": float,
-    "lambda": lambda: 1.0, "complex": 1 + 1j, "nested": [[1.0], [1.0, 2.0]], "numpy bool": np.True_,
-}
+    "lambda": lambda: 1.0, "complex": 1 + 1j, "nested": [[1.0], [1.0, 2.0]], "numpy bool": np.True_}
 NOT_FINITE = {"nan": np.nan, "inf": np.inf, "-inf": -np.inf}
 NONE = {"None": None}
 

@@ -19,8 +19,7 @@ SOURCES.append(ROOT / "meson.build")
 def test_tables_are_what_the_program_prints(snapin, page, option):
     block = reference_tables.block_of(page, snapin(option).stdout)
     assert (ROOT / page).read_text(encoding="utf-8") == reference_tables.page_with(page, block), (
-        "bring it up to date with: tools/reference_tables.py"
-    )
+        "bring it up to date with: tools/reference_tables.py")
 
 
 def without_code(text):

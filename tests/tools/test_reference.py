@@ -40,8 +40,7 @@ def test_hertz_pressure_flattens_a_parabola():
 # Solutions of others on other meshes: max tension/JKR, h0 there, and each jump's h0 and load.
 KNOWN = {
     0.87: (1.07953786, 2.2284576, 3.0886872, -1.5330549, 3.4834324, -2.9986585),
-    8.7: (1.01124487, 6.2758749, 5.9728350, -0.4076839, 11.9352327, -2.6534864),
-}
+    8.7: (1.01124487, 6.2758749, 5.9728350, -0.4076839, 11.9352327, -2.6534864)}
 # By Tabor's parameter: tension/(pi R w), h0 there, loads/(pi R w) at the jumps, loss/(w R z0).
 KNOWN_BY_TABOR = {
     0.01: (1.998969, 1.0019),

@@ -70,9 +70,7 @@ def test_jump_ends_bracket_jump_starts(field, fraction):
 
 @pytest.mark.parametrize("fraction", FRACTIONS)
 @pytest.mark.parametrize("field", FIELDS)
-def test_jumps_start_where_the_slope_is_the_stiffness_and_end_where_forces_balance(
-    field, fraction
-):
+def test_jumps_start_where_the_slope_is_the_stiffness_and_end_where_forces_balance(field, fraction):
     force, slope, *_ = FIELDS[field]
     both, stiffness = jumps_of(field, fraction)
     for start, end, rest in both:

@@ -52,14 +52,11 @@ def entries_of(name):
 
 
 # A plain helper that takes nothing from users, and what takes or makes decks and folders.
-HELPERS = {
-    "bytes_for", "run", "deck_text", "lennard_jones", "exponential", "read_results",
-}
+HELPERS = {"bytes_for", "run", "deck_text", "lennard_jones", "exponential", "read_results"}
 
 
 @pytest.mark.parametrize(
-    ("name", "call"), [(n, c) for n, c in public_callables() if n not in HELPERS]
-)
+    ("name", "call"), [(n, c) for n, c in public_callables() if n not in HELPERS])
 def test_every_argument_of_every_public_callable_is_in_the_registry(name, call):
     entries = entries_of(name)
     assert entries, f"{name} has no entry in tests/support/wrapper_registry.py"

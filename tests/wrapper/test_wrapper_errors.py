@@ -123,10 +123,8 @@ def test_a_bad_value_is_a_value_error_with_its_name(call, name):
         (curve_with(method="bisection"), "method", "'auto', 'mixing', 'anderson', 'newton'"),
         (curve_with(grid="hexagonal"), "grid", "'auto', 'uniform', 'panels'"),
         (
-            path_with(law=snapin.lennard_jones(hamaker=1, z0=1, part="half")),
-            "part",
-            "'full', 'repulsive', 'attractive'",
-        ),
+            path_with(law=snapin.lennard_jones(hamaker=1, z0=1, part="half")), "part",
+            "'full', 'repulsive', 'attractive'"),
     ],
 )
 def test_an_unknown_name_is_answered_with_those_there_are(call, name, known):

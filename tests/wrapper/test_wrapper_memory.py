@@ -89,9 +89,7 @@ def test_calls_that_are_refused_do_not_leak(name):
         lambda: snapin.run({"bodies": {"radius": -1, "frog": "x"}, "dog": True}),
         lambda: snapin.run({**law_of(1.0), "bodies": UNIT}, out="/dev/null/folder"),
         lambda: snapin.contact_radius("dmt", "edge_ratio", [2.0], **UNIT, surface_energy=1.0),
-        lambda: snapin.equilibrium(
-            LAW, snapin.uniform_mesh(50, 5.0), 0.0, 9.0, most_iterations=2
-        ),
+        lambda: snapin.equilibrium(LAW, snapin.uniform_mesh(50, 5.0), 0.0, 9.0, most_iterations=2),
     ],
 )
 def test_calculations_that_fail_do_not_leak(call):

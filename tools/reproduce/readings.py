@@ -37,25 +37,18 @@ def _readings():
         return dataclasses.replace(KEPT, name=f"ratio kept, {name}", **changes)
 
     return (
-        BASE,
-        base("nodes 200 nm apart", spacing=200.0),
+        BASE, base("nodes 200 nm apart", spacing=200.0),
         base("pressure constant about nodes", interpolated=False),
-        base("steps of 0.5 nm", step=0.5),
-        base("ratio falls at any growth", growth=1.0),
-        base("ratio falls to a tenth", fall=0.1),
-        base("ratio at most 0.005", limit=0.005),
+        base("steps of 0.5 nm", step=0.5), base("ratio falls at any growth", growth=1.0),
+        base("ratio falls to a tenth", fall=0.1), base("ratio at most 0.005", limit=0.005),
         base("change below 1e-5 nm", tolerance=1e-5),
         base("change before mixing below 1e-4 nm", unmixed=True),
-        base("200 iterations a step", passes=200),
-        kept("rule as read"),
+        base("200 iterations a step", passes=200), kept("rule as read"),
         kept("change before mixing below 1e-4 nm", unmixed=True),
         kept("the same, steps of 0.1 nm", unmixed=True, step=0.1),
         kept("change before mixing below 1e-5 nm", unmixed=True, tolerance=1e-5),
-        kept("50 iterations a step", passes=50),
-        kept("200 iterations a step", passes=200),
-        kept("the same, nodes 50 nm apart", passes=200, spacing=50.0),
-        NEAREST,
-    )
+        kept("50 iterations a step", passes=50), kept("200 iterations a step", passes=200),
+        kept("the same, nodes 50 nm apart", passes=200, spacing=50.0), NEAREST)
 
 
 def sigma_of(letter, draw=0):

@@ -26,8 +26,7 @@ _SETTINGS = {
     "ytick.labelsize": 9, "legend.fontsize": 8.5, "legend.frameon": False,
     "legend.handlelength": 2.2, "lines.linewidth": 1.5, "lines.markersize": 5,
     "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.8,
-    "axes.unicode_minus": True,
-}
+    "axes.unicode_minus": True}
 
 
 def figure(rows=1, columns=1, height=4.2, width=WIDTH, mosaic=None, **kwargs):
