@@ -6,7 +6,6 @@
 
 import math
 import os
-import re
 import sys
 import warnings
 
@@ -53,21 +52,13 @@ def pull_offs(law, tabor, accuracy=1e-8):
 def table():
     """Return the lines of the table."""
     names = ("by range", "Maugis-Dugdale", *LAWS)
-    lines = ["| " + " | ".join(names) + " |", "|" + "---|" * len(names)]
+    rows = []
     for tabor in RANGES:
         found = [pull_offs(law, tabor) for law in LAWS.values()]
         cells = [found[0][1], *(tension for tension, _ in found)]
-        lines.append(f"| {tabor:g} | " + " | ".join(f"{cell:.5f}" for cell in cells) + " |")
-    return lines
-
-
-def main():
-    text = PAGE.read_text(encoding="utf-8")
-    new = re.sub(r"(<!-- laws -->\n).*?(<!-- /laws -->)",
-                 lambda match: match[1] + "\n".join(table()) + "\n" + match[2], text, flags=re.S)
-    PAGE.write_text(new, encoding="utf-8")
-    pages.mark(PAGE)
+        rows.append([f"{tabor:g}", *(f"{cell:.5f}" for cell in cells)])
+    return pages.table(names, rows)
 
 
 if __name__ == "__main__":
-    main()
+    pages.insert(PAGE, "laws", table())
