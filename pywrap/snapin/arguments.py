@@ -85,8 +85,10 @@ def _exact(given, array):
     """Whether whole numbers came through the conversion; those below 2**53 do."""
     large = abs(array) >= 2.0**53
     return all(
-        int(one) == int(number) for one,
-        number in zip(given[large].flat, array[large].flat) if one == int(one))
+        int(one) == int(number)
+        for one, number in zip(given[large].flat, array[large].flat)
+        if one == int(one)
+    )
 
 
 def vector(name, values, *, most=_MOST):

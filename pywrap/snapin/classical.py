@@ -32,8 +32,9 @@ def _material(theory, radius, stiffness, surface_energy, strength=0.0):
     one_of("theory", theory, _NEEDS)
     needed = {"surface_energy": surface_energy, "strength": strength}
     checked = [
-        (positive if name in _NEEDS[theory] else not_negative)(name, value) for name,
-        value in needed.items()]
+        (positive if name in _NEEDS[theory] else not_negative)(name, value)
+        for name, value in needed.items()
+    ]
     return positive("radius", radius), positive("stiffness", stiffness), *checked
 
 

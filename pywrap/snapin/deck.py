@@ -49,8 +49,10 @@ def _group_text(group, keys):
     if not isinstance(keys, Mapping):
         raise TypeError(f"{_name(group)}: a dictionary of keys is needed, not {shown(keys)}")
     lines = [
-        f"  {_name(key)} = {_value_text(key, value)}\n" for key,
-        value in keys.items() if value is not None]
+        f"  {_name(key)} = {_value_text(key, value)}\n"
+        for key, value in keys.items()
+        if value is not None
+    ]
     return f"&{_name(group)}\n{''.join(lines)}/\n"
 
 

@@ -292,5 +292,8 @@ def _fields(kind, curve, result):
 def _points(summary, names):
     """Return the points whose h0 and load the summary has under these names."""
     return [
-        Point(float(h0), float(load)) for name in names if f"{name}_h0" in summary for h0,
-        load in zip(*(np.atleast_1d(summary[f"{name}_{key}"]) for key in ("h0", "load")))]
+        Point(float(h0), float(load))
+        for name in names
+        if f"{name}_h0" in summary
+        for h0, load in zip(*(np.atleast_1d(summary[f"{name}_{key}"]) for key in ("h0", "load")))
+    ]

@@ -76,8 +76,9 @@ def result_of(files, place):
 def _fitted(text):
     """Return the groups of fit.nml, the correlations as matrices; none where there is no fit."""
     groups = {
-        name: {key: _as_list(values) for key, values in group.items() if key != "title"} for name,
-        group in _namelist(text).items()}
+        name: {key: _as_list(values) for key, values in group.items() if key != "title"}
+        for name, group in _namelist(text).items()
+    }
     for group in groups.values():
         group["correlation"] = group["correlation"].reshape(2 * (len(group["parameters"]),))
     return groups
@@ -117,8 +118,9 @@ def _namelist(text):
 def _values(text):
     """Return the values in a part of a line."""
     return [
-        _value(bare) if quoted is None else quoted.replace("''", "'") for quoted,
-        bare in (match.groups() for match in _WORD.finditer(text))]
+        _value(bare) if quoted is None else quoted.replace("''", "'")
+        for quoted, bare in (match.groups() for match in _WORD.finditer(text))
+    ]
 
 
 def _value(word):
@@ -145,8 +147,9 @@ def _columns(text, place):
     cells = list(zip(*rows)) or [()] * len(header)
     try:
         return {
-            column: np.array(cells[i], str if _has_text(column, cells[i]) else float) for i,
-            column in enumerate(header)}
+            column: np.array(cells[i], str if _has_text(column, cells[i]) else float)
+            for i, column in enumerate(header)
+        }
     except ValueError as problem:
         raise ResultsError(f"{place}: {problem}") from problem
 
@@ -173,8 +176,9 @@ def _summary_groups(text, place):
         raise ResultsError(f"{place}: no group &summary and &cost")
     return {
         name: {
-            key: _as_list(values) if _snapin.flat_deck.is_list(key) else values[0] for key,
-            values in groups[name].items()}
+            key: _as_list(values) if _snapin.flat_deck.is_list(key) else values[0]
+            for key, values in groups[name].items()
+        }
         for name in ("summary", "cost")
     }
 

@@ -77,8 +77,9 @@ def test_weights_do_not_depend_on_how_a_panel_is_cut(order):
         values = rng.uniform(-1, 1, order)
 
         whole, first, second = (
-            snapin.panel_weights(node, target, a, b, centre=centre) for a,
-            b in ((left, right), (left, middle), (middle, right)))
+            snapin.panel_weights(node, target, a, b, centre=centre)
+            for a, b in ((left, right), (left, middle), (middle, right))
+        )
         mesh = snapin.panel_mesh([0.0, 1.0], order) if order > 2 else snapin.uniform_mesh(2, 1.0)
         cut = (middle - left) / (right - left)
         parts = first @ mesh.interpolate(values, cut * node) + second @ mesh.interpolate(

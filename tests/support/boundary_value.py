@@ -31,8 +31,9 @@ def pressure(potential, regulation, gap, order=24, pieces=4):
     y = np.concatenate(
         [
             sum(
-                4 * np.arctanh(np.tanh(alone / 4) * np.exp(-distance)) for alone,
-                distance in ((y_alone[0], at), (y_alone[1], gap - at)))
+                4 * np.arctanh(np.tanh(alone / 4) * np.exp(-distance))
+                for alone, distance in ((y_alone[0], at), (y_alone[1], gap - at))
+            )
             for at in (a + (b - a) * (x + 1) / 2 for a, b in zip(ends, ends[1:]))
         ]
     )

@@ -23,8 +23,9 @@ def deck(**groups):
     `from` is a word of Python's: write from_.
     """
     return deck_text({
-        name: keys and {key.rstrip("_"): value for key, value in keys.items()} for name,
-        keys in groups.items()})
+        name: keys and {key.rstrip("_"): value for key, value in keys.items()}
+        for name, keys in groups.items()
+    })
 
 
 def lennard_jones(sigma, *, part="full", **groups):

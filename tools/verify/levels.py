@@ -141,8 +141,10 @@ def run(program, name, deck, threads, folder, kernel=None):
 def numbers_of(one):
     """The columns of all tables, and the numbers of the summary, by name."""
     found = {
-        f"{path.name}: {name}": column for path in sorted(one.folder.glob("*.csv")) for name,
-        column in one.table(path.name).columns.items()}
+        f"{path.name}: {name}": column
+        for path in sorted(one.folder.glob("*.csv"))
+        for name, column in one.table(path.name).columns.items()
+    }
     for key, value in one.summary.items():
         if not isinstance(several(value)[0], str):
             found[key] = np.array(several(value), float)
