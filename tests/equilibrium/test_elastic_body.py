@@ -8,7 +8,6 @@ import subprocess
 import f90nml
 import numpy as np
 import pytest
-from conftest import ROOT
 from support.half_space import path_by_axis
 from support.processes import HANG
 from support.scenes import lennard_jones, loading

@@ -226,39 +226,3 @@ def test_the_uniform_mesh_tends_to_the_same_state_at_second_order():
         assert state.converged
         errors.append(abs(state.load - exact.load))
     assert (np.log2(np.divide(errors[:-1], errors[1:])) > 1.8).all()
-
-
-# --- Arguments
-
-
-@pytest.mark.parametrize(
-    ("arguments", "name"),
-    [
-        ({"law": {"force": {"law": "casimir"}}}, "law"),
-        ({"method": "brent"}, "method"),
-        ({"h0": math.nan}, "h0"),
-        ({"coupling": -1.0}, "coupling"),
-        ({"scale": 0.0}, "scale"),
-        ({"start": np.ones(3)}, "start"),
-        ({"tolerance": 0.0}, "tolerance"),
-        ({"most_iterations": 0}, "most_iterations"),
-        ({"depth": -1}, "depth"),
-        ({"patience": 0}, "patience"),
-        ({"mixing_limit": math.inf}, "mixing_limit"),
-        ({"displacement_tolerance": 1e-4}, "displacement_tolerance"),
-        ({"method": "mixing", "displacement_tolerance": -1.0}, "displacement_tolerance"),
-    ],
-)
-def test_a_bad_argument_is_named(arguments, name):
-    good = {"law": LAW["lennard_jones"], "mesh": MESH, "h0": 2.0, "coupling": 0.1}
-    with pytest.raises(ValueError, match=rf"\b{name}\b"):
-        snapin.equilibrium(**{**good, **arguments})
-
-
-@pytest.mark.parametrize(
-    ("arguments", "name"),
-    [({"mesh": "uniform"}, "mesh"), ({"depth": 2.5}, "depth"), ({"h0": "near"}, "h0")])
-def test_what_has_the_wrong_type_is_named(arguments, name):
-    good = {"law": LAW["lennard_jones"], "mesh": MESH, "h0": 2.0, "coupling": 0.1}
-    with pytest.raises(TypeError, match=rf"\b{name}\b"):
-        snapin.equilibrium(**{**good, **arguments})

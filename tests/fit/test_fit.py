@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-import snapin
 from support.measured import (
     BODIES,
     CONTACT_POINT,

@@ -6,7 +6,7 @@ import time
 
 import f90nml
 import pytest
-from support.interrupted import Bench, frames, heading, sealed, SHORT, WORD
+from support.interrupted import Bench, frames, sealed, SHORT, WORD
 from support.scenes import deck, exponential, lennard_jones, loading
 
 UNIFORM = {"grid": "uniform", "nodes": 120, "r_max": 12.0}

@@ -8,7 +8,7 @@ import subprocess
 import time
 
 import pytest
-from support.interrupted import Bench, environment, frames, heading, linked_id, owner, rows, SWEEP
+from support.interrupted import Bench, environment, frames, heading, linked_id, owner, SWEEP
 from support.scenes import lennard_jones, loading
 
 

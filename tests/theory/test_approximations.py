@@ -135,33 +135,3 @@ def test_load_is_that_of_rigid_bodies_at_the_same_gap():
     soft = snapin.slow_deformation(gap, radius=RADIUS, stiffness=1e3, law=FULL)
     rigid = snapin.slow_deformation(gap, radius=RADIUS, rigid=True, law=FULL)
     np.testing.assert_array_equal(soft.load, rigid.load)
-
-
-# --- Arguments
-
-
-@pytest.mark.parametrize(
-    ("call", "error", "name"),
-    [
-        (lambda: snapin.slow_deformation([0.0], **BODIES, law=FULL), ValueError, "gap"),
-        (lambda: snapin.slow_deformation([1e-9], **BODIES, law="hertz"), TypeError, "law"),
-        (
-            lambda: snapin.slow_deformation([1e-9], **BODIES, law=FULL, form="series"), ValueError,
-            "form"),
-        (
-            lambda: snapin.slow_deformation(
-                [1e-9], **BODIES, law=snapin.exponential(p0=1.0, decay_length=1.0),
-                form="attraction_only"),
-            ValueError,
-            "form",
-        ),
-        (lambda: snapin.jump_estimates(radius=-1.0, stiffness=1.0, law=FULL), ValueError, "radius"),
-        (lambda: snapin.approximation_rows(1e-9, 2e-9, **BODIES, law=FULL), ValueError, "h0_end"),
-        (
-            lambda: snapin.approximation_rows(1e-9, 0.0, **BODIES, law=FULL, count=1), ValueError,
-            "count"),
-    ],
-)
-def test_a_bad_argument_is_named(call, error, name):
-    with pytest.raises(error, match=rf"\b{name}\b"):
-        call()

@@ -228,33 +228,3 @@ def test_strength_of_lennard_jones_makes_lambda_1_157_times_tabors_parameter():
     assert strength == pytest.approx(tension.max(), rel=1e-9)
     tabor = (R * GAMMA**2 / ((STIFFNESS / 2) ** 2 * z0**3)) ** (1 / 3)
     assert lam / tabor == pytest.approx(1.157, abs=5e-4)
-
-
-# --- Arguments
-
-
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [
-        (lambda: snapin.contact_curve("jkr", [1e-6], radius=-1, stiffness=1e10), "surface_energy"),
-        (lambda: snapin.contact_curve("hertz", [1e-6], radius=0, stiffness=1e10), "radius"),
-        (lambda: snapin.contact_curve("hertz", [1e-6], radius=1, stiffness=math.nan), "stiffness"),
-        (lambda: snapin.contact_curve("hertz", [[1e-6]], **BODIES), "contact_radius"),
-        (lambda: snapin.contact_curve("hertz", [-1e-6], **BODIES), "contact_radius"),
-        (lambda: snapin.contact_curve("maugis", [1e-6], **ADHESIVE), "strength"),
-        (lambda: snapin.contact_curve("bradley", [1e-6], **BODIES), "theory"),
-        (lambda: snapin.contact_radius("jkr", "load", [math.inf], **ADHESIVE), "values"),
-        (lambda: snapin.contact_radius("jkr", "speed", [1.0], **ADHESIVE), "speed"),
-        (lambda: snapin.profile("hertz", [-1.0], 1e-6, **BODIES), "r"),
-        (lambda: snapin.profile("dmt", [1.0], 1e-6, **ADHESIVE), "dmt"),
-        (lambda: snapin.pull_off("hertz", **BODIES), "hertz"),
-    ],
-)
-def test_a_bad_argument_is_named(call, name):
-    with pytest.raises(ValueError, match=rf"\b{name}\b"):
-        call()
-
-
-def test_what_is_not_a_number_is_a_type_error():
-    with pytest.raises(TypeError, match="contact_radius"):
-        snapin.contact_curve("hertz", ["wide"], **BODIES)

@@ -2,10 +2,8 @@
 nothing left on the disk or said that was not asked for."""
 
 import os
-import pathlib
 import tempfile
 
-import _snapin
 import f90nml
 import numpy as np
 import pytest

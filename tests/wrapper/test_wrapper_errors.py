@@ -104,6 +104,50 @@ def test_a_bad_value_is_a_value_error_with_its_name(call, name):
         call()
 
 
+LAW, PANEL, EDGE = law_of(1.0), snapin.panel_mesh([0.0, 1.0], 8), {**UNIT, "surface_energy": 1.0}
+STATE = {"law": LAW, "mesh": PANEL, "h0": 2.0, "coupling": 0.1}
+
+
+@pytest.mark.parametrize(("call", "name"), [
+    (lambda: snapin.uniform_mesh(1, 1.0), "nodes"),
+    (lambda: snapin.panel_mesh([0.0], 8), "ends"),
+    (lambda: snapin.panel_mesh([0.0, 1.0, 1.0], 8), "ends"),
+    (lambda: snapin.panel_mesh([-2.0, 1.0], 8, centre=1.0), "ends"),
+    (lambda: snapin.panel_mesh([0.0, 1.0], 0), "order"),
+    (lambda: PANEL.interpolate(np.ones(8), [1.5]), "at"),
+    (lambda: snapin.panel_weights([0.0, 2.0], [0.5], 0.0, 1.0), "node"),
+    (lambda: snapin.panel_weights([0.0, 1.0], [-0.5], 0.0, 1.0), "target"),
+    (lambda: snapin.panel_weights([0.0, 1.0], [0.5], 1.0, 1.0), "right"),
+    (lambda: snapin.panel_weights([0.0, 1.0], [0.5], -1.0, 1.0), "left"),
+    (lambda: snapin.kernel([1.0], [0.0]), "distance"),
+    (lambda: snapin.kernel([1.0], [1.5]), "distance"),
+    (lambda: snapin.gauss_rule(10**6), "points"),
+    (lambda: snapin.force_law(snapin.exponential(p0=1.0), [1e-9]), "decay_length"),
+    (lambda: snapin.force_law(snapin.exponential(p0=1.0, decay_length=1.0, z0=1.0), [1.0]), "z0"),
+    (lambda: snapin.force_law(LAW, [0.0]), "gap"),
+    (lambda: snapin.force_law({}, [1.0]), "force"),
+    (lambda: snapin.equilibrium(**STATE, most_iterations=0), "most_iterations"),
+    (lambda: snapin.equilibrium(**STATE, patience=0), "patience"),
+    (lambda: snapin.equilibrium(**STATE, displacement_tolerance=1e-4), "displacement_tolerance"),
+    (lambda: snapin.contact_curve("jkr", [1.0], **UNIT), "surface_energy"),
+    (lambda: snapin.contact_curve("maugis", [1.0], **EDGE), "strength"),
+    (lambda: snapin.contact_curve("bradley", [1.0], **UNIT), "theory"),
+    (lambda: snapin.contact_radius("jkr", "speed", [1.0], **EDGE), "speed"),
+    (lambda: snapin.profile("hertz", [-1.0], 1.0, **UNIT), "r"),
+    (lambda: snapin.profile("dmt", [1.0], 1.0, **EDGE), "dmt"),
+    (lambda: snapin.pull_off("hertz", **UNIT), "hertz"),
+    (lambda: snapin.slow_deformation([0.0], **UNIT, law=LAW), "gap"),
+    (lambda: snapin.slow_deformation(
+        [1.0], **UNIT, law=snapin.exponential(p0=1.0, decay_length=1.0), form="attraction_only"),
+     "form"),
+    (lambda: snapin.approximation_rows(1.0, 2.0, **UNIT, law=LAW), "h0_end"),
+    (lambda: snapin.approximation_rows(1.0, 0.0, **UNIT, law=LAW, count=1), "count"),
+])
+def test_what_has_no_meaning_is_a_value_error_that_names_it(call, name):
+    with pytest.raises(ValueError, match=rf"\b{name}\b"):
+        call()
+
+
 @pytest.mark.parametrize(
     ("call", "name", "known"),
     [
