@@ -50,8 +50,9 @@ def solve(snapin, tmp_path_factory):
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_folds_and_states_are_those_of_independent_states(solve, scene):
-    (all_h0, loads), (h0, load) = path_by_axis("lennard_jones", 1.0, AXIS, ENDS, layer=SCENES[scene])
-    found = solve(layered(SCENES[scene], equilibrium_path={"h0_end": float(all_h0[-1])})).summary
+    layer = SCENES[scene]
+    (all_h0, loads), (h0, load) = path_by_axis("lennard_jones", 1.0, AXIS, ENDS, layer=layer)
+    found = solve(layered(layer, equilibrium_path={"h0_end": float(all_h0[-1])})).summary
     assert found["end_load"] == pytest.approx(loads[-1], rel=1e-8)
     assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-8)
     assert [found["jump_in_load"], found["jump_out_load"]] == pytest.approx(load, rel=2e-8)

@@ -4,7 +4,8 @@ program base_values
   use kinds, only: wp
   use adaptive_quadrature, only: integral_t, new_integral
   use bessel, only: bessel_t, new_bessel
-  use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, series_integral
+  use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
+    series_integral
   use cubic, only: spline, monotone
   use decimal, only: put_real, longest_real
   use elliptic, only: carlson_rf
@@ -118,7 +119,8 @@ contains
     mark = index(what, ':')
     select case (what(:mark - 1))
     case ('root')
-      root = new_root_search(ends(1), f(what(mark + 1:), ends(1)), ends(2), f(what(mark + 1:), ends(2)))
+      root = new_root_search(ends(1), f(what(mark + 1:), ends(1)), ends(2), &
+        f(what(mark + 1:), ends(2)))
       do while (root%is_open())
         call root%note(root%place(), f(what(mark + 1:), root%place()))
         asked = asked + 1

@@ -2,8 +2,8 @@
 
 A case is a label, a value, and what is claimed of it: REFUSED, or the clean value whose result it
 must give (a contiguous float64 array, a float, an int, a str), if it is not refused. Cases stand by
-what is odd about the value. Of one argument of each kind all are tried, of every other one the first
-of each sort: which check an argument goes through shows in these.
+what is odd about the value. Of one argument of each kind all are tried, of every other one the
+first of each sort: which check an argument goes through shows in these.
 """
 
 import array
@@ -50,7 +50,8 @@ def scalars(good):
              "big-endian": np.array(good, dtype=">f8"), "Fraction": Fraction(good)}
     extreme = {f"{sign * value:g}": sign * value for value in EXTREMES for sign in (1, -1)}
     return {"foreign": refused(FOREIGN), "none": refused(NONE), "shape": refused(many),
-            "finite": refused({**NOT_FINITE, "Decimal nan": Decimal("nan")}), "large": refused(large),
+            "finite": refused({**NOT_FINITE, "Decimal nan": Decimal("nan")}),
+            "large": refused(large),
             "kind": taken(kinds, good), "whole": taken(
                 {"int": 2, "numpy int": np.int16(2), "unsigned": np.uint8(2)}, 2.0),
             "short": [(np.dtype(kind).name, kind(good), float(kind(good)))
@@ -139,7 +140,8 @@ def counts(good):
                 {"list": [good], "1-d": np.array([good])}), "large": refused(large),
             "sign": refused({"negative": -1, "most negative": -(2**63)}),
             "kind": taken({np.dtype(kind).name: kind(good) for kind in
-                           (np.int8, np.uint8, np.int64, np.uint64)} | {"0-d": np.array(good)}, good),
+                           (np.int8, np.uint8, np.int64, np.uint64)}
+                          | {"0-d": np.array(good)}, good),
             "few": own({"zero": 0, "one": 1, "two": 2})}
 
 
@@ -156,8 +158,8 @@ def names(good):
 
 
 def in_deck(make, like_good, left_out=()):
-    """Cases of the same as a key of a deck: it may be left out, one value may be a list, and what is
-    in range the deck says."""
+    """Cases of the same as a key of a deck: it may be left out, one value may be a list, and what
+    is in range the deck says."""
     def cases(good):
         return {sort: [(label, value, good if label in like_good else clean)
                        for label, value, clean in each if label not in left_out]

@@ -73,7 +73,8 @@ def test_a_slow_cycle_jumps_there_and_never_rests_between_the_starts(field):
         visited.append(gap)
     approach, retreat = np.array(visited[:steps]), np.array(visited[steps:])
     for way in (approach, retreat):
-        assert not ((way > outward.start + 1e-6 * width) & (way < inward.start - 1e-6 * width)).any()
+        between = (way > outward.start + 1e-6 * width) & (way < inward.start - 1e-6 * width)
+        assert not between.any()
     # The approach comes to the inward start and the retreat to the outward one.
     assert approach[approach > inward.start].min() - inward.start < 0.2 * width
     assert outward.start - retreat[retreat < outward.start].max() < 0.2 * width

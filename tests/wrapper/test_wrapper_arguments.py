@@ -1,8 +1,8 @@
 """The claim that no argument, however wrong, crashes, hangs or is silently taken for another.
 
 Every public callable of the package is called with values of support/wrapper_values.py for every
-argument, with all of them for one argument of each kind and with one of each sort for the others, in
-a process of its own (support/wrapper_child.py). Allowed are the result of a
+argument, with all of them for one argument of each kind and with one of each sort for the others,
+in a process of its own (support/wrapper_child.py). Allowed are the result of a
 clean copy, to the bit, and an exception that begins with the argument's name or, where that is a
 key of a deck, is the program's message about that key. What decks are is in test_run.py.
 """
