@@ -1,5 +1,6 @@
 """Formulas and small operations on curves and profiles that several figures need."""
 
+import drawing
 import numpy as np
 
 RADIUS = 1.5e-2
@@ -81,11 +82,7 @@ def at(x, columns, name, by="h0"):
 
 def states(results, branch="loading"):
     """Return the profiles of a branch, a dict of arrays each, in order; each begins at r = 0."""
-    rows = results.branch(branch, "profiles")
-    starts = np.flatnonzero(rows["r"] == 0)
-    ends = np.append(starts[1:], rows["r"].size)
-    return [{column: values[i:j] for column, values in rows.items()}
-            for i, j in zip(starts, ends)]
+    return drawing.states_of(results.branch(branch, "profiles"))
 
 
 def curvature(state, within):

@@ -108,7 +108,7 @@ def draw(runs):
                 ylim=(min(0.75, 0.96 * min(found)), _BROKEN), ticks=[10.0 ** np.arange(-3, 4)])
     lower.axhline(1, color=style.GREY, linewidth=0.9, linestyle="--", zorder=1)
     style.word(lower, 0.31e-3, 0.99, "JKR theory")
-    style.arrow(lower, (0.3e-3, 4 / 3), (0.62e-3, 4 / 3))
+    style.arrow(lower, (0.3e-3, 4 / 3), (0.62e-3, 4 / 3), style.BLACK)
     style.word(lower, 0.31e-3, 1.35, "DMT\ntheory", style.BLACK, va="bottom", linespacing=1.0)
     upper.spines["bottom"].set_visible(False)
     upper.tick_params(bottom=False)

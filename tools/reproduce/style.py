@@ -8,7 +8,7 @@ import io
 
 import matplotlib
 import numpy as np
-from drawing import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION  # noqa: F401
+from drawing import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, arrow  # noqa: F401
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
@@ -80,13 +80,6 @@ def statement(panel, text, x, y, align="left"):
 def word(panel, x, y, text, color="#555555", **kwargs):
     """Write a few small words at a point of the data."""
     panel.text(x, y, text, color=color, **{"fontsize": 8.5, "ha": "left", "va": "top", **kwargs})
-
-
-def arrow(panel, tail, head, color=BLACK, linewidth=1.2):
-    """Draw an arrow between two points of the data, a jump for instance."""
-    panel.annotate("", head, tail, zorder=8, annotation_clip=False, arrowprops={
-        "arrowstyle": "-|>", "color": color, "linewidth": linewidth, "shrinkA": 0, "shrinkB": 0,
-        "mutation_scale": 11})
 
 
 def note(panel, text, at, to, align="left", color=BLACK):
