@@ -388,7 +388,7 @@ def quicker(groups):
     """The deck with fewer steps, nodes and cases."""
     numerics = groups.get("numerics", {})
     if numerics.get("grid") == "uniform":
-        numerics["nodes"] = min(numerics.get("nodes", 160), 160)
+        numerics["nodes"] = min(numerics.get("nodes", 90), 90)
         for name in ("loading", "unloading"):
             if "h0_step" in groups.get(name, {}):
                 groups[name]["h0_step"] *= 3
