@@ -105,7 +105,7 @@ def lowest(half_space, gap, sigma):
 SIGMAS = [
     pytest.param(sigma, marks=[pytest.mark.long] if sigma > 1000 else
                  [pytest.mark.slow] if sigma > 100 else [])
-    for sigma in (1e-3, 0.1, 0.87, 8.7, 50.0, 1e3, 1e4)
+    for sigma in (1e-3, 0.1, 0.87, 8.7, 1e3, 1e4)
 ]
 
 
