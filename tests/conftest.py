@@ -68,15 +68,8 @@ def snapin(snapin_path):
 
     def run(*args, cwd=None, timeout=HANG, **kwargs):
         return subprocess.run(
-            [str(snapin_path), *map(str, args)],
-            cwd=cwd,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            timeout=timeout,
-            check=False,
-            **kwargs,
-        )
+            [str(snapin_path), *map(str, args)], cwd=cwd, capture_output=True, text=True,
+            errors="replace", timeout=timeout, check=False, **kwargs)
 
     return run
 

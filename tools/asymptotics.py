@@ -7,7 +7,6 @@
 import csv
 import math
 import pathlib
-import re
 import sys
 
 import pages
@@ -44,21 +43,15 @@ def cells(row):
 def main():
     """Copy the sweep and rewrite the page's table."""
     default = pages.ROOT / "results" / "table_lennard_jones" / "sweep.csv"
-    found = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default
-    if not found.is_file():
-        sys.exit(f"no {found}; first: ./run inputs/table_lennard_jones.nml")
-    table = rows(found)
-    if not all(row["converged"] == 1 for row in table):
-        sys.exit(f"{found}: not every case converged")
-    (DOCS / "table_lennard_jones.csv").write_bytes(found.read_bytes())
-    lines = ["| " + " | ".join(HEADER) + " |", "|" + "---|" * len(HEADER)]
-    lines += ["| " + " | ".join(cells(row)) + " |" for row in table[::EVERY]]
-    page = DOCS / "asymptotics.md"
-    text = page.read_text(encoding="utf-8")
-    new = re.sub(r"(<!-- table -->\n).*?(<!-- /table -->)",
-                 lambda match: match[1] + "\n".join(lines) + "\n" + match[2], text, flags=re.S)
-    page.write_text(new, encoding="utf-8")
-    pages.mark(page)
+    file = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default
+    if not file.is_file():
+        sys.exit(f"no {file}; first: ./run inputs/table_lennard_jones.nml")
+    found = rows(file)
+    if not all(row["converged"] == 1 for row in found):
+        sys.exit(f"{file}: not every case converged")
+    (DOCS / "table_lennard_jones.csv").write_bytes(file.read_bytes())
+    pages.insert(DOCS / "asymptotics.md", "table",
+                 pages.table(HEADER, [cells(row) for row in found[::EVERY]]))
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@
 """
 
 import functools
-import re
 import sys
 from typing import Callable, NamedTuple
 
@@ -173,12 +172,8 @@ def draw(found):
 
 def main():
     found = formulas()
-    text = PAGE.read_text(encoding="utf-8")
-    new = re.sub(r"(<!-- formulas -->\n).*?(<!-- /formulas -->)",
-                 lambda match: match[1] + "\n".join(table(found)) + "\n" + match[2], text, flags=re.S)
-    PAGE.write_text(new, encoding="utf-8")
+    pages.insert(PAGE, "formulas", table(found))
     style.save(draw(found), PICTURE)
-    pages.mark(PAGE)
 
 
 if __name__ == "__main__":

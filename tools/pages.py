@@ -69,6 +69,21 @@ def mark(page):
     page.write_text(text, encoding="utf-8")
 
 
+def table(columns, rows):
+    """Return the lines of a Markdown table."""
+    return ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns),
+            *("| " + " | ".join(row) + " |" for row in rows)]
+
+
+def insert(page, name, lines):
+    """Put lines between the marks <!-- name --> and <!-- /name --> of a page, and mark it measured."""
+    text = page.read_text(encoding="utf-8")
+    new = re.sub(rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)",
+                 lambda match: match[1] + "\n".join(lines) + "\n" + match[2], text, flags=re.S)
+    page.write_text(new, encoding="utf-8")
+    mark(page)
+
+
 def measured_at(page):
     """Return the digest that a page names, None without one."""
     found = _MARK.search(page.read_text(encoding="utf-8"))

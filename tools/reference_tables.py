@@ -101,8 +101,7 @@ def _table(head, rows):
         return ""
     lines = [head, ["---"] * len(head), *rows]
     return "".join(
-        "| " + " | ".join(_cell(line[i]) for i in kept) + " |\n" for line in lines
-    ) + "\n"
+        "| " + " | ".join(_cell(line[i]) for i in kept) + " |\n" for line in lines) + "\n"
 
 
 def _cell(text):
@@ -115,8 +114,7 @@ def _cell(text):
 def main():
     for page, option in PAGES.items():
         output = subprocess.run(
-            [PROGRAM, option], check=True, capture_output=True, text=True
-        ).stdout
+            [PROGRAM, option], check=True, capture_output=True, text=True).stdout
         (ROOT / page).write_text(page_with(page, block_of(page, output)), encoding="utf-8")
 
 

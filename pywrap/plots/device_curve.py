@@ -5,8 +5,9 @@
 """
 
 import numpy as np
-from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, dress, run, scale
-from drawing import smooth, title_of
+from drawing import (
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, arrow, dress, run, scale, smooth,
+    title_of)
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from snapin.results import ResultsError, read_summary, read_table
@@ -68,10 +69,8 @@ def _draw_spring(panel, stiffness, colour, curve, jumps, load, load_unit):
                                          jumps["load_after"][here]):
         if not np.isfinite(finish):
             continue
-        panel.annotate("", (end / length, finish / load), (start / length, begin / load), zorder=6,
-                       arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.0,
-                                   "linestyle": (0, (1, 1)), "shrinkA": 0, "shrinkB": 0,
-                                   "mutation_scale": 13})
+        arrow(panel, (start / length, begin / load), (end / length, finish / load), colour, 1.0,
+              dashes=(0, (1, 1)), scale=13, zorder=6)
     low, high = curve[x][driven].min() / length, curve[x][driven].max() / length
     forces = curve["load"][driven] / load
     # What matters are the jumps: not how far the spring is driven on.

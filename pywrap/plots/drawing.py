@@ -91,6 +91,20 @@ def dress(axes, x_name, y_name):
     axes.spines[["top", "right"]].set_visible(False)
 
 
+def arrow(panel, tail, head, color, linewidth=1.2, style="-|>", dashes="-", scale=12, zorder=8):
+    """Draw an arrow between two points of the data, a jump for instance."""
+    return panel.annotate("", head, tail, annotation_clip=False, zorder=zorder, arrowprops={
+        "arrowstyle": style, "color": color, "linewidth": linewidth, "linestyle": dashes,
+        "shrinkA": 0, "shrinkB": 0, "mutation_scale": scale})
+
+
+def states_of(rows):
+    """Return the rows of profiles state by state; each begins on the axis."""
+    starts = np.flatnonzero(rows["r"] == 0)
+    ends = np.append(starts[1:], rows["r"].size)
+    return [{x: values[i:j] for x, values in rows.items()} for i, j in zip(starts, ends)]
+
+
 def run(draw, default_name, description, add_options=lambda parser: None):
     """Run a plotting script: arguments, `draw(folder, **options)`, the picture, the exit status."""
     parser = argparse.ArgumentParser(description=description)

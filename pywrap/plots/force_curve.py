@@ -8,20 +8,8 @@ import itertools
 
 import numpy as np
 from drawing import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    dress,
-    run,
-    scale,
-    smooth,
-    title_of,
-)
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, arrow, dress, run, scale, smooth,
+    title_of)
 from matplotlib.figure import Figure
 from snapin.results import ResultsError, read_summary, read_table
 
@@ -35,8 +23,7 @@ _THEORIES = {
     "jkr": ("JKR", {"color": VERMILION, "linestyle": (0, (6, 2))}),
     "dmt": ("DMT", {"color": GREEN, "linestyle": (0, (6, 2, 1, 2))}),
     "maugis_dugdale": (
-        "Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}
-    ),
+        "Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}),
 }
 # What a curve may be drawn against.
 NAMES = {"displacement": "displacement $h(0) - h_0$", "h0": "$h_0$"}
@@ -266,12 +253,8 @@ def _arrow(panel, tail, head, color, linewidth):
     """Draw an arrow; without width only its head, somewhat larger."""
     length, width = (0.5, 0.28) if linewidth else (0.6, 0.36)
     style = f"-|>,head_length={length},head_width={width}"
-    arrow = panel.annotate(
-        "", head, tail, annotation_clip=False, zorder=8,
-        arrowprops={"arrowstyle": style, "color": color, "linewidth": linewidth or 0.1,
-                    "shrinkA": 0, "shrinkB": 0, "mutation_scale": 12,
-                    "linestyle": (0, (2, 1.5)) if linewidth else "-"})
-    arrow.set_in_layout(False)
+    arrow(panel, tail, head, color, linewidth or 0.1, style,
+          (0, (2, 1.5)) if linewidth else "-").set_in_layout(False)
 
 
 if __name__ == "__main__":

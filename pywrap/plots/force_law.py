@@ -32,8 +32,7 @@ UNITS = {"pressure": "Pa", "energy": "J/m²"}
 OTHERS = {
     "scene", "bodies", "shape", "loading", "unloading", "equilibrium_path", "profiles", "classical",
     "approximations", "stability", "sweep", "numerics", "summary", "cost", "device", "fixed_load",
-    "regime", "table", "sensitivity", "measurement", "fit",
-}
+    "regime", "table", "sensitivity", "measurement", "fit"}
 
 
 def forces_of(file):
@@ -181,8 +180,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("deck", nargs="+", type=pathlib.Path)
     parser.add_argument(
-        "--out", type=pathlib.Path, help="folder for the pictures; default: results/DECK"
-    )
+        "--out", type=pathlib.Path, help="folder for the pictures; default: results/DECK")
     options = parser.parse_args()
     for deck in options.deck:
         try:

@@ -6,7 +6,7 @@
 
 import matplotlib
 import numpy as np
-from drawing import dress, run, scale, title_of
+from drawing import dress, run, scale, states_of, title_of
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
@@ -29,7 +29,7 @@ def draw_profiles(folder, branch=None):
     if branch not in names:
         raise ResultsError(f"no branch {branch!r} in {folder}/profiles.csv; there are "
                            f"{', '.join(names)}")
-    states = _states_of({x: values[table["branch"] == branch] for x, values in table.items()})
+    states = states_of({x: values[table["branch"] == branch] for x, values in table.items()})
     unstable = _unstable(folder, branch)
 
     seen = max(state["r"][abs(state["pressure"]) >= _FAINT * _largest(state)].max()
@@ -50,9 +50,8 @@ def draw_profiles(folder, branch=None):
     figure = Figure(figsize=(9, 4.2), layout="constrained")
     panels = figure.subplots(1, 2)
     for panel, y, name, (factor, unit) in (
-        (panels[0], "separation", "separation $h$", gaps),
-        (panels[1], "pressure", "pressure $p$", pressures),
-    ):
+            (panels[0], "separation", "separation $h$", gaps),
+            (panels[1], "pressure", "pressure $p$", pressures)):
         dress(panel, f"$r$ [{radii[1]}]", f"{name} [{unit}]")
         for state in states:
             # One point more, so that lines end at the frame.
@@ -73,13 +72,6 @@ def draw_profiles(folder, branch=None):
     dashed = "; dashed: unstable" if unstable else ""
     figure.suptitle(f"{title_of(folder, summary)} ({branch.replace('_', ' ')}{dashed})")
     return figure
-
-
-def _states_of(rows):
-    """Return the rows state by state; each begins on the axis."""
-    starts = np.flatnonzero(rows["r"] == 0)
-    ends = np.append(starts[1:], rows["r"].size)
-    return [{x: values[i:j] for x, values in rows.items()} for i, j in zip(starts, ends)]
 
 
 def _largest(state):

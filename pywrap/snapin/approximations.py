@@ -54,8 +54,7 @@ def slow_deformation(gap, *, radius, stiffness=None, law, rigid=False, form="qua
     gap = vector("gap", gap)
     deck = problem_deck(law, radius, stiffness, rigid)
     *values, stat, message = _snapin.flat_theory.slow_states(
-        deck, one_of("form", form, _FORMS), gap
-    )
+        deck, one_of("form", form, _FORMS), gap)
     accept_deck(stat, message)
     displacement, slope, load = values
     if not np.isfinite(values).all():
@@ -69,8 +68,7 @@ def jump_estimates(*, radius, stiffness=None, law, rigid=False):
     numbers = law_numbers(law)
     far, near = (numbers.origin + n * numbers.length for n in (2, 1))
     rows = approximation_rows(
-        far, near, radius=radius, stiffness=stiffness, law=law, rigid=rigid, count=2
-    )
+        far, near, radius=radius, stiffness=stiffness, law=law, rigid=rigid, count=2)
     found = {row["theory"]: row for row in rows}
     return JumpEstimates(*(_jump(found[name]) if name in found else None for name in _JUMPS))
 
@@ -80,9 +78,7 @@ def _jump(row):
     return JumpState(h0 + displacement, h0, displacement, load)
 
 
-def approximation_rows(
-    h0_start, h0_end, *, radius, stiffness=None, law, rigid=False, count=200
-):
+def approximation_rows(h0_start, h0_end, *, radius, stiffness=None, law, rigid=False, count=200):
     """Return the table of &approximations over a range of h0 [m]."""
     group = {"h0_start": h0_start, "h0_end": h0_end, "count": count}
     return run(scene(law, radius, stiffness, rigid, approximations=group)).approximations

@@ -46,9 +46,7 @@ def _values(theory, quantity, x, material, a=0.0):
     return values
 
 
-def contact_radius(
-    theory, control, values, *, radius, stiffness, surface_energy=0.0, strength=0.0
-):
+def contact_radius(theory, control, values, *, radius, stiffness, surface_energy=0.0, strength=0.0):
     """Return the contact radii at given values of `control`.
 
     `control` is "load" [N] or "displacement" [m], on the branch that is stable under it; for
@@ -63,9 +61,7 @@ def contact_radius(
     return _values(theory, f"radius at {control}", values, material)
 
 
-def contact_curve(
-    theory, contact_radius, *, radius, stiffness, surface_energy=0.0, strength=0.0
-):
+def contact_curve(theory, contact_radius, *, radius, stiffness, surface_energy=0.0, strength=0.0):
     """Return load [N] and displacement [m] at contact radii [m], all above zero."""
     material = _material(theory, radius, stiffness, surface_energy, strength)
     a = positive_vector("contact_radius", contact_radius)
@@ -88,9 +84,7 @@ def load_at_displacement(theory, displacement, *, radius, stiffness, surface_ene
     return _values(theory, "load at displacement", vector("displacement", displacement), material)
 
 
-def pull_off(
-    theory, *, radius, stiffness, surface_energy=0.0, strength=0.0, control="load"
-):
+def pull_off(theory, *, radius, stiffness, surface_energy=0.0, strength=0.0, control="load"):
     """Return the load [N], negative, at which the bodies part at a fixed `control`."""
     material = _material(theory, radius, stiffness, surface_energy, strength)
     one_of("control", control, _CONTROLS)
@@ -103,9 +97,6 @@ def cohesive_zone(contact_radius, *, radius, stiffness, surface_energy, z0):
     `z0` [m] is the law's equilibrium separation; the strength is its largest tension.
     """
     return _flat.maugis_numbers(
-        positive_vector("contact_radius", contact_radius),
-        positive("radius", radius),
-        positive("stiffness", stiffness),
-        positive("surface_energy", surface_energy),
-        positive("z0", z0),
-    )
+        positive_vector("contact_radius", contact_radius), positive("radius", radius),
+        positive("stiffness", stiffness), positive("surface_energy", surface_energy),
+        positive("z0", z0))

@@ -114,11 +114,7 @@ def scene(law, radius, stiffness, rigid, **groups):
     """Return the groups of a deck: a law's, the two bodies, and others."""
     if not isinstance(law, Mapping):
         raise TypeError(f"law: a dictionary of groups is needed, not {shown(law)}")
-    return {
-        "bodies": {"radius": radius, "stiffness": stiffness, "rigid": rigid},
-        **law,
-        **groups,
-    }
+    return {"bodies": {"radius": radius, "stiffness": stiffness, "rigid": rigid}, **law, **groups}
 
 
 def problem_deck(law, radius=1.0, stiffness=None, rigid=True):

@@ -86,9 +86,8 @@ def _stamp(folder):
 def _carry_out(arguments, text, quiet):
     """Return the program's exit status, standard output and what it said, shown if not quiet."""
     with subprocess.Popen(
-        [_program(), *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    ) as program:
+            [_program(), *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE) as program:
         try:
             if not quiet:
                 return _shown(program, text)
@@ -241,8 +240,7 @@ def force_curve(h0, *, radius, stiffness=None, law, rigid=False, **numerics):
 
 
 def equilibrium_path(
-    h0_end, *, radius, stiffness=None, law, rigid=False, h0_start=None, **numerics
-):
+        h0_end, *, radius, stiffness=None, law, rigid=False, h0_start=None, **numerics):
     """Return the `EquilibriumPath` to the contact at `h0_end` [m].
 
     It holds the unstable states too, which no experiment at controlled h0 shows. It begins where
@@ -250,9 +248,7 @@ def equilibrium_path(
     `force_curve`.
     """
     ends = {"h0_start": h0_start, "h0_end": h0_end}
-    result = _run(
-        scene(law, radius, stiffness, rigid, equilibrium_path=ends, numerics=numerics)
-    )
+    result = _run(scene(law, radius, stiffness, rigid, equilibrium_path=ends, numerics=numerics))
     fields = _fields(EquilibriumPath, result.curve, result)
     fields["stable"] = fields["stable"] == 1
     folds = _points(result.summary, ("folds",))
@@ -269,8 +265,7 @@ def _schedule(h0):
     if not repeated and up.size > 0:
         up = h0[least:]
     groups = {
-        "loading": {"h0_start": down[0], "h0_end": down[-1], "h0_step": _step(-np.diff(down))}
-    }
+        "loading": {"h0_start": down[0], "h0_end": down[-1], "h0_step": _step(-np.diff(down))}}
     if up.size > 0:
         groups["unloading"] = {"h0_end": up[-1], "h0_step": _step(np.diff(up))}
     return groups, repeated

@@ -1,6 +1,5 @@
 """The command line: options, exit status, and that a wrong deck leaves nothing behind."""
 
-import os
 import shutil
 import subprocess
 

@@ -17,13 +17,11 @@ def run(snapin, tmp_path_factory):
 
 SCENES = {
     "cycle and path": lennard_jones(
-        8.7, loading=loading(13, -4, 0.5), unloading={}, equilibrium_path={}
-    ),
+        8.7, loading=loading(13, -4, 0.5), unloading={}, equilibrium_path={}),
     "uniform": lennard_jones(0.87, **CYCLE, numerics={"grid": "uniform", "nodes": 200}),
     "newton": lennard_jones(1.7, **CYCLE, numerics={"method": "newton"}),
     "mixing": lennard_jones(
-        0.17, loading=loading(6, 0, 1), numerics={"method": "mixing", "nodes": 100}
-    ),
+        0.17, loading=loading(6, 0, 1), numerics={"method": "mixing", "nodes": 100}),
     "repulsion": exponential(100, loading=loading(6, -20, 1)),
     "stability": lennard_jones(0.87, loading=loading(6, -1, 0.5), stability={}),
 }
@@ -51,18 +49,13 @@ def shared_from():
     "scene",
     [
         lambda **groups: exponential(1.0, **groups),
-        pytest.param(lambda **groups: lennard_jones(0.2, **groups), marks=pytest.mark.long),
-    ],
+        pytest.param(lambda **groups: lennard_jones(0.2, **groups), marks=pytest.mark.long)],
     ids=["repulsion", "adhesion"],
 )
 def test_threads_that_share_a_matrix_leave_eleven_digits(run, scene):
     """They add in another order. Solved to 1e-12, so that it is not the iteration that decides."""
     numerics = {
-        "grid": "uniform",
-        "nodes": shared_from(),
-        "r_max": 20.0,
-        "residual_tolerance": 1e-12,
-    }
+        "grid": "uniform", "nodes": shared_from(), "r_max": 20.0, "residual_tolerance": 1e-12}
     text = scene(loading=loading(3, 2, 1), numerics=numerics)
     one, two = (run(text, threads=threads) for threads in (1, 2))
     assert [one.cost["threads"], two.cost["threads"]] == [1, 2]
@@ -76,8 +69,6 @@ def test_the_summary_records_what_made_it(run, snapin):
     told = snapin("--version").stdout.splitlines()
     assert told[0] == f"snapin {summary['version']}"
     assert told[1:] == [
-        f"compiler: {summary['compiler']}",
-        f"blas: {summary['blas']}",
-        f"options: {summary['build_options']}",
-    ]
+        f"compiler: {summary['compiler']}", f"blas: {summary['blas']}",
+        f"options: {summary['build_options']}"]
     assert several(run(SCENES["repulsion"]).cost["threads"]) == [1]

@@ -6,15 +6,8 @@ import pytest
 from support.scenes import deck, exponential, lennard_jones, loading, runner
 
 COUNTERS = [
-    "states",
-    "iterations",
-    "kernel_entries",
-    "pressure_evaluations",
-    "operator_products",
-    "operator_columns",
-    "factorisations",
-    "rejected_steps",
-]
+    "states", "iterations", "kernel_entries", "pressure_evaluations", "operator_products",
+    "operator_columns", "factorisations", "rejected_steps"]
 PLAIN = {"loading": loading(8, -2, 0.25)}
 
 
@@ -36,8 +29,7 @@ def counts(result):
 def test_rigid_bodies_need_no_kernel(run, law, numerics):
     make = {
         "lennard_jones": lambda **groups: lennard_jones(1.0, **groups),
-        "exponential": lambda **groups: exponential(1.0, **groups),
-    }[law]
+        "exponential": lambda **groups: exponential(1.0, **groups)}[law]
     scene = make(loading=loading(8, 1, 0.25), numerics=numerics)
     result = run(scene.replace("stiffness = 1.0", "rigid = .true."))
     assert result.cost["kernel_entries"] == 0

@@ -41,12 +41,10 @@ def test_what_cases_do_at_the_same_time_keeps_no_string_length_in_static_storage
         if name.startswith(("deck", "scene")) or name in ("c_library", "text")
     }
     assert {"stepped_branch", "path", "anderson", "error_estimate"} <= together
-    guilty = []
-    for module in sorted(together):
-        file = objects / ("_".join(PATHS[module].parts) + ".o")
-        listing = subprocess.run(["nm", file], capture_output=True, text=True, check=True)
-        if re.search(r"\bslen\.", listing.stdout):
-            guilty.append(file.name)
+    files = [objects / ("_".join(PATHS[module].parts) + ".o") for module in sorted(together)]
+    listing = subprocess.run(["nm", "-A", *files], capture_output=True, text=True, check=True)
+    guilty = {line.split(":")[0] for line in listing.stdout.splitlines()
+              if re.search(r"\bslen\.", line)}
     assert not guilty
 
 

@@ -15,33 +15,15 @@ STARVED = {
     "anderson": {"max_iterations": 1},
     "newton": {"method": "newton", "max_iterations": 1},
     "anderson, uniform": {"max_iterations": 1, "grid": "uniform", "nodes": 100},
-    "newton, uniform": {
-        "method": "newton",
-        "max_iterations": 1,
-        "grid": "uniform",
-        "nodes": 100,
-    },
+    "newton, uniform": {"method": "newton", "max_iterations": 1, "grid": "uniform", "nodes": 100},
     "mixing": {"method": "mixing", "max_iterations": 3, "nodes": 100},
     "mixing, panels": {"method": "mixing", "max_iterations": 3, "grid": "panels"},
-    "mixing limit": {
-        "method": "mixing",
-        "mixing_limit": 1e-9,
-        "max_iterations": 100,
-        "nodes": 100,
-    },
+    "mixing limit": {"method": "mixing", "mixing_limit": 1e-9, "max_iterations": 100, "nodes": 100},
     "mixing, tolerance": {
-        "method": "mixing",
-        "residual_tolerance": 1e-13,
-        "max_iterations": 50,
-        "nodes": 100,
-    },
+        "method": "mixing", "residual_tolerance": 1e-13, "max_iterations": 50, "nodes": 100},
     "paper's rule": {
-        "method": "mixing",
-        "convergence": "displacement_change",
-        "displacement_tolerance": 1e-30,
-        "max_iterations": 5,
-        "nodes": 100,
-    },
+        "method": "mixing", "convergence": "displacement_change", "displacement_tolerance": 1e-30,
+        "max_iterations": 5, "nodes": 100},
 }
 
 
@@ -70,9 +52,7 @@ def test_what_does_not_converge_says_so_and_invents_nothing(run, scene, numerics
 
 @pytest.mark.parametrize("name", ["anderson, uniform", "mixing"])
 def test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable(run, name):
-    curve = run(
-        lennard_jones(0.87, **CYCLE, stability={}, numerics=STARVED[name]), status=1
-    ).curve
+    curve = run(lennard_jones(0.87, **CYCLE, stability={}, numerics=STARVED[name]), status=1).curve
     assert (curve["converged"] == 0).any()
     assert (curve["stable"][curve["converged"] == 0] == -1).all()
 
@@ -80,9 +60,7 @@ def test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable(run, name):
 def test_what_came_before_the_fall_is_kept(run):
     """Nothing keeps bodies apart that only attract."""
     for numerics in ({}, {"grid": "uniform", "nodes": 60}, {"method": "mixing", "nodes": 60}):
-        result = run(
-            lennard_jones(0.87, part="attractive", **CYCLE, numerics=numerics), status=1
-        )
+        result = run(lennard_jones(0.87, part="attractive", **CYCLE, numerics=numerics), status=1)
         assert "no stable equilibrium exists" in result.warnings[0]
         assert len(result.curve) >= 5 and (result.curve["converged"] == 1).all()
         assert result.summary["jump_in_h0"] > 2 and "jump_out_h0" not in result.summary

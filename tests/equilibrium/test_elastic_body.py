@@ -8,18 +8,17 @@ import subprocess
 import f90nml
 import numpy as np
 import pytest
-from conftest import ROOT
-from support.half_space import independent_folds, states_by_axis
+from support.half_space import path_by_axis
 from support.processes import HANG
 from support.scenes import lennard_jones, loading
 
 # Softer than a half-space, as on a soft base, and stiffer, as on a hard one.
 SOFT, STIFF = (0.5, 1.8), (-0.35, 1.2)
 # Gaps on the axis from far away into contact, and panels, narrow where the contact has its edge.
-CLOSE = [*np.linspace(2.8, 1.1, 18), *np.linspace(1.09, 0.98, 16)]
 FAR = np.linspace(12, 3, 12)
-ENDS = [*np.arange(0, 3.6, 0.15), 3.8, 4.4, *np.geomspace(6, 300, 8)]
-SIGMA = 1.0
+AXIS = (*FAR, *np.linspace(2.8, 1.1, 18), *np.linspace(1.09, 0.98, 16))
+ENDS = (*np.arange(0, 3.6, 0.15), 3.8, 4.4, *np.geomspace(6, 300, 8))
+SIGMA, SOFTNESS = 1.0, 0.4
 
 
 class Outcome:
@@ -54,45 +53,37 @@ def run(snapin_path, tmp_path_factory):
 PATH = {"h0_end": -1.0}
 
 
+def dense(image=None):
+    """H0 and loads at AXIS, of the folds, and where a drive behind the spring turns."""
+    return path_by_axis("lennard_jones", SIGMA, AXIS, ENDS, image, softness=(0.0, SOFTNESS))
+
+
 def test_no_image_is_the_half_space(run):
     """So that what follows is about the image."""
     found = run((0.0, 1.0), equilibrium_path=PATH).summary
-    h0, _ = independent_folds("lennard_jones", SIGMA, [*FAR, *CLOSE], ENDS)
+    h0, _ = dense()[1]
     assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-7)
 
 
 @pytest.mark.parametrize("image", [SOFT, STIFF])
-def test_folds_of_the_path_are_those_of_independent_states(run, image):
-    found = run(image, equilibrium_path=PATH, numerics={"accuracy": 1e-8}).summary
-    h0, load = independent_folds("lennard_jones", SIGMA, [*FAR, *CLOSE], ENDS, image=image)
-    assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-8)
-    # Beside a fold the load goes with the root of an error in H0.
-    assert [found["jump_in_load"], found["jump_out_load"]] == pytest.approx(load, rel=1e-6)
-    # The image matters: a half-space jumps elsewhere.
-    plain, _ = independent_folds("lennard_jones", SIGMA, [*FAR, *CLOSE], ENDS)
-    assert abs(h0 - plain).min() > 0.02
-
-
-@pytest.mark.parametrize("image", [SOFT, STIFF])
-def test_a_cycle_goes_through_independent_states(run, image):
-    axis = [*FAR, *CLOSE]
-    h0, load = states_by_axis("lennard_jones", SIGMA, axis, ENDS, image=image)
-    for k in (len(FAR) - 1, -1):  # Before the jump, and in contact.
-        found = run(image, loading=loading(6, h0[k], 0.5))
-        assert found.h0[-1] == h0[k]
-        assert found.centre[-1] == pytest.approx(axis[k], rel=1e-7)
-        assert found.load[-1] == pytest.approx(load[k], rel=1e-6)
-
-
-@pytest.mark.parametrize("image", [SOFT, STIFF])
-def test_a_spring_jumps_where_independent_states_turn(run, image):
-    softness = 0.4
-    found = run(image, equilibrium_path=PATH, device={"stiffness": 1 / softness},
+def test_folds_springs_and_cycles_are_those_of_independent_states(run, image):
+    (h0, load), (fold_h0, fold_load), (turn_h0, turn_load) = dense(image)
+    found = run(image, equilibrium_path=PATH, device={"stiffness": 1 / SOFTNESS},
                 numerics={"accuracy": 1e-8}).summary
-    h0, load = independent_folds("lennard_jones", SIGMA, [*FAR, *CLOSE], ENDS, image=image,
-                                 softness=softness)
+    folds = [found["jump_in_h0"], found["jump_out_h0"]]
+    assert folds == pytest.approx(fold_h0, rel=1e-8)
+    # Beside a fold the load goes with the root of an error in H0.
+    assert [found["jump_in_load"], found["jump_out_load"]] == pytest.approx(fold_load, rel=1e-6)
+    # The image matters: a half-space jumps elsewhere.
+    plain = run((0.0, 1.0), equilibrium_path=PATH).summary
+    assert min(abs(folds[0] - plain["jump_in_h0"]), abs(folds[1] - plain["jump_out_h0"])) > 0.02
     z = [found["device_jump_in_z"], found["device_jump_out_z"]]
-    assert z == pytest.approx(h0 - softness * load, rel=1e-7)
+    assert z == pytest.approx(turn_h0 - SOFTNESS * turn_load, rel=1e-7)
+    for k in (len(FAR) - 1, -1):  # Before the jump, and in contact.
+        cycle = run(image, loading=loading(6, h0[k], 0.5))
+        assert cycle.h0[-1] == h0[k]
+        assert cycle.centre[-1] == pytest.approx(AXIS[k], rel=1e-7)
+        assert cycle.load[-1] == pytest.approx(load[k], rel=1e-6)
 
 
 @pytest.mark.parametrize("image", [SOFT, STIFF])

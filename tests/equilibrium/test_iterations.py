@@ -16,8 +16,7 @@ from test_solvers import LAW, MESH, PRESSURE, TOLERANCE, equations, every_method
 @every_method
 def test_a_state_that_did_not_converge_says_so_and_how_far_it_is(method):
     state = snapin.equilibrium(
-        LAW["lennard_jones"], MESH, -2.0, 0.87, method=method, most_iterations=3
-    )
+        LAW["lennard_jones"], MESH, -2.0, 0.87, method=method, most_iterations=3)
     residual, *_ = equations("lennard_jones", 0.87, -2.0, state)
     assert not state.converged
     assert state.residual > TOLERANCE
@@ -79,14 +78,8 @@ def test_infinite_pressure_is_not_taken_for_none(method):
 def by_the_papers_rule(coupling, h0, displacement_tolerance):
     """Return the state at which mixing stops on a small change of the displacement."""
     return snapin.equilibrium(
-        LAW["lennard_jones"],
-        MESH,
-        h0,
-        coupling,
-        method="mixing",
-        displacement_tolerance=displacement_tolerance,
-        most_iterations=20000,
-    )
+        LAW["lennard_jones"], MESH, h0, coupling, method="mixing",
+        displacement_tolerance=displacement_tolerance, most_iterations=20000)
 
 
 @pytest.mark.parametrize("coupling", [0.87, 8.7])

@@ -22,12 +22,8 @@ def run(snapin, tmp_path_factory):
 def fig1(**numerics):
     """The Lennard-Jones cycle of Fig. 1."""
     return deck(
-        bodies=FIG1,
-        force=FIG1_LJ,
-        loading={"h0_start": 4e-9, "h0_end": -15e-9, "h0_step": 1e-10},
-        unloading={},
-        numerics={"accuracy": 1e-4, **numerics},
-    )
+        bodies=FIG1, force=FIG1_LJ, loading={"h0_start": 4e-9, "h0_end": -15e-9, "h0_step": 1e-10},
+        unloading={}, numerics={"accuracy": 1e-4, **numerics})
 
 
 # --- Figure 1
@@ -45,11 +41,9 @@ def test_fig1_has_the_tension_and_the_jumps_of_the_converged_solution(run):
 def test_fig1_exponential_converges_in_every_state_to_the_converged_load(run):
     def scene(accuracy):
         return deck(
-            bodies=FIG1,
-            force=FIG1_EXPONENTIAL,
+            bodies=FIG1, force=FIG1_EXPONENTIAL,
             loading={"h0_start": 2e-9, "h0_end": -15e-9, "h0_step": 1e-10},
-            numerics={"accuracy": accuracy},
-        )
+            numerics={"accuracy": accuracy})
 
     plain, fine = run(scene(1e-6)).curve, run(scene(1e-10)).curve
     assert len(plain) == 171
@@ -73,15 +67,9 @@ def test_fig1_exponential_is_that_of_an_independent_solution(run):
 
 @pytest.mark.parametrize(
     ("big_lambda", "displacement", "load"),
-    [
-        (0.01, 0.0481552209, 0.0607234529),
-        (1, 1.4455536, 2.1260862),
-        (1e4, 9.3371461, 22.0407985),
-    ],
-)
+    [(0.01, 0.0481552209, 0.0607234529), (1, 1.4455536, 2.1260862), (1e4, 9.3371461, 22.0407985)])
 def test_exponential_has_the_displacement_and_load_of_the_reference(
-    run, big_lambda, displacement, load
-):
+        run, big_lambda, displacement, load):
     scene = exponential(big_lambda, loading=loading(10, 0, 1), numerics={"accuracy": 1e-9})
     curve = run(scene).curve
     assert curve["h0"][-1] == 0
@@ -106,12 +94,9 @@ def test_lennard_jones_is_that_of_an_independent_solution(run, sigma, h0):
 def penetration_scene(step=0.2, **numerics):
     """Fig. 10(c) without the paper's grid: sigma 8.7, four turning points."""
     return deck(
-        bodies=FIG1,
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
+        bodies=FIG1, force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
         loading={"h0_start": 6.5e-9, "h0_end": -10e-9, "h0_step": step * 0.5e-9},
-        unloading={"from_": [1e-9, -2e-9, -4e-9, -10e-9], "h0_end": 6.5e-9},
-        numerics=numerics,
-    )
+        unloading={"from_": [1e-9, -2e-9, -4e-9, -10e-9], "h0_end": 6.5e-9}, numerics=numerics)
 
 
 def test_pull_off_does_not_depend_on_penetration(run):
@@ -127,8 +112,7 @@ def test_pull_off_does_not_depend_on_penetration(run):
 
 def test_pull_off_at_sigma_8_7_is_that_of_the_reference(run):
     scene = lennard_jones(
-        STRONG, loading=loading(13, -8, 0.2), unloading={"from_": [2.0, -4.0, -8.0]}
-    )
+        STRONG, loading=loading(13, -8, 0.2), unloading={"from_": [2.0, -4.0, -8.0]})
     pull_off = np.array(run(scene).summary["unload_max_tension"]) / (STRONG * JKR)
     np.testing.assert_allclose(pull_off, STRONG_PULL_OFF, rtol=1e-6)
 
@@ -146,8 +130,7 @@ def test_branches_differ_between_the_jumps_and_nowhere_else(run):
     result = run(lennard_jones(WEAK, loading=loading(6, -2, 0.1), unloading={}))
     down, up = result.curve.rows("loading"), result.curve.rows("unloading_1")
     between = (result.summary["jump_in_h0"] < down["h0"]) & (
-        down["h0"] < result.summary["jump_out_h0"]
-    )
+        down["h0"] < result.summary["jump_out_h0"])
     difference = abs(up["h_centre"][::-1] - down["h_centre"])
     assert between.sum() == 4
     assert (difference[between] > 0.5).all()
@@ -167,8 +150,7 @@ def test_jumps_and_pull_off_do_not_depend_on_the_step(run, sigma):
 @pytest.mark.parametrize("step", [0.02, 0.13, 0.2, 0.5])
 def test_jump_is_found_on_a_fixed_grid_whatever_the_step(run, step):
     scene = lennard_jones(
-        WEAK, loading=loading(8, 2, step), numerics={"grid": "uniform", "nodes": 300}
-    )
+        WEAK, loading=loading(8, 2, step), numerics={"grid": "uniform", "nodes": 300})
     summary = run(scene).summary
     # 3.0886872, as well as 300 nodes have it; the finite mesh moves it by some 1e-4.
     assert summary["jump_in_h0"] == pytest.approx(3.0886872, abs=2e-3)
@@ -180,8 +162,7 @@ def test_turning_points_may_come_in_any_order(run):
 
     def scene(order):
         return lennard_jones(
-            STRONG, loading=loading(13, -3, 0.5), unloading={"from_": [turning[k] for k in order]}
-        )
+            STRONG, loading=loading(13, -3, 0.5), unloading={"from_": [turning[k] for k in order]})
 
     one, other = run(scene([0, 1, 2, 3])), run(scene([2, 0, 3, 1]))
     for place, k in enumerate([2, 0, 3, 1], start=1):
@@ -196,13 +177,11 @@ def test_a_turning_point_beside_a_rounded_step_is_a_turning_point(run):
     turning = [0.0, -2.0, -1.99999991]
     # 24 of these steps end 8e-8 above 0.
     result = run(
-        lennard_jones(WEAK, loading=loading(8, -2, 0.33333333), unloading={"from_": turning})
-    )
+        lennard_jones(WEAK, loading=loading(8, -2, 0.33333333), unloading={"from_": turning}))
     for place, value in enumerate(turning, start=1):
         assert result.curve.rows(f"unloading_{place}")["h0"][0] == value
     np.testing.assert_allclose(
-        several(result.summary["unload_max_tension"]), 1.07953786 * JKR * WEAK, rtol=1e-6
-    )
+        several(result.summary["unload_max_tension"]), 1.07953786 * JKR * WEAK, rtol=1e-6)
 
 
 def test_start_in_contact_is_what_an_approach_arrives_at(run):

@@ -20,10 +20,8 @@ def fig5(hamaker, **numerics):
     return deck(
         bodies={"radius": 1.5e-2, "stiffness": 1e11},
         force={"law": "lennard_jones", "hamaker": hamaker, "z0": 0.5e-9},
-        loading={"h0_start": 4e-9, "h0_end": -2e-9, "h0_step": 1e-10},
-        unloading={},
-        numerics=numerics,
-    )
+        loading={"h0_start": 4e-9, "h0_end": -2e-9, "h0_step": 1e-10}, unloading={},
+        numerics=numerics)
 
 
 # --- Methods and grids
@@ -56,8 +54,7 @@ def test_mixing_converges_to_the_same_curve_where_nothing_is_stiff(run, hamaker,
             bodies={"radius": 1.5e-2, "stiffness": 1e11},
             force={"law": "lennard_jones", "hamaker": hamaker, "z0": 0.5e-9},
             loading={"h0_start": 3e-9, "h0_end": 0.4e-9, "h0_step": 2e-10},
-            numerics={"method": method, "grid": grid, "nodes": 300},
-        )
+            numerics={"method": method, "grid": grid, "nodes": 300})
 
     mixing = run(scene("mixing"))
     other = run(scene("anderson"))
@@ -69,8 +66,7 @@ def test_mixing_converges_to_the_same_curve_where_nothing_is_stiff(run, hamaker,
 MIXING_CONVERGES = {
     "exponential, soft": exponential(1, loading=loading(6, -2, 0.5), numerics={"nodes": 300}),
     "exponential, stiff": exponential(
-        200, loading=loading(10, 0, 0.5), numerics={"nodes": 300, "max_iterations": 200000}
-    ),
+        200, loading=loading(10, 0, 0.5), numerics={"nodes": 300, "max_iterations": 200000}),
     "no jump": lennard_jones(0.17, loading=loading(6, 1, 0.2), numerics={"nodes": 300}),
     "before the jump": lennard_jones(WEAK, loading=loading(8, 3.2, 0.2), numerics={"nodes": 300}),
 }
@@ -91,8 +87,7 @@ def test_anderson_takes_a_fifth_of_the_products_of_mixing_at_most(run, scene):
 def test_newton_and_anderson_agree_and_newton_needs_more_factorisations(run, sigma):
     def scene(method):
         return lennard_jones(
-            sigma, loading=loading(8, -4, 0.25), unloading={}, numerics={"method": method}
-        )
+            sigma, loading=loading(8, -4, 0.25), unloading={}, numerics={"method": method})
 
     anderson, newton = run(scene("anderson")), run(scene("newton"))
     scale = abs(newton.curve["load"]).max()
@@ -112,11 +107,8 @@ def coarse_scene(spacing, **numerics):
         loading=loading(9, -8, 0.5),
         unloading={"from_": [0.0, -8.0], "h0_end": 20.0},
         numerics={
-            "grid": "uniform",
-            "nodes": round(reach / (spacing * neck)),
-            "r_max": reach,
-            **numerics,
-        },
+            "grid": "uniform", "nodes": round(reach / (spacing * neck)), "r_max": reach,
+            **numerics},
     )
 
 
@@ -136,8 +128,7 @@ def test_the_paper_s_stopping_rule_reports_the_largest_tension_of_its_own_states
     """The rule (1e-4 nm in the central displacement) stops far from equilibrium: a search between
     the states would add others, which belong to no experiment."""
     scene = coarse_scene(
-        1.7, method="mixing", convergence="displacement_change", displacement_tolerance=2e-4
-    )
+        1.7, method="mixing", convergence="displacement_change", displacement_tolerance=2e-4)
     # A stop that is not convergence is not success.
     result = run(scene, status=1)
     assert result.summary["max_tension"] == pytest.approx(-result.curve["load"].min(), rel=1e-12)
@@ -160,12 +151,8 @@ def test_a_resolved_grid_does_not_warn(run):
 def test_stopping_on_a_small_change_leaves_a_large_residual_and_says_so(run):
     """The paper's rule: 1e-4 nm in the central displacement, in z0 of 0.5 nm."""
     numerics = {
-        "method": "mixing",
-        "nodes": 200,
-        "r_max": 9.0,
-        "convergence": "displacement_change",
-        "displacement_tolerance": 2e-4,
-    }
+        "method": "mixing", "nodes": 200, "r_max": 9.0, "convergence": "displacement_change",
+        "displacement_tolerance": 2e-4}
     result = run(lennard_jones(STRONG, loading=loading(9, 0, 0.5), numerics=numerics), status=1)
     worst = result.curve["residual"].max()
     assert worst > 1e-2

@@ -11,8 +11,7 @@ from support.scenes import lennard_jones, loading, runner, several
 FIRST = {
     None: (1.54523, -18.279, -54.473, 1.74328, -35.786, -10.010, 7.1683e-15),
     1e5: (1.71792, -16.259, -60.717, 2.15227, -45.643, -6.2429, 2.1292e-14),
-    1e4: (2.68773, -7.6053, -29.762, 7.27936, -59.889, -0.47850, 2.0817e-13),
-}
+    1e4: (2.68773, -7.6053, -29.762, 7.27936, -59.889, -0.47850, 2.0817e-13)}
 JUMPS = [f"jump_{way}_{what}" for way in ("in", "out") for what in ("z", "load", "load_after")]
 KEYS = [*JUMPS, "energy_lost"]
 

@@ -65,16 +65,8 @@ def scene(kind, strength, accuracy):
 @pytest.mark.parametrize(
     "kind, strength",
     [
-        ("path", 0.01),
-        ("path", 0.87),
-        ("path", 8.7),
-        ("path", 1000.0),
-        ("cycle", 0.1),
-        ("cycle", 0.87),
-        ("cycle", 8.7),
-        ("exponential", 1.0),
-        ("exponential", 216.0),
-    ],
+        ("path", 0.01), ("path", 0.87), ("path", 8.7), ("path", 1000.0), ("cycle", 0.1),
+        ("cycle", 0.87), ("cycle", 8.7), ("exponential", 1.0), ("exponential", 216.0)],
 )
 def test_the_estimate_bounds_the_error_within_a_hundred(snapin, tmp_path, kind, strength):
     exact, exact_beside, _ = measured(snapin, tmp_path, "reference", scene(kind, strength, 1e-10))

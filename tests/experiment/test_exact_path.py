@@ -27,10 +27,7 @@ def other_force(stiffness, accuracy, h0_end, **force):
     return deck(
         bodies={"radius": 1.5e-2, "stiffness": stiffness},
         force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
-        equilibrium_path={"h0_end": h0_end},
-        numerics={"accuracy": accuracy},
-        **force,
-    )
+        equilibrium_path={"h0_end": h0_end}, numerics={"accuracy": accuracy}, **force)
 
 
 def test_a_path_is_traced_again_as_if_a_higher_accuracy_were_asked_for(run):

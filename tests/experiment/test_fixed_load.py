@@ -60,11 +60,8 @@ def test_a_load_that_fades_by_orders_of_magnitude_has_its_own_zeros_alone(run):
     found = run(deck(
         bodies={"radius": 1.0, "stiffness": 2.5},
         dugdale={"stress": 1.0, "range": 1.0, "smoothing": 0.02},
-        hydration={"pressure": 20.0, "decay_length": 0.07},
-        equilibrium_path={"h0_end": -4.0},
-        fixed_load={"load": [0.0]},
-        device={"stiffness": [0.0]},
-    ))
+        hydration={"pressure": 20.0, "decay_length": 0.07}, equilibrium_path={"h0_end": -4.0},
+        fixed_load={"load": [0.0]}, device={"stiffness": [0.0]}))
     table = found.table("fixed_load.csv")
     assert list(table["stable"]) == [0, 1]
     assert not any(key.startswith("secondary") for key in found.summary)

@@ -79,12 +79,9 @@ def test_exponential_from_one_h0_at_any_lambda(run, big_lambda):
 def test_gaps_that_open_beside_a_steep_and_a_long_force_overflow_nothing(run):
     """A sum lets far gaps close by more than a law of powers does: with -Dtraps=true, as above."""
     check(run(deck(
-        bodies={"radius": 8.3e-4, "stiffness": 2.94e10},
-        van_der_waals={"hamaker": 1.96e-19},
-        born={"z0": 5e-10},
-        hydration={"energy": 6.45e-2, "decay_length": 1.06e-9},
-        loading=loading(17e-9, -0.5e-9, 1e-9),
-    )))
+        bodies={"radius": 8.3e-4, "stiffness": 2.94e10}, van_der_waals={"hamaker": 1.96e-19},
+        born={"z0": 5e-10}, hydration={"energy": 6.45e-2, "decay_length": 1.06e-9},
+        loading=loading(17e-9, -0.5e-9, 1e-9))))
 
 
 # --- Deep indentation
@@ -104,9 +101,7 @@ def test_deep_indentation_by_repulsion_tends_to_hertz(run, depth):
 @pytest.mark.parametrize("sigma", [0.87, 100.0])
 @pytest.mark.parametrize("depth", [1e2, 1e3, 1e4])
 def test_deep_indentation_with_adhesion_tends_to_jkr(run, sigma, depth):
-    scene = lennard_jones(
-        sigma, loading=loading(6, -depth, depth / 40), unloading={"h0_end": 6.0}
-    )
+    scene = lennard_jones(sigma, loading=loading(6, -depth, depth / 40), unloading={"h0_end": 6.0})
     curve = check(run(scene))
     down = curve.rows("loading")
     # JKR from the contact radius, with E* = 1/2: F = 4 E* a^3/(3 R) - (8 pi gamma E* a^3)^(1/2) and
@@ -130,9 +125,7 @@ def test_one_body_a_million_times_softer_deforms_alone(run):
         return deck(
             bodies={"radius": 1.0, **bodies},
             force={"law": "lennard_jones", "hamaker": 16 * math.pi * 0.87, "z0": 1.0},
-            loading=loading(6, -2, 0.5),
-            unloading={},
-        )
+            loading=loading(6, -2, 0.5), unloading={})
 
     soft = check(run(scene({"young": [0.5e6, 0.5], "poisson": [0.0, 0.0]})))
     one = check(run(scene({"stiffness": 1 / (1 + 1e-6)})))
@@ -145,9 +138,7 @@ def test_poisson_ratio_enters_by_the_stiffness_alone(run):
     def scene(bodies):
         return deck(
             bodies={"radius": 1.0, **bodies},
-            force={"law": "exponential", "p0": 1.0, "decay_length": 1.0},
-            loading=loading(4, -4, 1),
-        )
+            force={"law": "exponential", "p0": 1.0, "decay_length": 1.0}, loading=loading(4, -4, 1))
 
     by_young = run(scene({"young": 0.75, "poisson": 0.5})).curve
     by_stiffness = run(scene({"stiffness": 1.0})).curve
@@ -202,9 +193,7 @@ def test_fig1_in_steps_of_5_nm(run):
     scene = deck(
         bodies={"radius": 1.5e-2, "stiffness": 1e10},
         force={"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9},
-        loading={"h0_start": 5e-9, "h0_end": -15e-9, "h0_step": 5e-9},
-        unloading={},
-    )
+        loading={"h0_start": 5e-9, "h0_end": -15e-9, "h0_step": 5e-9}, unloading={})
     result = run(scene)
     check(result)
     assert len(result.curve) == 10
@@ -231,15 +220,13 @@ def test_a_single_step_and_a_step_longer_than_the_range(run):
 @pytest.mark.parametrize("sigma", [0.01, 0.1, 0.17, 0.87, 8.7])
 def test_cycle_at_any_accuracy(run, sigma, accuracy):
     scene = lennard_jones(
-        sigma, loading=loading(8, -4, 0.2), unloading={}, numerics={"accuracy": accuracy}
-    )
+        sigma, loading=loading(8, -4, 0.2), unloading={}, numerics={"accuracy": accuracy})
     result = run(scene)
     # At the finest accuracy rounding is a part of what the finer mesh differs by, and the estimate,
     # which is several times that difference, may say so; the numbers below are as good as asked.
     check(result, may_warn=accuracy <= 1e-10)
     exact = run(
-        lennard_jones(sigma, equilibrium_path={"h0_end": -4.0}, numerics={"accuracy": 1e-10})
-    )
+        lennard_jones(sigma, equilibrium_path={"h0_end": -4.0}, numerics={"accuracy": 1e-10}))
     for key in ("max_tension", "jump_in_h0"):
         if key in exact.summary:
             asked = {"rel": accuracy + 1e-10}
@@ -257,8 +244,7 @@ def scaled(length, pressure):
         bodies={"radius": radius, "stiffness": stiffness},
         force={"law": "lennard_jones", "hamaker": 16 * math.pi * z0**2 * gamma, "z0": z0},
         loading={"h0_start": 13 * z0, "h0_end": -4 * z0, "h0_step": 0.5 * z0},
-        unloading={},
-    ), (z0, gamma * radius, math.sqrt(radius * z0))
+        unloading={}), (z0, gamma * radius, math.sqrt(radius * z0))
 
 
 @pytest.mark.parametrize(("length", "pressure"), [(1e3, 1), (1, 1e3), (1e-3, 1e-3), (1e3, 1e-6)])
@@ -269,15 +255,10 @@ def test_units_do_not_matter(run, length, pressure):
     text, (z0_other, load_other, lateral_other) = scaled(length, pressure)
     other = check(run(text))
     for name, unit, unit_other in (
-        ("h0", z0, z0_other),
-        ("h_centre", z0, z0_other),
-        ("displacement", z0, z0_other),
-        ("load", load, load_other),
-        ("contact_radius", lateral, lateral_other),
-    ):
+            ("h0", z0, z0_other), ("h_centre", z0, z0_other), ("displacement", z0, z0_other),
+            ("load", load, load_other), ("contact_radius", lateral, lateral_other)):
         np.testing.assert_allclose(
-            other[name] / unit_other, one[name] / unit, rtol=1e-9, atol=1e-9, err_msg=name
-        )
+            other[name] / unit_other, one[name] / unit, rtol=1e-9, atol=1e-9, err_msg=name)
 
 
 def test_unit_scene_is_the_scene_of_fig10(run):
@@ -293,11 +274,9 @@ def test_unit_scene_is_the_scene_of_fig10(run):
     "scene",
     [
         lennard_jones(
-            8.7, loading=loading(13, -4, 0.5), unloading={}, equilibrium_path={}, stability={}
-        ),
+            8.7, loading=loading(13, -4, 0.5), unloading={}, equilibrium_path={}, stability={}),
         lennard_jones(
-            0.87, loading=loading(6, -1, 0.5), numerics={"grid": "uniform", "nodes": 300}
-        ),
+            0.87, loading=loading(6, -1, 0.5), numerics={"grid": "uniform", "nodes": 300}),
         exponential(100, loading=loading(6, -20, 1)),
     ],
     ids=["adhesion", "uniform grid", "repulsion"],

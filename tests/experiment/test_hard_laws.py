@@ -22,26 +22,21 @@ def run(snapin, tmp_path_factory):
 def steps(sigma, h0_end=-3.0, accuracy=1e-6, stiffness=None, **law):
     """A deck with the path under a step and a repulsion."""
     return deck(
-        bodies={"radius": 1.0, "stiffness": stiffness or 1 / sigma},
-        **law,
-        equilibrium_path={"h0_end": h0_end},
-        numerics={"accuracy": accuracy},
-    )
+        bodies={"radius": 1.0, "stiffness": stiffness or 1 / sigma}, **law,
+        equilibrium_path={"h0_end": h0_end}, numerics={"accuracy": accuracy})
 
 
 def dugdale(smoothing, pressure=20.0, decay_length=0.05):
     return {
         "dugdale": {"stress": 1.0, "range": 1.0, "smoothing": smoothing},
-        "hydration": {"pressure": pressure, "decay_length": decay_length},
-    }
+        "hydration": {"pressure": pressure, "decay_length": decay_length}}
 
 
 def capillary(smoothing):
     return {
         "capillary": {
             "surface_tension": 0.5, "kelvin_radius": 0.5, "contact_angle": 0.0,
-            "smoothing": smoothing,
-        },
+            "smoothing": smoothing},
         "born": {"hamaker": 0.147, "z0": 0.16},
     }
 
@@ -49,8 +44,7 @@ def capillary(smoothing):
 def depletion(smoothing):
     return {
         "depletion": {"osmotic_pressure": 1.0, "diameter": 1.0, "smoothing": smoothing},
-        "hydration": {"pressure": 50.0, "decay_length": 0.04},
-    }
+        "hydration": {"pressure": 50.0, "decay_length": 0.04}}
 
 
 def check(result, accuracy=1e-6):
@@ -115,8 +109,7 @@ def test_least_repulsion_before_a_step_is_where_the_pressure_vanishes(run):
 def test_step_outside_a_stronger_attraction(run):
     law = {
         "force": {"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-        "dugdale": {"stress": 0.05, "range": 3.0, "smoothing": 0.3},
-    }
+        "dugdale": {"stress": 0.05, "range": 3.0, "smoothing": 0.3}}
     check(run(steps(3.0, h0_end=-6.0, **law)))
 
 
@@ -125,16 +118,13 @@ def bridge(humidity, stiffness, h0_end, accuracy):
     return deck(
         bodies={"radius": 1.5e-2, "stiffness": stiffness},
         force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-        capillary={"humidity": humidity},
-        equilibrium_path={"h0_end": h0_end},
-        numerics={"accuracy": accuracy},
-    )
+        capillary={"humidity": humidity}, equilibrium_path={"h0_end": h0_end},
+        numerics={"accuracy": accuracy})
 
 
 @pytest.mark.parametrize(
     ("humidity", "stiffness", "h0_end"),
-    [(0.563, 1.024e11, -3.7e-9), (0.575, 3.05e11, -3.1e-9), (0.38, 1.63e11, -1e-11)],
-)
+    [(0.563, 1.024e11, -3.7e-9), (0.575, 3.05e11, -3.1e-9), (0.38, 1.63e11, -1e-11)])
 def test_bridges_between_soft_bodies_are_followed_into_contact(run, humidity, stiffness, h0_end):
     """Where the step lies outside the edge of a contact drawn out far is not foreseen by any
     theory of it; these paths once were lost."""
@@ -163,9 +153,7 @@ def oscillating(accuracy):
         bodies={"radius": 1.0, "stiffness": 1.0},
         force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
         structural={"amplitude": 0.6, "period": 3.0, "decay_length": 3.0},
-        equilibrium_path={"h0_end": -4.0},
-        numerics={"accuracy": accuracy},
-    )
+        equilibrium_path={"h0_end": -4.0}, numerics={"accuracy": accuracy})
 
 
 def test_oscillating_law_has_no_false_folds(run):
@@ -180,10 +168,8 @@ def test_oscillating_law_has_no_false_folds(run):
 
 def test_attraction_alone_is_resolved_into_its_fall(run):
     scene = deck(
-        bodies={"radius": 5e-6, "young": 3e9, "poisson": 0.35},
-        van_der_waals={"hamaker": 6.5e-20},
-        equilibrium_path={"h0_end": 0.2e-9},
-    )
+        bodies={"radius": 5e-6, "young": 3e9, "poisson": 0.35}, van_der_waals={"hamaker": 6.5e-20},
+        equilibrium_path={"h0_end": 0.2e-9})
     result = run(scene)
     assert len(result.warnings) == 1 and "fall onto each other" in result.warnings[0]
     assert result.summary["error_estimate"] <= 1e-6
@@ -193,8 +179,7 @@ def test_what_no_mesh_resolves_is_not_silent(run):
     """A step far too sharp outside a stronger attraction, at which the front recedes."""
     law = {
         "force": {"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-        "dugdale": {"stress": 0.3, "range": 4.0, "smoothing": 0.004},
-    }
+        "dugdale": {"stress": 0.3, "range": 4.0, "smoothing": 0.004}}
     result = run(steps(1.0, accuracy=1e-1, h0_end=0.5, **law), status=1)
     assert any("lost" in warning for warning in result.warnings)
 
@@ -206,9 +191,7 @@ def test_a_law_in_two_parts_costs_little_more_than_in_one(run, sigma):
     stiffness = hamaker / (16 * math.pi * z0**2) / sigma * math.sqrt(radius / z0**3)
     asked = {
         "bodies": {"radius": radius, "stiffness": stiffness},
-        "equilibrium_path": {"h0_end": -4 * z0},
-        "numerics": {"accuracy": 1e-6},
-    }
+        "equilibrium_path": {"h0_end": -4 * z0}, "numerics": {"accuracy": 1e-6}}
     whole = run(deck(force={"law": "lennard_jones", "hamaker": hamaker, "z0": z0}, **asked))
     parts = run(deck(van_der_waals={"hamaker": hamaker}, born={"z0": z0}, **asked))
     assert parts.summary["max_tension"] == pytest.approx(whole.summary["max_tension"], rel=1e-7)
@@ -231,7 +214,7 @@ def test_the_edge_of_a_contact_passes_the_rim_of_a_punch(run):
         for value, right, error, doubt in zip(*(
             several(one) for one in (found[key], truth[key], found[key + "_error"],
                                      truth[key + "_error"])
-        )):  # fmt: skip
+        )):
             assert abs(value - right) <= error + doubt
 
 
@@ -242,6 +225,6 @@ def test_a_mesh_that_is_mended_does_not_have_the_path_traced_again(run):
         van_der_waals={"hamaker": 6.5e-20}, born={"z0": 0.25e-9},
         structural={"amplitude": 3e7, "period": 0.9e-9, "decay_length": 1e-9},
         equilibrium_path={"h0_end": -4e-9}, numerics={"accuracy": 1e-6},
-    ))  # fmt: skip
+    ))
     check(result)
     assert result.cost["factorisations"] < 1.7 * result.cost["states"]

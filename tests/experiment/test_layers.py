@@ -5,12 +5,11 @@ import math
 
 import numpy as np
 import pytest
-from support.half_space import independent_folds, states_by_axis
+from support.half_space import path_by_axis
 from support.scenes import deck, loading, runner
 
-CLOSE = [*np.linspace(2.8, 1.1, 18), *np.linspace(1.09, 0.98, 16)]
-FAR = np.linspace(12, 3, 12)
-ENDS = [*np.arange(0, 3.6, 0.15), 3.8, 4.4, *np.geomspace(6, 150, 7)]
+AXIS = (*np.linspace(12, 3, 12), *np.linspace(2.8, 1.1, 18), *np.linspace(1.09, 0.98, 16))
+ENDS = (*np.arange(0, 3.6, 0.15), 3.8, 4.4, *np.geomspace(6, 150, 7))
 
 # Thickness, shear modulus over that of the base (0: rigid), Poisson's ratios, part in the yield.
 FILM = (2.5, 0.0, 0.5, 0.0, 1.0)
@@ -51,13 +50,10 @@ def solve(snapin, tmp_path_factory):
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_folds_and_states_are_those_of_independent_states(solve, scene):
-    layer, axis = SCENES[scene], [*FAR, *CLOSE]
-    h0, load = states_by_axis("lennard_jones", 1.0, axis, ENDS, layer=layer)
-    last = h0[-1]
-    run = solve(layered(layer, equilibrium_path={"h0_end": float(last)}))
-    assert run.summary["end_load"] == pytest.approx(load[-1], rel=1e-8)
-    h0, load = independent_folds("lennard_jones", 1.0, axis, ENDS, layer=layer)
-    found = run.summary
+    layer = SCENES[scene]
+    (all_h0, loads), (h0, load) = path_by_axis("lennard_jones", 1.0, AXIS, ENDS, layer=layer)
+    found = solve(layered(layer, equilibrium_path={"h0_end": float(all_h0[-1])})).summary
+    assert found["end_load"] == pytest.approx(loads[-1], rel=1e-8)
     assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-8)
     assert [found["jump_in_load"], found["jump_out_load"]] == pytest.approx(load, rel=2e-8)
 
@@ -65,7 +61,7 @@ def test_folds_and_states_are_those_of_independent_states(solve, scene):
 def test_a_film_thirty_times_thinner_than_the_contact_has_independent_states(solve):
     """The one that yields least beside what its half-space does: it cannot be compressed."""
     layer = (0.1, 0.0, 0.5, 0.0, 1.0)
-    h0, load = states_by_axis("lennard_jones", 1.0, [*FAR, *CLOSE], ENDS, layer=layer)
+    ((h0, load),) = path_by_axis("lennard_jones", 1.0, AXIS, ENDS, layer=layer, softness=())
     run = solve(layered(layer, equilibrium_path={"h0_end": float(h0[-1])}))
     assert run.summary["end_load"] == pytest.approx(load[-1], rel=1e-7)
 

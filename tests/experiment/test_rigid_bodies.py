@@ -25,16 +25,14 @@ LAWS = {
     "capillary": {**WALL, "capillary": {"humidity": 0.5}},
     "dugdale": {**WALL, "dugdale": {"stress": 1e7, "range": 1.7e-9}},
     "double_layer": {
-        **WALL, "double_layer": {"potential": 0.05, "debye_length": 2e-9, "model": "nonlinear"},
-    },
+        **WALL, "double_layer": {"potential": 0.05, "debye_length": 2e-9, "model": "nonlinear"}},
     "tabulated": {"tabulated": {"file": TABLE, "tail_exponent": 3}},
     # Steps of no width that rounding knows of, alone, in a sum, and two of them.
     "sharp": {"dugdale": {"stress": 1e7, "range": 1.7e-9, "smoothing": 1e-24}},
     "sharp sum": {**WALL, "dugdale": {"stress": 1e7, "range": 1.7e-9, "smoothing": 1e-20}},
     "two steps": {
         **WALL, "dugdale": {"stress": 1e7, "range": 1.7e-9, "smoothing": 1e-13},
-        "depletion": {"osmotic_pressure": 1e6, "diameter": 5e-9, "smoothing": 1e-11},
-    },
+        "depletion": {"osmotic_pressure": 1e6, "diameter": 5e-9, "smoothing": 1e-11}},
 }
 BODIES = {
     "parabola": derjaguin.parabola(1e-6),
@@ -218,8 +216,7 @@ def test_criteria_of_stability_are_those_of_bodies_that_do_not_yield(run):
 def test_a_sweep_has_the_exact_loads(run):
     result = run(rigid(
         LAWS["dugdale"], BODIES["parabola"], loading=STEPS,
-        sweep={"key": "dugdale.stress", "values": [1e6, 3e6, 1e7]},
-    ))
+        sweep={"key": "dugdale.stress", "values": [1e6, 3e6, 1e7]}))
     table = result.table("sweep.csv")
     np.testing.assert_allclose(table["max_tension"],
                                2 * math.pi * 1e-6 * table["surface_energy"], rtol=1e-13)
@@ -242,8 +239,7 @@ def test_elastic_bodies_tend_to_rigid_ones_as_they_get_stiff(run, shape):
         result = run(deck(
             bodies=bodies, shape=shape,
             force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-            loading=loading(6, 0.9, 0.3), numerics={"accuracy": 1e-9},
-        ))
+            loading=loading(6, 0.9, 0.3), numerics={"accuracy": 1e-9}))
         return np.append(result.curve["load"], result.summary["max_tension"])
 
     exact = found(rigid=True)

@@ -68,8 +68,7 @@ def test_a_file_of_an_instrument_becomes_a_table(tmp_path):
     script = ROOT / "pywrap/scripts/afm_to_table.py"
     done = subprocess.run(
         [sys.executable, str(script), "some.jpk-force"], capture_output=True, text=True,
-        timeout=HANG, check=False, cwd=tmp_path, env={"PYTHONPATH": str(tmp_path)},
-    )
+        timeout=HANG, check=False, cwd=tmp_path, env={"PYTHONPATH": str(tmp_path)})
     assert done.returncode == 0, done.stderr
     lines = done.stdout.splitlines()
     assert lines[1] == "# spring_constant = 0.5"

@@ -79,8 +79,7 @@ def orders(errors):
 
 CONTACT_MESHES = {
     "graded to the edge": {"ends": graded(1.0, 4.0, 0.05), "centre": 1.0},
-    "even": {"ends": np.linspace(0, 4, 9)},
-}
+    "even": {"ends": np.linspace(0, 4, 9)}}
 
 
 @pytest.mark.parametrize("name", CONTACT_MESHES)
@@ -203,9 +202,7 @@ def test_panels_converge_in_their_size_at_one_more_than_their_order(order):
 @pytest.mark.parametrize("scale", [8.0, 3.7, 1e-7])
 def test_kernel_matrix_is_homogeneous_of_degree_one(scale):
     ends = graded(1.0, 5.0, 0.01)
-    small, large = (
-        snapin.panel_mesh(s * ends, 10, centre=s).matrix() for s in (1.0, scale)
-    )
+    small, large = (snapin.panel_mesh(s * ends, 10, centre=s).matrix() for s in (1.0, scale))
     for a, b in zip(small, large):
         np.testing.assert_allclose(b, scale * a, rtol=1e-11, atol=1e-14 * scale * abs(a).max())
 
@@ -259,47 +256,4 @@ def test_interpolation_on_the_uniform_mesh_is_linear():
     values = np.random.default_rng(3).random(6)
     at = np.linspace(0, 1, 57)
     np.testing.assert_allclose(
-        mesh.interpolate(values, at), np.interp(at, mesh.x, values), atol=1e-15
-    )
-
-
-# --- Arguments
-
-
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [
-        (lambda: snapin.uniform_mesh(1, 1.0), "nodes"),
-        (lambda: snapin.uniform_mesh(-5, 1.0), "nodes"),
-        (lambda: snapin.uniform_mesh(5, 0.0), "extent"),
-        (lambda: snapin.uniform_mesh(5, math.inf), "extent"),
-        (lambda: snapin.panel_mesh([0.0], 8), "ends"),
-        (lambda: snapin.panel_mesh([0.0, 1.0, 1.0], 8), "ends"),
-        (lambda: snapin.panel_mesh([0.0, math.nan], 8), "ends"),
-        (lambda: snapin.panel_mesh([-2.0, 1.0], 8, centre=1.0), "ends"),
-        (lambda: snapin.panel_mesh([0.0, 1.0], 0), "order"),
-        (lambda: snapin.panel_mesh([0.0, 1.0], 8, centre=-1.0), "centre"),
-        (lambda: snapin.panel_mesh([0.0, 1.0], 8).interpolate(np.ones(7), [0.5]), "values"),
-        (lambda: snapin.panel_mesh([0.0, 1.0], 8).interpolate(np.ones(8), [1.5]), "at"),
-        (lambda: snapin.panel_weights([0.0, 2.0], [0.5], 0.0, 1.0), "node"),
-        (lambda: snapin.panel_weights([0.0, 1.0], [-0.5], 0.0, 1.0), "target"),
-        (lambda: snapin.panel_weights([0.0, 1.0], [0.5], 1.0, 1.0), "right"),
-        (lambda: snapin.panel_weights([0.0, 1.0], [0.5], -1.0, 1.0), "left"),
-    ],
-)
-def test_a_bad_argument_is_named(call, name):
-    with pytest.raises(ValueError, match=rf"\b{name}\b"):
-        call()
-
-
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [
-        (lambda: snapin.uniform_mesh(5.5, 1.0), "nodes"),
-        (lambda: snapin.uniform_mesh(5, "wide"), "extent"),
-        (lambda: snapin.panel_mesh(["a", "b"], 8), "ends"),
-    ],
-)
-def test_what_is_not_a_number_is_a_type_error(call, name):
-    with pytest.raises(TypeError, match=rf"\b{name}\b"):
-        call()
+        mesh.interpolate(values, at), np.interp(at, mesh.x, values), atol=1e-15)

@@ -9,8 +9,7 @@ import snapin
 
 # Distances over sums: far (1 is t = 0) and near, down to the last digit of r and t.
 RATIOS = np.concatenate(
-    [[1.0], 1 - np.logspace(-15, -1, 15), np.logspace(-1, -15, 57), np.linspace(0.02, 0.98, 49)]
-)
+    [[1.0], 1 - np.logspace(-15, -1, 15), np.logspace(-1, -15, 57), np.linspace(0.02, 0.98, 49)])
 
 
 def reference(total, distance):
@@ -102,30 +101,3 @@ def test_barycentric_weights_interpolate_polynomials(points):
     for degree in (0, 1, points - 1):
         found = ratio @ rule.x**degree / ratio.sum(1)
         np.testing.assert_allclose(found, at**degree, atol=1e-13)
-
-
-# --- Arguments
-
-
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [
-        (lambda: snapin.kernel([1.0], [0.0]), "distance"),
-        (lambda: snapin.kernel([1.0], [1.5]), "distance"),
-        (lambda: snapin.kernel([1.0, 2.0], [0.5]), "distance"),
-        (lambda: snapin.kernel([[1.0]], [0.5]), "total"),
-        (lambda: snapin.kernel([math.nan], [0.5]), "total"),
-        (lambda: snapin.kernel_log_coefficient([-1.0], [0.5]), "total"),
-        (lambda: snapin.gauss_rule(-1), "points"),
-        (lambda: snapin.gauss_rule(10**6), "points"),
-    ],
-)
-def test_a_bad_argument_is_named(call, name):
-    with pytest.raises(ValueError, match=rf"\b{name}\b"):
-        call()
-
-
-@pytest.mark.parametrize("points", [2.0, "2", None, True])
-def test_a_number_of_points_is_a_whole_number(points):
-    with pytest.raises(TypeError, match="points"):
-        snapin.gauss_rule(points)

@@ -68,10 +68,8 @@ def approach_mesh(d, reach, order, tail, decay):
 TAILS = {
     3: (lambda t: (1 + t**2) ** -1.5, lambda r: 2 / np.sqrt(1 + r**2), 1.0),
     5: (
-        lambda t: (1 + t**2) ** -2.5,
-        lambda r: 2 / 3 * ((1 + r**2) ** -0.5 + (1 + r**2) ** -1.5),
-        1 / 3,
-    ),
+        lambda t: (1 + t**2) ** -2.5, lambda r: 2 / 3 * ((1 + r**2) ** -0.5 + (1 + r**2) ** -1.5),
+        1 / 3),
 }
 
 
@@ -82,8 +80,7 @@ def test_a_power_tail_is_integrated_to_infinity(decay, mesh):
     grid = {
         "contact": lambda: contact_mesh(0.05, 3.0, 32, 14, decay),
         "small contact": lambda: contact_mesh(0.3, 3.0, 32, 14, decay),
-        "approach": lambda: approach_mesh(0.3, 3.0, 24, 14, decay),
-    }[mesh]()
+        "approach": lambda: approach_mesh(0.3, 3.0, 24, 14, decay)}[mesh]()
     p = pressure(grid.x)
     at = np.concatenate([[0.0, grid.centre], grid.x])
     # Of the smallest pressures rounding leaves less, and they count for less.

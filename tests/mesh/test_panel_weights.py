@@ -22,9 +22,8 @@ def reference(node, centre, target, left, right, j):
 
     total = mpmath.mpf(0)
     for side, near, far in (
-        (1, max(left - target, 0), right - target),
-        (-1, max(target - right, 0), target - left),
-    ):
+            (1, max(left - target, 0), right - target),
+            (-1, max(target - right, 0), target - left)):
         if far > near:
             # Close to the singularity, which the rule likes at an end or far away.
             cuts = [near + (far - near) * mpmath.mpf(10) ** -n for n in (9, 6, 4, 2, 1)]
@@ -84,8 +83,7 @@ def test_weights_do_not_depend_on_how_a_panel_is_cut(order):
         mesh = snapin.panel_mesh([0.0, 1.0], order) if order > 2 else snapin.uniform_mesh(2, 1.0)
         cut = (middle - left) / (right - left)
         parts = first @ mesh.interpolate(values, cut * node) + second @ mesh.interpolate(
-            values, np.minimum(cut + (1 - cut) * node, 1.0)
-        )
+            values, np.minimum(cut + (1 - cut) * node, 1.0))
         # The positions of left, middle and right carry rounding of their own.
         size = abs(whole).sum(1) * abs(values).max()
         noise = 4e-16 * (1 + abs(centre) + abs(right)) / (right - left)

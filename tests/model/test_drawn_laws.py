@@ -25,15 +25,11 @@ LOGARITHMIC = {
 }
 # Keys between two numbers, drawn evenly.
 EVEN = {
-    "born": {"exponent": (3, 16)},
-    "structural": {"phase": (-3, 3)},
-    "capillary": {"contact_angle": (0, 1.5, 2)},
-    "double_layer": {"regulation": (0, 1, 2)},
-}
+    "born": {"exponent": (3, 16)}, "structural": {"phase": (-3, 3)},
+    "capillary": {"contact_angle": (0, 1.5, 2)}, "double_layer": {"regulation": (0, 1, 2)}}
 CHOICES = {
     "steric": {"model": ("alexander_de_gennes", "milner_witten_cates"), "sides": (1, 2)},
-    "double_layer": {"model": ("linear", "superposition", "nonlinear")},
-}
+    "double_layer": {"model": ("linear", "superposition", "nonlinear")}}
 # Laws that end in a step: the smoothing is this part of the range at least, so that differences and
 # quadrature can follow it, and the most that is allowed.
 SMOOTHING = {"depletion": "diameter", "dugdale": "range"}

@@ -24,16 +24,12 @@ LAWS = {
     "dugdale": {"dugdale": {"stress": 1e7, "range": 1e-9, "smoothing": 0.4e-9}},
     "double_layer": {
         "double_layer": {
-            "potential": [0.1, 0.06],
-            "regulation": [0.8, 0.3],
-            "debye_length": 2e-9,
-            "model": "nonlinear",
-        }
+            "potential": [0.1, 0.06], "regulation": [0.8, 0.3], "debye_length": 2e-9,
+            "model": "nonlinear"}
     },
     "tabulated": {
         "tabulated": {
-            "file": str(ROOT / "inputs" / "examples" / "tabulated.txt"), "tail_exponent": 3,
-        },
+            "file": str(ROOT / "inputs" / "examples" / "tabulated.txt"), "tail_exponent": 3},
     },
 }
 # Separations at which a law is not smooth.
@@ -194,25 +190,3 @@ def test_exponential_is_finite_and_positive_at_a_thousand_decay_lengths_of_overl
 def test_exponential_vanishes_without_underflow():
     values = snapin.force_law(UNIT, [1e3, 1e300])
     assert not np.any(values)
-
-
-# --- Arguments
-
-
-@pytest.mark.parametrize(
-    ("law", "gap", "name"),
-    [
-        ({"force": {"law": "casimir"}}, [1e-9], "law"),
-        (snapin.exponential(p0=1.0), [1e-9], "decay_length"),
-        (snapin.exponential(p0=1.0, decay_length=1.0, z0=1.0), [1.0], "z0"),
-        (snapin.lennard_jones(hamaker=1, z0=1, part="half"), [1.0], "part"),
-        (snapin.lennard_jones(hamaker=-1, z0=1), [1.0], "hamaker"),
-        (snapin.lennard_jones(hamaker=1, z0=1), [0.0], "gap"),
-        (snapin.lennard_jones(hamaker=1, z0=1), [[1.0]], "gap"),
-        (snapin.lennard_jones(hamaker=1, z0=math.nan), [1.0], "z0"),
-        ({}, [1.0], "force"),
-    ],
-)
-def test_a_bad_argument_is_named(law, gap, name):
-    with pytest.raises(ValueError, match=rf"\b{name}\b"):
-        snapin.force_law(law, gap)

@@ -95,8 +95,7 @@ def test_hydration_and_hydrophobic_terms_add_up():
 def test_a_list_of_terms_adds_to_other_forces():
     groups = {
         "hydrophobic": {"energy": [30e-3, 2e-3], "decay_length": [1e-9, 5e-9]},
-        "born": {"hamaker": 6.5e-20, "z0": 0.3e-9},
-    }
+        "born": {"hamaker": 6.5e-20, "z0": 0.3e-9}}
     alone = [pressure(**{name: keys}) for name, keys in groups.items()]
     claim(pressure(**groups), sum(alone), sum(map(abs, alone)))
     reverse = {"van_der_waals": {"hamaker": 1e-20}, "hydration": groups["hydrophobic"]}
@@ -194,8 +193,7 @@ def test_what_is_left_of_repulsions_far_away_is_no_well():
     """The sum of a longer and a shorter exponential, whose signs rounding decides far away."""
     groups = {
         "structural": {"amplitude": 3e6, "period": 0.9e-9, "decay_length": 0.5e-9},
-        "hydration": {"energy": 5e-3, "decay_length": 0.9e-9},
-    }
+        "hydration": {"energy": 5e-3, "decay_length": 0.9e-9}}
     assert (pressure(GAP, **groups) >= 0).all()
     numbers = snapin.law_numbers(groups)
     assert numbers.surface_energy == 0

@@ -15,11 +15,9 @@ def run(snapin, tmp_path_factory):
 def scene(shape, sigma=1.0, **groups):
     """A deck in units of z0 and of E/(1-nu^2), or of rigid bodies where sigma is 0."""
     return deck(
-        bodies={"stiffness": 1.0} if sigma else {"rigid": True},
-        shape=shape,
+        bodies={"stiffness": 1.0} if sigma else {"rigid": True}, shape=shape,
         force={"law": "lennard_jones", "hamaker": 16 * math.pi * (sigma or 1.0), "z0": 1.0},
-        **groups,
-    )
+        **groups)
 
 
 def write_profile(folder, r, f):
@@ -163,10 +161,9 @@ def test_a_large_sphere_is_the_parabola(run):
         # The lateral unit is 1e5: sigma is 1, and the largest contact 1e-5 of the radius.
         run(scene(shape, 1e-5, equilibrium_path={"h0_end": -2.0})).summary
         for shape in (
-            {"kind": "sphere", "radius": 1e10},
-            {"kind": "spheroid", "radius": 1e10, "semi_axis": 1e12},
-            {"kind": "parabola", "radius": 1e10},
-        )
+                {"kind": "sphere", "radius": 1e10},
+                {"kind": "spheroid", "radius": 1e10, "semi_axis": 1e12},
+                {"kind": "parabola", "radius": 1e10})
     ]
     for key in ("max_tension", "max_tension_h0", "jump_in_h0", "jump_out_load", "end_load"):
         for summary in found[:2]:
@@ -194,16 +191,14 @@ def test_a_profile_is_the_shape_that_it_was_taken_from(run, tmp_path):
     shape = write_profile(tmp_path / "fourth", r, r**4 / 2)
     near = run(scene(shape, equilibrium_path=path)).summary
     exact = run(scene(
-        {"kind": "power", "exponent": 4.0, "coefficient": 0.5}, equilibrium_path=path
-    )).summary
+        {"kind": "power", "exponent": 4.0, "coefficient": 0.5}, equilibrium_path=path)).summary
     for key in ("max_tension", "jump_in_h0", "jump_out_h0", "end_load"):
         assert near[key] == pytest.approx(exact[key], rel=2e-4), key
 
 
 @pytest.mark.parametrize("shape", [
     {"kind": "cone", "half_angle": math.atan(2.0)},
-    {"kind": "power", "exponent": 3.0, "coefficient": 0.5},
-], ids=["cone", "cube"])
+    {"kind": "power", "exponent": 3.0, "coefficient": 0.5}], ids=["cone", "cube"])
 def test_what_a_cycle_loses_is_the_area_between_its_branches(run, shape):
     run_of = run(scene(shape, 5.0, loading={"h0_start": 24.0, "h0_end": -6.0, "h0_step": 0.1},
                        unloading={"h0_end": 24.0, "h0_step": 0.1}))
@@ -250,16 +245,13 @@ def test_far_away_a_device_finds_the_load_of_rigid_bodies(run, shape, height, sc
     curve = done.table("device.csv")
     outermost = curve["h0"].argmax()
     assert curve["h0"][outermost] == pytest.approx(far)
-    assert curve["load"][outermost] == pytest.approx(
-        rigid_load(height, far, scale), rel=1e-6
-    )
+    assert curve["load"][outermost] == pytest.approx(rigid_load(height, far, scale), rel=1e-6)
 
 
 @pytest.mark.parametrize("shape", [
     {"kind": "cone", "half_angle": math.atan(2.0)},
     {"kind": "power", "exponent": 1.3, "coefficient": 0.5},
-    {"kind": "power", "exponent": 3.0, "coefficient": 0.5},
-], ids=["cone", "1.3", "cube"])
+    {"kind": "power", "exponent": 3.0, "coefficient": 0.5}], ids=["cone", "1.3", "cube"])
 def test_what_jumps_of_a_device_lose_is_the_area_of_its_cycle(run, shape):
     summary = run(scene(shape, 1.0, equilibrium_path={"h0_end": -1.0},
                         device={"stiffness": [5.0, 0.5]})).summary

@@ -79,8 +79,7 @@ def test_points_are_met_and_nothing_jumps(tmp_path, interpolation, quantity):
 
 
 @pytest.mark.parametrize(
-    ("interpolation", "order", "best"), [("spline", 3.7, 5e-7), ("monotone", 3.5, 2e-6)]
-)
+    ("interpolation", "order", "best"), [("spline", 3.7, 5e-7), ("monotone", 3.5, 2e-6)])
 def test_table_converges_to_its_law(tmp_path, interpolation, order, best):
     exact = snapin.law_numbers(LAW).surface_energy
     errors = []

@@ -27,8 +27,7 @@ def scene(group, surface_energy, outward):
     return deck(
         bodies=BODIES,
         **{group: {
-            "surface_energy": surface_energy, "z0": 0.5e-9 + outward, "decay_length": DECAY,
-        }},
+            "surface_energy": surface_energy, "z0": 0.5e-9 + outward, "decay_length": DECAY}},
         loading={"h0_start": outward + 7e-9, "h0_end": outward - 2e-9, "h0_step": 2e-10},
         unloading={},
         equilibrium_path={},
@@ -79,8 +78,7 @@ def test_the_recipe_adds_a_law_in_one_file_and_one_line(tmp_path):
     tools = ROOT / ".venv" / "bin"
     env = dict(os.environ, PATH=f"{tools}:{os.environ['PATH']}")
     for command in (
-        ["meson", "setup", "build", "-Dpython=disabled"], ["meson", "compile", "-C", "build"]
-    ):
+            ["meson", "setup", "build", "-Dpython=disabled"], ["meson", "compile", "-C", "build"]):
         subprocess.run(command, cwd=tree, env=env, check=True, capture_output=True, timeout=590)
 
     def added(*args, cwd=None, **kwargs):

@@ -178,8 +178,7 @@ def test_empty_deck_names_the_groups_it_needs(check, text):
 
 def test_deck_without_any_force_says_where_to_find_them(check):
     status, _, err = check(
-        "&bodies radius = 1, rigid = .true. /\n&loading h0_start=2,h0_end=1,h0_step=1 /"
-    )
+        "&bodies radius = 1, rigid = .true. /\n&loading h0_start=2,h0_end=1,h0_step=1 /")
     assert status == 2
     assert "d.nml:1: &force: this group is missing" in err and "--keys" in err
 

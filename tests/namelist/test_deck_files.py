@@ -117,12 +117,7 @@ def printed_keys(snapin):
 
 
 SAMPLE = {
-    "a number": "0.005",
-    "a whole": "10",
-    "up to": "0.005",
-    ".true.": ".false.",
-    "text in": "'x'",
-}
+    "a number": "0.005", "a whole": "10", "up to": "0.005", ".true.": ".false.", "text in": "'x'"}
 
 
 def sample_value(description):

@@ -10,14 +10,13 @@ import pytest
 import snapin
 from conftest import ROOT
 from support.dlvo import Dlvo
-from support.half_space import independent_folds
+from support.half_space import path_by_axis
 from support.scenes import JKR, of_numbers
 
 DECK = ROOT / "inputs" / "examples" / "dlvo.nml"
 # Gaps on the axis from far away into contact, and panels, narrow where the contact has its edge.
-CLOSE = [*np.linspace(2.8, 1.1, 18), *np.linspace(1.09, 1.0, 14)]
-FAR = np.linspace(12, 3, 12)
-ENDS = [*np.arange(0, 1.8, 0.15), 1.8, 2.2, 2.7, 3.4, 4.4, *np.geomspace(6, 300, 8)]
+AXIS = (*np.linspace(12, 3, 12), *np.linspace(2.8, 1.1, 18), *np.linspace(1.09, 1.0, 14))
+ENDS = (*np.arange(0, 1.8, 0.15), 1.8, 2.2, 2.7, 3.4, 4.4, *np.geomspace(6, 300, 8))
 
 
 # --- Lennard-Jones and a repulsion of ten times its range
@@ -63,7 +62,7 @@ def test_the_path_does_not_depend_on_gaps_where_no_force_acts(h0_end):
 
 
 def test_jumps_of_a_law_with_a_barrier_are_those_of_independent_states():
-    h0, load = independent_folds("barrier", 1.0, [*FAR, *CLOSE], ENDS)
+    _, (h0, load) = path_by_axis("barrier", 1.0, AXIS, ENDS)
     found = behind_a_barrier(1.0, 1e-8)
     assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-9)
     # Beside a fold the load goes with the root of an error in H0.
@@ -80,10 +79,8 @@ def scene():
     layers = keys["double_layer"]
     law = Dlvo(
         hamaker=keys["van_der_waals"]["hamaker"],
-        retardation_length=keys["van_der_waals"]["retardation_length"],
-        z0=keys["born"]["z0"],
-        potential=layers["potential"], regulation=layers["regulation"], salt=layers["salt"],
-    )
+        retardation_length=keys["van_der_waals"]["retardation_length"], z0=keys["born"]["z0"],
+        potential=layers["potential"], regulation=layers["regulation"], salt=layers["salt"])
     return snapin.run(DECK), keys["bodies"], law
 
 
@@ -147,10 +144,9 @@ def test_dlvo_jumps_are_those_of_independent_states():
     sigma = energy * math.sqrt(bodies["radius"] * z0) / (bodies["stiffness"] * z0**2)
     keys = f90nml.read(DECK)
     layers = {name: keys["double_layer"][name] for name in ("potential", "regulation", "salt")}
-    h0, load = independent_folds(
-        "dlvo", sigma, [20.0, 16.0, *FAR, *CLOSE], ENDS, z0=z0, hamaker=law.hamaker,
-        retardation_length=keys["van_der_waals"]["retardation_length"], **layers,
-    )
+    _, (h0, load) = path_by_axis(
+        "dlvo", sigma, (20.0, 16.0, *AXIS), ENDS, z0=z0, hamaker=law.hamaker,
+        retardation_length=keys["van_der_waals"]["retardation_length"], **layers)
     summary = result.summary
     # The pushing load before the jump: the bodies are over the barrier under compression.
     assert summary["jump_in_load"] > 0

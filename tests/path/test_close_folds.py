@@ -32,8 +32,7 @@ def test_uncertainty_of_the_energy_lost_covers_its_error(run, sigma):
     def energy(accuracy):
         numerics = {"accuracy": accuracy}
         return run(
-            lennard_jones(sigma, equilibrium_path={"h0_end": -2.0}, numerics=numerics)
-        ).summary
+            lennard_jones(sigma, equilibrium_path={"h0_end": -2.0}, numerics=numerics)).summary
 
     fine = energy(1e-9)
     for accuracy in (1e-3, 1e-4, 1e-6):

@@ -7,17 +7,11 @@ from support.scenes import JKR, exponential, lennard_jones, loading, runner, sev
 # The reference table: an independent high-order solution. Loads in units of gamma R.
 TABLE = {
     0.87: {
-        "pull-off": 1.07953786,
-        "pull-off h0": 2.2284576,
-        "in": (3.0886872, -1.5330549),
-        "out": (3.4834324, -2.9986585),
-    },
+        "pull-off": 1.07953786, "pull-off h0": 2.2284576, "in": (3.0886872, -1.5330549),
+        "out": (3.4834324, -2.9986585)},
     8.7: {
-        "pull-off": 1.01124487,
-        "pull-off h0": 6.2758749,
-        "in": (5.9728350, -0.4076839),
-        "out": (11.9352327, -2.6534864),
-    },
+        "pull-off": 1.01124487, "pull-off h0": 6.2758749, "in": (5.9728350, -0.4076839),
+        "out": (11.9352327, -2.6534864)},
 }
 # The table is of two independent solutions that agree to within one unit of its last digit.
 EIGHT = {"rel": 1e-8}
@@ -33,8 +27,7 @@ def path(sigma, accuracy=None, part="full", **keys):
     """A path down to h0 = -2."""
     numerics = {"accuracy": accuracy} if accuracy else None
     return lennard_jones(
-        sigma, part=part, equilibrium_path={"h0_end": -2.0, **keys}, numerics=numerics
-    )
+        sigma, part=part, equilibrium_path={"h0_end": -2.0, **keys}, numerics=numerics)
 
 
 def of(sigma, value):
@@ -74,8 +67,7 @@ def test_path_is_as_accurate_as_asked_for(run, sigma, accuracy):
 def test_large_sigma_has_two_more_folds_before_contact(run):
     summary = run(path(8.7)).summary
     np.testing.assert_allclose(
-        summary["folds_h0"], [5.972835, 6.2608, 6.2098, 11.9352327], atol=5e-5
-    )
+        summary["folds_h0"], [5.972835, 6.2608, 6.2098, 11.9352327], atol=5e-5)
 
 
 def test_h0_start_does_not_matter(run):
@@ -214,10 +206,8 @@ def test_path_agrees_with_the_h0_stepped_states(run, sigma):
     steps = run(lennard_jones(sigma, loading=loading(12, -2, 0.5), unloading={})).curve
     asked = steps.rows("loading")["h0"]
     scene = lennard_jones(
-        sigma,
-        equilibrium_path={"h0_start": 12.5, "h0_end": -2.5},
-        profiles={"h0": [float(h0) for h0 in asked]},
-    )
+        sigma, equilibrium_path={"h0_start": 12.5, "h0_end": -2.5},
+        profiles={"h0": [float(h0) for h0 in asked]})
     curve = run(scene).curve
     for branch in ("loading", "unloading_1"):
         rows = steps.rows(branch)
@@ -231,12 +221,8 @@ def test_path_agrees_with_the_h0_stepped_states(run, sigma):
 def test_path_and_loading_in_one_scene_report_the_folds_of_the_path(run):
     both = run(
         lennard_jones(
-            0.87,
-            loading=loading(6, -2, 0.5),
-            unloading={},
-            equilibrium_path={},
-            numerics={"accuracy": 1e-10},
-        )
+            0.87, loading=loading(6, -2, 0.5), unloading={}, equilibrium_path={},
+            numerics={"accuracy": 1e-10})
     )
     assert set(both.curve["branch"]) == {"path", "loading", "unloading_1"}
     assert both.summary["jump_in_h0"] == pytest.approx(3.0886872, **SEVEN)
@@ -284,8 +270,7 @@ def test_far_from_contact_repulsion_does_not_matter(run, sigma):
     "scene",
     [
         lambda **groups: exponential(1, **groups),
-        lambda **groups: lennard_jones(1.0, part="repulsive", **groups),
-    ],
+        lambda **groups: lennard_jones(1.0, part="repulsive", **groups)],
     ids=["exponential", "repulsive"],
 )
 def test_path_of_a_law_without_attraction_is_the_h0_stepped_one(run, scene):

@@ -98,10 +98,8 @@ def test_rows_go_one_way_where_meshes_change_from_step_to_step(run):
         bodies={"radius": 5e-6, "stiffness": 14352191095.1},
         force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
         structural={"amplitude": 2727574.58541, "period": 1.084323267e-9, "decay_length": 1e-9},
-        dugdale={"stress": 1e7, "range": 7.051402e-10},
-        equilibrium_path={"h0_end": 0.5e-9},
-        numerics={"accuracy": 1e-3},
-    )
+        dugdale={"stress": 1e7, "range": 7.051402e-10}, equilibrium_path={"h0_end": 0.5e-9},
+        numerics={"accuracy": 1e-3})
     curve = run(bent).curve
     centre, stable = curve["h_centre"], curve["stable"]
     # The gap on the axis is a coordinate of the path, and between its two folds nothing is stable.

@@ -32,8 +32,7 @@ def test_the_sphere_is_that_of_another_program_at_every_tabor_parameter(tabor):
         "bodies": {"radius": 1.0, "stiffness": 2 * tabor**-1.5},
         "force": {"law": "lennard_jones", "surface_energy": 1.0, "z0": 1.0},
         "equilibrium_path": {"h0_end": -1.0}, "classical": {},
-        "numerics": {"accuracy": 1e-7},
-    }).summary
+        "numerics": {"accuracy": 1e-7}}).summary
     assert found["tabor"] == pytest.approx(tabor, rel=1e-12)
     for key, value, unit, digits in zip(KEYS, TABLE[tabor], UNITS, DIGITS):
         # A unit of its last digit: some are cut off, not rounded.

@@ -146,8 +146,7 @@ def scene(sigma, accuracy):
 
 @pytest.mark.parametrize("sigma, accuracy", [
     *((sigma, 1e-5) for sigma in SIGMAS[::3]),
-    *(pytest.param(sigma, 1e-7, marks=pytest.mark.long) for sigma in SIGMAS),
-])
+    *(pytest.param(sigma, 1e-7, marks=pytest.mark.long) for sigma in SIGMAS)])
 def test_errors_are_those_of_the_theories_against_the_tables(run, sigma, accuracy):
     text, h0_end = scene(sigma, accuracy)
     found = run(text)

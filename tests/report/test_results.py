@@ -28,14 +28,8 @@ CURVE = [
     ("converged", ""),
 ]
 PROFILES = [
-    ("branch", ""),
-    ("h0", "m"),
-    ("r", "m"),
-    ("separation", "m"),
-    ("deformation", "m"),
-    ("pressure", "Pa"),
-    ("energy", "J/m^2"),
-]
+    ("branch", ""), ("h0", "m"), ("r", "m"), ("separation", "m"), ("deformation", "m"),
+    ("pressure", "Pa"), ("energy", "J/m^2")]
 # Every key that users' scripts may depend on.
 SUMMARY = """title version sigma tabor surface_energy jkr_pull_off dmt_pull_off max_tension
     max_tension_h0 jump_in_h0 jump_in_load jump_out_h0 jump_out_load unload_from unload_max_tension
@@ -53,14 +47,8 @@ def run(snapin, tmp_path_factory):
 def full(run):
     """A scene with every group that gives a file."""
     scene = lennard_jones(
-        0.87,
-        scene={"title": "It's \"all\", 100 %"},
-        loading=loading(6, -2, 0.5),
-        unloading={"from_": [-2.0, 1.0]},
-        profiles={"h0": [2.0]},
-        classical={},
-        stability={},
-    )
+        0.87, scene={"title": "It's \"all\", 100 %"}, loading=loading(6, -2, 0.5),
+        unloading={"from_": [-2.0, 1.0]}, profiles={"h0": [2.0]}, classical={}, stability={})
     return run(scene)
 
 
@@ -79,9 +67,7 @@ def check_table(table, columns):
 
 
 def test_curve_has_the_columns_of_the_contract(run):
-    scene = lennard_jones(
-        0.87, scene={"title": "It's \"all\", 100 %"}, loading=loading(6, 5, 0.5)
-    )
+    scene = lennard_jones(0.87, scene={"title": "It's \"all\", 100 %"}, loading=loading(6, 5, 0.5))
     check_table(run(scene).curve, CURVE)
 
 
@@ -105,8 +91,7 @@ def test_profiles_of_unlike_bodies_have_the_deformation_of_each(run):
     alike = run(lennard_jones(0.87, **scene)).table("profiles.csv")
     unlike = run(
         lennard_jones(0.87, **scene).replace(
-            "stiffness = 1.0", "young = 2.0, 0.5, poisson = 0.0, 0.5"
-        )
+            "stiffness = 1.0", "young = 2.0, 0.5, poisson = 0.0, 0.5")
     ).table("profiles.csv")
     assert unlike.names == [*alike.names, "deformation_1", "deformation_2"]
     assert unlike["deformation"] == pytest.approx(alike["deformation"], rel=1e-9)
@@ -142,7 +127,7 @@ def test_numbers_of_any_size_are_written_to_the_last_digit(snapin, tmp_path):
     text = deck(bodies={"radius": 1e-6, "stiffness": 1e10},
                 force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
                 classical={"h0_start": 1e-9, "h0_end": -1e-9, "count": 2},
-                sweep={"key": "bodies.stiffness", "values": values})  # fmt: skip
+                sweep={"key": "bodies.stiffness", "values": values})
     done = runner(snapin, tmp_path)(text)
     lines = (done.folder / "sweep.csv").read_text().splitlines()
     rows = [line.split(",") for line in lines if not line.startswith("#")][1:]
@@ -253,10 +238,8 @@ def test_files_of_an_earlier_run_do_not_stay_beside_those_of_another(snapin, tmp
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["", "&bodies radius = 1 /", exponential(1), exponential(1, loading=loading(1, 2, 1))],
-    ids=["empty", "bodies alone", "nothing to do", "upward loading"],
-)
+    "text", ["", "&bodies radius = 1 /", exponential(1), exponential(1, loading=loading(1, 2, 1))],
+    ids=["empty", "bodies alone", "nothing to do", "upward loading"])
 def test_a_wrong_deck_leaves_nothing(snapin, tmp_path, text):
     (tmp_path / "deck.nml").write_text(text)
     done = snapin("deck.nml", cwd=tmp_path)
@@ -303,8 +286,7 @@ def test_an_unconverged_state_is_never_called_stable(failed):
 def test_one_failure_does_not_stop_the_other_decks(snapin, tmp_path):
     numerics = {"method": "mixing", "max_iterations": 3, "nodes": 200}
     (tmp_path / "bad.nml").write_text(
-        lennard_jones(0.87, loading=loading(5, 3, 1), numerics=numerics)
-    )
+        lennard_jones(0.87, loading=loading(5, 3, 1), numerics=numerics))
     (tmp_path / "good.nml").write_text(exponential(1, loading=loading(6, 4, 1)))
     done = snapin("bad.nml", "good.nml", cwd=tmp_path)
     assert done.returncode == 1

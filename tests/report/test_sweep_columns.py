@@ -21,11 +21,7 @@ def run(snapin, tmp_path_factory):
 def adhesive(sigma=0.87, **groups):
     """A cycle with two turning points."""
     return lennard_jones(
-        sigma,
-        loading=loading(7, -2, 0.5),
-        unloading={"from_": TURNING, "h0_end": 7.0},
-        **groups,
-    )
+        sigma, loading=loading(7, -2, 0.5), unloading={"from_": TURNING, "h0_end": 7.0}, **groups)
 
 
 def hamaker(sigma):
@@ -76,8 +72,7 @@ def test_a_group_that_is_absent_costs_no_column(run, table):
     sweep = {"key": "force.hamaker", "values": [hamaker(0.1), hamaker(0.2)]}
     bare = run(lennard_jones(0.1, loading=loading(7, 3, 1), sweep=sweep)).table("sweep.csv")
     extra = OF_APPROXIMATIONS + [
-        f"{name}_{k}" for k in (1, 2) for name in ("unload_max_tension", "unload_jump_out_h0")
-    ]
+        f"{name}_{k}" for k in (1, 2) for name in ("unload_max_tension", "unload_jump_out_h0")]
     assert table.names == [*bare.names[:-1], *extra, "failure"] and bare.names[-1] == "failure"
     assert set(END) <= set(bare.names)
 
@@ -100,8 +95,7 @@ def test_equation_37_is_the_papers_power_of_sigma(run, table):
     np.testing.assert_allclose(gap / gap[0], (sigma / sigma[0]) ** (2 / 7), rtol=1e-12)
     np.testing.assert_allclose(table["jump_equation_37_h0"], 4 / 3 * gap, rtol=1e-12)
     np.testing.assert_allclose(
-        table["jump_equation_37_load"], -8 * math.pi / 3 * sigma / gap**2, rtol=1e-12
-    )
+        table["jump_equation_37_load"], -8 * math.pi / 3 * sigma / gap**2, rtol=1e-12)
 
 
 def test_jumps_that_do_not_exist_are_absent_or_nan(run, table):
@@ -131,11 +125,8 @@ def end_of(curve, branch):
 @pytest.mark.parametrize(
     "deck",
     [
-        adhesive(),
-        adhesive(equilibrium_path={"h0_end": -3.0}),
-        adhesive(numerics={"grid": "uniform"}),
-        exponential(3, loading=loading(6, -1, 1)),
-    ],
+        adhesive(), adhesive(equilibrium_path={"h0_end": -3.0}),
+        adhesive(numerics={"grid": "uniform"}), exponential(3, loading=loading(6, -1, 1))],
     ids=["cycle", "cycle and path", "uniform grid", "repulsion"],
 )
 def test_end_is_the_last_row_of_the_loading(run, deck):
@@ -147,8 +138,7 @@ def test_end_is_the_last_row_of_the_loading(run, deck):
     "deck",
     [
         lennard_jones(0.87, equilibrium_path={"h0_end": -3.0}),
-        exponential(3, equilibrium_path={"h0_end": -1.0}),
-    ],
+        exponential(3, equilibrium_path={"h0_end": -1.0})],
     ids=["adhesion", "repulsion"],
 )
 def test_without_loading_end_is_that_of_the_path(run, deck):
@@ -182,12 +172,7 @@ def test_a_case_that_fails_has_its_end_and_nan_for_what_it_did_not_reach(run):
     """Without repulsion the larger sigma has no state at the turning point."""
     sweep = {"key": "force.hamaker", "values": [hamaker(1e-3), hamaker(1.0)]}
     scene = lennard_jones(
-        1.0,
-        part="attractive",
-        loading=loading(8, 2, 0.5),
-        unloading={"from_": [2.0]},
-        sweep=sweep,
-    )
+        1.0, part="attractive", loading=loading(8, 2, 0.5), unloading={"from_": [2.0]}, sweep=sweep)
     rows = run(scene, status=1).table("sweep.csv")
     assert list(rows["converged"]) == [1, 0]
     assert rows["end_h0"][0] == 2 and rows["end_h0"][1] > rows["jump_in_h0"][1] > 2
@@ -202,7 +187,6 @@ def test_a_sweep_of_a_list_gives_each_case_the_one_value(run):
     swept = run(adhesive(sweep=sweep)).table("sweep.csv")
     single = run(adhesive()).summary
     np.testing.assert_allclose(
-        swept["unload_max_tension_1"], several(single["unload_max_tension"])[::-1], rtol=1e-6
-    )
+        swept["unload_max_tension_1"], several(single["unload_max_tension"])[::-1], rtol=1e-6)
     assert np.isnan(swept["unload_max_tension_2"]).all()
     assert np.isnan(swept["unload_jump_out_h0_2"]).all()

@@ -6,7 +6,7 @@ import time
 
 import f90nml
 import pytest
-from support.interrupted import Bench, frames, heading, sealed, SHORT, WORD
+from support.interrupted import Bench, frames, sealed, SHORT, WORD
 from support.scenes import deck, exponential, lennard_jones, loading
 
 UNIFORM = {"grid": "uniform", "nodes": 120, "r_max": 12.0}
@@ -14,26 +14,21 @@ CYCLES = {
     "first": SHORT,
     "two turning points, strong adhesion": lennard_jones(
         8.7, loading=loading(14, -4, 1), unloading={"from_": [2.0, -4.0]},
-        profiles={"h0": [2.0, -2.0]},
-    ),
+        profiles={"h0": [2.0, -2.0]}),
     "the paper's grid and rule": lennard_jones(
         0.87, loading=loading(5, -1, 0.5), unloading={}, profiles={"h0": [1.0]},
         numerics={**UNIFORM, "method": "mixing", "convergence": "displacement_change",
                   "displacement_tolerance": 1e-4},
     ),
     "uniform grid": lennard_jones(
-        0.87, loading=loading(5, -1, 0.5), unloading={}, numerics=UNIFORM,
-    ),
+        0.87, loading=loading(5, -1, 0.5), unloading={}, numerics=UNIFORM),
     "newton": lennard_jones(
-        0.87, loading=loading(5, -1, 0.5), unloading={}, numerics={"method": "newton"},
-    ),
+        0.87, loading=loading(5, -1, 0.5), unloading={}, numerics={"method": "newton"}),
     "repulsion": exponential(
-        100, loading=loading(6, -6, 0.5), unloading={}, profiles={"h0": [0.0]},
-    ),
+        100, loading=loading(6, -6, 0.5), unloading={}, profiles={"h0": [0.0]}),
     "stability beside path and cycle": lennard_jones(
         0.87, loading=loading(4, -1, 0.5), unloading={}, equilibrium_path={}, stability={},
-        profiles={"h0": [1.0]},
-    ),
+        profiles={"h0": [1.0]}),
     "no state at the end": lennard_jones(0.87, part="attractive", loading=loading(6, -1, 0.25)),
 }
 FAILS = ("the paper's grid and rule", "no state at the end")

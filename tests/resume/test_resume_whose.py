@@ -8,7 +8,7 @@ import subprocess
 import time
 
 import pytest
-from support.interrupted import Bench, environment, frames, heading, linked_id, owner, rows, SWEEP
+from support.interrupted import Bench, environment, frames, heading, linked_id, owner, SWEEP
 from support.scenes import lennard_jones, loading
 
 
@@ -145,8 +145,7 @@ def test_a_second_run_is_refused_and_touches_nothing(sweep, options):
 
 @pytest.mark.parametrize("away", ["removed", "moved", "a file removed"])
 def test_a_run_whose_folder_is_gone_publishes_nothing_and_touches_no_other(
-    snapin_path, tmp_path, away
-):
+        snapin_path, tmp_path, away):
     (tmp_path / "deck.nml").write_text(lennard_jones(0.87, loading=loading(9, -3, 0.002)))
     folder = tmp_path / "results/deck"
     folder.mkdir(parents=True)

@@ -160,8 +160,7 @@ def test_a_closed_pipe_or_a_full_terminal_log_does_not_end_a_run(short):
             empty(short.folder / "cut/deck")
             done = subprocess.run(
                 [short.path, "--out", "cut", "--resume", "deck.nml"], cwd=short.folder,
-                env=environment(1), stderr=stream, check=False,
-            )
+                env=environment(1), stderr=stream, check=False)
             assert done.returncode == 0
             assert short.files("cut") == short.whole
     finally:

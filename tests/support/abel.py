@@ -142,8 +142,7 @@ class Mesh:
             far = targets >= 2 * b - a
             x = self.x[columns]
             matrix[far, columns] = (self.weights * self.stretch)[columns] / np.sqrt(
-                place[far, None] ** 2 - x**2
-            )
+                place[far, None] ** 2 - x**2)
             if k == 0:
                 inside = near & (targets <= b)
                 matrix[inside, columns] = self.around_the_axis(place[inside])

@@ -15,8 +15,7 @@ class Body:
     def __init__(self, kind, height, position, *, breaks=(), radius=None, **keys):
         self.groups = {
             "bodies": {"rigid": True, **({"radius": radius} if radius else {})},
-            "shape": {"kind": kind, **keys},
-        }
+            "shape": {"kind": kind, **keys}}
         self.height, self.position, self.breaks = height, position, breaks
 
 
@@ -38,8 +37,7 @@ def cone(half_angle):
 def rounded_punch(radius, flat):
     return Body(
         "rounded_punch", lambda r: np.maximum(r - flat, 0) ** 2 / (2 * radius),
-        lambda f: flat + np.sqrt(2 * radius * f), breaks=(flat,), radius=radius, flat_radius=flat,
-    )
+        lambda f: flat + np.sqrt(2 * radius * f), breaks=(flat,), radius=radius, flat_radius=flat)
 
 
 def spheroid(radius, b, kind="spheroid"):

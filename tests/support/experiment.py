@@ -44,9 +44,7 @@ def approach(path, start, end):
     if start < fold:
         return [Leg(path.on(contact, start), path.on(contact, end))]
     return [
-        Leg(path.on(far, start), path.jump_in),
-        Leg(path.on(contact, fold), path.on(contact, end)),
-    ]
+        Leg(path.on(far, start), path.jump_in), Leg(path.on(contact, fold), path.on(contact, end))]
 
 
 def withdrawal(path, start, turn, retreat):
@@ -58,9 +56,7 @@ def withdrawal(path, start, turn, retreat):
     if retreat <= fold:
         return [Leg(path.on(contact, turn), path.on(contact, retreat))]
     return [
-        Leg(path.on(contact, turn), path.jump_out),
-        Leg(path.on(far, fold), path.on(far, retreat)),
-    ]
+        Leg(path.on(contact, turn), path.jump_out), Leg(path.on(far, fold), path.on(far, retreat))]
 
 
 def largest_tension(path, legs):
@@ -78,11 +74,8 @@ def reported(found):
     largest = min(tensions, key=lambda point: point.load) if tensions else None
     end = found.loading[-1].last
     numbers = {
-        "max_tension": largest and -largest.load,
-        "max_tension_h0": largest and largest.h0,
-        "end_load": end.load,
-        "end_displacement": end.displacement,
-    }
+        "max_tension": largest and -largest.load, "max_tension_h0": largest and largest.h0,
+        "end_load": end.load, "end_displacement": end.displacement}
     jumps_in = len(found.loading) > 1
     jumps_out = any(len(legs) > 1 for legs in found.unloadings)
     for name, there, fold in (("in", jumps_in, path.jump_in), ("out", jumps_out, path.jump_out)):
@@ -92,8 +85,7 @@ def reported(found):
         numbers["unload_max_tension"] = [-p.load if p else math.nan for p in branches[1:]]
         numbers["unload_max_tension_h0"] = [p.h0 if p else math.nan for p in branches[1:]]
         numbers["unload_jump_out_h0"] = [
-            path.jump_out.h0 if len(legs) > 1 else math.nan for legs in found.unloadings
-        ]
+            path.jump_out.h0 if len(legs) > 1 else math.nan for legs in found.unloadings]
     return numbers
 
 

@@ -42,10 +42,7 @@ def bodies(rng, radius, stiffness):
     if way < 0.3:
         nu = [rng.choice([-0.999999, 0.0, 0.3, 0.5]) for _ in range(2)]
         return {
-            "radius": radius,
-            "young": [stiffness, stiffness * power(rng, -3, 12)],
-            "poisson": nu,
-        }
+            "radius": radius, "young": [stiffness, stiffness * power(rng, -3, 12)], "poisson": nu}
     return {"radius": radius, "stiffness": stiffness}
 
 
@@ -80,10 +77,7 @@ def ranges(rng, length):
     if rng.random() < 0.75:
         span = start * length - end * length
         groups["loading"] = {
-            "h0_start": start * length,
-            "h0_end": end * length,
-            "h0_step": span / steps,
-        }
+            "h0_start": start * length, "h0_end": end * length, "h0_step": span / steps}
         if rng.random() < 0.6:
             low, high = groups["loading"]["h0_end"], groups["loading"]["h0_start"]
             turning = [low] + [rng.uniform(low, high) for _ in range(rng.choice([0, 0, 1, 3]))]
@@ -151,12 +145,8 @@ def extreme_deck(number):
     if rng.random() < 0.05:
         sweep = {"key": "bodies.radius", "from_": radius, "to": 1e3 * radius, "count": 2}
     return deck(
-        bodies=bodies(rng, radius, stiffness),
-        force=law,
-        **groups,
-        sweep=sweep,
-        numerics=numerics(rng, radius, length),
-    )
+        bodies=bodies(rng, radius, stiffness), force=law, **groups, sweep=sweep,
+        numerics=numerics(rng, radius, length))
 
 
 # --- Claims
@@ -190,16 +180,9 @@ def run_deck(program, text, folder, name, seconds):
     before = processor_seconds()
     try:
         done = subprocess.run(
-            [str(program), f"{name}.nml"],
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            timeout=HANG,
-            check=False,
-            env=environment,
-            preexec_fn=lambda: resource.setrlimit(*limits),
-        )
+            [str(program), f"{name}.nml"], cwd=folder, capture_output=True, text=True,
+            errors="replace", timeout=HANG, check=False, env=environment,
+            preexec_fn=lambda: resource.setrlimit(*limits))
     except subprocess.TimeoutExpired:
         raise Broken("hangs") from None
     claim(done.returncode != -signal.SIGXCPU, f"took more than {seconds} s of the processor")
@@ -258,8 +241,7 @@ def check_run(status, stderr, folder):
             claim(any("error" in text for text in warnings), "an error of everything, untold")
     claim(
         (curve["residual"][curve["converged"] == 1] <= max(tolerance, 1e-3)).all(),
-        "a row counts as converged with a large residual",
-    )
+        "a row counts as converged with a large residual")
     return status
 
 
@@ -294,8 +276,7 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         numbers = range(arguments.first, arguments.first + arguments.count)
         for number, result, taken in pool.map(
-            lambda k: try_deck(k, program, arguments.out, arguments.seconds), numbers
-        ):
+                lambda k: try_deck(k, program, arguments.out, arguments.seconds), numbers):
             slowest = max(slowest, (taken, number))
             if isinstance(result, str):
                 broken += 1

@@ -6,6 +6,7 @@ continuation in H0. In units of the law's length; s is sigma or Lambda.
 
 import ctypes
 import ctypes.util
+import functools
 import json
 import os
 import pathlib
@@ -197,23 +198,23 @@ class HalfSpace:
             found.append((gap, h0))
         return found
 
-    def folds(self, law, s, axis, softness=0.0):
-        """H0 and load where H0 - softness*load turns, from states at the given gaps on the axis."""
+    def folds(self, law, s, axis, states, softness):
+        """H0 and load where H0 - softness*load turns, from the states at the gaps on the axis."""
         def driven(states):
             return np.array([h0 - softness * self.load(law, s, gap) for gap, h0 in states])
 
-        drive = driven(self.with_axis(law, s, axis))
+        drive = driven(states)
         turns = np.flatnonzero(np.diff(drive)[1:] * np.diff(drive)[:-1] < 0) + 1
         found = []
         for i in turns:
             low, high = axis[i + 1], axis[i - 1]
             at = (low + high) / 2 + (high - low) / 2 * chebyshev.chebpts1(12)[::-1]
-            states = self.with_axis(law, s, [*axis[:i:4], *at])[-12:]
+            near = self.with_axis(law, s, [*axis[:i:4], *at])[-12:]
             u = chebyshev.chebpts1(12)[::-1]
-            h0_of = chebyshev.chebfit(u, [state[1] for state in states], 11)
-            load_of = chebyshev.chebfit(u, [self.load(law, s, state[0]) for state in states], 11)
+            h0_of = chebyshev.chebfit(u, [state[1] for state in near], 11)
+            load_of = chebyshev.chebfit(u, [self.load(law, s, state[0]) for state in near], 11)
             roots = chebyshev.chebroots(
-                chebyshev.chebder(chebyshev.chebfit(u, driven(states), 11)))
+                chebyshev.chebder(chebyshev.chebfit(u, driven(near), 11)))
             root = roots[(abs(roots.imag) < 1e-9) & (abs(roots.real) <= 1)].real[0]
             found.append([chebyshev.chebval(root, h0_of), chebyshev.chebval(root, load_of)])
         return found
@@ -234,10 +235,7 @@ def exponential(gap):
 def lennard_jones(gap):
     """Pressure, slope and energy of the Lennard-Jones law."""
     return (
-        8 / 3 * (gap**-9 - gap**-3),
-        8 * (gap**-4 - 3 * gap**-10),
-        gap**-8 / 3 - 4 / 3 * gap**-2,
-    )
+        8 / 3 * (gap**-9 - gap**-3), 8 * (gap**-4 - 3 * gap**-10), gap**-8 / 3 - 4 / 3 * gap**-2)
 
 
 def behind_a_barrier(gap):
@@ -260,23 +258,18 @@ def dlvo(z0, **keys):
 
 def independent_states(law, s, h0, ends, largest=0.8):
     """Gaps on the axis and loads at each H0 on panels with the given ends."""
-    return carried_out({"law": law, "s": s, "h0": list(h0), "ends": list(ends), "largest": largest})
+    return np.array(carried_out(
+        {"law": law, "s": s, "h0": list(h0), "ends": list(ends), "largest": largest})).T
 
 
-def states_by_axis(law, s, axis, ends, image=None, layer=None):
-    """H0 and loads, (two, states), at each gap on the axis."""
-    return carried_out({"law": law, "s": s, "axis": list(axis), "ends": list(ends),
-                        "image": image, "layer": layer})
-
-
-def independent_folds(law, s, axis, ends, image=None, softness=0.0, layer=None, **keys):
-    """H0 and load, (two, folds), where H0 turns as the gap on the axis closes through `axis`.
-
-    softness, in lengths over loads of the result: where H0 - softness*load turns, the position of a
-    drive behind a spring.
-    """
-    return carried_out({"law": law, "s": s, "folds": list(axis), "ends": list(ends), "keys": keys,
-                        "image": image, "softness": softness, "layer": layer})
+@functools.cache
+def path_by_axis(law, s, axis, ends, image=None, layer=None, softness=(0.0,), **keys):
+    """H0 and loads, (two, states), at each gap on the axis, from far away inwards; and, for each
+    softness, H0 and load, (two, folds), where H0 - softness*load turns: the position of a drive
+    behind a spring. softness is in lengths over loads of the result; `keys` are of the law."""
+    states, *folds = carried_out({"law": law, "s": s, "axis": axis, "ends": ends, "image": image,
+                                  "layer": layer, "softness": softness, "keys": keys})
+    return np.array(states).T, *(np.array(each).T for each in folds)
 
 
 def carried_out(task):
@@ -286,16 +279,10 @@ def carried_out(task):
     """
     environment = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")
     done = subprocess.run(
-        [sys.executable, "-m", "support.half_space"],
-        cwd=pathlib.Path(__file__).parents[1],
-        input=json.dumps(task),
-        capture_output=True,
-        text=True,
-        check=True,
-        env=environment,
-        timeout=HANG,
-    )
-    return np.array(json.loads(done.stdout)).T
+        [sys.executable, "-m", "support.half_space"], cwd=pathlib.Path(__file__).parents[1],
+        input=json.dumps(task), capture_output=True, text=True, check=True, env=environment,
+        timeout=HANG)
+    return json.loads(done.stdout)
 
 
 def main():
@@ -307,10 +294,10 @@ def main():
     half_space = HalfSpace(task["ends"], image=task.get("image"), layer=task.get("layer"))
     if "axis" in task:
         states = half_space.with_axis(law, task["s"], task["axis"])
-        print(json.dumps([[h0, half_space.load(law, task["s"], gap)] for gap, h0 in states]))
-        return
-    if "folds" in task:
-        print(json.dumps(half_space.folds(law, task["s"], task["folds"], task["softness"])))
+        folds = [half_space.folds(law, task["s"], task["axis"], states, softness)
+                 for softness in task["softness"]]
+        loads = [[h0, half_space.load(law, task["s"], gap)] for gap, h0 in states]
+        print(json.dumps([loads, *folds]))
         return
     gaps = half_space.solve(law, task["s"], task["h0"], task["largest"])
     print(json.dumps([[gap[0], half_space.load(law, task["s"], gap)] for gap in gaps]))

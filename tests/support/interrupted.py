@@ -96,8 +96,7 @@ class Bench:
     def run(self, out, *options, **kwargs):
         return self.snapin(
             "--out", out, *options, "deck.nml", cwd=self.folder, env=environment(self.threads),
-            **kwargs
-        )
+            **kwargs)
 
     def files(self, out):
         """What results say: tables to the byte, the summary without times."""
@@ -138,16 +137,14 @@ class Bench:
     def kill(self, delay, *options):
         """Starts the program and kills it after a delay [s]."""
         with subprocess.Popen(
-            [self.path, "--out", "cut", *options, "deck.nml"], cwd=self.folder,
-            env=environment(self.threads), stderr=subprocess.DEVNULL,
-        ) as process:
+                [self.path, "--out", "cut", *options, "deck.nml"], cwd=self.folder,
+                env=environment(self.threads), stderr=subprocess.DEVNULL) as process:
             time.sleep(delay)
             process.send_signal(signal.SIGKILL)
 
 SWEEP = lennard_jones(
     0.2, loading=loading(6, 0, 0.5), unloading={},
-    sweep={"key": "force.hamaker", "from_": 1.0, "to": 100.0, "count": 9, "scale": "log"},
-)
+    sweep={"key": "force.hamaker", "from_": 1.0, "to": 100.0, "count": 9, "scale": "log"})
 
 
 # The shortest of the decks with a cycle.

@@ -19,11 +19,8 @@ STRENGTH, STIFFNESS = "force.hamaker", "bodies.stiffness"
 def states_of_device(groups, spring=SPRING, start=40e-9, h0_end=-2e-9):
     """Return position, load and segment of the states of a device, each solved."""
     table = snapin.run({
-        **groups,
-        "equilibrium_path": {"h0_end": h0_end},
-        "device": {"stiffness": spring, "z_start": start},
-        "numerics": {"accuracy": 1e-8},
-    }).device
+        **groups, "equilibrium_path": {"h0_end": h0_end},
+        "device": {"stiffness": spring, "z_start": start}, "numerics": {"accuracy": 1e-8}}).device
     ways = [table[table["direction"] == way] for way in ("approach", "retreat")]
     segment = np.repeat([0, 1], [len(way) for way in ways])
     z, load = (np.concatenate([way[name] for way in ways]) for name in ("z", "load"))
@@ -35,10 +32,8 @@ class Branches:
 
     def __init__(self, groups, spring=SPRING, far=60e-9, h0_end=-5e-10, step=1e-11):
         run = snapin.run({
-            **groups,
-            "loading": {"h0_start": far, "h0_end": h0_end, "h0_step": step},
-            "unloading": {"from": h0_end, "h0_end": far, "h0_step": step},
-        })
+            **groups, "loading": {"h0_start": far, "h0_end": h0_end, "h0_step": step},
+            "unloading": {"from": h0_end, "h0_end": far, "h0_step": step}})
         way_in, way_out = (run.curve[run.curve["branch"] == name]
                            for name in ("loading", "unloading_1"))
         self.outer = self._until_turn(way_in, spring)
@@ -104,8 +99,7 @@ def fit_deck(groups, file, parameters, fit=None, measurement=None, **others):
         **groups,
         "measurement": {
             "file": file, "columns": ["z", "force", "segment"], "spring_constant": SPRING,
-            **(measurement or {}),
-        },
+            **(measurement or {})},
         "fit": {"parameters": parameters, **(fit or {})},
         **others,
     }

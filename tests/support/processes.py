@@ -13,11 +13,7 @@ def python(*arguments, seconds=HANG, **environment):
     return subprocess.run(
         [sys.executable, *arguments],
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), **environment},
-        capture_output=True,
-        text=True,
-        timeout=seconds,
-        check=False,
-    )
+        capture_output=True, text=True, timeout=seconds, check=False)
 
 
 def answer(script, **options):
@@ -41,8 +37,7 @@ os.write(answer, b"%d %d" % (os.waitstatus_to_exitcode(status), used.ru_maxrss))
 def status_and_memory(*command, cwd):
     """Exit status of a command and the most memory it had [bytes]."""
     result = subprocess.run(
-        [sys.executable, "-I", "-S", "-c", _SMALL_PARENT, *map(str, command)],
-        cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=HANG, check=True,
-    )
+        [sys.executable, "-I", "-S", "-c", _SMALL_PARENT, *map(str, command)], cwd=cwd,
+        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=HANG, check=True)
     status, kilobytes = map(int, result.stdout.split())
     return status, 1024 * kilobytes

@@ -69,8 +69,7 @@ class Path:
         cuts = np.linspace(begin, end, max(2, math.ceil(begin - end)) + 1)
         for limits in zip(cuts[:-1], cuts[1:]):
             pieces += stretch(
-                self.sigma, mesh, lambda s: 0.9 + math.exp(s), limits, state, resolution
-            )
+                self.sigma, mesh, lambda s: 0.9 + math.exp(s), limits, state, resolution)
             state = pieces[-1].last
         return pieces
 
@@ -151,8 +150,7 @@ class Path:
         if not low <= h0 <= high:
             return None
         places = self.roots(
-            lambda piece: chebyshev.chebsub(piece.h0, [h0]), branch.first.place, branch.last.place
-        )
+            lambda piece: chebyshev.chebsub(piece.h0, [h0]), branch.first.place, branch.last.place)
         if not places:  # So near a fold that rounding has swallowed the distance.
             return min((branch.first, branch.last), key=lambda point: abs(point.h0 - h0))
         # A root beside a fold has a twin on the other side of it.
@@ -204,8 +202,7 @@ class Path:
         """The point of largest tension on stable branches."""
         return min(
             (p for b in self.branches if b.unstable == 0 for p in self.swept(b.first, b.last)),
-            key=lambda p: p.load,
-        )
+            key=lambda p: p.load)
 
     def swept(self, first, last):
         """Points among which the extrema of the load from one point to another are."""

@@ -33,17 +33,14 @@ def lennard_jones(sigma, *, part="full", **groups):
     return deck(
         bodies={"radius": 1.0, "stiffness": 1.0},
         force={"law": "lennard_jones", "hamaker": 16 * math.pi * sigma, "z0": 1.0, "part": part},
-        **groups,
-    )
+        **groups)
 
 
 def exponential(big_lambda, **groups):
     """A deck in units of the decay length; Lambda at h0 = 0 is p0."""
     return deck(
         bodies={"radius": 1.0, "stiffness": 1.0},
-        force={"law": "exponential", "p0": float(big_lambda), "decay_length": 1.0},
-        **groups,
-    )
+        force={"law": "exponential", "p0": float(big_lambda), "decay_length": 1.0}, **groups)
 
 
 def loading(start, end, step):

@@ -73,8 +73,7 @@ def solve(sigma, mesh, value, log_gap, h0):
         gap = np.exp(log_gap)
         p = pressure(gap)
         residual = np.append(
-            gap - h0 - shape - coupling * (mesh.operator @ p), wanted - h0 - coupling * (row @ p)
-        )
+            gap - h0 - shape - coupling * (mesh.operator @ p), wanted - h0 - coupling * (row @ p))
         change = coupling * slope(gap) * gap
         matrix[:n, :n] = -mesh.operator * change
         matrix[np.arange(n), np.arange(n)] += gap

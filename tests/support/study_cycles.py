@@ -51,10 +51,7 @@ def jobs(count, folder, *, seed=1, low=1e-3, high=1e3, each=8):
         Job(
             float(f"{logarithmic(rng, low, high):.6g}"),
             -logarithmic(rng, *(-h0 for h0 in ABYSS)) if rng.random() < 0.2 else DEEPEST,
-            tuple(range(first, min(first + each, count))),
-            seed,
-            folder / f"job{first}",
-        )
+            tuple(range(first, min(first + each, count))), seed, folder / f"job{first}")
         for first in starts
     ]
 
@@ -123,7 +120,7 @@ def examined(path, scene, folder, deck=0):
     if turning:
         groups["unloading"] = {
             "from_": [float(x) for x in turning], "h0_end": float(retreat), "h0_step": float(back),
-        }  # fmt: skip
+        }
     expected = cycle(path, start, end, turning, retreat)
     units = REAL if deck % 2 else PLAIN
     found = report(sigma, groups, folder, f"deck{deck}", rows=True, units=units)

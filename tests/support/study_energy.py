@@ -34,8 +34,7 @@ def jobs(count, folder, *, low=0.3, high=1e3, accuracies=ACCURACIES):
     dense = np.linspace(low, 0.6, count // 3)
     wide = np.geomspace(0.65, high, count - count // 3)
     return [
-        Job(float(f"{sigma:.6g}"), accuracies, folder / f"{sigma:g}") for sigma in (*dense, *wide)
-    ]
+        Job(float(f"{sigma:.6g}"), accuracies, folder / f"{sigma:g}") for sigma in (*dense, *wide)]
 
 
 def examine(job):

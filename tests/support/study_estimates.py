@@ -50,8 +50,7 @@ def examine(job):
             "path": ({"equilibrium_path": {"h0_end": DEPTH}}, reported_of_path(path, DEPTH)),
             "cycle": (
                 {"loading": loading(far, DEPTH, (far - DEPTH) / 100), "unloading": {}},
-                reported(cycle(path, far, DEPTH, [DEPTH], far)),
-            ),
+                reported(cycle(path, far, DEPTH, [DEPTH], far))),
         }
         for kind, (groups, expected) in scenes.items():
             name = f"{kind}{accuracy:g}"
@@ -93,8 +92,7 @@ def table(findings):
     wrong = [f for f in findings if f.wrong]
     lines.append(f"decks {len(findings)}, failed or with a number missing or invented {len(wrong)}")
     lines += [
-        f"  sigma {f.sigma:g} {f.kind} {f.accuracy:g}: {'; '.join(f.wrong)}" for f in wrong[:12]
-    ]
+        f"  sigma {f.sigma:g} {f.kind} {f.accuracy:g}: {'; '.join(f.wrong)}" for f in wrong[:12]]
     return lines
 
 

@@ -76,8 +76,7 @@ def examine(job):
         theirs = path.jump_in.h0 if fold == "in" else path.jump_out.h0
         width = path.jump_out.h0 - path.jump_in.h0
         for way, power, side in (
-            (way, power, side) for way in ways for power in job.powers for side in (1, -1)
-        ):
+                (way, power, side) for way in ways for power in job.powers for side in (1, -1)):
             # Farther than to the other fold is not beside this one.
             if 10.0**-power > 0.5 * width:
                 continue
@@ -95,8 +94,7 @@ def examine(job):
 def look_at_path(job, path, groups, fold, way, place, true, far):
     """All states of the path at h0."""
     found = report(
-        job.sigma, {**groups, "profiles": {"h0": [place]}}, job.folder, "deck", rows=True
-    )
+        job.sigma, {**groups, "profiles": {"h0": [place]}}, job.folder, "deck", rows=True)
     if found.status != 0:
         return [said(found)]
     loads = found.rows["load"][abs(found.rows["h0"] - place) < 1e-13 * max(1, abs(place))]
@@ -104,9 +102,7 @@ def look_at_path(job, path, groups, fold, way, place, true, far):
     if len(loads) != len(wanted):
         return [f"{len(loads)} states at h0, not {len(wanted)}"]
     limits = [limit_of(path, fold, load, job.accuracy) for load in wanted]
-    off = [
-        abs(mine - load) > limit for mine, load, limit in zip(loads, wanted, limits)
-    ]
+    off = [abs(mine - load) > limit for mine, load, limit in zip(loads, wanted, limits)]
     return ["load of a state beside the fold"] if any(off) else []
 
 

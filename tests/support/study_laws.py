@@ -91,7 +91,7 @@ def dispersion(rng, **groups):
     hamaker, z0 = 1e-19, rng.uniform(0.2, 0.5) * 1e-9
     retarded = {"retardation_length": rng.uniform(2, 100) * 1e-9} if rng.random() < 0.5 else {}
     return Law({"van_der_waals": {"hamaker": hamaker, **retarded},
-                "born": {"hamaker": hamaker, "z0": z0}, **groups}, z0, z0)  # fmt: skip
+                "born": {"hamaker": hamaker, "z0": z0}, **groups}, z0, z0)
 
 
 def morse(rng):
@@ -117,38 +117,33 @@ LAWS = {
     "repulsive": lambda rng: Law(lennard_jones(rng, part="repulsive"), Z0, Z0),
     "powers": other_powers,
     "exponential": lambda rng: Law(
-        {"force": {"law": "exponential", "p0": 2.5e8, "decay_length": 0.2e-9}}, 0.0, 0.2e-9
-    ),
+        {"force": {"law": "exponential", "p0": 2.5e8, "decay_length": 0.2e-9}}, 0.0, 0.2e-9),
     "morse": morse,
     "dispersion": dispersion,
     "double_layer": lambda rng: dispersion(
         rng, double_layer={"potential": -rng.uniform(0.02, 0.1), "regulation": rng.random(),
                            "salt": 10 ** rng.uniform(-1, 2), "valence": 1}
-    ),  # fmt: skip
+    ),
     "hydration": lambda rng: beside(
         rng,
-        hydration={"energy": rng.uniform(1e-3, 1e-2), "decay_length": rng.uniform(0.2, 1) * 1e-9},
-    ),
+        hydration={"energy": rng.uniform(1e-3, 1e-2), "decay_length": rng.uniform(0.2, 1) * 1e-9}),
     "hydrophobic": lambda rng: beside(
         rng,
         hydrophobic={"energy": rng.uniform(1e-3, 2e-2), "decay_length": rng.uniform(0.5, 2) * 1e-9},
     ),
     "steric": lambda rng: beside(
-        rng, steric={"brush_thickness": rng.uniform(1, 4) * 1e-9, "grafting_density": 1e16}
-    ),
+        rng, steric={"brush_thickness": rng.uniform(1, 4) * 1e-9, "grafting_density": 1e16}),
     "structural": lambda rng: beside(
         rng, structural={"amplitude": rng.uniform(1e5, 3e6), "period": rng.uniform(0.8, 2) * 1e-9,
                          "decay_length": 1e-9}
-    ),  # fmt: skip
-    "depletion": lambda rng: beside(
-        rng, depletion={"osmotic_pressure": 1e5, "diameter": rng.uniform(1, 5) * 1e-9}
     ),
+    "depletion": lambda rng: beside(
+        rng, depletion={"osmotic_pressure": 1e5, "diameter": rng.uniform(1, 5) * 1e-9}),
     "capillary": lambda rng: beside(rng, capillary={"humidity": rng.uniform(0.2, 0.7)}),
     "dugdale": lambda rng: beside(
-        rng, dugdale={"stress": 1e7, "range": rng.uniform(0.7, 2) * 1e-9}
-    ),
+        rng, dugdale={"stress": 1e7, "range": rng.uniform(0.7, 2) * 1e-9}),
     "tabulated": table_of,
-}  # fmt: skip
+}
 
 
 def jobs(count, folder, *, seed=1):
@@ -160,7 +155,7 @@ def jobs(count, folder, *, seed=1):
             number, seed, list(LAWS)[number % len(LAWS)],
             float(f"{logarithmic(rng, *STRENGTHS):.4g}"),
             rng.choice(("path", "cycle")), float(f"{logarithmic(rng, *ACCURACIES):.1g}"),
-            folder / f"scene{number}"))  # fmt: skip
+            folder / f"scene{number}"))
     return made
 
 
@@ -200,7 +195,7 @@ def driven(rng, scene, law):
         return {"equilibrium_path": {"h0_end": depth}}
     step = (far - depth) / rng.uniform(20, 60)
     return {"loading": {"h0_start": far, "h0_end": depth, "h0_step": step},
-            "unloading": {"from_": depth}}  # fmt: skip
+            "unloading": {"from_": depth}}
 
 
 def strength(scene, law):
@@ -208,7 +203,7 @@ def strength(scene, law):
     without adhesion Lambda."""
     summary, _ = run(scene, "strength", {
         "bodies": {"radius": RADIUS, "stiffness": STIFFNESS}, **law.groups,
-        "classical": {"h0_start": law.rest + law.length, "h0_end": law.rest}})  # fmt: skip
+        "classical": {"h0_start": law.rest + law.length, "h0_end": law.rest}})
     return summary.get("sigma") or summary.get("big_lambda") or 1.0
 
 
@@ -220,7 +215,7 @@ def run(scene, name, groups):
         done = subprocess.run(
             [str(program_path()), "--quiet", f"{name}.nml"], cwd=scene.folder, check=False,
             capture_output=True, text=True, errors="replace", timeout=SECONDS, env=environment,
-        )  # fmt: skip
+        )
     except subprocess.TimeoutExpired:
         return {}, f"more than {SECONDS} s"
     path = scene.folder / "results" / name / "summary.nml"
@@ -291,22 +286,22 @@ def table(findings):
     every = [ratio for ratios in by_key.values() for ratio in ratios]
     heads = [f"{100 * q:.0f} %" for q in QUANTILES]
     lines = [f"{'true error over estimated':<34} {'number':>6} " + "".join(f"{h:>9}" for h in heads)
-             + f"{'largest':>9} {'above 1':>8} {'below 1/30':>11}"]  # fmt: skip
+             + f"{'largest':>9} {'above 1':>8} {'below 1/30':>11}"]
     for (kind, key), ratios in [*sorted(by_key.items()), (("all", "numbers"), every)]:
         if ratios:
             cells = "".join(f"{x:9.1e}" for x in [*np.quantile(ratios, QUANTILES), max(ratios)])
             low = sum(r < PESSIMISTIC for r in ratios)
             lines.append(f"{kind + ' ' + key:<34} {len(ratios):6d} {cells} "
-                         f"{sum(r > 1 for r in ratios):8d} {low:11d}")  # fmt: skip
+                         f"{sum(r > 1 for r in ratios):8d} {low:11d}")
     unknown = sum(finding.unknown for finding in findings)
     compared = sum(bool(f.deviations) or f.unknown > 0 for f in findings)
     lines.append(f"scenes {len(findings)}, compared {compared}; "
-                 f"numbers as good as the truth {unknown}")  # fmt: skip
+                 f"numbers as good as the truth {unknown}")
     seconds = [f.seconds for f in findings]
     lines.append(f"seconds: median {np.median(seconds):.2g}, 99 % "
                  f"{np.quantile(seconds, 0.99, method='higher'):.2g}, largest {max(seconds):.2g}; "
                  f"with a warning on the mesh or the error {sum(map(is_warned, findings))}, lost "
-                 f"{sum(bool(f.wrong) for f in findings)}")  # fmt: skip
+                 f"{sum(bool(f.wrong) for f in findings)}")
     lines += offenders(findings)
     return lines
 
@@ -316,11 +311,11 @@ def offenders(findings, most=25):
     above = [(one, f.scene) for f in findings for one in f.deviations if one.ratio > 1]
     above.sort(key=lambda item: -item[0].ratio)
     lines = [f"  {named(s)} {one.key}: {one.ratio:.1e} (off by {one.error:.1e} of {one.value:.6g})"
-             for one, s in above[:most]]  # fmt: skip
+             for one, s in above[:most]]
     odd = [f for f in findings if f.wrong]
     return lines + [f"  {named(f.scene)}: {'; '.join(f.wrong)[:200]}" for f in odd[:most]]
 
 
 def named(scene):
     return (f"scene {scene.number} of seed {scene.seed}: {scene.law}, sigma {scene.sigma:g}, "
-            f"{scene.kind}, accuracy {scene.accuracy:g},")  # fmt: skip
+            f"{scene.kind}, accuracy {scene.accuracy:g},")

@@ -10,8 +10,7 @@ import shutil
 
 from support.study_laws import (
     ACCURACIES, RADIUS, STIFFNESS, Law, Scene, driven, is_bad, judged, lennard_jones, logarithmic,
-    run, strength, table, truth_of,
-)
+    run, strength, table, truth_of)
 
 __all__ = ["examine", "is_bad", "jobs", "table"]
 
@@ -30,7 +29,7 @@ def jobs(count, folder, *, seed=1):
             number, seed, ("layer", "film", "layers")[number % 3],
             float(f"{logarithmic(rng, *STRENGTHS):.4g}"),
             rng.choice(("path", "cycle")), float(f"{logarithmic(rng, *ACCURACIES):.1g}"),
-            folder / f"scene{number}"))  # fmt: skip
+            folder / f"scene{number}"))
     return made
 
 

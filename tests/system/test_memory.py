@@ -14,8 +14,7 @@ from support.processes import status_and_memory
 
 LAWS = {
     "exponential": {"law": "exponential", "p0": 2.5e8, "decay_length": 0.2e-9},
-    "lennard_jones": {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9},
-}
+    "lennard_jones": {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9}}
 
 
 def peak_memory(snapin_path, folder, law, step):
@@ -23,11 +22,8 @@ def peak_memory(snapin_path, folder, law, step):
     folder.mkdir()
     (folder / "cycle.nml").write_text(
         scenes.deck(
-            bodies={"radius": 1.5e-2, "stiffness": 1e10},
-            force=LAWS[law],
-            loading={"h0_start": 2e-9, "h0_end": -4e-9, "h0_step": step},
-            unloading={},
-        )
+            bodies={"radius": 1.5e-2, "stiffness": 1e10}, force=LAWS[law],
+            loading={"h0_start": 2e-9, "h0_end": -4e-9, "h0_step": step}, unloading={})
     )
     status, used = status_and_memory(snapin_path, "--quiet", "cycle.nml", cwd=folder)
     assert status == 0

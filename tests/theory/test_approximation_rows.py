@@ -25,10 +25,8 @@ def columns(rows):
 
 
 FORM = {
-    "slow_deformation": "quadrature",
-    "closed_form": "closed_form",
-    "attractive_only": "attraction_only",
-}
+    "slow_deformation": "quadrature", "closed_form": "closed_form",
+    "attractive_only": "attraction_only"}
 JUMPS = ["jump_criterion_29", "jump_equation_37", "fold_attractive_only", "fold_closed_form"]
 
 
@@ -92,8 +90,7 @@ def test_a_curve_may_fold_before_the_criterion_is_met():
 @pytest.mark.parametrize(
     ("law", "h0_start"),
     [(snapin.exponential(p0=1.0, decay_length=1.0), 40.0), (lennard_jones(1.0, "repulsive"), 20.0)],
-    ids=["exponential", "repulsive"],
-)
+    ids=["exponential", "repulsive"])
 def test_repulsion_has_rows_at_equal_steps_of_h0(law, h0_start):
     rows = table(h0_start, -10.0, **UNITS, law=law, count=31)
     assert list(rows) == ["slow_deformation", "closed_form"]
@@ -117,8 +114,7 @@ def test_rigid_bodies_have_rows_while_they_do_not_touch():
     # A repulsion that is finite at any gap goes on.
     law = snapin.exponential(p0=1.0, decay_length=1.0)
     h0, _, load = columns(
-        table(7.0, -2.0, radius=1.0, rigid=True, law=law, count=10)["slow_deformation"]
-    )
+        table(7.0, -2.0, radius=1.0, rigid=True, law=law, count=10)["slow_deformation"])
     np.testing.assert_allclose(h0, np.arange(7.0, -3, -1), atol=1e-14)
     np.testing.assert_allclose(load, 2 * math.pi * np.exp(-h0), rtol=1e-14)
 

@@ -22,11 +22,8 @@ def run(snapin, tmp_path_factory):
 def adhesive(shape, work, **groups):
     """A deck of the Lennard-Jones law with z0 = 1 and this work of adhesion."""
     return deck(
-        bodies={"stiffness": STIFFNESS},
-        shape=shape,
-        force={"law": "lennard_jones", "hamaker": 16 * math.pi * work, "z0": 1.0},
-        **groups,
-    )
+        bodies={"stiffness": STIFFNESS}, shape=shape,
+        force={"law": "lennard_jones", "hamaker": 16 * math.pi * work, "z0": 1.0}, **groups)
 
 
 def power(n):
@@ -85,8 +82,7 @@ SHAPES = {
     "sphere": ({"kind": "sphere", "radius": 30.0}, lambda a: sphere_hertz(30.0, a)),
     "spheroid": (
         {"kind": "spheroid", "radius": 20.0, "semi_axis": 45.0},
-        lambda a: spheroid_hertz(20.0, 45.0, a),
-    ),
+        lambda a: spheroid_hertz(20.0, 45.0, a)),
 }
 
 
@@ -96,16 +92,13 @@ def test_the_theories_are_the_closed_forms(run, name):
     hertz, jkr = classical_rows(run, shape, 5.0)
     assert len(hertz) > 8 and len(jkr) > 8
     for a, displacement, load in zip(
-        hertz["contact_radius"], hertz["displacement"], hertz["load"], strict=True
-    ):
+            hertz["contact_radius"], hertz["displacement"], hertz["load"], strict=True):
         assert closed(a) == pytest.approx((displacement, load), rel=1e-9, abs=1e-12)
     for a, displacement, load in zip(
-        jkr["contact_radius"], jkr["displacement"], jkr["load"], strict=True
-    ):
+            jkr["contact_radius"], jkr["displacement"], jkr["load"], strict=True):
         depth, repulsion = closed(a)
         assert depth - math.sqrt(2 * math.pi * a / E_STAR) == pytest.approx(
-            displacement, rel=1e-9, abs=1e-9
-        )
+            displacement, rel=1e-9, abs=1e-9)
         assert repulsion - math.sqrt(8 * math.pi * E_STAR * a**3) == pytest.approx(load, rel=1e-9)
 
 
@@ -115,8 +108,7 @@ def test_the_theory_of_a_punch_is_the_integral_of_its_slope(run):
     hertz, _ = classical_rows(run, shape, 2.0)
     x, w = np.polynomial.legendre.leggauss(40)
     for a, displacement, load in zip(
-        hertz["contact_radius"], hertz["displacement"], hertz["load"], strict=True
-    ):
+            hertz["contact_radius"], hertz["displacement"], hertz["load"], strict=True):
         if not displacement > 0:
             continue
         assert a > flat
@@ -132,10 +124,8 @@ def test_the_theory_of_a_punch_is_the_integral_of_its_slope(run):
 
 # Tension over that of JKR theory, found with another program; LJ law, by n and sigma.
 TENSIONS = {
-    (1, 1.0): 1.0291, (1, 5.0): 1.0019, (1, 25.0): 1.0001,
-    (3, 1.0): 1.0215, (3, 5.0): 1.0134, (3, 25.0): 1.0043,
-    (4, 1.0): 0.9810, (4, 5.0): 1.0046, (4, 25.0): 1.0031,
-}
+    (1, 1.0): 1.0291, (1, 5.0): 1.0019, (1, 25.0): 1.0001, (3, 1.0): 1.0215, (3, 5.0): 1.0134,
+    (3, 25.0): 1.0043, (4, 1.0): 0.9810, (4, 5.0): 1.0046, (4, 25.0): 1.0031}
 
 
 @pytest.mark.parametrize("n, sigma", TENSIONS)
@@ -162,8 +152,7 @@ def test_a_sphere_is_no_parabola_where_the_contact_is_wide(run):
     assert theory < 0.9 * 1.5 * math.pi * work * radius
     summary = run(adhesive(
         {"kind": "sphere", "radius": radius}, work,
-        equilibrium_path={"h0_end": min(-1.0, 1.2 * h0)}, numerics={"accuracy": 3e-3},
-    )).summary
+        equilibrium_path={"h0_end": min(-1.0, 1.2 * h0)}, numerics={"accuracy": 3e-3})).summary
     assert summary["jkr_pull_off"] == pytest.approx(theory, rel=1e-9)
     # Another program found 1.0035 for a sphere about as large.
     assert summary["max_tension"] / theory == pytest.approx(1.0035, abs=5e-4)
@@ -179,11 +168,9 @@ def test_a_punch_adheres_as_jkr_theory_says(run):
 @pytest.mark.parametrize("n", [1, 1.5, 3, 4])
 def test_steep_repulsion_is_as_hertz_says(run, n):
     text = deck(
-        bodies={"stiffness": STIFFNESS},
-        shape=power(n),
+        bodies={"stiffness": STIFFNESS}, shape=power(n),
         force={"law": "exponential", "p0": 1.0, "decay_length": 1.0},
-        equilibrium_path={"h0_start": 10.0, "h0_end": -1000.0},
-    )
+        equilibrium_path={"h0_start": 10.0, "h0_end": -1000.0})
     summary = run(text).summary
     a = (2 * summary["end_displacement"] / kappa(n)) ** (1 / n)
     # The repulsion keeps the bodies some of its lengths apart.

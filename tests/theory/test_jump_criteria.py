@@ -44,8 +44,7 @@ def test_the_criterion_is_met_at_the_jump_and_nowhere_before(sigma):
     assert (criterion(outside(found.gap), law) < 1).all()
     state = snapin.slow_deformation([found.gap], **UNITS, law=law)
     assert found[1:] == pytest.approx(
-        (state.h0[0], state.displacement[0], state.load[0]), rel=1e-12
-    )
+        (state.h0[0], state.displacement[0], state.load[0]), rel=1e-12)
 
 
 @pytest.mark.parametrize("sigma", [0.18, 0.3, 0.87, 8.7, 1e3, 1e6])
@@ -93,18 +92,14 @@ def test_nothing_jumps_without_attraction_or_elasticity():
 
 
 @pytest.mark.parametrize(
-    ("sigma", "h0", "load"), [(0.87, 3.0886872, -1.5330549), (8.7, 5.9728350, -0.4076839)]
-)
+    ("sigma", "h0", "load"), [(0.87, 3.0886872, -1.5330549), (8.7, 5.9728350, -0.4076839)])
 def test_jumps_are_near_those_of_the_exact_solution(sigma, h0, load):
     # The exact folds are an independent solution's. Fig. 9: by (29) and (37) the tension at the
     # jump is a tenth too small; that of the folds is within 2 %.
     found = snapin.jump_estimates(**UNITS, law=lennard_jones(sigma))
     for jump, low, high in (
-        (found.criterion, -0.10, -0.08),
-        (found.equation_37, -0.10, -0.08),
-        (found.fold_attraction, -0.01, 0.02),
-        (found.fold, 0.005, 0.02),
-    ):
+            (found.criterion, -0.10, -0.08), (found.equation_37, -0.10, -0.08),
+            (found.fold_attraction, -0.01, 0.02), (found.fold, 0.005, 0.02)):
         assert low <= jump.load / (sigma * load) - 1 <= high
         # All have the bodies jump from too far.
         assert 0.05 <= jump.h0 / h0 - 1 <= 0.065
@@ -121,8 +116,7 @@ EXPONENTIAL = snapin.exponential(p0=1.0, decay_length=1.0)
 def exact(law, h0, coupling, widths=STEPS):
     """Gap on the axis, displacement and load of the elastic problem."""
     state = snapin.equilibrium(
-        law, snapin.panel_mesh(widths, 14), h0, coupling, tolerance=1e-13 * max(1, h0)
-    )
+        law, snapin.panel_mesh(widths, 14), h0, coupling, tolerance=1e-13 * max(1, h0))
     assert state.converged
     return state.axis_gap, state.axis_gap - h0, state.load
 
@@ -183,9 +177,7 @@ def test_attraction_is_exact_in_the_limit_of_large_separation(sigma):
         errors.append(
             [
                 (found.displacement[0] / delta - 1) / strain,
-                (found.load[0] / (sigma * load) - 1) / strain,
-                strain,
-            ]
+                (found.load[0] / (sigma * load) - 1) / strain, strain]
         )
     of_delta, of_load, strain = np.array(errors).T
     assert (np.diff(strain) < 0).all() and strain[-1] < 1e-4
@@ -200,8 +192,7 @@ def test_attraction_is_exact_in_the_limit_of_large_separation(sigma):
 
 @pytest.mark.parametrize(
     ("h0", "of_delta", "of_load"),
-    [(6.4, 0.082, 0.128), (7.0, 0.046, 0.071), (8.0, 0.024, 0.037), (10.0, 0.0095, 0.015)],
-)
+    [(6.4, 0.082, 0.128), (7.0, 0.046, 0.071), (8.0, 0.024, 0.037), (10.0, 0.0095, 0.015)])
 def test_figure_8_attraction_is_overestimated_by_little_before_the_jump(h0, of_delta, of_load):
     # sigma 8.7, at the same gap; the criterion has the bodies jump from h0 = 6.32.
     gap, delta, load = exact(lennard_jones(1.0), h0, 8.7, 3 * STEPS)

@@ -60,9 +60,7 @@ def test_every_row_satisfies_maugis_two_equations(run, sigma):
 @pytest.mark.parametrize("sigma", SIGMAS)
 def test_rows_are_on_the_curve_that_the_contact_radius_parametrises(run, sigma):
     rows = run(classical(sigma)).table("classical.csv").rows("maugis_dugdale")
-    load, displacement = snapin.contact_curve(
-        "maugis", rows["contact_radius"], **material(sigma)
-    )
+    load, displacement = snapin.contact_curve("maugis", rows["contact_radius"], **material(sigma))
     np.testing.assert_array_equal(rows["displacement"], -rows["h0"])
     size = rows["contact_radius"] ** 2
     assert (abs(displacement - rows["displacement"]) <= 1e-13 * (size + 1)).all()
@@ -95,8 +93,7 @@ def difference(run, sigma, theory):
     np.testing.assert_array_equal(mine["h0"], other["h0"])
     return max(
         abs(mine["load"] - other["load"]).max() / (math.pi * sigma),
-        abs(mine["contact_radius"] - other["contact_radius"]).max() / unit,
-    )
+        abs(mine["contact_radius"] - other["contact_radius"]).max() / unit)
 
 
 def test_large_lambda_gives_the_rows_of_jkr(run):
@@ -133,9 +130,7 @@ def test_maugis_pull_off_is_nearer_the_exact_one_than_jkr_and_dmt(run):
     "deck",
     [
         lennard_jones(0.87, part="attractive", classical=RANGE),
-        lennard_jones(0.87, part="repulsive", classical=RANGE),
-        exponential(1, classical=RANGE),
-    ],
+        lennard_jones(0.87, part="repulsive", classical=RANGE), exponential(1, classical=RANGE)],
     ids=["attractive", "repulsive", "exponential"],
 )
 def test_a_law_without_a_largest_tension_has_no_maugis_rows(run, deck):

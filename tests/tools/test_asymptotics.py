@@ -64,10 +64,8 @@ def test_jumps_begin_at_the_cusp(snapin, tmp_path):
     gaps = []
     for sigma in sigmas:
         found = summary(
-            snapin,
-            tmp_path,
-            lennard_jones(sigma, equilibrium_path={"h0_end": -2.0}, numerics={"accuracy": 1e-10}),
-        )
+            snapin, tmp_path,
+            lennard_jones(sigma, equilibrium_path={"h0_end": -2.0}, numerics={"accuracy": 1e-10}))
         gaps.append((found["folds_h0"][1] - found["folds_h0"][0]) ** (2 / 3))
     cusp = np.polynomial.polynomial.polyfit(gaps, sigmas, 4)[0]
     assert cusp == pytest.approx(0.291085, abs=5e-7)

@@ -1,15 +1,11 @@
 """Claims about the documents: tables and figures are the program's, links lead somewhere."""
 
 import re
-import sys
 
 import f90nml
 import pytest
+import reference_tables
 from conftest import ROOT
-
-sys.path.append(str(ROOT / "tools"))
-
-import reference_tables  # noqa: E402 (found through the line above)
 
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
 PAGES += sorted((ROOT / "docs").rglob("*.md"))
@@ -23,8 +19,7 @@ SOURCES.append(ROOT / "meson.build")
 def test_tables_are_what_the_program_prints(snapin, page, option):
     block = reference_tables.block_of(page, snapin(option).stdout)
     assert (ROOT / page).read_text(encoding="utf-8") == reference_tables.page_with(page, block), (
-        "bring it up to date with: tools/reference_tables.py"
-    )
+        "bring it up to date with: tools/reference_tables.py")
 
 
 def without_code(text):

@@ -5,7 +5,7 @@ import math
 import pytest
 from support import (
     study_cycles, study_energy, study_estimates, study_folds, study_laws, study_layers,
-)  # fmt: skip
+)
 from support.comparison import deviations
 from support.decks_in_units import Report
 from support.reference import Path
@@ -13,19 +13,15 @@ from support.reference import Path
 # sigma, then start, end, step, turning points, end and step of the retreat, in z0.
 KNOWN = {
     "steps of a hundred lengths past the largest tension": (
-        0.01, (14.0, -5000.0, 100.0, [-5000.0], 14.0, 100.0),
-    ),
+        0.01, (14.0, -5000.0, 100.0, [-5000.0], 14.0, 100.0)),
     "a retreat in steps that pass over the tension and the jump": (
-        0.3487, (6.0, -4.8, 1.0, [-4.8], 6.0, 2.4),
-    ),
+        0.3487, (6.0, -4.8, 1.0, [-4.8], 6.0, 2.4)),
     "a jump in as small as the jump out": (0.35, (3.0, -2.0, 0.2, [-2.0], 3.0, 0.2)),
     "one step from beyond the jump to the depth": (
-        0.464958, (1.37434, -9.79577, 12.8, [-9.79577], 6.43518, 12.8),
-    ),
+        0.464958, (1.37434, -9.79577, 12.8, [-9.79577], 6.43518, 12.8)),
     "a retreat in one step to just short of the jump": (
-        4.51542, (11.847, -89.2249, 22.5, [-89.2249, -78.9868], 10.6847, 146.0),
-    ),
-}  # fmt: skip
+        4.51542, (11.847, -89.2249, 22.5, [-89.2249, -78.9868], 10.6847, 146.0)),
+}
 
 
 @pytest.fixture(autouse=True)
@@ -59,8 +55,7 @@ def test_cycles_about_the_cusp_jump_both_ways_or_neither(tmp_path):
 @pytest.mark.parametrize("experiment", ["cycle", "path"])
 @pytest.mark.parametrize("sigma", [0.87, 8.7])
 def test_a_hair_before_a_fold_nothing_has_jumped_and_a_hair_beyond_all_has(
-    tmp_path, sigma, experiment
-):
+        tmp_path, sigma, experiment):
     job = study_folds.Job(sigma, 1e-6, experiment, (2, 5, 8), tmp_path)
     wrong = [finding[3:] for finding in study_folds.examine(job) if finding.wrong]
     assert not wrong

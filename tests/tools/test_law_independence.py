@@ -2,6 +2,7 @@
 
 import re
 
+import law_independence as tool
 import pytest
 from conftest import ROOT
 
@@ -15,14 +16,6 @@ REFERENCE = {
 PAGE = ROOT / "docs" / "forces.md"
 
 
-@pytest.fixture
-def tool(monkeypatch):
-    monkeypatch.syspath_prepend(ROOT / "tools")
-    import law_independence
-
-    return law_independence
-
-
 def page():
     """The table of the page: Tabor's parameter -> column -> value."""
     text = PAGE.read_text(encoding="utf-8")
@@ -32,7 +25,7 @@ def page():
 
 
 @pytest.mark.parametrize("tabor", REFERENCE)
-def test_pull_offs_are_those_that_another_program_found(tool, tabor):
+def test_pull_offs_are_those_that_another_program_found(tabor):
     for name, law in tool.LAWS.items():
         tension, maugis = tool.pull_offs(law, tabor, accuracy=1e-7)
         # Its last digit, which it rounded.
@@ -40,7 +33,7 @@ def test_pull_offs_are_those_that_another_program_found(tool, tabor):
         assert maugis == pytest.approx(REFERENCE[tabor]["Maugis-Dugdale"], abs=5.1e-6)
 
 
-def test_the_page_has_the_tool_s_table(tool):
+def test_the_page_has_the_tool_s_table():
     shown = page()
     assert list(shown) == list(tool.RANGES)
     assert list(shown[1]) == ["Maugis-Dugdale", *tool.LAWS]

@@ -1,13 +1,9 @@
 """Pages with measured figures know which numerics these belong to."""
 
-import sys
 
+import pages
 import pytest
 from conftest import ROOT
-
-sys.path.append(str(ROOT / "tools"))
-
-import pages  # noqa: E402 (found through the line above)
 
 
 @pytest.fixture

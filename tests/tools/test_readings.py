@@ -2,30 +2,19 @@
 
 import dataclasses
 import math
-import sys
 
 import numpy as np
 import pytest
 import snapin
-from conftest import ROOT
 
 pytest.importorskip("matplotlib")
-
-
-@pytest.fixture(scope="module", autouse=True)
-def tools():
-    """Makes the modules of tools/reproduce importable, as `./reproduce` does."""
-    before = list(sys.path)
-    sys.path[:0] = [str(ROOT / folder) for folder in ("tools/reproduce", "pywrap/plots", "tools")]
-    yield
-    sys.path[:] = before
+import mixing  # noqa: E402 (needs matplotlib)
+import readings  # noqa: E402
 
 
 @pytest.mark.parametrize("interpolated, tolerance", [(True, 1e-3), (False, 5e-3)])
 def test_the_kernel_gives_hertz_deformation(interpolated, tolerance):
     """Under sqrt(1 - r^2) it is pi/4 (2 - r^2) within."""
-    import mixing
-
     scene = mixing.Scene(0.5, 0.01, 2.0, interpolated)
     load = np.sqrt(np.maximum(1 - scene.r**2, 0))
     inside = scene.r < 0.9
@@ -36,13 +25,11 @@ def test_the_kernel_gives_hertz_deformation(interpolated, tolerance):
 
 @pytest.mark.parametrize("h0", [3.0, 1.2])
 def test_iterated_to_the_end_it_finds_the_program_s_equilibrium(h0):
-    import mixing
-
     sigma, reading = 0.2, mixing.Reading("all", everywhere=True, unmixed=True, tolerance=1e-9,
                                          most=20000)
     scene = mixing.Scene(sigma, 0.05, 15.0, True)
     # In lengths of the law already.
-    _, row = mixing._settle(scene, reading, h0 + scene.shape, h0, [0.2], 1.0)
+    _, row = mixing.settle(scene, reading, h0 + scene.shape, h0, [0.2], 1.0)
     found = snapin.run({
         "bodies": {"radius": 1.0, "stiffness": 1.0},
         "force": {"law": "lennard_jones", "surface_energy": sigma, "z0": 1.0},
@@ -54,27 +41,21 @@ def test_iterated_to_the_end_it_finds_the_program_s_equilibrium(h0):
 
 
 def _quick(reading, **changes):
-    import readings
-
     changed = dataclasses.replace(reading, spacing=200.0, step=0.5, **changes)
-    return readings._cycle((changed, "c", (1.0, -2.0), 0))
+    return readings.cycle((changed, "c", (1.0, -2.0), 0))
 
 
 def test_a_ratio_that_is_kept_gives_smooth_loops_and_one_begun_anew_scatter():
-    import readings
-
-    smooth, rough = _quick(readings._KEPT, passes=200), _quick(readings._BASE)
+    smooth, rough = _quick(readings.KEPT, passes=200), _quick(readings.BASE)
     assert readings.scatter(smooth) < 0.02 < 0.1 < readings.scatter(rough)
     loading, shallow, deep = readings.tensions(smooth)
     assert loading < 0.7 * shallow and shallow < 0.9 * deep
 
 
 def test_with_more_iterations_the_loops_of_small_sigma_close():
-    import readings
-
     def of(passes):
-        reading = dataclasses.replace(readings._KEPT, passes=passes)
-        return readings.tensions(readings._cycle((reading, "a", (0.0, -2.0), 0)))
+        reading = dataclasses.replace(readings.KEPT, passes=passes)
+        return readings.tensions(readings.cycle((reading, "a", (0.0, -2.0), 0)))
 
     few, many = of(50), of(400)
     # Converged it is 1.047 from both; loading has it too.
@@ -84,11 +65,9 @@ def test_with_more_iterations_the_loops_of_small_sigma_close():
 
 @pytest.mark.slow
 def test_the_nearest_reading_has_all_that_the_paper_says_and_the_first_has_not():
-    import readings
-
     def held(reading):
-        branches = readings._cycle((reading, "c", readings._TURNS, 0))
-        return readings.statements(branches, readings._sigma("c"))
+        branches = readings.cycle((reading, "c", readings._TURNS, 0))
+        return readings.statements(branches, readings.sigma_of("c"))
 
-    assert all(held(readings._NEAREST))
-    assert sum(held(readings._BASE)) <= 3
+    assert all(held(readings.NEAREST))
+    assert sum(held(readings.BASE)) <= 3

@@ -40,8 +40,7 @@ def test_hertz_pressure_flattens_a_parabola():
 # Solutions of others on other meshes: max tension/JKR, h0 there, and each jump's h0 and load.
 KNOWN = {
     0.87: (1.07953786, 2.2284576, 3.0886872, -1.5330549, 3.4834324, -2.9986585),
-    8.7: (1.01124487, 6.2758749, 5.9728350, -0.4076839, 11.9352327, -2.6534864),
-}
+    8.7: (1.01124487, 6.2758749, 5.9728350, -0.4076839, 11.9352327, -2.6534864)}
 # By Tabor's parameter: tension/(pi R w), h0 there, loads/(pi R w) at the jumps, loss/(w R z0).
 KNOWN_BY_TABOR = {
     0.01: (1.998969, 1.0019),
@@ -83,7 +82,7 @@ def test_published_parameters_give_the_known_table(tabor):
         assert one == pytest.approx(other, abs=tolerance)
 
 
-@pytest.mark.parametrize("sigma", [1e-3, 0.05, 0.35, 2.0, 30.0])
+@pytest.mark.parametrize("sigma", [1e-3, 0.35, 30.0])
 def test_two_resolutions_agree_to_nine_digits(sigma):
     usual = np.array(numbers(Path(sigma, DEPTH, resolution=USUAL)))
     fine = np.array(numbers(Path(sigma, DEPTH, resolution=FINE)))
@@ -133,7 +132,7 @@ def test_the_table_has_every_strength_and_says_how_good_it_is():
         assert float(row["difference"]) < allowed, sigma
 
 
-@pytest.mark.parametrize("sigma", [0.001, 0.33, 1.0, 100.0])
+@pytest.mark.parametrize("sigma", [0.33, 100.0])
 def test_the_table_is_what_the_reference_computes(sigma):
     row = table()[sigma]
     stored = [float(row[name]) for name in COLUMNS]

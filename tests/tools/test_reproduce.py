@@ -1,4 +1,4 @@
-"""The paper reproduced: decks, what is run and what is not run again, and claims on quick decks."""
+"""The paper reproduced: what is run and what is not run again, and claims on its figures."""
 
 import csv
 import os
@@ -11,168 +11,133 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from support.processes import HANG
+from support.scenes import deck
 
 pytest.importorskip("matplotlib")
-TOOLS = ROOT / "tools" / "reproduce"
+import curves  # noqa: E402 (needs matplotlib)
+import draws  # noqa: E402
+import fig03  # noqa: E402
+import fig06  # noqa: E402
+import fig08  # noqa: E402
+import fig11  # noqa: E402
+import misprints  # noqa: E402
+import penetrations  # noqa: E402
+import report  # noqa: E402
+import style  # noqa: E402
+from runs import RunError, Runs  # noqa: E402
+
 INPUTS = ROOT / "inputs"
-
-
-@pytest.fixture(scope="module")
-def tools():
-    """Makes the modules of tools/reproduce importable, as `./reproduce` does."""
-    before = list(sys.path)
-    # A module that other claims have imported already does not add its folders once more.
-    sys.path[:0] = [str(TOOLS), str(ROOT / "pywrap" / "plots"), str(ROOT / "tools")]
-    yield
-    sys.path[:] = before
-
-
-@pytest.fixture(scope="module")
-def modules(tools):
-    """The chapters of the reports, by name."""
-    import chapters
-
-    return {name: chapters.module(name) for name in chapters.names()}
-
-
-@pytest.fixture(scope="module")
-def runs(tools, snapin_path, tmp_path_factory):
-    """Runs of the paper's decks, shared by the claims below."""
-    from runs import Runs
-
-    return Runs(tmp_path_factory.mktemp("reproduction"), snapin_path)
-
-
+BODIES = {"radius": 1.5e-2, "stiffness": 1e10}
+Z0 = 0.5e-9
+# sigma of these bodies over the Hamaker constant [1/J].
+PER_HAMAKER = np.sqrt(BODIES["radius"] / Z0**3) / (16 * np.pi * Z0**2 * BODIES["stiffness"])
+CYCLES = ("fig10a_converged", "fig10b_converged", "fig10c_converged")
 DECK = """&bodies radius = 1.5e-2, rigid = .true. /
 &force law = 'exponential', p0 = 1e7, decay_length = 1e-9 /
 &loading h0_start = 2e-9, h0_end = 0, h0_step = 1e-9 /
 """
 
 
-def counting(program, folder):
-    """Return a program that runs another and notes each time it does, and where it notes it."""
-    log, script = folder / "log", folder / "counting"
-    script.write_text(f'#!/bin/sh\necho run >> "{log}"\nexec "{program}" "$@"\n')
-    script.chmod(0o755)
-    return script, log
+@pytest.fixture(scope="module")
+def runs(snapin_path, tmp_path_factory):
+    """Runs of the paper's decks, shared by the claims below."""
+    return Runs(tmp_path_factory.mktemp("reproduction"), snapin_path)
 
 
-def test_a_deck_is_run_once_and_again_when_deck_or_program_change(tools, snapin_path, tmp_path):
-    from runs import Runs
+@pytest.fixture
+def rigid(tmp_path):
+    """A deck that takes no time."""
+    path = tmp_path / "rigid.nml"
+    path.write_text(DECK)
+    return path
 
-    program, log = counting(snapin_path, tmp_path)
-    deck = tmp_path / "rigid.nml"
-    deck.write_text(DECK)
+
+def program_of(folder, script, name="program"):
+    """Return a shell script that stands for the program."""
+    path = folder / name
+    path.write_text(f"#!/bin/sh\n{script}\n")
+    path.chmod(0o755)
+    return path
+
+
+# --- What is run
+
+
+def test_a_deck_is_run_once_and_again_when_deck_or_program_change(snapin_path, rigid, tmp_path):
+    log = tmp_path / "log"
+    program = program_of(tmp_path, f'echo run >> "{log}"\nexec "{snapin_path}" "$@"')
 
     def times_run():
-        assert Runs(tmp_path / "runs", program).run(deck).curve["h0"].size > 0
+        assert Runs(tmp_path / "runs", program).run(rigid).curve["h0"].size > 0
         return len(log.read_text().split())
 
-    assert times_run() == 1
-    assert times_run() == 1
-    deck.write_text(DECK.replace("1e7", "2e7"))
-    assert times_run() == 2
-    assert times_run() == 2
+    assert (times_run(), times_run()) == (1, 1)
+    rigid.write_text(DECK.replace("1e7", "2e7"))
+    assert (times_run(), times_run()) == (2, 2)
     program.write_text(program.read_text() + "# changed\n")
     assert times_run() == 3
 
 
-def test_what_was_interrupted_or_removed_is_run_again(tools, snapin_path, tmp_path):
-    from runs import Runs
-
-    deck = tmp_path / "rigid.nml"
-    deck.write_text(DECK)
+def test_what_was_interrupted_or_removed_is_run_again(snapin_path, rigid, tmp_path):
     runs = Runs(tmp_path / "runs", snapin_path)
-    runs.run(deck)
-    assert runs.is_done(deck)
+    runs.run(rigid)
     # The record is written last, so that an interruption leaves none.
-    (tmp_path / "runs" / "rigid.json").unlink()
-    assert not runs.is_done(deck)
-    runs.execute(deck)
-    assert runs.is_done(deck)
-    (tmp_path / "runs" / "rigid" / "summary.nml").unlink()
-    assert not runs.is_done(deck)
+    for left in ("rigid.json", "rigid/summary.nml"):
+        assert runs.is_done(rigid)
+        (tmp_path / "runs" / left).unlink()
+        assert not runs.is_done(rigid)
+        runs.execute(rigid)
 
 
-def test_an_interrupted_run_goes_on_or_starts_over_where_it_cannot(tools, snapin_path, tmp_path):
-    from runs import Runs
-
-    program, log = counting(snapin_path, tmp_path)
-    text = program.read_text().replace("echo run", 'echo "$2"')
-    program.write_text(text)
-    deck = tmp_path / "rigid.nml"
-    deck.write_text(DECK)
-    runs = Runs(tmp_path / "runs", program)
-    left = tmp_path / "runs" / "rigid" / "journal.partial"
+# With a journal of another deck the program refuses.
+@pytest.mark.parametrize(("refuses", "options"), [
+    ("", ["--resume"]), ('[ "$2" = --resume ] && exit 1', ["--resume", "--out"])])
+def test_an_interrupted_run_goes_on_or_starts_over_where_it_cannot(
+        snapin_path, rigid, tmp_path, refuses, options):
+    log, left = tmp_path / "log", tmp_path / "runs" / "rigid" / "journal.partial"
+    program = program_of(
+        tmp_path, f'echo "$2" >> "{log}"\n{refuses}\nexec "{snapin_path}" "$@"')
     left.parent.mkdir(parents=True)
-
-    def options_used():
-        left.touch()
-        log.unlink(missing_ok=True)
-        runs.execute(deck)
-        assert runs.is_done(deck)
-        return log.read_text().split()
-
-    assert options_used() == ["--resume"]
-    # As the program does with a journal of another deck.
-    program.write_text(text.replace("exec", '[ "$2" = --resume ] && exit 1\nexec'))
-    assert options_used() == ["--resume", "--out"]
+    left.touch()
+    runs = Runs(tmp_path / "runs", program)
+    runs.execute(rigid)
+    assert runs.is_done(rigid) and log.read_text().split() == options
 
 
-def test_a_failing_deck_is_named_and_the_others_are_run(tools, snapin_path, tmp_path):
-    from runs import Runs
-
-    good, bad = tmp_path / "good.nml", tmp_path / "bad.nml"
-    good.write_text(DECK)
+def test_a_failing_deck_is_named_and_the_others_are_run(snapin_path, rigid, tmp_path):
+    bad = tmp_path / "bad.nml"
     bad.write_text(DECK.replace("p0 = 1e7", "p0 = -1"))
-    said = []
-    runs = Runs(tmp_path / "runs", snapin_path)
-    problems = runs.run_all([bad, good, tmp_path / "absent.nml"], 2, said.append)
+    said, runs = [], Runs(tmp_path / "runs", snapin_path)
+    problems = runs.run_all([bad, rigid, tmp_path / "absent.nml"], 2, said.append)
     assert sorted(problems) == ["absent", "bad"]
     assert "status 2" in problems["bad"] and "p0" in problems["bad"]
-    assert runs.is_done(good) and not runs.is_done(bad)
+    assert runs.is_done(rigid) and not runs.is_done(bad)
     assert any("run 3 of 3" in line for line in said)
 
 
-@pytest.mark.parametrize(("stem", "fails"), [("fig00_paper", False), ("fig00_converged", True)])
-def test_only_decks_on_the_paper_s_rule_may_end_unconverged(tools, tmp_path, stem, fails):
-    from runs import RunError, Runs
-
-    program = tmp_path / "unconverged"
-    program.write_text('#!/bin/sh\nmkdir -p "$3/$(basename "$4" .nml)"\n'
-                       'printf "&summary\\n  converged = .false.\\n/\\n\\n&cost\\n/\\n" '
-                       '> "$3/$(basename "$4" .nml)"/summary.nml\nexit 1\n')
-    program.chmod(0o755)
-    deck = tmp_path / f"{stem}.nml"
-    deck.write_text(DECK)
+@pytest.mark.parametrize(("stem", "leaves", "fails"), [
+    ("fig00_paper", True, False), ("fig00_converged", True, True), ("fig00_paper", False, True)])
+def test_only_decks_on_the_paper_s_rule_may_end_unconverged_and_with_a_summary_of_their_own(
+        tmp_path, stem, leaves, fails):
+    summary = "&summary\\n  converged = .false.\\n/\\n\\n&cost\\n/\\n"
+    program = program_of(tmp_path, (
+        f'mkdir -p "$3/{stem}"\nprintf "{summary}" > "$3/{stem}/summary.nml"\n' if leaves else "")
+        + "exit 1")
+    path = tmp_path / f"{stem}.nml"
+    path.write_text(DECK)
+    old = tmp_path / "runs" / stem / "summary.nml"
+    old.parent.mkdir(parents=True)
+    old.write_text("&summary /\n")
     runs = Runs(tmp_path / "runs", program)
     if fails:
         with pytest.raises(RunError, match="status 1"):
-            runs.run(deck)
+            runs.run(path)
     else:
-        assert runs.run(deck).summary["converged"] is False
-
-
-def test_a_deck_on_the_paper_s_rule_must_leave_a_summary_of_its_own(tools, tmp_path):
-    from runs import RunError, Runs
-
-    program = tmp_path / "nothing"
-    program.write_text("#!/bin/sh\nexit 1\n")
-    program.chmod(0o755)
-    deck = tmp_path / "fig00_paper.nml"
-    deck.write_text(DECK)
-    left = tmp_path / "runs" / "fig00_paper" / "summary.nml"
-    left.parent.mkdir(parents=True)
-    left.write_text("&summary /\n")
-    with pytest.raises(RunError, match="status 1"):
-        Runs(tmp_path / "runs", program).run(deck)
+        assert runs.run(path).summary["converged"] is False
 
 
 def test_runs_of_a_deck_on_the_paper_s_rule_differ_in_the_twelfth_digit_of_hamaker_alone(
-        tools, snapin_path, tmp_path):
-    import draws
-    from runs import Runs
-
+        snapin_path, tmp_path):
     runs = Runs(tmp_path, snapin_path, count=3)
     names = runs.with_draws(["fig07_paper", "fig06_converged"])
     assert names == ["fig07_paper", "fig07_paper_draw1", "fig07_paper_draw2", "fig06_converged"]
@@ -188,65 +153,48 @@ def test_runs_of_a_deck_on_the_paper_s_rule_differ_in_the_twelfth_digit_of_hamak
     assert draws.COUNT >= 5
 
 
-def test_what_differs_between_runs_is_printed_as_a_range_and_what_rounding_leaves_not_at_all(tools):
-    import draws
+# --- What is written
 
+
+def test_what_differs_between_runs_is_a_range_and_what_rounding_leaves_is_no_number():
     assert draws.ranged([1.234, 0.9, 2.0]) == "0.90 to 2.00"
     assert draws.ranged([1.0001, 1.0002]) == "1.00"
     assert draws.within(3e-15) == "better than 1e-9" and draws.within(2e-4) == "2e-4"
 
 
-def test_figure_6_neck_and_tension_are_those_between_the_nodes(tools, runs):
-    """Nodes alone would say 8.82137 um and 16.33 MPa."""
-    import fig06
-
-    radius, tension, _ = fig06._edge(fig06._states(runs)[-1])
-    assert radius == pytest.approx(8.8238e-6, rel=5e-6)
-    assert tension == pytest.approx(16.336e6, rel=5e-5)
-
-
-def test_rows_are_written_as_csv_that_reads_back(tools, tmp_path):
-    from published import Row, write_csv
-
-    rows = [Row("a, b", -59, None, 60.71785243, "µN", 'a "note", with commas'),
-            Row("words", "10-20", 0, 1e-19)]
-    write_csv(tmp_path / "rows.csv", rows)
-    with (tmp_path / "rows.csv").open(encoding="utf-8", newline="") as file:
-        read = list(csv.DictReader(file))
-    assert tuple(read[0]) == Row.COLUMNS
-    assert read[0]["item"] == "a, b" and read[0]["note"] == 'a "note", with commas'
-    values = [[row[column] for column in Row.COLUMNS[1:4]] for row in read]
-    assert values == [["-59", "", "60.7179"], ["10-20", "0", "1e-19"]]
-    assert not list(tmp_path.glob("*.partial"))
-
-
-def test_a_cell_does_not_break_its_markdown_table(tools):
-    from published import Row
-    from report import table
-
-    lines = table([Row("1/|r-t|", 1, 2, 3, "", "a_b*c")])
+def test_a_cell_does_not_break_its_markdown_table():
+    lines = report.markdown(["a", "b"], [["1/|r-t|", "a_b*c"]])
     assert lines[2].replace("\\|", "").count("|") == lines[0].count("|")
 
 
+def test_every_row_of_the_paper_s_page_has_a_cell_for_each_column():
+    text = (ROOT / "tools/reproduce/paper.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| = (.*)$", text, re.M)
+    assert len(rows) > 80
+    assert {len(row.split(" |")) for row in rows} == {len(report.REPORTS["paper"].columns)}
+
+
 def test_all_decks_of_figures_pass_the_check(snapin):
-    decks = sorted(INPUTS.glob("fig*.nml"))
-    done = snapin("--check", *decks)
+    done = snapin("--check", *sorted(INPUTS.glob("fig*.nml")))
     assert done.returncode == 0, done.stderr
 
 
-def test_every_deck_of_a_figure_belongs_to_a_chapter_and_exists(modules):
-    used = {deck for module in modules.values() for deck in module.DECKS}
+def test_every_deck_of_a_figure_belongs_to_a_chapter_and_exists():
+    names = report.names()
+    assert len(set(names)) == len(names) and not set(names) & set(report.REPORTS)
+    used = {deck for name in names for deck in getattr(report.module(name), "DECKS", ())}
     assert {path.stem for path in INPUTS.glob("fig*.nml")} <= used
-    for deck in used:
-        assert (INPUTS / f"{deck}.nml").is_file(), deck
+    assert {deck for deck in used if not (INPUTS / f"{deck}.nml").is_file()} == set()
+    files = {path.stem for path in (ROOT / "tools/reproduce/others").glob("*.py")}
+    assert files - {"__init__", "fits"} == set(report.names(["others"]))
 
 
 @pytest.mark.parametrize("paper", [path.stem for path in sorted(INPUTS.glob("fig*_paper.nml"))])
 def test_the_paper_s_version_and_the_converged_one_differ_in_numerics_alone(paper):
     ours, theirs = (f90nml.read(INPUTS / f"{stem}.nml")
                     for stem in (paper.replace("_paper", "_converged"), paper))
-    for group in ("bodies", "force"):
-        assert ours[group] == theirs[group]
+    assert [ours[group] for group in ("bodies", "force")] == [
+        theirs[group] for group in ("bodies", "force")]
     rule = theirs["numerics"]
     assert rule["convergence"] == "displacement_change" and rule["method"] == "mixing"
     assert rule["grid"] == "uniform" and 200 <= rule["nodes"] <= 1500
@@ -255,63 +203,20 @@ def test_the_paper_s_version_and_the_converged_one_differ_in_numerics_alone(pape
     assert rule.get("mixing_limit", 0.2) == 0.2
 
 
-def test_figure_1_pulls_off_7_9_percent_above_jkr(runs):
-    summary = runs["fig01_lennard_jones"].summary
-    # Known independently for sigma = 0.87; the deck's is 0.8717, and the ratio falls with sigma at
-    # 0.07, which makes 1.1e-4.
-    assert summary["max_tension"] == pytest.approx(1.07953786 * 56.25e-6, rel=2e-4)
-    assert summary["max_tension"] < 1.07953786 * 56.25e-6
-
-
-@pytest.mark.parametrize(("big_lambda", "percent"), [(0.01, -88.4), (1, -45.5), (1e4, -13.7)])
-def test_figure_3_hertz_theory_is_off_by_the_known_amounts(tools, runs, big_lambda, percent):
-    import fig03
-
-    assert fig03.at(fig03.errors(runs), "hertz", big_lambda) == pytest.approx(percent, abs=0.05)
-
-
-def test_figure_3_both_approximations_are_low_and_worse_for_larger_lambda(tools, runs):
-    import fig03
-
-    found = fig03.errors(runs)
-    for key in ("displacement", "load"):
-        assert (found[key] < 0).all() and (np.diff(found[key]) < 0).all()
-    assert (found["load"] < found["displacement"]).all()
-    assert (np.diff(found["hertz"]) > 0).all()
-    assert fig03.at(found, "displacement", 0.01) == pytest.approx(-0.79, abs=0.005)
-    assert fig03.at(found, "load", 0.01) == pytest.approx(-1.39, abs=0.005)
-
-
-def test_figure_6_contact_radii_of_approach_and_retreat_agree(tools, runs):
-    import fig06
-
-    assert fig06._radii_differ(runs["fig06_converged"]) < 1e-4
-
-
-def test_the_printed_kernel_is_a_misprint(tools, runs):
-    import misprints
-
-    found = misprints.evidence(runs)
-    assert found["right"] == pytest.approx(1, abs=1e-12)
-    assert found["parameter"] == pytest.approx(found["angular"], rel=1e-12)
-    assert abs(found["modulus"] / found["angular"] - 1) > 0.05
-
-
-def test_the_published_report_is_whole_and_its_pictures_are_small():
+@pytest.mark.parametrize(("page", "links"), [
+    ("report", {"published_vs_computed.csv", "fig01.png"}), ("others", {"others.csv"})])
+def test_a_published_page_is_whole_and_its_pictures_are_small(page, links):
     folder = ROOT / "docs" / "reproduction"
-    report = (folder / "report.md").read_text(encoding="utf-8")
-    links = re.findall(r"\]\(([^)#]+)\)", report)
-    assert "published_vs_computed.csv" in links and "fig01.png" in links
-    for link in links:
-        assert (folder / link).is_file(), link
-    assert "**Failed:**" not in report
-    for picture in folder.glob("*.png"):
-        assert picture.stat().st_size < 150_000, picture
+    text = (folder / f"{page}.md").read_text(encoding="utf-8")
+    found = set(re.findall(r"\]\(([^)#]+)\)", text))
+    assert links <= found and "**Failed:**" not in text
+    assert {link for link in found if not (folder / link).is_file()} == set()
+    assert all(picture.stat().st_size < 150_000 for picture in folder.glob("*.png"))
 
 
 def test_the_command_writes_report_table_and_picture_and_fails_on_a_bad_name(snapin_path, tmp_path):
-    command = [sys.executable, str(TOOLS / "reproduce.py"), "--out", str(tmp_path), "-j", "2",
-               "--program", str(snapin_path)]
+    command = [sys.executable, str(ROOT / "tools/reproduce/reproduce.py"), "--out", str(tmp_path),
+               "-j", "2", "--program", str(snapin_path)]
     environment = {key: value for key, value in os.environ.items() if key != "SNAPIN"}
 
     def run(*args):
@@ -323,12 +228,209 @@ def test_the_command_writes_report_table_and_picture_and_fails_on_a_bad_name(sna
     assert "run 1 of 1: fig03" in done.stderr
     picture = (tmp_path / "fig03.png").read_bytes()
     assert picture[:4] == b"\x89PNG" and len(picture) < 150_000
-    report = (tmp_path / "report_part.md").read_text(encoding="utf-8")
+    text = (tmp_path / "report_part.md").read_text(encoding="utf-8")
     assert not (tmp_path / "report.md").exists()
-    assert "](fig03.png)" in report and "{" not in report and str(ROOT) not in report
-    assert "13.70 %" in report
-    assert "Lambda = 1e4" in (tmp_path / "published_vs_computed_part.csv").read_text(
-        encoding="utf-8")
+    assert "](fig03.png)" in text and "{" not in text and str(ROOT) not in text
+    assert "13.70 %" in text
+    with (tmp_path / "published_vs_computed_part.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert tuple(rows[0]) == report.REPORTS["paper"].columns
+    assert rows[0]["item"] == "Fig. 3, Hertz theory at Lambda = 1e4"
+    assert (rows[0]["published"], rows[0]["computed"]) == ("10-20", "")
+    assert float(rows[0]["converged"]) == pytest.approx(13.7, abs=0.05)
+    assert not list(tmp_path.glob("*.partial"))
     assert "1 of 1 runs are there already" in run("fig03").stderr
     assert run("fig99").returncode == 2
     assert run("-j", "0", "fig03").returncode == 2
+
+
+# --- Figs. 1 to 6
+
+
+def test_figure_1_pulls_off_7_9_percent_above_jkr(runs):
+    summary = runs["fig01_lennard_jones"].summary
+    # Known independently for sigma = 0.87; the deck's is 0.8717, and the ratio falls with sigma at
+    # 0.07, which makes 1.1e-4.
+    assert summary["max_tension"] == pytest.approx(1.07953786 * 56.25e-6, rel=2e-4)
+    assert summary["max_tension"] < 1.07953786 * 56.25e-6
+
+
+@pytest.mark.parametrize(("big_lambda", "percent"), [(0.01, -88.4), (1, -45.5), (1e4, -13.7)])
+def test_figure_3_hertz_theory_is_off_by_the_known_amounts(runs, big_lambda, percent):
+    assert fig03.at(fig03.errors(runs), "hertz", big_lambda) == pytest.approx(percent, abs=0.05)
+
+
+def test_figure_3_both_approximations_are_low_and_worse_for_larger_lambda(runs):
+    found = fig03.errors(runs)
+    for key, percent in (("displacement", -0.79), ("load", -1.39)):
+        assert (found[key] < 0).all() and (np.diff(found[key]) < 0).all()
+        assert fig03.at(found, key, 0.01) == pytest.approx(percent, abs=0.005)
+    assert (found["load"] < found["displacement"]).all()
+    assert (np.diff(found["hertz"]) > 0).all()
+
+
+def test_figure_6_neck_and_tension_are_those_between_the_nodes(runs):
+    """Nodes alone would say 8.82137 um and 16.33 MPa."""
+    radius, tension, _ = fig06._edge(curves.states(runs["fig06_converged"])[-1])
+    assert radius == pytest.approx(8.8238e-6, rel=5e-6)
+    assert tension == pytest.approx(16.336e6, rel=5e-5)
+
+
+def test_figure_6_contact_radii_of_approach_and_retreat_agree(runs):
+    assert fig06._radii_differ(runs["fig06_converged"]) < 1e-4
+
+
+def test_the_printed_kernel_is_a_misprint(runs):
+    found = misprints.numbers(runs)
+    assert found["right"] == pytest.approx(1, abs=1e-12)
+    assert found["parameter"] == pytest.approx(found["angular"], rel=1e-12)
+    assert abs(found["modulus"] / found["angular"] - 1) > 0.05
+
+
+# --- Figs. 7 to 9
+
+
+@pytest.fixture(scope="module")
+def sweep(runs, tmp_path_factory):
+    """A sweep over sigma as in the decks of Figs. 7 and 9, with fewer cases."""
+    path = tmp_path_factory.mktemp("decks") / "sigma.nml"
+    path.write_text(deck(
+        bodies=BODIES, force={"law": "lennard_jones", "hamaker": 1e-20, "z0": Z0},
+        equilibrium_path={"h0_end": -1e-9}, approximations={},
+        sweep={"key": "force.hamaker", "from_": 1e-3 / PER_HAMAKER, "to": 1e2 / PER_HAMAKER,
+               "count": 16, "scale": "log"}))
+    return runs.run(path).sweep
+
+
+def test_pull_off_goes_smoothly_from_dmt_to_jkr(sweep):
+    ratio = sweep["max_tension"] / sweep["jkr_pull_off"]
+    assert (np.diff(ratio) < 0).all()
+    assert 4 / 3 - 2e-3 < ratio[0] < 4 / 3
+    assert 1 < ratio[-1] < 1.001
+    # A third of a decade apart: a kink or a scattered value would show in third differences.
+    assert abs(np.diff(ratio, 3)).max() < 0.02
+
+
+@pytest.mark.parametrize("stem", CYCLES)
+def test_pull_off_is_one_value_and_the_contact_one_branch_whatever_the_penetration(runs, stem):
+    pulls = penetrations.of_cycle(runs[stem])
+    assert len(pulls) >= 3 and penetrations.spread(pulls) < 1e-6
+    assert runs[stem].summary["max_tension"] == pytest.approx(
+        pulls[0].ratio * runs[stem].summary["jkr_pull_off"], rel=1e-6)
+    loading, unloading = fig11.both_in_contact(runs[stem])
+    assert loading.size > 20 and (loading > 0).all()
+    np.testing.assert_allclose(unloading, loading, rtol=1e-5)
+    # Unloading never has the smaller tension.
+    assert fig11.least_excess(runs[stem]) > -1e-8
+
+
+def test_pull_off_and_jumps_are_those_of_an_independent_solution(runs):
+    columns = runs["fig07_exact_sigma"].sweep
+    np.testing.assert_allclose(columns["sigma"], [0.87, 8.7], rtol=1e-14)
+    unit = columns["surface_energy"] * BODIES["radius"]
+    for name, values in {
+            "max_tension": (1.07953786 * 1.5 * np.pi, 1.01124487 * 1.5 * np.pi),
+            "jump_in_load": (-1.5330549, -0.4076839),
+            "jump_out_load": (-2.9986585, -2.6534864)}.items():
+        np.testing.assert_allclose(columns[name] / unit, values, rtol=2e-7, atol=0)
+    # One unit of the last digit given.
+    for name, values in {"max_tension_h0": (2.2284576, 6.2758749),
+                         "jump_in_h0": (3.0886872, 5.9728350),
+                         "jump_out_h0": (3.4834324, 11.9352327)}.items():
+        np.testing.assert_allclose(columns[name] / Z0, values, atol=1.1e-7, rtol=0)
+    # Evaluated independently.
+    found = fig08.exact(runs)
+    for name, value, unit in (
+            ("jump_criterion_29_h0", 6.3203, 1e-4), ("jump_criterion_29_load", -0.37286, 1e-5),
+            ("jump_equation_37_gap", 4.7403, 1e-4), ("fold_closed_form_h0", 6.2995, 1e-4),
+            ("fold_closed_form_load", -0.4138, 1e-4)):
+        assert found[name] == pytest.approx(value, abs=unit)
+
+
+def test_criterion_29_gives_somewhat_too_little_tension(sweep):
+    both = np.isfinite(sweep["jump_in_load"])
+    assert both.sum() >= 6
+    ratio = sweep["jump_criterion_29_load"][both] / sweep["jump_in_load"][both]
+    assert (ratio > 0.85).all() and (ratio < 0.93).all()
+    large = sweep["sigma"][both] > 1
+    np.testing.assert_allclose(sweep["jump_equation_37_load"][both][large],
+                               sweep["jump_criterion_29_load"][both][large], rtol=5e-3)
+
+
+# --- Figs. 10 and 11, and chapters as a whole
+
+
+@pytest.mark.slow
+def test_a_grid_coarser_than_the_neck_makes_the_loops_of_the_paper(runs):
+    coarse = runs["fig10c_coarse"]
+    assert coarse.summary["resolved"] is False
+    assert coarse.summary["worst_residual"] < 1e-6
+    loading, unloading = fig11.both_in_contact(coarse)
+    assert np.median(unloading / loading) > 1.05
+    # JKR theory between loading and unloading, nearer to the former.
+    assert 0.1 < penetrations.between(coarse) < 0.5
+    # Each unloading leaves the loading on a line of its own.
+    loads = [curves.at(-0.5e-9, coarse.branch(f"unloading_{i}"), "load") for i in (2, 3)]
+    assert abs(loads[0] / loads[1] - 1) > 0.05
+    assert coarse.summary["max_tension"] > 1.2 * coarse.summary["jkr_pull_off"]
+
+
+@pytest.mark.slow
+def test_the_paper_s_rule_stops_far_from_equilibrium_and_says_so(runs):
+    rule = runs["fig10a_paper"]
+    assert rule.summary["converged"] is False
+    assert rule.summary["worst_residual"] > 1
+    assert "not convergence" in str(rule.summary["warnings"])
+    assert penetrations.spread(penetrations.of_cycle(rule)) > 0.05
+
+
+def quicker(groups):
+    """The deck with fewer steps, nodes and cases."""
+    numerics = groups.get("numerics", {})
+    if numerics.get("grid") == "uniform":
+        numerics["nodes"] = min(numerics.get("nodes", 90), 90)
+        for name in ("loading", "unloading"):
+            if "h0_step" in groups.get(name, {}):
+                groups[name]["h0_step"] *= 3
+    sweep = groups.get("sweep", {})
+    if "count" in sweep:
+        sweep["count"] = (sweep["count"] - 1) // 5 + 1
+    if numerics.get("accuracy", 1) < 1e-6:
+        numerics["accuracy"] = 1e-6
+
+
+@pytest.fixture(scope="module")
+def quick(snapin_path, tmp_path_factory):
+    """Decks made quicker, and two runs of those on the paper's rule."""
+    return Runs(tmp_path_factory.mktemp("quick"), snapin_path, count=2, change=quicker)
+
+
+@pytest.mark.slow
+def test_the_approximation_is_good_until_near_the_jump(quick):
+    found = fig08.numbers(quick)
+    # At 4 nm, of a state solved there: 4.08 and 2.85 %. Straight lines between rows of the path,
+    # which these were once read from, flatter a formula that is on the side they are.
+    assert found["load_far"] < 4.2 and found["displacement_far"] < 3
+    assert found["parts"] < 0.05
+    # Of the approximation itself: its fold and the jump by (29) come before the true one.
+    assert found["closed"] > found["fold"] and found["early"] > 0
+
+
+CHAPTERS = ["fig06", "fig07", "fig08", "fig09", "fig10", "fig11"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "how"), [
+    *(pytest.param(name, "quick", marks=() if name in ("fig06", "fig10") else pytest.mark.long)
+      for name in CHAPTERS),
+    *(pytest.param(name, "runs", marks=pytest.mark.long) for name in [*CHAPTERS, "verdict"])])
+def test_a_chapter_is_complete(request, name, how, tmp_path, monkeypatch):
+    chosen, module = request.getfixturevalue(how), report.module(name)
+    if how == "quick":
+        monkeypatch.setattr(fig11, "FRACTIONS", fig11.FRACTIONS[::6])
+    assert not chosen.run_all(chosen.with_draws(module.DECKS), 1, lambda text: None)
+    caption, rows = report.filled(name, chosen)
+    assert rows and "{" not in caption and "nan" not in caption + str(rows)
+    if hasattr(module, "draw"):
+        style.save(module.draw(chosen), tmp_path / "picture.png")
+        assert (tmp_path / "picture.png").stat().st_size < 150_000

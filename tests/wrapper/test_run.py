@@ -2,10 +2,8 @@
 nothing left on the disk or said that was not asked for."""
 
 import os
-import pathlib
 import tempfile
 
-import _snapin
 import f90nml
 import numpy as np
 import pytest
@@ -84,8 +82,7 @@ def test_every_list_of_a_summary_is_an_array_though_it_may_hold_one_value(result
 
 def test_a_sweep_has_its_table(run):
     scene = lennard_jones(
-        0.5, equilibrium_path={"h0_end": 0.0}, sweep={"key": "force.hamaker", "values": [5.0, 9.0]}
-    )
+        0.5, equilibrium_path={"h0_end": 0.0}, sweep={"key": "force.hamaker", "values": [5.0, 9.0]})
     mine = snapin.run(scene)
     assert list(mine.tables) == ["sweep"]
     assert_same(mine.sweep, run(scene).table("sweep.csv").columns)

@@ -33,8 +33,7 @@ def assert_same(result, table, columns=COLUMNS):
     for name in columns:
         mine, theirs = getattr(result, name), table[name]
         np.testing.assert_allclose(
-            mine, theirs, rtol=SAME, atol=SAME * abs(theirs).max(), err_msg=name
-        )
+            mine, theirs, rtol=SAME, atol=SAME * abs(theirs).max(), err_msg=name)
 
 
 @pytest.fixture(scope="module")
@@ -92,11 +91,8 @@ def test_exponential_law_gives_the_program_s_curve(run):
 @pytest.mark.parametrize(
     "options",
     [
-        {"method": "newton"},
-        {"grid": "uniform", "nodes": 250, "r_max": 12.0},
-        {"method": "mixing", "grid": "panels"},
-        {"accuracy": 1e-9},
-    ],
+        {"method": "newton"}, {"grid": "uniform", "nodes": 250, "r_max": 12.0},
+        {"method": "mixing", "grid": "panels"}, {"accuracy": 1e-9}],
 )
 def test_options_are_those_of_the_deck(run, options):
     result = run(lennard_jones(0.2, loading=loading(6, 1, 0.5), numerics=options))
@@ -111,8 +107,7 @@ def test_rigid_bodies_give_the_program_s_curve(run):
     scene = deck(
         bodies={"radius": 1.0, "rigid": True},
         force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-        loading=loading(6, 0.5, 0.25),
-    )
+        loading=loading(6, 0.5, 0.25))
     curve = snapin.force_curve(np.linspace(6, 0.5, 23), radius=1.0, rigid=True, law=law_of(1.0))
     assert_same(curve, run(scene).curve)
     # As near the largest as the accuracy: the step at which it is met is searched.
@@ -130,8 +125,7 @@ def test_path_is_that_of_the_program(run):
     np.testing.assert_allclose(path.folds, folds, rtol=SAME)
     assert path.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
     assert path.error_estimate == pytest.approx(
-        result.summary["error_estimate"], rel=1e-3, abs=SAME
-    )
+        result.summary["error_estimate"], rel=1e-3, abs=SAME)
     assert path.converged
 
 
@@ -171,8 +165,7 @@ def test_turning_value_may_be_repeated_or_not(there_and_back):
     once = snapin.force_curve(np.r_[DOWN, DOWN[-2::-1]], **BODIES, law=LAW)
     scale = abs(there_and_back.load).max()
     np.testing.assert_allclose(
-        once.load, np.delete(there_and_back.load, 61), atol=1e-7 * scale, rtol=0
-    )
+        once.load, np.delete(there_and_back.load, 61), atol=1e-7 * scale, rtol=0)
     np.testing.assert_allclose(once.jumps, there_and_back.jumps, rtol=1e-6)
 
 
@@ -185,13 +178,8 @@ def test_the_second_of_two_calls_does_not_know_of_the_first(there_and_back):
 @pytest.mark.parametrize(
     "of",
     [
-        list,
-        tuple,
-        lambda h0: np.repeat(h0, 2)[::2],
-        lambda h0: np.array([h0, h0]).T[:, 0],
-        lambda h0: h0[::-1].copy()[::-1],
-        lambda h0: h0.astype(">f8"),
-    ],
+        list, tuple, lambda h0: np.repeat(h0, 2)[::2], lambda h0: np.array([h0, h0]).T[:, 0],
+        lambda h0: h0[::-1].copy()[::-1], lambda h0: h0.astype(">f8")],
 )
 def test_h0_may_be_any_sequence_of_numbers(of):
     h0 = np.array([4.0, 3.0, 2.0, 1.0])

@@ -1,7 +1,6 @@
 """Claims about experiments run from Python that cannot be what was asked for: warnings, NaN,
 exceptions that begin with the argument's name."""
 
-import math
 import warnings
 
 import numpy as np
@@ -76,18 +75,11 @@ def path_with(**changes):
         (curve_with(h0=[1.0]), "h0"),
         (curve_with(h0=[]), "h0"),
         (curve_with(h0=3.0), "h0"),
-        (curve_with(h0=[[1.0, 2.0]]), "h0"),
         (curve_with(h0=[2.0, 4.0]), "h0"),
         (curve_with(h0=[4.0, 3.0, 2.5]), "h0"),
         (curve_with(h0=[4.0, 3.0, 5.0, 2.0]), "h0"),
         (curve_with(h0=[4.0, 3.0, 3.5, 5.0]), "h0"),
         (curve_with(h0=[4.0, 4.0]), "h0"),
-        (curve_with(h0=[1.0, math.nan]), "h0"),
-        (curve_with(h0=[1.0, -math.inf]), "h0"),
-        (curve_with(radius=0), "radius"),
-        (curve_with(radius=math.inf), "radius"),
-        (curve_with(stiffness=-1e10), "stiffness"),
-        (curve_with(stiffness=math.nan), "stiffness"),
         (curve_with(rigid=True), "rigid"),
         (curve_with(accuracy=0), "accuracy"),
         (curve_with(accuracy=0.5), "accuracy"),
@@ -95,10 +87,7 @@ def path_with(**changes):
         (curve_with(nodes=1, grid="uniform"), "nodes"),
         (curve_with(nodes=10**9, grid="uniform"), "nodes"),
         (curve_with(r_max=-10.0, grid="uniform"), "r_max"),
-        (path_with(h0_end=math.nan), "h0_end"),
         (path_with(h0_start=-3.0), "h0_start"),
-        (path_with(h0_start=math.inf), "h0_start"),
-        (path_with(radius=-1), "radius"),
         (path_with(accuracy=2), "accuracy"),
         # Beyond all physical sense, or beyond float64.
         (curve_with(radius=1e60), "radius"),
@@ -108,12 +97,54 @@ def path_with(**changes):
         (lambda: snapin.numerics.Mesh("uniform", 1.0, [0.0, 2.0], 5), "ends"),
         (path_with(law=snapin.lennard_jones(hamaker=-1, z0=1)), "hamaker"),
         (path_with(law=snapin.lennard_jones(hamaker=1, z0=0)), "z0"),
-        (path_with(law=snapin.exponential(p0=math.nan, decay_length=1)), "p0"),
-        (path_with(law=snapin.exponential(p0=1, decay_length=math.inf)), "decay_length"),
     ],
 )
 def test_a_bad_value_is_a_value_error_with_its_name(call, name):
     with pytest.raises(ValueError, match=rf'^{name}: |: key "{name}'):
+        call()
+
+
+LAW, PANEL, EDGE = law_of(1.0), snapin.panel_mesh([0.0, 1.0], 8), {**UNIT, "surface_energy": 1.0}
+STATE = {"law": LAW, "mesh": PANEL, "h0": 2.0, "coupling": 0.1}
+
+
+@pytest.mark.parametrize(("call", "name"), [
+    (lambda: snapin.uniform_mesh(1, 1.0), "nodes"),
+    (lambda: snapin.panel_mesh([0.0], 8), "ends"),
+    (lambda: snapin.panel_mesh([0.0, 1.0, 1.0], 8), "ends"),
+    (lambda: snapin.panel_mesh([-2.0, 1.0], 8, centre=1.0), "ends"),
+    (lambda: snapin.panel_mesh([0.0, 1.0], 0), "order"),
+    (lambda: PANEL.interpolate(np.ones(8), [1.5]), "at"),
+    (lambda: snapin.panel_weights([0.0, 2.0], [0.5], 0.0, 1.0), "node"),
+    (lambda: snapin.panel_weights([0.0, 1.0], [-0.5], 0.0, 1.0), "target"),
+    (lambda: snapin.panel_weights([0.0, 1.0], [0.5], 1.0, 1.0), "right"),
+    (lambda: snapin.panel_weights([0.0, 1.0], [0.5], -1.0, 1.0), "left"),
+    (lambda: snapin.kernel([1.0], [0.0]), "distance"),
+    (lambda: snapin.kernel([1.0], [1.5]), "distance"),
+    (lambda: snapin.gauss_rule(10**6), "points"),
+    (lambda: snapin.force_law(snapin.exponential(p0=1.0), [1e-9]), "decay_length"),
+    (lambda: snapin.force_law(snapin.exponential(p0=1.0, decay_length=1.0, z0=1.0), [1.0]), "z0"),
+    (lambda: snapin.force_law(LAW, [0.0]), "gap"),
+    (lambda: snapin.force_law({}, [1.0]), "force"),
+    (lambda: snapin.equilibrium(**STATE, most_iterations=0), "most_iterations"),
+    (lambda: snapin.equilibrium(**STATE, patience=0), "patience"),
+    (lambda: snapin.equilibrium(**STATE, displacement_tolerance=1e-4), "displacement_tolerance"),
+    (lambda: snapin.contact_curve("jkr", [1.0], **UNIT), "surface_energy"),
+    (lambda: snapin.contact_curve("maugis", [1.0], **EDGE), "strength"),
+    (lambda: snapin.contact_curve("bradley", [1.0], **UNIT), "theory"),
+    (lambda: snapin.contact_radius("jkr", "speed", [1.0], **EDGE), "speed"),
+    (lambda: snapin.profile("hertz", [-1.0], 1.0, **UNIT), "r"),
+    (lambda: snapin.profile("dmt", [1.0], 1.0, **EDGE), "dmt"),
+    (lambda: snapin.pull_off("hertz", **UNIT), "hertz"),
+    (lambda: snapin.slow_deformation([0.0], **UNIT, law=LAW), "gap"),
+    (lambda: snapin.slow_deformation(
+        [1.0], **UNIT, law=snapin.exponential(p0=1.0, decay_length=1.0), form="attraction_only"),
+     "form"),
+    (lambda: snapin.approximation_rows(1.0, 2.0, **UNIT, law=LAW), "h0_end"),
+    (lambda: snapin.approximation_rows(1.0, 0.0, **UNIT, law=LAW, count=1), "count"),
+])
+def test_what_has_no_meaning_is_a_value_error_that_names_it(call, name):
+    with pytest.raises(ValueError, match=rf"\b{name}\b"):
         call()
 
 
@@ -123,34 +154,12 @@ def test_a_bad_value_is_a_value_error_with_its_name(call, name):
         (curve_with(method="bisection"), "method", "'auto', 'mixing', 'anderson', 'newton'"),
         (curve_with(grid="hexagonal"), "grid", "'auto', 'uniform', 'panels'"),
         (
-            path_with(law=snapin.lennard_jones(hamaker=1, z0=1, part="half")),
-            "part",
-            "'full', 'repulsive', 'attractive'",
-        ),
+            path_with(law=snapin.lennard_jones(hamaker=1, z0=1, part="half")), "part",
+            "'full', 'repulsive', 'attractive'"),
     ],
 )
 def test_an_unknown_name_is_answered_with_those_there_are(call, name, known):
     with pytest.raises(ValueError, match=rf'key "{name}": .* allowed: one of {known}'):
-        call()
-
-
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [
-        (curve_with(h0=["near", "far"]), "h0"),
-        (curve_with(h0=None), "h0"),
-        (curve_with(radius="wide"), "radius"),
-        (curve_with(stiffness=None), "stiffness"),
-        (curve_with(law="lennard_jones"), "law"),
-        (curve_with(rigid=1), "rigid"),
-        (curve_with(nodes=30.5, grid="uniform"), "nodes"),
-        (curve_with(method=b"newton"), "method"),
-        (path_with(h0_end="deep"), "h0_end"),
-        (path_with(law=None), "law"),
-    ],
-)
-def test_what_is_of_another_kind_is_an_error_with_its_name(call, name):
-    with pytest.raises((TypeError, ValueError), match=rf'^{name}: |: key "{name}"'):
         call()
 
 

@@ -11,7 +11,7 @@ import pytest
 import snapin
 from support.processes import answer
 from support.wrapper_registry import LAW, REGISTRY, UNIT, law_of
-from support.wrapper_values import CASES, REFUSED
+from support.wrapper_values import REFUSED, cases
 
 CALLS = 200
 # What a process may grow by over the second half of the calls [bytes]: pages of the allocator here
@@ -37,7 +37,7 @@ def large(entry):
 def bad_calls(entry):
     """Arguments that are refused, one for each kind of refusal of the first few arguments."""
     for name, kind in list(entry.kinds.items())[:4]:
-        for label, value, clean in CASES[kind](entry.good[name]):
+        for label, value, clean in cases(kind, entry.good[name], every=False):
             if clean is REFUSED and label not in ("huge", "enormous", "None", "generator"):
                 yield {**entry.good, name: value}
 
@@ -89,9 +89,7 @@ def test_calls_that_are_refused_do_not_leak(name):
         lambda: snapin.run({"bodies": {"radius": -1, "frog": "x"}, "dog": True}),
         lambda: snapin.run({**law_of(1.0), "bodies": UNIT}, out="/dev/null/folder"),
         lambda: snapin.contact_radius("dmt", "edge_ratio", [2.0], **UNIT, surface_energy=1.0),
-        lambda: snapin.equilibrium(
-            LAW, snapin.uniform_mesh(50, 5.0), 0.0, 9.0, most_iterations=2
-        ),
+        lambda: snapin.equilibrium(LAW, snapin.uniform_mesh(50, 5.0), 0.0, 9.0, most_iterations=2),
     ],
 )
 def test_calculations_that_fail_do_not_leak(call):

@@ -34,8 +34,7 @@ def jobs():
     for sigma in 0.1, 0.3, 0.87, 2.0, 3.0:
         law = law_of(sigma)
         yield lambda law=law: snapin.force_curve(
-            [4.0, 2.0, 0.0, 4.0, 8.0], **UNIT, law=law, accuracy=1e-2
-        )
+            [4.0, 2.0, 0.0, 4.0, 8.0], **UNIT, law=law, accuracy=1e-2)
         yield lambda law=law: snapin.equilibrium_path(0.0, **UNIT, law=law, accuracy=1e-2)
 
 

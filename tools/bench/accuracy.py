@@ -38,13 +38,12 @@ def _row(problem, kind, value, run, reference, length):
     return {
         "problem": problem.name, "deck": kind, "accuracy": value, "nodes": run.nodes,
         "states": run.states, "price": run.price, "least_price": run.least_price,
-        "price_of_estimate": run.price - run.price_of_run,
-        "products": run.products, "factorisations": run.factorisations,
+        "price_of_estimate": run.price - run.price_of_run, "products": run.products,
+        "factorisations": run.factorisations,
         **{f"error_{key}": errors.get(key, math.nan) for key in ("pull_off", "jump_in", "load")},
         "error": max(errors.values(), default=math.nan),
         "worst": max(errors, key=errors.get, default=""), "estimate": run.estimate,
-        "failure": run.failure, "warning": run.warning,
-    }
+        "failure": run.failure, "warning": run.warning}
 
 
 def draw(rows, folder):

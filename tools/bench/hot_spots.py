@@ -23,8 +23,7 @@ def measure(program, quick, say):
     """Return rows of case, what, seconds or share of instructions."""
     cases = {
         "Fig. 10(c) cycle": problems.FIGURE_10C + "&numerics accuracy = 1e-6 /\n",
-        "σ = 8.7 path": problems.ADHESIVE[2].path("accuracy = 1e-6"),
-    }
+        "σ = 8.7 path": problems.ADHESIVE[2].path("accuracy = 1e-6")}
     rows = []
     for case, run in program.best_of(3 if quick else 15, cases).items():
         rest = run.wall - run.kernel_seconds - run.solve_seconds - run.estimate_seconds

@@ -73,8 +73,7 @@ def solve(mesh, sigma, radius, gap, h0, most=40):
         p, by_gap = pressure(gap), coupling * slope(gap)
         defect = np.append(
             gap - h0 - parabola - coupling * (mesh.matrix @ p),
-            EDGE - h0 - 0.5 * radius**2 - coupling * (mesh.edge_row @ p),
-        )
+            EDGE - h0 - 0.5 * radius**2 - coupling * (mesh.edge_row @ p))
         jacobian[:n, :n] = np.eye(n) - mesh.matrix * by_gap
         jacobian[n, :n] = -mesh.edge_row * by_gap
         jacobian[:, n] = -1
@@ -139,12 +138,8 @@ def density(sigma, high, digits):
 
 def rule_mesh(sigma, low, high, digits):
     return Mesh(
-        min(0.5 * feature(sigma, high) / high, 1.0),
-        max(3.0, tail_begins(sigma) / low),
-        density(sigma, high, digits),
-        math.ceil(1 + 0.6 * digits),
-        max(5.0, 0.5 + 0.85 * digits),
-    )
+        min(0.5 * feature(sigma, high) / high, 1.0), max(3.0, tail_begins(sigma) / low),
+        density(sigma, high, digits), math.ceil(1 + 0.6 * digits), max(5.0, 0.5 + 0.85 * digits))
 
 
 # --- The study

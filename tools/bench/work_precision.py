@@ -72,14 +72,11 @@ def _row(problem, method, knob, value, run, reference):
         failure = f"found no {' and no '.join(lost)}"
     return {
         "problem": problem.name, "method": method, "knob": knob, "value": value,
-        "price": run.price_of_run if run.states else run.price,
-        "least_price": run.least_price, "products": run.products,
-        "factorisations": run.factorisations, "states": run.states, "nodes": run.nodes,
-        **{f"error_{key}": errors.get(key, math.nan) for key in QUANTITIES},
+        "price": run.price_of_run if run.states else run.price, "least_price": run.least_price,
+        "products": run.products, "factorisations": run.factorisations, "states": run.states,
+        "nodes": run.nodes, **{f"error_{key}": errors.get(key, math.nan) for key in QUANTITIES},
         "error": max(known, default=math.nan), "error_claimed": max(claimed, default=math.nan),
-        "estimate": run.estimate,
-        "failure": failure, "warning": run.warning,
-    }
+        "estimate": run.estimate, "failure": failure, "warning": run.warning}
 
 
 def _outcome(row):

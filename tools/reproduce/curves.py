@@ -1,21 +1,23 @@
-"""Formulas and small operations on curves that several figures need."""
+"""Formulas and small operations on curves and profiles that several figures need."""
 
+import drawing
 import numpy as np
 
+RADIUS = 1.5e-2
 
-def hertz_load(displacement, radius, stiffness):
+
+def hertz_load(displacement, stiffness):
     """Return the load [N] of Hertz theory, (6), at central displacements >= 0 [m]."""
-    return 2 / 3 * stiffness * np.sqrt(radius) * np.maximum(displacement, 0) ** 1.5
+    return 2 / 3 * stiffness * np.sqrt(RADIUS) * np.maximum(displacement, 0) ** 1.5
 
 
-def hertz_displacement(load, radius, stiffness):
+def hertz_displacement(load, stiffness):
     """Return the central displacement [m] of Hertz theory, (6), at loads >= 0 [N]."""
-    return (1.5 * np.maximum(load, 0) / (stiffness * np.sqrt(radius))) ** (2 / 3)
+    return (1.5 * np.maximum(load, 0) / (stiffness * np.sqrt(RADIUS))) ** (2 / 3)
 
 
-def jkr(contact_radius, radius, stiffness, surface_energy):
+def jkr(a, radius, stiffness, surface_energy):
     """Return displacement (11) [m] and load [N] of JKR theory at contact radii [m]."""
-    a = np.asarray(contact_radius, float)
     displacement = a**2 / radius - np.sqrt(4 * np.pi * surface_energy * a / stiffness)
     load = (2 / 3 * stiffness * a**3 / radius
             - np.sqrt(4 * np.pi * surface_energy * stiffness * a**3))
@@ -48,11 +50,43 @@ def jump(curve, towards):
     return before, before + 1
 
 
-def broken(curve, columns, cut):
-    """Return columns of a branch with NaN after row `cut`, so that no line crosses a jump."""
-    return [np.insert(curve[column], cut + 1, np.nan) for column in columns]
+def drawn(curve, towards=None):
+    """Return load [uN] and displacement [nm], with NaN where a jump is, so that no line crosses it."""
+    x, y = curve["load"] * 1e6, curve["displacement"] * 1e9
+    return (x, y) if towards is None else np.insert([x, y], jump(curve, towards)[1], np.nan, axis=1)
 
 
-def at_load(load, values, wanted):
-    """Return values where a rising load passes `wanted`."""
-    return np.interp(wanted, load, values)
+def jump_ends(curve, towards):
+    """Return where a jump begins and ends, in uN and nm."""
+    x, y = drawn(curve)
+    return [(x[i], y[i]) for i in jump(curve, towards)]
+
+
+def cubic(at, x, y):
+    """Return y at points between x by cubics through the four nearest."""
+    values = []
+    for point in np.atleast_1d(at):
+        first = int(np.clip(np.searchsorted(x, point) - 2, 0, max(x.size - 4, 0)))
+        near, scale = slice(first, first + 4), np.ptp(x[first : first + 4])
+        fit = np.polynomial.polynomial.polyfit((x[near] - point) / scale, y[near],
+                                               min(3, x[near].size - 1))
+        values.append(fit[0])
+    return np.array(values)
+
+
+def at(x, columns, name, by="h0"):
+    """Return a column of a branch where another has a value, by straight lines."""
+    order = np.argsort(columns[by])
+    return np.interp(x, columns[by][order], columns[name][order])
+
+
+def states(results, branch="loading"):
+    """Return the profiles of a branch, a dict of arrays each, in order; each begins at r = 0."""
+    return drawing.states_of(results.branch(branch, "profiles"))
+
+
+def curvature(state, within):
+    """Return the curvature of the gap on the axis over that of undeformed bodies, 1/R."""
+    near = state["r"] <= within
+    fit = np.polynomial.polynomial.polyfit(state["r"][near] ** 2, state["separation"][near], 1)
+    return 2 * RADIUS * fit[1]

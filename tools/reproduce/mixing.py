@@ -9,6 +9,7 @@ import math
 import typing
 
 import numpy as np
+from misprints import elliptic
 
 # Of the iteration: below this gap [z0] a state is nonsense and a step is cut short.
 _CLOSEST = 0.25
@@ -84,7 +85,7 @@ def cycle(scene, reading, turns, start, end, z0):
     places = np.arange(start, turns[-1] - step / 2, -step)
     gap, memory, loading, kept = places[0] + scene.shape, [reading.limit], [], {}
     for h0 in places:
-        gap, row = _settle(scene, reading, gap, h0, memory, z0)
+        gap, row = settle(scene, reading, gap, h0, memory, z0)
         loading.append(row)
         for turn in turns:
             if abs(h0 - turn) < step / 2:
@@ -94,7 +95,7 @@ def cycle(scene, reading, turns, start, end, z0):
         gap, memory = kept[turn]
         rows = []
         for h0 in np.arange(turn, end + step / 2, step):
-            gap, row = _settle(scene, reading, gap, h0, memory, z0)
+            gap, row = settle(scene, reading, gap, h0, memory, z0)
             rows.append(row)
             if row[0] > 4 and gap[0] > 0.8 * row[0]:
                 break
@@ -106,7 +107,7 @@ def _branch(rows):
     return Branch(*np.array(rows).T)
 
 
-def _settle(scene, reading, gap, h0, memory, z0):
+def settle(scene, reading, gap, h0, memory, z0):
     """Iterate at an h0 as the reading says; return the gap and (h0, load, displacement, residual,
     iterations, ratio). `memory` holds the mixing ratio."""
     ratio = memory[0] if reading.carried else reading.limit
@@ -166,15 +167,7 @@ def _kernel(r, interpolated):
 def _k(r, t):
     """Return the kernel (15) with its factor 1/pi."""
     larger = np.maximum(r, t)
-    return 4 / (math.pi * larger) * _elliptic((np.minimum(r, t) / larger) ** 2)
-
-
-def _elliptic(m):
-    """Return the complete elliptic integral of the first kind of parameter m < 1."""
-    a, b = np.ones_like(m), np.sqrt(1 - m)
-    for _ in range(6):
-        a, b = (a + b) / 2, np.sqrt(a * b)
-    return math.pi / (2 * a)
+    return 4 / (math.pi * larger) * elliptic((np.minimum(r, t) / larger) ** 2)
 
 
 def _gauss(points):

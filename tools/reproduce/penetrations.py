@@ -6,8 +6,8 @@ import curves
 import draws
 import numpy as np
 
-_RADIUS, _STIFFNESS = 1.5e-2, 1e10
-FIG10 = ("a", "b", "c")
+# Letter of Fig. 10, sigma as the paper gives it.
+FIG10 = {"a": "1.7", "b": "4.4", "c": "8.7"}
 
 
 class Pull(NamedTuple):
@@ -29,17 +29,25 @@ def of_cycle(results):
 def of_sweep(results, turns):
     """Return one Pull a case and unloading of a sweep; `turns` are its turning points [m]."""
     columns = results.sweep
-    found = []
-    for number, turn in enumerate(turns, 1):
-        tension = columns[f"unload_max_tension_{number}"]
-        found += [Pull(*row) for row in zip(columns["sigma"], np.full(tension.size, turn),
-                                            tension / columns["jkr_pull_off"])]
-    return sorted(found)
+    return sorted(
+        Pull(sigma, turn, tension / jkr) for number, turn in enumerate(turns, 1)
+        for sigma, tension, jkr in zip(columns["sigma"], columns[f"unload_max_tension_{number}"],
+                                       columns["jkr_pull_off"]))
 
 
 def of_runs(runs):
     """Return, for each unloading of a deck, the Pulls of all its runs."""
     return list(zip(*(of_cycle(results) for results in runs)))
+
+
+def of_rule(runs):
+    """Return, for each cycle of Fig. 10, the Pulls of all runs by the paper's rule."""
+    return {letter: of_runs(runs.draws(f"fig10{letter}_paper")) for letter in FIG10}
+
+
+def converged(runs):
+    """Return the converged Pulls of each cycle of Fig. 10."""
+    return {letter: of_cycle(runs[f"fig10{letter}_converged"]) for letter in FIG10}
 
 
 def ranged(sets, digits=2):
@@ -49,35 +57,34 @@ def ranged(sets, digits=2):
 
 def spread(pulls):
     """Return the difference between the largest and the smallest ratio."""
-    ratios = [pull.ratio for pull in pulls]
-    return max(ratios) - min(ratios)
+    return float(np.ptp([pull.ratio for pull in pulls]))
 
 
-def listed(pulls, digits=2):
-    """Return the ratios as text, in the order given."""
-    return ", ".join(f"{pull.ratio:.{digits}f}" for pull in pulls)
+def listed(values, digits=2):
+    """Return numbers, or the ratios of Pulls, as text, in the order given."""
+    return ", ".join(f"{getattr(each, 'ratio', each):.{digits}f}" for each in values)
 
 
 def turns(pulls):
-    """Return the turning points as text [nm], in the order given."""
-    return ", ".join(f"{pull.turn * 1e9:.0f}" for pull in pulls).replace("-0", "0")
+    """Return turning points [m], or those of Pulls, as text [nm], in the order given."""
+    return ", ".join(f"{getattr(each, 'turn', each) * 1e9:.0f}" for each in pulls).replace("-0", "0")
 
 
-def deepest(results):
-    """Return the name of the last unloading, that from the deepest turning point."""
-    return f"unloading_{np.atleast_1d(results.summary['unload_from']).size}"
+def branches(results):
+    """Return the names of the unloadings, that from the deepest turning point last."""
+    return [f"unloading_{i + 1}" for i in range(np.size(results.summary["unload_from"]))]
 
 
 def jkr(results, largest_load):
     """Return displacement [m] and load [N] of JKR theory up to a load."""
     surface_energy = results.summary["surface_energy"]
-    return curves.jkr_curve(_RADIUS, _STIFFNESS, surface_energy, largest_load)[1:]
+    return curves.jkr_curve(curves.RADIUS, 1e10, surface_energy, largest_load)[1:]
 
 
 def jkr_apart(results):
     """Return the largest difference in load from JKR theory at the same displacement, in contact,
     over the pull-off."""
-    summary, curve = results.summary, results.branch(deepest(results))
+    summary, curve = results.summary, results.branch(branches(results)[-1])
     inside = (curve["contact_radius"] > 0) & (curve["load"] < 0)
     displacement, load = jkr(results, curve["load"].max())
     apart = curve["load"][inside] - np.interp(curve["displacement"][inside], displacement, load)
@@ -87,15 +94,9 @@ def jkr_apart(results):
 def between(results):
     """Return where JKR theory lies between loading (0) and the deepest unloading (1) in load at
     the same displacement, on average from -1 to 1 nm."""
-    loading, retreat = results.branch("loading"), results.branch(deepest(results))
-    displacement, load = jkr(results, 1e-3)
     at = np.linspace(-1e-9, 1e-9, 81)
-    low, high = (_contact_load(curve, at) for curve in (loading, retreat))
-    return float(np.mean((np.interp(at, displacement, load) - low) / (high - low)))
-
-
-def _contact_load(curve, displacement):
-    inside = curve["contact_radius"] > 0
-    order = np.argsort(curve["displacement"][inside])
-    return np.interp(displacement, curve["displacement"][inside][order],
-                     curve["load"][inside][order])
+    low, high = (
+        curves.at(at, {key: values[curve["contact_radius"] > 0] for key, values in curve.items()},
+                  "load", "displacement")
+        for curve in map(results.branch, ("loading", branches(results)[-1])))
+    return float(np.mean((np.interp(at, *jkr(results, 1e-3)) - low) / (high - low)))

@@ -1,126 +1,183 @@
-"""Puts pictures, captions and tables together: report.md and others.md."""
+"""The two reports: pages with holes, paper.md and others.md, and the chapters that fill them.
+
+A page begins with what it says at first. A chapter begins with a line `## NAME: TITLE`; its text and
+the rows of its table, one a line, have {fields}. Its module has
+
+    DECKS           stems of its decks in inputs/, if it has any
+    numbers(runs)   what the fields stand for, a dict
+    draw(runs)      the picture, a matplotlib Figure, if it has one
+    rows(runs)      Comparisons, if its table is not on the page
+"""
+
+import csv
+import importlib
+import io
+import os
+import pathlib
+import re
+from typing import NamedTuple, Union
 
 import draws
-import published
 from runs import path_name
 
-_PAPER = """# The figures and numbers of Attard and Parker (1992), computed again
-
-P. Attard and J. L. Parker, *Deformation and adhesion of elastic bodies in
-contact*, Phys. Rev. A **46**, 7959 (1992): every figure drawn again from runs of snapin, and
-every number of the text beside the one computed.
-
-In the tables, **published** is what the paper prints. **Computed** is found with the paper's own
-grid and stopping rule, where there is such a run: nodes 10–100 nm apart, mixing of at most 0.2,
-stopped when the central displacement changes by less than 1e-4 nm. **Converged** is what the
-equations give, with the error estimated in each run's summary. The same rows, all together, are
-in [{table}]({table}).
-
-What the paper's rule gives depends on rounding: the last digit decides where an iteration stops, so
-that another processor or library gives other numbers. Decks on that rule are therefore run
-{count} times (`history_c_paper`: {fewer}) with the Hamaker constant changed in its twelfth digit, and
-numbers that differ are given as ranges: from the least to the largest of these runs.
-"""
-
-_OTHERS = """# What others have published, beside the converged answer
-
-Formulas, theories and tables that are used in place of a solved contact, each against the solution
-of the same equations by snapin, whose errors are below 1e-6 unless a row says otherwise. The rows,
-all together, are in [{table}]({table}); [formulas](../formulas.md) says which formula may be used
-where.
-
-A row says what its published number is: **printed**, read in a print that was at hand; **formula**,
-computed from a formula whose coefficients and where they are from stand in the row's source;
-**theory**, exact in a limit; **not read**, where the print was not at hand and nothing is
-published here on its behalf. Errors say by how much what was published is too large.
-
-Spheres are parabolas of radius R. w is the work of adhesion, E\\* the composite modulus, z0 the
-separation at rest of the Lennard-Jones law, μ = (R w²/(E\\*² z0³))^(1/3) Tabor's parameter and
-λ = 1.157 μ Maugis', with the largest tension of that law. The converged radius of the contact is
-where the tension is largest.
-"""
-
-_RUNNING = """./reproduce            # all of it, both reports
-./reproduce {example}  # some of it
-./reproduce --publish  # and copy it to docs/reproduction/"""
+Value = Union[float, str, None]
 
 
-def of_paper(csv_name):
-    """Return the beginning of the report on the source paper; `csv_name` is its table."""
-    return _PAPER.format(table=csv_name, count=draws.COUNT,
-                         fewer=len(draws.names("history_c_paper")))
+class Comparison(NamedTuple):
+    """A number of somebody else's beside the converged one.
 
-
-def of_others(csv_name):
-    """Return the beginning of the report on what others published."""
-    return _OTHERS.format(table=csv_name)
-
-
-def write(path, csv_name, chapters, runs, version, introduction):
-    """Write a report to `path`, beside the file `csv_name` with its rows.
-
-    `chapters` are dicts with name, title, picture, caption, rows and problem (None if all went
-    well); `introduction` is a function of `csv_name`.
+    `kind` is "formula" where `published` was computed from a formula, whose coefficients `source`
+    names; "printed" where it stands in a print at hand; "theory" where it is exact in a limit;
+    "not read" where nothing of theirs was at hand, and `published` is None then.
     """
-    lines = [introduction(csv_name)]
-    for chapter in chapters:
-        lines.append(f"- [{chapter['title']}](#{_anchor(chapter['title'])})")
-    lines.append("")
-    for chapter in chapters:
-        lines += _chapter(chapter)
-    lines += _ending(chapters, runs, version)
-    published.write_whole(path, "\n".join(lines) + "\n")
+
+    item: str
+    kind: str
+    published: Value
+    converged: Value
+    unit: str = ""
+    source: str = ""
+
+    @property
+    def error(self):
+        """By how much what was published is too large [%]; None where one of them is words."""
+        if isinstance(self.published, (str, type(None))) or isinstance(self.converged, str):
+            return None
+        return 100 * (self.published / self.converged - 1)
+
+    def cells(self):
+        """Return the row as text; one that does not say where its number is from is refused."""
+        if self.kind not in ("formula", "printed", "theory", "not read") or (
+                (self.kind == "not read") != (self.published is None)):
+            raise ValueError(f"{self.item}: {self.kind}, {self.published}")
+        error = "" if self.error is None else f"{self.error:+.2f}"
+        return [self.item, self.kind, shown(self.published), shown(self.converged), error,
+                self.unit, self.source]
 
 
-def _chapter(chapter):
-    lines = [f"## {chapter['title']}", ""]
-    if chapter["problem"]:
-        return [*lines, f"**Failed:** {chapter['problem']}", ""]
-    if chapter["picture"]:
-        lines += [f"![{chapter['title']}]({chapter['name']}.png)", ""]
-    return [*lines, chapter["caption"], "", *table(chapter["rows"])]
+class Report(NamedTuple):
+    """The stems of page and table, the columns of the table, and the package of the chapters."""
+
+    page: str
+    table: str
+    columns: tuple
+    package: str = ""
 
 
-def table(rows):
-    """Return rows as the lines of a Markdown table, with an empty line after it."""
+REPORTS = {
+    "paper": Report("report", "published_vs_computed",
+                    ("item", "published", "computed", "converged", "unit", "note")),
+    "others": Report("others", "others", (
+        "item", "kind", "published", "converged", "error %", "unit", "source"), "others."),
+}
+_CHAPTER = re.compile(r"^## (\w+): (.*)\n", re.MULTILINE)
+
+
+def pages():
+    """Return what is written of each report: its beginning, and title and text of each chapter."""
+    found = {}
+    for key in REPORTS:
+        text = pathlib.Path(__file__).with_name(f"{key}.md").read_text(encoding="utf-8")
+        start, *parts = _CHAPTER.split(text)
+        found[key] = start, {name: (title, body.strip()) for name, title, body in
+                             zip(parts[::3], parts[1::3], parts[2::3])}
+    return found
+
+
+def names(which=tuple(REPORTS)):
+    """Return the names of the chapters of some reports, by default of all."""
+    return [name for key in which for name in pages()[key][1]]
+
+
+def module(name):
+    """Return the module of a chapter."""
+    (package,) = (REPORTS[key].package for key, (_, chapters) in pages().items() if name in chapters)
+    return importlib.import_module(package + name)
+
+
+def filled(name, runs):
+    """Return the text of a chapter and the cells of its rows."""
+    ((_, text),) = (chapters[name] for _, chapters in pages().values() if name in chapters)
+    chapter = module(name)
+    text = text.format(**chapter.numbers(runs) if hasattr(chapter, "numbers") else {})
+    lines = text.split("\n")
+    # A table in the text has an empty line or a head before it; a row begins `| = `.
+    rows = [line[4:].split(" |") for line in lines if line.startswith("| = ")]
+    caption = "\n".join(line for line in lines if not line.startswith("| = ")).strip()
+    if hasattr(chapter, "rows"):
+        rows += [row.cells() for row in chapter.rows(runs)]
+    return caption, [[cell.strip() for cell in row] for row in rows]
+
+
+def shown(value):
+    """Return a value as it is printed: six digits of a number, nothing for None."""
+    return "" if value is None else value if isinstance(value, str) else f"{float(value):.6g}"
+
+
+def markdown(columns, rows):
+    """Return rows of cells as the lines of a Markdown table, with an empty line after it."""
     if not rows:
         return []
-    columns = rows[0].COLUMNS
     lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
-    lines += ["| " + " | ".join(_cell(cell) for cell in row.cells()) + " |" for row in rows]
+    lines += ["| " + " | ".join(re.sub(r"([\\|*_<])", r"\\\1", cell) for cell in row) + " |"
+              for row in rows]
     return [*lines, ""]
 
 
-def _cell(text):
-    """Return text that Markdown leaves alone in a table."""
-    for sign in "\\|*_<":
-        text = text.replace(sign, "\\" + sign)
-    return text
+def write(folder, key, part, made, runs, version):
+    """Write the page of a report and the table of its rows; `made` are dicts of chapters with name,
+    title, caption, rows, whether they have a picture, and problem (None if all went well)."""
+    book, table = REPORTS[key], f"{REPORTS[key].table}{part}.csv"
+    text = io.StringIO()
+    rows = [row for chapter in made for row in chapter["rows"]]
+    csv.writer(text, lineterminator="\n").writerows([book.columns, *rows])
+    write_whole(folder / table, text.getvalue())
+    lines = [pages()[key][0].format(table=table, count=draws.COUNT,
+                                    fewer=len(draws.names("history_c_paper")))]
+    lines += [f"- [{each['title']}](#{_anchor(each['title'])})" for each in made]
+    for each in made:
+        lines += ["", f"## {each['title']}", ""]
+        if each["problem"]:
+            lines.append(f"**Failed:** {each['problem']}")
+            continue
+        if each["picture"]:
+            lines += [f"![{each['title']}]({each['name']}.png)", ""]
+        lines += [each["caption"], "", *markdown(book.columns, each["rows"])][:-1]
+    write_whole(folder / f"{book.page}{part}.md",
+                "\n".join([*lines, "", *_ending(made, runs, version)]) + "\n")
+    return len(rows)
 
 
 def _anchor(title):
     """Return the anchor that Markdown viewers make of a heading."""
-    kept = (c for c in title.lower() if c.isalnum() or c in " -_")
-    return "".join(kept).replace(" ", "-")
+    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
 
 
-def _ending(chapters, runs, version):
+def _ending(made, runs, version):
     """Return how this was run: commands, versions, and the time of each deck."""
-    decks = list(dict.fromkeys(deck for chapter in chapters for deck in chapter["decks"]))
+    decks = list(dict.fromkeys(deck for chapter in made for deck in chapter["decks"]))
     seconds = sum(runs.record(deck).get("seconds", 0) for deck in runs.with_draws(decks))
-    lines = ["## How to run it", "", *(f"    {line}" for line in _RUNNING.format(
-        example=" ".join(chapter["name"] for chapter in chapters[:2])).split("\n")), "",
-        "Decks that have not changed are not run again.", "", "    " + version.replace(
-            "\n", "\n    "), ""]
+    example = " ".join(chapter["name"] for chapter in made[:2])
+    lines = ["## How to run it", "",
+             "    ./reproduce            # all of it, both reports",
+             f"    ./reproduce {example}  # some of it",
+             "    ./reproduce --publish  # and copy it to docs/reproduction/", "",
+             "Decks that have not changed are not run again.", "",
+             *(f"    {line}" for line in version.split("\n")), ""]
     if not decks:
         return lines
-    lines += [
-        f"{len(decks)} decks, {seconds:.0f} s of one core together:", "",
-        "| deck | runs | seconds, the first | exit status |", "|---|---|---|---|"]
+    lines += [f"{len(decks)} decks, {seconds:.0f} s of one core together:", "",
+              "| deck | runs | seconds, the first | exit status |", "|---|---|---|---|"]
     for deck in decks:
         record, count = runs.record(deck), len(runs.with_draws([deck]))
         lines.append(f"| `{path_name(deck)}` | {count} | {record.get('seconds', '')} | "
                      f"{record.get('status', 'not run')} |")
-    lines += ["", "Exit status 1 is what decks named `_paper` may end with: they stop on the "
-              "paper's rule, and snapin does not call that converged."]
-    return lines
+    return [*lines, "", "Exit status 1 is what decks named `_paper` may end with: they stop on the "
+            "paper's rule, and snapin does not call that converged."]
+
+
+def write_whole(path, text):
+    """Write a file that appears under its name only when it is complete."""
+    partial = path.with_name(path.name + ".partial")
+    partial.write_text(text, encoding="utf-8")
+    os.replace(partial, path)

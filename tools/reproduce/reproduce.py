@@ -8,17 +8,8 @@ computed.
     ./reproduce fig03 fig07     these chapters alone, into report_part.md
     ./reproduce --publish       and copy reports, tables and pictures to docs/reproduction/
 
-The chapters are those of the table in chapters.py. A figure is a module with
-
-    DECKS           stems of its decks in inputs/
-    TITLE           of its chapter
-    CAPTION         Markdown: what is drawn, what the paper reports, what is found; {fields} in it
-    numbers(runs)   what these fields stand for, a dict
-    draw(runs)      the picture, a matplotlib Figure
-    rows(runs)      published.Row beside published.Row; of others published.Comparison
-
-and so is any other chapter; one without draw has no picture. Decks on the paper's stopping rule are
-run several times, with rounding changed: draws.py.
+report.py says what a chapter is. Decks on the paper's stopping rule are run several times, with
+rounding changed: draws.py.
 """
 
 import argparse
@@ -30,16 +21,13 @@ import sys
 import time
 import traceback
 
-import chapters
-import published
 import report
-import style
 from runs import ROOT, Runs
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path.append(str(HERE.parent))
+sys.path.append(str(ROOT / "tools"))
 
 import pages  # noqa: E402 (found through the line above)
+import style  # noqa: E402
 
 
 def main():
@@ -49,50 +37,39 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
     runs = Runs(folder / "runs", options.program)
-    modules = {name: chapters.module(name) for name in options.only}
-
-    decks = runs.with_draws(deck for module in modules.values() for deck in module.DECKS)
+    modules = {name: report.module(name) for name in options.only}
+    decks = runs.with_draws(deck for module in modules.values()
+                            for deck in getattr(module, "DECKS", ()))
     problems = runs.run_all(decks, options.jobs, _say)
-    pages_written = []
-    for book in chapters.REPORTS.values():
-        chosen = [name for name in book.chapters if name in modules]
+    version = subprocess.run([str(runs.program), "--version"], check=False, capture_output=True,
+                             text=True).stdout.strip()
+    whole = []
+    for key, (_, chapters) in report.pages().items():
+        chosen = [name for name in chapters if name in modules]
         if not chosen:
             continue
-        made = [_chapter(name, modules[name], runs, folder) for name in chosen]
+        made = [_chapter(name, chapters[name][0], modules[name], runs, folder) for name in chosen]
         problems |= {one["name"]: one["problem"] for one in made if one["problem"]}
         # Some chapters do not take the place of the whole report.
-        part = "" if len(chosen) == len(book.chapters) else "_part"
-        rows = _write(book, part, made, runs, folder)
-        pages_written += [book] if not part else []
-        _say(f"{folder / book.page}{part}.md: {len(made)} chapters, {rows} numbers, "
+        part = "" if len(chosen) == len(chapters) else "_part"
+        rows = report.write(folder, key, part, made, runs, version)
+        whole += [key] if not part else []
+        _say(f"{folder / report.REPORTS[key].page}{part}.md: {len(made)} chapters, {rows} numbers, "
              f"{time.perf_counter() - began:.0f} s")
     if options.publish and not problems:
-        for book in pages_written:
-            _publish(folder, ROOT / "docs" / "reproduction", book)
+        for key in whole:
+            _publish(folder, ROOT / "docs" / "reproduction", key)
     for name, problem in problems.items():
         _say(f"failed: {name}: {problem}")
     sys.exit(1 if problems else 0)
 
 
-def _write(book, part, made, runs, folder):
-    """Write page and table of a report; return how many rows there are."""
-    rows = [row for chapter in made for row in chapter["rows"]]
-    csv_name = f"{book.table}{part}.csv"
-    published.write_csv(folder / csv_name, rows, book.row)
-    version = subprocess.run([str(runs.program), "--version"], check=False, capture_output=True,
-                             text=True).stdout.strip()
-    report.write(folder / f"{book.page}{part}.md", csv_name, made, runs, version, book.introduction)
-    return len(rows)
-
-
-def _chapter(name, module, runs, folder):
+def _chapter(name, title, module, runs, folder):
     """Return a chapter of the report, its picture drawn."""
-    chapter = {"name": name, "title": module.TITLE, "decks": module.DECKS, "caption": "",
+    chapter = {"name": name, "title": title, "decks": getattr(module, "DECKS", ()), "caption": "",
                "rows": [], "picture": hasattr(module, "draw"), "problem": None}
     try:
-        chapter["rows"] = module.rows(runs)
-        numbers = module.numbers(runs) if hasattr(module, "numbers") else {}
-        chapter["caption"] = module.CAPTION.format(**numbers)
+        chapter["caption"], chapter["rows"] = report.filled(name, runs)
         if chapter["picture"]:
             style.save(module.draw(runs), folder / f"{name}.png")
         _say(f"{name}: {folder.name}/{name}.png" if chapter["picture"] else f"{name}: done")
@@ -102,9 +79,10 @@ def _chapter(name, module, runs, folder):
     return chapter
 
 
-def _publish(folder, to, book):
+def _publish(folder, to, key):
     to.mkdir(parents=True, exist_ok=True)
-    pictures = [folder / f"{name}.png" for name in book.chapters]
+    book = report.REPORTS[key]
+    pictures = [folder / f"{name}.png" for name in report.names([key])]
     for path in [folder / f"{book.page}.md", folder / f"{book.table}.csv",
                  *filter(pathlib.Path.is_file, pictures)]:
         shutil.copyfile(path, to / path.name)
@@ -113,12 +91,12 @@ def _publish(folder, to, book):
 
 
 def _options():
-    names = [*chapters.REPORTS, *chapters.names()]
+    known = [*report.REPORTS, *report.names()]
     parser = argparse.ArgumentParser(
         prog="./reproduce", description="Run the decks of Attard and Parker (1992), draw the "
         "figures, and set the published numbers, and those of others, beside those computed.")
     parser.add_argument("only", nargs="*", metavar="CHAPTER",
-                        help=f"what to reproduce: {', '.join(names)}; default: all")
+                        help=f"what to reproduce: {', '.join(known)}; default: all")
     parser.add_argument("-j", "--jobs", type=int, default=len(os.sched_getaffinity(0)),
                         help="decks that run at a time; default: one a core")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "reproduction",
@@ -131,14 +109,14 @@ def _options():
         parser.error("-j takes a number of decks, 1 or more")
     if options.program and not options.program.is_file():
         parser.error(f"no program {options.program}")
-    unknown = [name for name in options.only if name not in names]
+    unknown = [name for name in options.only if name not in known]
     if unknown:
-        parser.error(f"no such chapter: {', '.join(unknown)}; there are {', '.join(names)}")
-    if options.publish and not set(options.only) <= set(chapters.REPORTS):
+        parser.error(f"no such chapter: {', '.join(unknown)}; there are {', '.join(known)}")
+    if options.publish and not set(options.only) <= set(report.REPORTS):
         parser.error("--publish takes whole reports, not some of their chapters")
-    wanted = {name for each in options.only or chapters.REPORTS
-              for name in (chapters.names([each]) if each in chapters.REPORTS else [each])}
-    options.only = [name for name in chapters.names() if name in wanted]
+    wanted = {name for each in options.only or report.REPORTS
+              for name in (report.names([each]) if each in report.REPORTS else [each])}
+    options.only = [name for name in report.names() if name in wanted]
     return options
 
 

@@ -41,6 +41,25 @@ def maugis_lambda(tabor):
     return 2 * PEAK * tabor * (9 / (16 * math.pi)) ** (1 / 3)
 
 
+def tabor_of(lam):
+    """Return the Tabor parameter of a Lennard-Jones law with this Maugis parameter."""
+    return lam / maugis_lambda(1.0)
+
+
+def spaced(low, high, count):
+    """Return numbers evenly spaced in the logarithm."""
+    return tuple(float(each) for each in np.geomspace(low, high, count))
+
+
+def theory(name, lam, load=0.0):
+    """Return pull-off, positive, and radius under a load, stable there, of a theory at a Maugis
+    parameter, in pi w R and Maugis' units."""
+    # With R = 1 and K = 1 pi w is unit load and 1/pi w the cube of the radii's unit.
+    material = {"radius": 1.0, "stiffness": 1.5, "surface_energy": 1 / math.pi, "strength": lam / 2}
+    return (-snapin.pull_off(name, **material),
+            float(snapin.contact_radius(name, "load", [load], **material)[0]))
+
+
 class Sphere(NamedTuple):
     """What is found at one Tabor parameter; a jump is None where there is none.
 
@@ -55,15 +74,18 @@ class Sphere(NamedTuple):
     rest_h0: float
 
 
+def solved(**groups):
+    """Return the results of a deck in units in which R is as short as the range of the force."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", snapin.SnapinWarning)
+        return snapin.run(groups)
+
+
 def run(tabor, h0_end, **groups):
     """Return the results of the whole path down to an h0."""
-    with warnings.catch_warnings():
-        # In these units R is as short as the range of the force.
-        warnings.simplefilter("ignore", snapin.SnapinWarning)
-        return snapin.run({
-            "bodies": {"radius": 1.0, "stiffness": 1.0},
-            "force": {"law": "lennard_jones", "surface_energy": sigma(tabor), "z0": 1.0},
-            "equilibrium_path": {"h0_end": h0_end}, "numerics": {"accuracy": ACCURACY}, **groups})
+    return solved(bodies={"radius": 1.0, "stiffness": 1.0},
+                  force={"law": "lennard_jones", "surface_energy": sigma(tabor), "z0": 1.0},
+                  equilibrium_path={"h0_end": h0_end}, numerics={"accuracy": ACCURACY}, **groups)
 
 
 @functools.lru_cache(maxsize=None)

@@ -2,8 +2,9 @@
 
     guards.py [NAME ...]
 
-works on a copy of src/ with a build of its own; `meson` and the tests are this checkout's. Prints a
-table, and ends with status 1 where a guard can go without any test of its list failing.
+A guard is a statement of a module, told by words in it, never by its text. It is taken out of a copy
+of src/ with a build of its own; `meson` and the tests are this checkout's. Prints a table, and ends
+with status 1 where a guard can go without any test of its list failing.
 """
 
 import os
@@ -18,278 +19,189 @@ from typing import NamedTuple
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MESON = ROOT / ".venv" / "bin" / "meson"
 
-
-ANY_SIGMA = (
-    "experiment/test_hard_cases.py"
-    "::test_cycle_at_any_sigma_is_solved_and_agrees_with_the_path"
-)
+ANY_SIGMA = "experiment/test_hard_cases.py::test_cycle_at_any_sigma_is_solved_and_agrees_with_the_path"
 NOT_PASSED = "equilibrium/test_iterations.py"
 STARVED = "app/test_unconverged.py::test_what_does_not_converge_says_so_and_invents_nothing"
+UNCONVERGED_ROW = ("app/test_unconverged.py"
+                   "::test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable")
+BEYOND_ROUNDING = ("app/test_ranges.py"
+                   "::test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding")
+NO_LENGTH = "model/test_forces.py::test_a_power_has_no_length_that_others_could_be_too_long_or_short_for"
+POWER_CUT = "system/test_faults.py::test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so"
+LIMITED = "resume/test_unwritable.py::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on"
+FAULTS = "system/test_faults.py"
 
 
 class Guard(NamedTuple):
-    """A line of src/ and what takes its place, and the tests that know it."""
+    """What is guarded; the module, words of the statement, and what becomes of it; the tests that
+    know it.
+
+    A statement is `gone`; its condition is `never` or `always` true; a `swap` puts another expression
+    in the place of a name with its owners; a `value` is assigned; `or` adds a condition.
+    """
 
     what: str
-    file: str
-    old: str
-    new: str
+    module: str
+    words: str
+    change: tuple
     tests: tuple
     traps: bool = False
-    # Where a second line would do for the first: what else goes.
+    # Where a second statement would do for the first: its words and what becomes of it.
     also: tuple = ()
 
 
+GONE, NEVER, ALWAYS = ("gone",), ("never",), ("always",)
 GUARDS = {
     "smallest_gap": Guard(
-        "gaps that the law is not asked for",
-        "equilibrium/equilibrium.f90",
-        "least = max(problem%law%smallest_gap, -largest_unknown)",
-        "least = -largest_unknown",
-        ("app/test_unconverged.py::test_what_came_before_the_fall_is_kept",),
-        traps=True,
-    ),
+        "gaps that the law is not asked for", "equilibrium", "least smallest_gap",
+        ("swap", "smallest_gap", "-largest_unknown"),
+        ("app/test_unconverged.py::test_what_came_before_the_fall_is_kept",), traps=True),
     "defined": Guard(
-        "what is outside the law's domain has no residual",
-        "equilibrium/equilibrium.f90",
-        "if (.not. defined(problem, state)) then",
-        "if (.false.) then",
-        (NOT_PASSED,),
-        also=("if (.not. error <= huge(error)) then", "if (.false.) then"),
-    ),
+        "what is outside the law's domain has no residual", "equilibrium", "if defined problem", NEVER,
+        (NOT_PASSED,), also=("if error huge", NEVER)),
     "largest_step": Guard(
-        "a step keeps every gap within the law's closure limit",
-        "equilibrium/equilibrium.f90",
-        "limit = min(1.0_wp, minval(",
-        "limit = max(1.0_wp, minval(",
-        (ANY_SIGMA,),
-    ),
+        "a step keeps every gap within the law's closure limit", "equilibrium", "limit min minval",
+        ("swap", "min", "max"), (ANY_SIGMA,)),
     "largest_floor": Guard(
-        "rounding excuses residuals only up to 1e-3",
-        "equilibrium/equilibrium.f90",
-        "residual_floor = min(residual_floor, largest_floor)",
-        "",
-        ("app/test_ranges.py::test_no_residual_above_a_thousandth_is_put_down_to_rounding",),
-    ),
+        "rounding excuses residuals only up to 1e-3", "equilibrium",
+        "residual_floor min largest_floor", GONE,
+        ("app/test_ranges.py::test_no_residual_above_a_thousandth_is_put_down_to_rounding",)),
     "lost_in_rounding": Guard(
-        "adhesion beyond rounding is refused",
-        "mesh/contact_scales.f90",
-        "coupling_over(problem, c)) > largest_floor",
-        "coupling_over(problem, c)) > huge(1.0_wp)",
-        (
-            "app/test_ranges.py"
-            "::test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding",
-        ),
-    ),
+        "adhesion beyond rounding is refused", "contact_scales", "coupling_over largest_floor",
+        ("swap", "largest_floor", "huge(1.0_wp)"), (BEYOND_ROUNDING,)),
     "anderson_nan": Guard(
-        "Anderson's convergence is a comparison that NaN fails",
-        "equilibrium/anderson.f90",
-        "converged = holds(equations%problem, options%tolerance, state)\n      if (converged",
-        "converged = holds(equations%problem, options%tolerance, state) &\n"
-        "        .or. .not. state%residual < huge(1.0_wp)\n      if (converged",
-        (NOT_PASSED,),
-    ),
+        "Anderson's convergence is a comparison that NaN fails", "anderson", "converged holds",
+        ("or", ".not. state%residual < huge(1.0_wp)"), (NOT_PASSED,)),
     "hidden_folds": Guard(
-        "folds that a step passes over are looked for",
-        "path/path_search.f90",
-        "if (doubt .and. near%held < most_states) then",
-        "if (doubt .and. near%held < 0) then",
-        ("path/test_close_folds.py::test_folds_however_close_are_found",),
-    ),
+        "folds that a step passes over are looked for", "path_search", "if doubt held most_states",
+        ("swap", "most_states", "0"),
+        ("path/test_close_folds.py::test_folds_however_close_are_found",)),
     "converged_column": Guard(
-        "a row that is no equilibrium says so",
-        "report/curve_rows.f90",
-        "merge(1, 0, record%converged)",
-        "1",
-        (STARVED,),
-    ),
+        "a row that is no equilibrium says so", "curve_rows", "merge converged",
+        ("swap", "converged", ".true."), (STARVED,)),
     "unconverged_stable": Guard(
-        "a row that is no equilibrium is not stable",
-        "report/stability_records.f90",
-        "if (record%converged) then",
-        "if (.true.) then",
-        (
-            "app/test_unconverged.py"
-            "::test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable",
-        ),
-    ),
+        "a row that is no equilibrium is not stable", "stability_records", "if converged", ALWAYS,
+        (UNCONVERGED_ROW,)),
     "known_stability": Guard(
-        "an eigenvalue does not change what is known of stability",
-        "report/stability_records.f90",
-        "else if (record%stable == stable_unasked) then",
-        "else if (.true.) then",
-        ("equilibrium/test_stability.py::test_the_group_leaves_the_path_as_it_is",),
-    ),
+        "an eigenvalue does not change what is known of stability", "stability_records",
+        "if stable stable_unasked", ALWAYS,
+        ("equilibrium/test_stability.py::test_the_group_leaves_the_path_as_it_is",)),
     "failed_case": Guard(
-        "a case of a sweep that fails is counted",
-        "app/sweeps.f90",
-        "if (.not. case%converged) self%failed = self%failed + 1",
-        "self%failed = 0",
-        ("report/test_sweep_columns.py", "report/test_results.py"),
-    ),
+        "a case of a sweep that fails is counted", "sweeps", "if converged failed", GONE,
+        ("report/test_sweep_columns.py", "report/test_results.py")),
     "memory": Guard(
-        "matrices larger than the memory are refused",
-        "app/preflight.f90",
-        "if (bytes > available) then",
-        "if (.false.) then",
-        (
-            "app/test_preflight.py"
-            "::test_what_does_not_fit_leaves_older_results_and_can_be_resumed",
-        ),
-    ),
+        "matrices larger than the memory are refused", "preflight", "if bytes available then", NEVER,
+        ("app/test_preflight.py::test_what_does_not_fit_leaves_older_results_and_can_be_resumed",)),
     "under_resolved": Guard(
-        "under-resolved meshes are warned of",
-        "report/quality_warnings.f90",
-        "call summary%warn('under-resolved: nodes are '",
-        "if (.false.) call summary%warn('under-resolved: nodes are '",
-        ("experiment/test_cycle_grids.py",),
-    ),
+        "under-resolved meshes are warned of", "quality_warnings", "call warn under-resolved", GONE,
+        ("experiment/test_cycle_grids.py",)),
     "folder_lock": Guard(
-        "one run at a time in a folder",
-        "system/folder_lock.f90",
-        "if (sort /= locked_elsewhere) return",
-        "return",
-        ("resume/test_resume_whose.py::test_a_second_run_is_refused_and_touches_nothing",),
-    ),
+        "one run at a time in a folder", "folder_lock", "if locked_elsewhere return", ALWAYS,
+        ("resume/test_resume_whose.py::test_a_second_run_is_refused_and_touches_nothing",)),
     "checksum": Guard(
-        "a damaged record of the journal does not count",
-        "resume/journal.f90",
-        "if (checksum(words) /= head(2)) return",
-        "",
-        ("resume/test_resume_sweep.py::test_a_damaged_record_is_computed_again",),
-    ),
+        "a damaged record of the journal does not count", "journal", "if checksum words", GONE,
+        ("resume/test_resume_sweep.py::test_a_damaged_record_is_computed_again",)),
     "owner": Guard(
-        "a journal of another deck or program is not continued",
-        "resume/journal.f90",
-        "if (other /= owner) then",
-        "if (.false.) then",
-        ("resume/test_resume_whose.py::test_another_deck_is_refused_and_told_apart",),
-    ),
+        "a journal of another deck or program is not continued", "journal", "if other owner", NEVER,
+        ("resume/test_resume_whose.py::test_another_deck_is_refused_and_told_apart",)),
     "files": Guard(
-        "results of another table or profile are not taken for those of this one",
-        "namelist/data_table.f90",
-        "call deck%note_file(group, key, checksum(columns%source%text))",
-        "",
-        ("resume/test_resume_files.py",),
-    ),
+        "results of another table or profile are not taken for those of this one", "data_table",
+        "call note_file", GONE, ("resume/test_resume_files.py",)),
     "far_gaps": Guard(
-        "a path is not lost for gaps where no force acts",
-        "equilibrium/equilibrium.f90",
-        "max(problem%law%closure(gap), harmless*(gap - far_gap))",
-        "problem%law%closure(gap)",
-        ("path/test_barrier.py::test_the_path_does_not_depend_on_gaps_where_no_force_acts",),
-    ),
+        "a path is not lost for gaps where no force acts", "equilibrium", "closure harmless far_gap",
+        ("swap", "harmless", "0.0_wp"),
+        ("path/test_barrier.py::test_the_path_does_not_depend_on_gaps_where_no_force_acts",)),
     "no_length": Guard(
-        "a sum is not scanned in the units of a term that has none",
-        "model/laws/van_der_waals.f90",
-        "this%has_length = .false.",
-        "",
-        (
-            "model/test_forces.py"
-            "::test_a_power_has_no_length_that_others_could_be_too_long_or_short_for",
-        ),
-    ),
+        "a sum is not scanned in the units of a term that has none", "van_der_waals",
+        "has_length false", GONE, (NO_LENGTH,)),
     "torn": Guard(
-        "what was torn is cut off the journal",
-        "resume/journal.f90",
-        "status = c_cut(self%descriptor, whole, first)",
-        "status = c_cut(self%descriptor, self%room*word, first)",
-        ("resume/test_resume_sweep.py::test_what_was_torn_is_cut_off",),
-    ),
+        "what was torn is cut off the journal", "journal", "c_cut descriptor whole",
+        ("swap", "whole", "self%room*word"),
+        ("resume/test_resume_sweep.py::test_what_was_torn_is_cut_off",)),
     "journal_flush": Guard(
-        "a record of the journal that the system could not write stops the run",
-        "resume/journal.f90",
-        "call system_failure('cannot write ' // self%path, status, self%trouble)",
-        "if (status < 0) return",
-        (
-            "resume/test_unwritable.py"
-            "::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on",
-        ),
-    ),
+        "a record of the journal that the system could not write stops the run", "journal",
+        "call system_failure trouble write", GONE, (LIMITED,)),
     "table_flush": Guard(
-        "a table that the system could not write is an error",
-        "system/text_file.f90",
-        "call system_failure('cannot write ' // self%path, status, error)",
-        "",
-        ("report/test_results.py", "resume/test_unwritable.py"),
-    ),
+        "a table that the system could not write is an error", "text_file",
+        "call system_failure cannot write status", GONE,
+        ("report/test_results.py", "resume/test_unwritable.py")),
     "intent_last": Guard(
         "a folder says that its files may not belong together until they are cleaned up",
-        "system/publication.f90",
-        "call folder%rename_file(intent_name // partial, intent_name, error)",
-        "continue",
-        ("system/test_faults.py",),
-    ),
+        "publication", "call rename_file intent_name partial", GONE, (FAULTS,)),
     "folder_name": Guard(
-        "results in a new folder are not complete before its name is on the disk",
-        "system/publication.f90",
-        "call folder%sync_above(error)",
-        "continue",
-        (
-            "system/test_faults.py"
-            "::test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so",
-        ),
-    ),
+        "results in a new folder are not complete before its name is on the disk", "publication",
+        "call sync_above", GONE, (POWER_CUT,)),
     "table_sync": Guard(
-        "a table is on the disk before it gets its name",
-        "system/text_file.f90",
-        "synced = c_sync(self%descriptor)",
-        "synced = 0",
-        ("system/test_faults.py",),
-    ),
-    "regular": Guard(
-        "what is no file is not opened as one",
-        "system/posix.c",
-        "else if (!S_ISREG(file.st_mode))",
-        "else if (0)",
-        ("system/test_faults.py",),
-    ),
+        "a table is on the disk before it gets its name", "text_file", "synced c_sync",
+        ("value", "0"), (FAULTS,)),
+    "regular": Guard("what is no file is not opened as one", "posix", "else if S_ISREG st_mode", NEVER,
+                     (FAULTS,)),
     "duplicate_key": Guard(
-        "a key given twice is a mistake",
-        "namelist/deck.f90",
-        "what = 'given twice; the first is on line ' // trim(line)",
-        "",
-        ("namelist/test_deck.py::test_bad_deck_is_refused_by_line_group_and_key",),
-    ),
+        "a key given twice is a mistake", "deck", "what given twice", GONE,
+        ("namelist/test_deck.py::test_bad_deck_is_refused_by_line_group_and_key",)),
     "magnitudes": Guard(
-        "units that would overflow are refused",
-        "model/law_reading.f90",
-        "if (.not. abs(decades) <= most_decades)",
-        "if (.false.)",
-        ("app/test_ranges.py::test_units_that_would_overflow_together_are_refused",),
-    ),
+        "units that would overflow are refused", "law_reading", "if abs decades most_decades", NEVER,
+        ("app/test_ranges.py::test_units_that_would_overflow_together_are_refused",)),
     "order": Guard(
-        "numbers beyond 1e50 are refused",
-        "namelist/deck_number.f90",
-        "largest_order = 50",
-        "largest_order = 300",
-        ("namelist/test_deck.py", "app/test_ranges.py"),
-    ),
+        "numbers beyond 1e50 are refused", "deck_number", "parameter largest_order",
+        ("value", "300"), ("namelist/test_deck.py", "app/test_ranges.py")),
 }
 
 
-def compiled(copy, build):
-    """The program of a copy of the sources."""
-    done = subprocess.run(
-        [MESON, "compile", "-C", copy / build], capture_output=True, text=True, check=False
-    )
-    if done.returncode:
-        sys.exit(done.stdout[-2000:])
-    return copy / build / "snapin"
+def source_of(module, top=ROOT):
+    """The file of a module, in whatever room."""
+    return next(path for path in sorted((top / "src").rglob(f"{module}.*")) if path.suffix in
+                (".f90", ".c"))
+
+
+def statements(text, words):
+    """Where statements that have all of these words begin and end; comments do not count."""
+    wanted = [re.compile(rf"(?<![\w-]){re.escape(word)}(?![\w-])") for word in words.split()]
+    found = []
+    # A statement goes on in the next line after &.
+    for match in re.finditer(r"^(?:[^\n]*&[ \t]*\n)*[^\n]*$", text, re.MULTILINE):
+        if not match[0].lstrip().startswith(("!", "/*")) and all(
+                word.search(match[0]) for word in wanted):
+            found.append(match.span())
+    return found
+
+
+def changed(text, words, change):
+    """The text with every such statement changed; None where there is none."""
+    spans = statements(text, words)
+    for start, end in reversed(spans):
+        text = text[:start] + _changed(text[start:end], *change) + text[end:]
+    return text if spans else None
+
+
+def _changed(statement, kind, old="", new=""):
+    in_c = "S_IS" in statement
+    if kind == "gone":
+        return "continue"
+    if kind == "swap":
+        return re.sub(rf"(?:\w+%)*\b{old}\b", lambda _: new, statement)
+    if kind == "value":
+        return re.sub(r"=[^=]*$", f"= {old}", statement)
+    if kind == "or":
+        return f"{statement} &\n .or. {old}"
+    start = re.search(r"\bif \(", statement).end()
+    depth = end = 0
+    for end, sign in enumerate(statement[start:], start):
+        depth += (sign == "(") - (sign == ")")
+        if depth < 0:
+            break
+    truth = {"never": "0" if in_c else ".false.", "always": ".true."}[kind]
+    return statement[:start] + truth + statement[end:]
 
 
 def first_failure(program, tests):
     """The name of the first test that fails, or None."""
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
-        + ["-o", f"pythonpath=pywrap {program.parent}/pywrap tests"]
-        + [f"tests/{test}" for test in tests],
-        cwd=ROOT,
-        env={**os.environ, "SNAPIN": str(program)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+        [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider",
+         "-o", f"pythonpath=pywrap {program.parent}/pywrap tests tools/verify",
+         *(f"tests/{test}" for test in tests)],
+        cwd=ROOT, env={**os.environ, "SNAPIN": str(program)}, capture_output=True, text=True,
+        check=False)
     if done.returncode == 0:
         return None
     found = re.search(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", done.stdout, re.MULTILINE)
@@ -300,48 +212,44 @@ def first_failure(program, tests):
 
 def without(copy, guard):
     """The first test that fails without a guard, or None."""
-    path = copy / "src" / guard.file
+    path = source_of(guard.module, copy)
     text = path.read_text()
-    changed = text
-    for old, new in filter(None, ((guard.old, guard.new), guard.also)):
-        if text.count(old) != 1:
-            sys.exit(f"{guard.file} no longer has, once: {old}")
-        changed = changed.replace(old, new)
-    path.write_text(changed)
+    without_it = changed(text, guard.words, guard.change)
+    if guard.also:
+        without_it = changed(without_it, *guard.also)
+    path.write_text(without_it)
+    build = copy / ("traps" if guard.traps else "plain")
     try:
-        program = compiled(copy, "traps" if guard.traps else "plain")
-        return first_failure(program, guard.tests)
+        done = subprocess.run([MESON, "compile", "-C", build], capture_output=True, text=True,
+                              check=False)
+        if done.returncode:
+            sys.exit(f"{guard.what}: does not compile without it\n{done.stdout[-2000:]}")
+        return first_failure(build / "snapin", guard.tests)
     finally:
         path.write_text(text)
 
 
 def main():
-    names = sys.argv[1:] or list(GUARDS)
     alone = []
     with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(folder)
-        for name in ("src", "pywrap", "tools"):
+        for name in ("src", "pywrap", "tools", "tests"):
             shutil.copytree(ROOT / name, copy / name)
         for name in ("meson.build", "meson.options"):
             shutil.copy(ROOT / name, copy)
         for build, options in (
-            ("plain", ["-Dpython=enabled"]),
-            ("traps", ["-Dpython=disabled", "--buildtype=debug", "-Dtraps=true"]),
-        ):
-            subprocess.run(
-                [MESON, "setup", copy / build, copy, *options],
-                capture_output=True,
-                check=True,
-            )
-        print("| guard removed | where | test that fails |")
-        print("|---|---|---|", flush=True)
-        for name in names:
+                ("plain", ["-Dpython=enabled"]),
+                ("traps", ["-Dpython=disabled", "--buildtype=debug", "-Dtraps=true"])):
+            subprocess.run([MESON, "setup", copy / build, copy, *options], capture_output=True,
+                           check=True)
+        print("| guard removed | where | test that fails |\n|---|---|---|", flush=True)
+        for name in sys.argv[1:] or GUARDS:
             guard = GUARDS[name]
             test = without(copy, guard)
             if test is None:
                 alone.append(name)
             cell = f"`{test}`" if test else "none"
-            print(f"| {guard.what} | `{guard.file}` | {cell} |", flush=True)
+            print(f"| {guard.what} | `{guard.module}` | {cell} |", flush=True)
     for name in alone:
         print(f"no test fails without {name}")
     return 1 if alone else 0

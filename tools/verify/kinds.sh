@@ -12,6 +12,8 @@ top=$(dirname -- "$(dirname -- "$here")")
 prepare
 cd "$top" || exit
 PATH=$venv/bin:$PATH
+# Where tests find the tools.
+tools="pywrap/plots tools tools/verify tools/reproduce"
 export PATH
 [ $# -gt 0 ] || set -- -m 'not slow and not long'
 
@@ -75,7 +77,7 @@ tests() { "$venv/bin/python" -m pytest -q -n auto --dist worksteal -p no:cachepr
 tests_of() {
   folder=$1
   shift
-  SNAPIN=$top/$folder/snapin tests -o pythonpath="pywrap $folder/pywrap tests" "$@"
+  SNAPIN=$top/$folder/snapin tests -o pythonpath="pywrap $folder/pywrap tests $tools" "$@"
 }
 
 kernel() {

@@ -52,11 +52,8 @@ THREADS = (1, 2, 4)
 TINY = np.finfo(float).tiny
 # Kernels of OpenBLAS and what a processor needs for them.
 KERNELS = {
-    "Prescott": {"pni"},
-    "Haswell": {"avx2", "fma"},
-    "SkylakeX": {"avx512f", "avx512dq", "avx512bw", "avx512vl"},
-    "Zen": {"avx2", "fma"},
-}
+    "Prescott": {"pni"}, "Haswell": {"avx2", "fma"},
+    "SkylakeX": {"avx512f", "avx512dq", "avx512bw", "avx512vl"}, "Zen": {"avx2", "fma"}}
 
 CYCLE = {"loading": loading(6, -2, 0.25), "unloading": {}}
 CLOSE = {"residual_tolerance": 1e-12}
@@ -75,27 +72,20 @@ DECKS = {
     "cycle, sigma 8.7": (lennard_jones(8.7, **STRONG), WITHIN),
     "cycle, sigma 8.7, closer": (lennard_jones(8.7, **STRONG, numerics=CLOSE), EXACT),
     "cycle, sigma 8.7, Newton": (
-        lennard_jones(8.7, **STRONG, numerics={"method": "newton"}),
-        EXACT,
-    ),
+        lennard_jones(8.7, **STRONG, numerics={"method": "newton"}), EXACT),
     "cycle, sigma 100": (lennard_jones(100.0, **STRONGER), WITHIN),
     "cycle, sigma 100, closer": (lennard_jones(100.0, **STRONGER, numerics=CLOSE), EXACT),
     "path, sigma 8.7": (lennard_jones(8.7, equilibrium_path={"h0_end": -4.0}), WITHIN),
     "path, sigma 1000": (lennard_jones(1000.0, equilibrium_path={"h0_end": -4.0}), WITHIN),
     "repulsion": (
-        exponential(100, loading=loading(6, -20, 0.5), unloading={}, numerics=CLOSE),
-        EXACT,
-    ),
+        exponential(100, loading=loading(6, -20, 0.5), unloading={}, numerics=CLOSE), EXACT),
     "uniform grid": (lennard_jones(0.87, **CYCLE, numerics=FIXED), EXACT),
     "uniform grid, Newton": (
-        lennard_jones(0.87, **CYCLE, numerics={**FIXED, "method": "newton"}),
-        EXACT,
-    ),
+        lennard_jones(0.87, **CYCLE, numerics={**FIXED, "method": "newton"}), EXACT),
     "2600 nodes": (lennard_jones(0.2, loading=loading(3, 1, 1), numerics=THREADED), EXACT),
     "mixing": (
         lennard_jones(
-            0.17, loading=loading(6, 0, 0.5), numerics={"method": "mixing", "nodes": 100}
-        ),
+            0.17, loading=loading(6, 0, 0.5), numerics={"method": "mixing", "nodes": 100}),
         STOPPED,
     ),
 }
@@ -141,12 +131,8 @@ def run(program, name, deck, threads, folder, kernel=None):
     if kernel is not None:
         environment["OPENBLAS_CORETYPE"] = kernel
     done = subprocess.run(
-        [program, "--quiet", "--out", folder, file],
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+        [program, "--quiet", "--out", folder, file], env=environment, capture_output=True,
+        text=True, check=False)
     if done.returncode:
         sys.exit(f"{name}: status {done.returncode}\n{done.stderr}")
     return Run(done.returncode, done.stderr, folder / file.stem)

@@ -75,7 +75,7 @@ coverage() {
   builds build-coverage --buildtype=debug -Db_coverage=true -Dpython=enabled || return
   find build-coverage -name '*.gcda' -delete
   SNAPIN=$top/build-coverage/snapin "$python" -m pytest -q -n auto --dist worksteal \
-    -m 'not slow and not long' -o pythonpath='pywrap build-coverage/pywrap tests'
+    -m 'not slow and not long' -o pythonpath='pywrap build-coverage/pywrap tests pywrap/plots tools tools/verify tools/reproduce'
   tested=$?
   "$python" -m gcovr -r "$top" --filter src/ --sort uncovered-percent --print-summary \
     --gcov-ignore-parse-errors=all --exclude-lines-by-pattern '\s*end module.*' \

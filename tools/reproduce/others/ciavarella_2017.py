@@ -5,25 +5,14 @@ import math
 import numpy as np
 import spheres
 import style
-from published import Comparison
-
-DECKS = ()
-TITLE = "Ciavarella, Greenwood and Barber 2017: energy lost in a cycle"
-CAPTION = """M. Ciavarella, J. A. Greenwood and J. R. Barber, J. Mech. Phys. Solids **98**, 236 (2017), asked
-what hysteresis loses in a cycle at fixed displacement, against Tabor's parameter. JKR theory loses
-{jkr:.5f} (R⁴w⁵/E\\*²)^(1/3), which counts a jump into contact at no separation. The solved loss over
-that is drawn against μ: {one:.3f} of it at μ = 1, {ten:.2f} at 10, {hundred:.2f} at 100, none below {cusp:.3f}.
-
-Nearly all of what is missing is the work that the attraction does before the jump, for which there is a
-formula: {jkr:.4f} − (4π/3) h0/(μ z0), h0 being that of the jump into contact. It is within {formula_one:.0f} %
-at μ = 10 and {formula_two:.1f} % at 100; with the h0 of Attard and Parker's (37) in it, no calculation is needed and it is
-within {closed:.0f} % at 10 and {closed_two:.1f} % at 100. The print was not read."""
+from others import greenwood_1997, wu_2010
+from report import Comparison
 
 # A cycle of JKR theory at fixed displacement: in at displacement 0, out where d(displacement)/da = 0.
 # In A = a/(pi w R^2/K)^(1/3), P = A^3 - A sqrt(6 A), D = A^2 - (2/3) sqrt(6 A); the loss in
 # pi w R (pi^2 w^2 R/K^2)^(1/3) is the area between the jumps.
 TABORS = (0.8, 1.0, 2.0, 5.0, 10.0, 100.0)
-_MANY = tuple(float(each) for each in np.geomspace(0.7, 1000, 40))
+_MANY = spheres.spaced(0.7, 1000, 40)
 
 
 def jkr():
@@ -49,8 +38,6 @@ def _loss(tabor):
 
 
 def _printed(tabor):
-    from others import wu_2010
-
     return formula(tabor, wu_2010.jump(tabor)[1][0])
 
 
@@ -59,9 +46,7 @@ def _solved(tabor):
 
 
 def numbers(_):
-    """Return what the caption quotes."""
-    from others import greenwood_1997
-
+    """Return what the page quotes."""
     def error(found, tabor):
         return 100 * abs(found(tabor) / _loss(tabor) - 1)
 
@@ -82,9 +67,9 @@ def draw(_):
                                "formula, $h_0$ by (37)")):
         panel.semilogx(_MANY, [found(tabor) / jkr() for tabor in _MANY], label=name, **look)
     panel.axhline(1, color=style.GREY, linewidth=0.8, dashes=(5, 2))
-    panel.text(0.75, 0.985, "JKR theory", va="top", fontsize=8.5, color="#555555")
-    panel.set_ylim(-0.05, 1.05)
-    style.label(panel, "Tabor's parameter $\\mu$", "energy lost / that of JKR theory", "y")
+    style.word(panel, 0.75, 0.985, "JKR theory")
+    style.label(panel, "Tabor's parameter $\\mu$", "energy lost / that of JKR theory", "y",
+                ylim=(-0.05, 1.05))
     panel.legend(loc="lower right")
     return page
 

@@ -6,23 +6,7 @@ import math
 import numpy as np
 import spheres
 import style
-from published import Comparison
-
-DECKS = ()
-TITLE = "Greenwood 1997, Feng 2000: pull-off, jumps and S-shaped curves of spheres"
-CAPTION = """J. A. Greenwood, Proc. R. Soc. Lond. A **453**, 1277 (1997), and J. Q. Feng, Colloids
-Surf. A **172**, 175 (2000), solved the Lennard-Jones sphere for many Tabor parameters; V. M. Muller,
-V. S. Yushchenko and B. V. Derjaguin did so first (J. Colloid Interface Sci. **77**, 91 (1980)). Left:
-load against approach, −h0; dotted is what no experiment at fixed h0 sees. Right: the pull-off, and h0
-at the jumps.
-
-Curves fold, so that bodies jump at fixed h0, from μ = **{cusp:.4f}** on (σ = {sigma:.5f}), where the two
-folds meet at h0 = {cusp_h0:.3f} z0; the round number 1, often given for it, is where the loop is already
-{lost:.2f} w R z0 in area. The pull-off leaves Bradley's 2 πwR by 1 % at μ = {bradley:.3f} and comes within
-1 % of JKR's 1.5 πwR at μ = {jkr:.1f}: {range:.0f} times as large. μ of Muller, Yushchenko and Derjaguin,
-(32/3π)(2Rw²/πE\\*²z0³)^(1/3), is {muller:.4f} times Tabor's.
-
-Their tables could not be read here; rows with nothing published are for who has them at hand."""
+from report import Comparison
 
 TABORS = (0.01, 0.1, 0.5, 0.8, 1.0, 2.0, 5.0)
 _SHOWN = (0.1, 0.5, 1.0, 2.0, 5.0)
@@ -37,7 +21,7 @@ def cusp():
 
 
 def numbers(_):
-    """Return what the caption quotes."""
+    """Return what the page quotes."""
     first = cusp()
     above = spheres.sphere(first * 1.0001)
     bradley = spheres.where(lambda tabor: spheres.sphere(tabor).tension < 1.98, 0.01, 0.5, 1e-3)

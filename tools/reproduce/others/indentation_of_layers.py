@@ -5,21 +5,7 @@ import functools
 import layers
 import numpy as np
 import style
-from published import Comparison
-
-DECKS = ()
-TITLE = "Dimitriadis 2002, García 2018: a sphere on a thin layer"
-CAPTION = """E. K. Dimitriadis et al., Biophys. J. **82**, 2798 (2002), and P. D. Garcia and R. Garcia, Biophys. J.
-**114**, 2923 (2018), gave the load of a rigid sphere on a bonded incompressible layer over that on a half-space as
-
-    1 + 1.133 χ + 1.283 χ² + 0.769 χ³ + 0.0975 χ⁴      (Dimitriadis)
-    1 + 1.133 χ + 1.497 χ² + 1.469 χ³ + 0.755 χ⁴       (García),   χ = √(Rδ)/t
-
-Against the integral equation, solved ([docs/layers.md](../layers.md) says how): Dimitriadis' is within 1 % up to
-χ = {one_d:.2f}, off by {d06:.1f} % at 0.62, {d1:.0f} % at 1 and {d2:.0f} % at 2; García's is within 1 % up to χ =
-{one_g:.2f}, off by {g06:.1f} % at 0.62, {g1:.0f} % at 1 and {g2:.0f} % at 2. A modulus read with a formula is off
-by as much the other way. Dimitriadis' coefficients also stand in public programs that use them; the prints were
-not read."""
+from report import Comparison
 
 CHI = (0.1, 0.2, 0.41721, 0.62011, 0.74794, 1.05444, 1.34893, 2.0)
 _SOURCES = {"dimitriadis": "coefficients of the caption, as they are quoted and as public programs "
@@ -45,7 +31,7 @@ def good_to(name, percent):
 
 
 def numbers(_):
-    """Return what the caption quotes."""
+    """Return what the page quotes."""
     found = {}
     for name in _SOURCES:
         letter = name[0]

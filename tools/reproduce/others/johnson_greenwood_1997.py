@@ -5,26 +5,9 @@ import spheres
 import style
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
-from published import Comparison
+from report import Comparison
 
-DECKS = ()
-TITLE = "Johnson and Greenwood 1997: the map of theories, with measured errors"
-CAPTION = """K. L. Johnson and J. A. Greenwood, J. Colloid Interface Sci. **192**, 326 (1997), divided the
-plane of λ and load among the theories by estimates. Here each of {count} Lennard-Jones contacts is
-solved and has the simplest theory that holds within 5 %, in the order Bradley, Hertz, DMT, JKR,
-Maugis-Dugdale. Bradley's, of rigid bodies, holds where its h0 under the load is within 5 % of z0, the
-others where contact radius and indentation are; the indentation counts from the gap at rest, its error in
-parts of a²/R. The line is where JKR theory is within 1 %.
-
-Hertz theory takes over where the load is large: from {hertz:.0f} πwR on at λ = {hertz_at:.2g}. Without load
-JKR theory is within 5 % from λ = {jkr:.2f} on, Maugis-Dugdale from {maugis:.2f}. Without load Bradley's holds up to λ =
-{bradley:.3f}; in between no theory does, since the bodies yield, but touch over the range of the force and not
-over a contact; DMT theory has hardly a place of its own. The pull-off is another matter: DMT's is within 5 % up to λ = {dmt_pull:.2f}, JKR's from {jkr_pull:.1f} on,
-Maugis-Dugdale's but for λ from {maugis_pull_low:.2f} to {maugis_pull_high:.2f}.
-
-The limits of the original map were not read and are not drawn."""
-
-LAMBDAS = tuple(float(each) for each in np.geomspace(1e-3, 100, 31))
+LAMBDAS = spheres.spaced(1e-3, 100, 31)
 # Within so much a theory is said to hold.
 _GOOD = 0.05
 _THEORIES = ("bradley", "hertz", "dmt", "jkr", "maugis")
@@ -32,17 +15,13 @@ _NAMES = ("none", "Bradley", "Hertz", "DMT", "JKR", "Maugis-Dugdale")
 _COLORS = ("#FFFFFF", style.GREY, style.SKY, style.ORANGE, style.GREEN, style.PURPLE)
 
 
-def _tabor(lam):
-    return lam / spheres.maugis_lambda(1.0)
-
-
 def worst(theory, lam, load):
     """Return the larger error of contact radius and indentation; of Hertz's 1 where it has none; of
     Bradley's theory the error of h0 over z0."""
     if theory == "bradley":
-        h0 = 1 - spheres.contact(_tabor(lam), load).displacement * spheres.unit(_tabor(lam)) ** 2
+        h0 = 1 - spheres.contact(spheres.tabor_of(lam), load).displacement * spheres.unit(spheres.tabor_of(lam)) ** 2
         return abs(_rigid(load) - h0)
-    errors = abs(spheres.contact(_tabor(lam), load).errors[theory][1:])
+    errors = abs(spheres.contact(spheres.tabor_of(lam), load).errors[theory][1:])
     return float(np.max(errors)) if np.isfinite(errors).all() else 1.0
 
 
@@ -58,11 +37,11 @@ def simplest(lam, load):
 
 
 def _pull(theory, lam):
-    return abs(spheres.contact(_tabor(lam), 0.0).errors[theory][0])
+    return abs(spheres.contact(spheres.tabor_of(lam), 0.0).errors[theory][0])
 
 
 def numbers(_):
-    """Return what the caption quotes."""
+    """Return what the page quotes."""
     at = min(LAMBDAS, key=lambda lam: abs(lam - 1))
     hertz = next(load for load in spheres.LOADS if worst("hertz", at, load) <= _GOOD)
     peak = max(LAMBDAS, key=lambda lam: _pull("maugis", lam))
@@ -89,10 +68,7 @@ def draw(_):
                      norm=BoundaryNorm(np.arange(-0.5, 6), 6), alpha=0.75)
     error = np.array([[worst("jkr", lam, load) for lam in LAMBDAS] for load in loads])
     panel.contour(LAMBDAS, loads, error, levels=[0.01], colors=["black"], linewidths=1)
-    panel.set_xscale("log")
-    panel.set_yscale("log")
-    panel.set_ylim(0.07, 1500)
-    style.label(panel, "Maugis' parameter $\\lambda$", "load $F/\\pi wR$")
+    style.label(panel, "Maugis' parameter $\\lambda$", "load $F/\\pi wR$", log="xy", ylim=(0.07, 1500))
     page.legend(handles=[Patch(facecolor=color, edgecolor="#888888", alpha=0.75, label=name)
                          for name, color in zip(_NAMES, _COLORS)],
                 loc="outside lower center", ncols=6, columnspacing=1, handlelength=1.4)

@@ -1,42 +1,25 @@
 """Greenwood (2007), Barthel (1998) and others: how little contact depends on the law of force."""
 
-import warnings
+import functools
 
 import law_independence as tool
 import numpy as np
-import snapin
 import style
-from published import Comparison
-
-DECKS = ()
-TITLE = "Five laws at the same range: how little the pull-off depends on them"
-CAPTION = """E. Barthel, J. Colloid Interface Sci. **200**, 7 (1998), and J. A. Greenwood, Phil. Mag. **89**,
-945 (2009), compared laws of force. Pull-off of five laws, solved, over Tabor's parameter with the range δ =
-w/σ_max in place of z0, where σ_max is the largest tension: Lennard-Jones laws of exponents 9-3, 10-4, 12-6
-and 6-3 between half-spaces, and Morse's. The five are within {laws:.1f} % of each other; Maugis-Dugdale
-theory, Dugdale's law, is below all of them, by {low:.1f} to {high:.1f} %. It is the range that counts, not
-z0. The same numbers stand in [docs/forces.md](../forces.md). Both prints were not read."""
+from report import Comparison
 
 TABORS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 _COLORS = (style.BLACK, style.BLUE, style.GREEN, style.ORANGE, style.PURPLE)
-_found = {}
 
 
+@functools.cache
 def pull_offs(tabor):
     """Return a dict of pull-offs over pi w R by law, and that of Maugis-Dugdale theory."""
-    if tabor not in _found:
-        with warnings.catch_warnings():
-            # R is 1, and so is the separation at rest.
-            warnings.simplefilter("ignore", snapin.SnapinWarning)
-            pairs = {name: tool.pull_offs(law, tabor, accuracy=1e-7)
-                     for name, law in tool.LAWS.items()}
-        _found[tabor] = ({name: pair[0] for name, pair in pairs.items()},
-                         next(iter(pairs.values()))[1])
-    return _found[tabor]
+    pairs = {name: tool.pull_offs(law, tabor, accuracy=1e-7) for name, law in tool.LAWS.items()}
+    return {name: pair[0] for name, pair in pairs.items()}, next(iter(pairs.values()))[1]
 
 
 def numbers(_):
-    """Return what the caption quotes."""
+    """Return what the page quotes."""
     spreads, below = [], []
     for tabor in TABORS:
         laws, theory = pull_offs(tabor)

@@ -5,24 +5,11 @@ import functools
 import numpy as np
 import spheres
 import style
-from published import Comparison
-
-DECKS = ()
-TITLE = "Wu 2010: from how far bodies jump into contact"
-CAPTION = """J.-J. Wu, J. Adhesion **86**, 1071 (2010), fitted the distance from which Lennard-Jones spheres
-jump into contact to powers of Tabor's parameter; his coefficients could not be read here. Left: h0 and the
-gap on the axis at the jump, solved, beside what Attard and Parker (1992) print: the separation of
-equation (37), and the h0 that follows from it. Right: errors.
-
-(37) is a closed form of slow deformation, which does not know the jump itself: h0 is too large by {h0:.1f} %
-at μ = {top:g} and by at most {h0_worst:.1f} % (at μ = {h0_at:.2g}); the gap is too large by {gap:.1f} % at μ = {top:g}.
-Both go as μ^(3/7) for large μ, as they must under an attraction that falls off as h⁻³: the slope of the
-solved h0 is {slope:.4f} from μ = {slope_from:g} to {top:g}. So h0 at the jump is {factor:.4f} times that of
-(37), or **{constant:.4f}** μ^(3/7) z0, good to 1 % from μ = {power_from:.1f} on and to {fixed:.2f} % from {fixed_from:g} on."""
+from report import Comparison
 
 _SOURCE = "Attard and Parker (1992), equation (37), printed"
 TABORS = (0.8, 1.0, 2.0, 5.0, 10.0, 100.0)
-_MANY = tuple(float(each) for each in np.geomspace(0.7, 1000, 40))
+_MANY = spheres.spaced(0.7, 1000, 40)
 _FROM = 3.0
 
 
@@ -46,7 +33,7 @@ def _errors():
 
 
 def numbers(_):
-    """Return what the caption quotes."""
+    """Return what the page quotes."""
     errors = _errors()
     worst = int(np.argmax(abs(errors[:, 0])))
     top = _MANY[-1]

@@ -2,31 +2,14 @@
 
 import functools
 import math
-import warnings
 
-import numpy as np
-import snapin
-import spheres  # noqa: F401 (before anything loads OpenMP)
+import spheres
 import style
-from published import Comparison
-
-DECKS = ()
-TITLE = "Zheng and Yu 2007, Grierson et al. 2013: cones and other powers"
-CAPTION = """Z.-J. Zheng and J.-L. Yu, J. Colloid Interface Sci. **310**, 27 (2007), and D. S. Grierson, J. Liu,
-R. W. Carpick and K. T. Turner, J. Mech. Phys. Solids **61**, 597 (2013), took Maugis' and Lennard-Jones'
-laws to bodies of the form f = B rⁿ. Their tables were not read; the formula of JKR theory for them is that of
-Galin and Sneddon, with κ = √π Γ(n/2 + 1)/Γ((n + 1)/2):
-
-    a^(n−½) = 3 √(2πw/E*)/(2 n κ B),   pull-off = √(8πwE*) a^(3/2) (2n − 1)/(2(n + 1))
-
-Drawn is the pull-off of Lennard-Jones bodies, solved, over that, against μn = ((w/E\\*)ⁿ/(2B))^(1/(2n−1))/z0,
-which is Tabor's parameter for n = 2. The formula is within 1 % from μn = {goods} on (n = {exponents}). For
-n above 2 it has too large a pull-off at small μn and too small a one in between: it is no bound. Where bodies are rigid
-the pull-off of a cone is (16π/7) 4^(1/6) w z0/tan²β = 9.0472 w z0/tan²β, at h0 = 4^(−1/6) z0."""
+from report import Comparison
 
 EXPONENTS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)
 _TABORS = (1.0, 3.0, 10.0, 30.0)
-_MANY = tuple(float(each) for each in np.geomspace(0.1, 100, 25))
+_MANY = spheres.spaced(0.1, 100, 25)
 _COLORS = (style.BLACK, style.BLUE, style.VERMILION, style.GREEN, style.ORANGE, style.PURPLE)
 _SOURCE = ("JKR theory for f = B r^n, from Galin (1946) and Sneddon (1965): the formula of the "
            "caption")
@@ -50,11 +33,9 @@ def formula(exponent, work):
 
 
 def _deck(exponent, work, **groups):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", snapin.SnapinWarning)
-        return snapin.run({
-            "shape": {"kind": "power", "exponent": exponent, "coefficient": _B},
-            "force": {"law": "lennard_jones", "surface_energy": work, "z0": 1.0}, **groups}).summary
+    return spheres.solved(shape={"kind": "power", "exponent": exponent, "coefficient": _B},
+                          force={"law": "lennard_jones", "surface_energy": work, "z0": 1.0},
+                          **groups).summary
 
 
 @functools.lru_cache(maxsize=None)
@@ -88,7 +69,7 @@ def _good(exponent):
 
 
 def numbers(_):
-    """Return what the caption quotes."""
+    """Return what the page quotes."""
     return {"goods": ", ".join(map(_good, EXPONENTS)),
             "exponents": ", ".join(f"{n:g}" for n in EXPONENTS)}
 
