@@ -128,7 +128,7 @@ contains
       if (now%recently == 3 .and. f(2) < min(f(1), f(3)) .and. t(3) > t(2) .and. t(2) > t(1)) then
         slope = (f(2:) - f(:2))/(t(2:) - t(:2))
         curvature = (slope(2) - slope(1))/(t(3) - t(1))
-        away = -0.5_wp*(slope(1)/curvature - (t(2) - t(1)))
+        away = -0.5_wp*(slope(1)/curvature + (t(2) - t(1)))
         least = f(2) + away*(slope(1) + curvature*(t(2) - t(1))) + curvature*away**2
         slope = (h(2:) - h(:2))/(t(2:) - t(:2))
         h0 = h(2) + away*merge(slope(1), slope(2), away < 0)
