@@ -11,6 +11,7 @@ module timed_run
   use edge_locked, only: new_mesh_family
   use mesh_digits, only: most_digits
   use records, only: observer_t
+  use journal, only: journal_t
   use numerics_choice, only: choice_t, choose, fixed_mesh
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
@@ -51,11 +52,13 @@ module timed_run
 
 contains
 
-  !> Goes through the motion of request%drive, and shows the rows of the last pass.
-  subroutine run_timed(request, problem, chosen, observer, result, cost, nodes)
+  !> Goes through the motion of request%drive, and shows the rows of the last pass. What it comes
+  !> to goes into the journal, if there is one.
+  subroutine run_timed(request, problem, chosen, journal, observer, result, cost, nodes)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     type(choice_t), intent(in) :: chosen
+    type(journal_t), pointer, intent(in) :: journal
     class(observer_t), intent(inout) :: observer
     type(timed_result_t), intent(out) :: result
     type(cost_t), intent(inout) :: cost
@@ -77,7 +80,7 @@ contains
       now = none
       call lay_out(request, drive, low, chosen, pass, steps)
       steps%farthest = farthest/2**(pass - 1)
-      call go_through(request, drive, pass, before, steps, observer, now)
+      call go_through(request, drive, pass, before, steps, journal, observer, now)
       if (now%result%lost) then
         ! Finer meshes may hold what was lost; what came before has its errors.
         if (whole > 1) now = before
