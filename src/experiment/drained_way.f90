@@ -76,7 +76,8 @@ contains
     finest = steps%finest(radius)
     if (at%mesh > approach) finest = max(finest, part_of_radius*radius)
     missed = (moved(steps, at, next)/(edge_moves*finest))**2
-    if (at%since_turn < 2) return
+    ! What two meshes differ by in one state is no motion: shorter steps would not make it less.
+    if (at%since_turn < 2 .or. next%mesh /= at%mesh) return
     ahead = (next%time - at%time)/(at%time - steps%before%time)
     unit = max(now%result%largest_load, abs(next%state%load), tiny(1.0_wp), &
       pi*steps%problem%law%adhesion)
