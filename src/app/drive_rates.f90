@@ -11,6 +11,7 @@ module drive_rates
   use experiment_result, only: experiment_result_t
   use listener, only: listener_t
   use records, only: silent_observer_t
+  use stepper, only: keeping_stepper_t
   use summarise, only: summary_of
   use summary, only: summary_t
   implicit none
@@ -28,8 +29,9 @@ module drive_rates
 contains
 
   !> Gives the numbers of a summary their derivatives by each parameter of &sensitivity.
-  subroutine rate_drive(scene, listener, summary)
+  subroutine rate_drive(scene, keeper, listener, summary)
     type(scene_t), intent(in) :: scene
+    class(keeping_stepper_t), intent(inout) :: keeper
     class(listener_t), intent(inout) :: listener
     type(summary_t), intent(inout) :: summary
     type(summary_t) :: side(2)
@@ -45,7 +47,8 @@ contains
         associate (name => varied(j)%parameter%name, value => varied(j)%parameter%value)
           call listener%hear('differentiating by '//name)
           do i = 1, 2
-            call run_with(scene, name, value*(1 + merge(-change, change, i == 1)), side(i), found)
+            call run_with(scene, name, value*(1 + merge(-change, change, i == 1)), keeper, &
+              side(i), found)
             if (.not. found) then
               call summary%fail_with('sensitivity: a run with another '//name// &
                 ' did not come to its end; not all derivatives were found')
@@ -65,10 +68,11 @@ contains
   end subroutine rate_drive
 
   !> What a run of the scene with another value of a number finds.
-  subroutine run_with(scene, name, value, summary, found)
+  subroutine run_with(scene, name, value, keeper, summary, found)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: value
+    class(keeping_stepper_t), intent(inout) :: keeper
     type(summary_t), intent(out) :: summary
     logical, intent(out) :: found
     type(scene_t) :: variant
@@ -81,7 +85,7 @@ contains
     found = .not. allocated(error)
     if (.not. found) return
     problem = problem_of(variant)
-    call run_experiment(variant, problem, observer, outcome)
+    call run_experiment(variant, problem, observer, outcome, keeper)
     summary = summary_of(variant, problem, outcome)
     found = summary%is_true('converged')
   end subroutine run_with

@@ -212,7 +212,7 @@ contains
     summary = summary_of(scene, problem, outcome)
     call recorder%warn(summary)
     if (allocated(scene%sensitivity) .and. allocated(scene%drive)) &
-      call rate_drive(scene, results, summary)
+      call rate_drive(scene, keeper, results, summary)
     if (allocated(scene%sensitivity)) &
       call write_sensitivities(scene%sensitivity, problem, outcome, summary, results)
     cost = outcome%cost

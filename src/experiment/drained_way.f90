@@ -10,7 +10,7 @@ module drained_way
   use timed_record, only: pass_t, accept, lose
   implicit none
   private
-  public :: go_drained
+  public :: step_drained
 
   !> What a step may miss on a straight line through the two instants before: of the load over the
   !> largest or a pull-off, of the gap on the axis over itself, and the way of the edge over what is
@@ -26,48 +26,44 @@ module drained_way
 
 contains
 
-  !> From an instant to a time of a way. step: the length of the first, on return that of the next.
-  !> Steps follow the motion, `part` of what they might be; if that is 0, they are the longest, and
-  !> only those are shortened that have no end near.
-  subroutine go_drained(drive, way, time, longest, part, steps, step, at, now)
+  !> A step from an instant on, or a shorter one to be tried next. Steps follow the motion, `part` of
+  !> what they might be; if that is 0, they are the longest, and only those are shortened that have
+  !> no end near.
+  subroutine step_drained(drive, way, longest, part, steps, at, now)
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: way
-    real(wp), intent(in) :: time, longest, part
+    real(wp), intent(in) :: longest, part
     type(time_stepper_t), intent(inout) :: steps
-    real(wp), intent(inout) :: step
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(instant_t) :: next
     real(wp) :: when, off, taken, least, farthest
     logical :: done
 
-    do while (at%time < time)
-      least = roundings*spacing(max(at%time, step))
-      when = at%time + step
-      if (when + 0.01_wp*step > time) when = time
-      taken = when - at%time
-      farthest = steps%farthest
-      ! What is over in the rounding of the time is not followed.
-      if (taken <= 2*least) steps%farthest = unfollowed
-      call steps%step(at, when, drive%at(way, when), next, done)
-      steps%farthest = farthest
-      off = 1/longer**2
-      if (done .and. part > 0) off = max(off, missed(steps, at, next, now)/part**2)
-      ! A line has no bend yet.
-      if (done .and. at%since_turn < 2) off = 1
-      if (done .and. (off < rejected .or. taken <= 2*least)) then
-        call accept(steps, way, next, .true., at, now)
-        step = min(longest, taken*min(longer, max(shorter, 0.9_wp/sqrt(off))))
-        if (now%held > now%most) call lose(at, now)
-      else
-        steps%cost%rejected_steps = steps%cost%rejected_steps + 1
-        step = taken*merge(max(shorter, 0.7_wp/sqrt(off)), 0.3_wp, done)
-        if (.not. done .and. taken <= least) call lose(at, now)
-        step = max(step, least)
-      end if
-      if (now%result%lost) exit
-    end do
-  end subroutine go_drained
+    least = roundings*spacing(max(at%time, now%step))
+    when = at%time + now%step
+    if (when + 0.01_wp*now%step > drive%time(way)) when = drive%time(way)
+    taken = when - at%time
+    farthest = steps%farthest
+    ! What is over in the rounding of the time is not followed.
+    if (taken <= 2*least) steps%farthest = unfollowed
+    call steps%step(at, when, drive%at(way, when), next, done)
+    steps%farthest = farthest
+    off = 1/longer**2
+    if (done .and. part > 0) off = max(off, missed(steps, at, next, now)/part**2)
+    ! A line has no bend yet.
+    if (done .and. at%since_turn < 2) off = 1
+    if (done .and. (off < rejected .or. taken <= 2*least)) then
+      call accept(steps, next, taken > 2*least, at, now)
+      now%step = min(longest, taken*min(longer, max(shorter, 0.9_wp/sqrt(off))))
+      if (now%held > now%most) call lose(at, now)
+    else
+      steps%cost%rejected_steps = steps%cost%rejected_steps + 1
+      now%step = taken*merge(max(shorter, 0.7_wp/sqrt(off)), 0.3_wp, done)
+      if (.not. done .and. taken <= least) call lose(at, now)
+      now%step = max(now%step, least)
+    end if
+  end subroutine step_drained
 
   !> What a step asks to be: below 1 it may be longer, above 1 it has to be shorter.
   real(wp) function missed(steps, at, next, now)
@@ -80,7 +76,8 @@ contains
     finest = steps%finest(radius)
     if (at%mesh > approach) finest = max(finest, part_of_radius*radius)
     missed = (moved(steps, at, next)/(edge_moves*finest))**2
-    if (at%since_turn < 2) return
+    ! What two meshes differ by in one state is no motion: shorter steps would not make it less.
+    if (at%since_turn < 2 .or. next%mesh /= at%mesh) return
     ahead = (next%time - at%time)/(at%time - steps%before%time)
     unit = max(now%result%largest_load, abs(next%state%load), tiny(1.0_wp), &
       pi*steps%problem%law%adhesion)

@@ -25,6 +25,7 @@ module experiment
   use path, only: follow_path
   use path_readings, only: read_path
   use timed_run, only: run_timed
+  use journal, only: journal_t
   use records, only: observer_t
   use clock, only: seconds
   use blas_threads, only: use_threads_for
@@ -53,7 +54,7 @@ contains
 
     if (.not. request%finds_states()) return
     if (allocated(request%drive)) then
-      call run_driven(request, problem, observer, outcome)
+      call run_driven(request, problem, observer, outcome, keeper)
       return
     end if
     call range_of(request, problem, low, high)
@@ -70,12 +71,14 @@ contains
   end subroutine run_experiment
 
   !> The drive in time. Rigid bodies are some that are too stiff for their deformation to show.
-  subroutine run_driven(request, problem, observer, outcome)
+  subroutine run_driven(request, problem, observer, outcome, keeper)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
+    class(keeping_stepper_t), intent(in), optional :: keeper
     type(problem_t) :: driven
+    type(journal_t), pointer :: journal
     real(wp) :: low, high
 
     driven = problem
@@ -83,8 +86,10 @@ contains
     if (problem%rigid) driven%coupling = unyielding
     call range_of(request, driven, low, high)
     outcome%chosen = choose(request%numerics, driven, low, .false.)
+    nullify (journal)
+    if (present(keeper)) journal => keeper%journal
     allocate (outcome%timed)
-    call run_timed(request, driven, outcome%chosen, observer, outcome%timed, outcome%cost, &
+    call run_timed(request, driven, outcome%chosen, journal, observer, outcome%timed, outcome%cost, &
       outcome%nodes)
     outcome%error_estimate = outcome%timed%estimate
   end subroutine run_driven

@@ -9,6 +9,7 @@ module stepper
   use ending, only: ending_t
   use locked_meshes, only: h0_control
   use reported, only: error_probe_t
+  use journal, only: journal_t
   implicit none
   private
   public :: stepper_t, keeping_stepper_t, branch_point_t, step_result_t, extreme_t, memory, &
@@ -68,6 +69,8 @@ module stepper
   !> A stepper between an experiment and whoever solves, which keeps the steps.
   type, abstract, extends(stepper_t) :: keeping_stepper_t
     class(stepper_t), pointer :: steps => null()
+    !> Where the steps are kept.
+    type(journal_t), pointer :: journal => null()
     !> Time [s] that the steps of an earlier run once took.
     real(wp) :: earlier_seconds = 0
   contains

@@ -12,7 +12,9 @@ module timed_pass
   use time_stepper, only: time_stepper_t
   use time_jump, only: step_along
   use rest, only: begin_at_rest
-  use drained_way, only: go_drained
+  use drained_way, only: step_drained
+  use journal, only: journal_t
+  use timed_journal, only: keep, recall
   use timed_record, only: timed_result_t, pass_t, accept, take_row, note, lose, most_steps, &
     of_end_h0, of_end_load, of_end_displacement, of_dissipation
   implicit none
@@ -20,30 +22,29 @@ module timed_pass
   public :: go_through
 
   !> contact radius over the width of the neck. Longest and first step, parts of a way.
-  real(wp), parameter :: bend = 2.0e-3_wp, edge_moves = 1, longest_part = 0.05_wp, &
+  real(wp), parameter :: bend = 8.0e-3_wp, edge_moves = 2, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
   !> Steps after one that was too long before longer ones are tried again.
   integer, parameter :: patience = 3
-  !> The same with a fluid, whose pressure jumps where the drive turns; parts of a way that are
-  !> told.
+  !> The same with a fluid, whose pressure jumps where the drive turns.
   real(wp), parameter :: first_drained = 1.0e-7_wp
-  integer, parameter :: parts = 10
   !> The shortest step over the shortest time of retardation, and way over the law's length.
   real(wp), parameter :: shortest_part = 1.0e-3_wp, shortest_way = 1.0e-6_wp
 
 contains
 
-  !> One pass. It chooses its steps, or halves those of the one before, if there is one.
-  subroutine go_through(request, drive, pass, before, steps, listener, now)
+  !> One pass. It chooses its steps, or halves those of the one before, if there is one. What an
+  !> earlier run has left of it in the journal is taken from there.
+  subroutine go_through(request, drive, pass, before, steps, journal, listener, now)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: pass
     type(pass_t), intent(in) :: before
     type(time_stepper_t), intent(inout) :: steps
+    type(journal_t), pointer, intent(in) :: journal
     class(listener_t), intent(inout) :: listener
     type(pass_t), intent(inout) :: now
     type(instant_t) :: at
-    real(wp) :: begun_with
     integer :: way
 
     ! A pass that halves steps and needs far more than twice as many, or has many more jumps, goes
@@ -52,93 +53,94 @@ contains
       now%most = 6*before%held + 2000
       now%most_jumps = before%result%jumps + 10
     end if
-    call begin_at_rest(steps, drive%position(0), at, now%result%begun)
-    now%result%lost = .not. now%result%begun
-    if (now%result%lost) return
-    begun_with = steps%energy(at)
-    call note(steps, 1, at, now)
-    do way = 1, 3
+    call recall(journal, steps, at, now)
+    if (now%ended) return
+    if (now%held == 0) then
+      call begin_at_rest(steps, drive%position(0), at, now%result%begun)
+      now%result%lost = .not. now%result%begun
+      if (now%result%lost) return
+      now%begun_with = steps%energy(at)
+      now%way = 1
+      call note(steps, at, now)
+    end if
+    do way = now%way, 3
       if (now%result%lost .or. .not. drive%time(way) > drive%time(way - 1)) cycle
-      now%recently = 0
-      ! What moved before does not tell how things move now; rates and loads of a fluid jump.
-      steps%before = at
-      at%since_turn = 0
-      if (allocated(steps%drainage)) then
-        call drain(request, drive, way, pass, steps, listener, at, now)
-        cycle
+      if (now%held == 1 .or. way > now%way) then
+        now%way = way
+        now%step = 0
+        now%recently = 0
+        ! What moved before does not tell how things move now; rates and loads of a fluid jump.
+        steps%before = at
+        at%since_turn = 0
+        if (.not. allocated(steps%drainage)) call take_row(at, now)
       end if
-      call take_row(at, now)
-      if (before%held == 0) then
-        call choose_steps(request, drive, way, pass, steps, listener, at, now)
-      else
-        call halve_steps(drive, way, pass, before, steps, listener, at, now)
-      end if
+      do while (at%time < drive%time(way) .and. .not. now%result%lost)
+        if (allocated(steps%drainage)) then
+          call drain(request, drive, way, pass, steps, at, now)
+        else if (before%held == 0) then
+          call choose_step(request, drive, way, steps, at, now)
+        else
+          call halve_step(drive, way, before, steps, at, now)
+        end if
+        call tell(drive, pass, at, listener)
+        call keep(journal, steps, at, now)
+      end do
     end do
     associate (result => now%result, problem => steps%problem)
       result%number(of_end_h0) = at%state%h0
       result%number(of_end_load) = at%state%load
       result%number(of_end_displacement) = at%state%axis_gap - at%state%h0
-      result%number(of_dissipation) = now%work - (steps%energy(at) - begun_with)
+      result%number(of_dissipation) = now%work - (steps%energy(at) - now%begun_with)
       result%balance = result%number(of_dissipation) - now%inside
     end associate
+    now%ended = .true.
+    call keep(journal, steps, at, now)
   end subroutine go_through
 
-  !> Steps of the first pass through a way.
-  subroutine choose_steps(request, drive, way, pass, steps, listener, at, now)
+  !> A step of the first pass through a way.
+  subroutine choose_step(request, drive, way, steps, at, now)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
-    integer, intent(in) :: way, pass
+    integer, intent(in) :: way
     type(time_stepper_t), intent(inout) :: steps
-    class(listener_t), intent(inout) :: listener
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(instant_t) :: from
-    real(wp) :: step, whole, end, moved, shortest_step
+    real(wp) :: whole, end, moved, shortest
 
     whole = drive%time(way) - drive%time(way - 1)
-    step = first_part*whole
-    shortest_step = max(1.0e-8_wp*whole, min(1.0e-5_wp*whole, 1.0e-4_wp*steps%creep%shortest()))
-    do while (at%time < drive%time(way) .and. .not. now%result%lost)
-      if (allocated(request%drive%time_step)) step = 2*request%drive%time_step
-      end = at%time + step
-      if (end + 0.01_wp*step > drive%time(way)) end = drive%time(way)
-      from = at
-      call go_to(drive, way, end, steps, at, now)
-      call tell(drive, pass, at, listener)
-      moved = missed(steps, from, at, now)
-      step = (at%time - from%time)*min(2.0_wp, max(0.3_wp, 0.9_wp/sqrt(moved)))
-      step = min(max(step, shortest_step), longest_part*whole)
-      if (now%held > most_steps) call lose(at, now)
-    end do
-  end subroutine choose_steps
+    shortest = max(1.0e-8_wp*whole, min(1.0e-5_wp*whole, 1.0e-4_wp*steps%creep%shortest()))
+    if (.not. now%step > 0) now%step = first_part*whole
+    if (allocated(request%drive%time_step)) now%step = 2*request%drive%time_step
+    end = at%time + now%step
+    if (end + 0.01_wp*now%step > drive%time(way)) end = drive%time(way)
+    from = at
+    call go_to(drive, way, end, steps, at, now)
+    moved = missed(steps, from, at, now)
+    now%step = (at%time - from%time)*min(2.0_wp, max(0.3_wp, 0.9_wp/sqrt(moved)))
+    now%step = min(max(now%step, shortest), longest_part*whole)
+    if (now%held > most_steps) call lose(at, now)
+  end subroutine choose_step
 
-  !> A pass through a way with a fluid. Where bodies jump together their gap closes at a moment that
-  !> differs a little from pass to pass, with ever shorter steps: each pass chooses its own, half as
-  !> long as those of the one before.
-  subroutine drain(request, drive, way, pass, steps, listener, at, now)
+  !> A step with a fluid. Where bodies jump together their gap closes
+  !> at a moment that differs a little from pass to pass, with ever shorter steps: each pass chooses
+  !> its own, half as long as those of the one before.
+  subroutine drain(request, drive, way, pass, steps, at, now)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: way, pass
     type(time_stepper_t), intent(inout) :: steps
-    class(listener_t), intent(inout) :: listener
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
-    real(wp) :: whole, shorter, step, longest, end
-    integer :: part
+    real(wp) :: whole, shorter, longest
 
-    shorter = 0.5_wp**(pass - 1)
+    shorter = 0.5_wp**(pass - 2)
     whole = drive%time(way) - drive%time(way - 1)
-    step = shorter*first_drained*whole
+    if (.not. now%step > 0) now%step = shorter*first_drained*whole
     longest = longest_part*whole
-    if (allocated(request%drive%time_step)) longest = 2*request%drive%time_step
-    do part = 1, parts
-      end = drive%time(way - 1) + whole*part/parts
-      if (part == parts) end = drive%time(way)
-      call go_drained(drive, way, end, shorter*longest, merge(0.0_wp, shorter, &
-        allocated(request%drive%time_step)), steps, step, at, now)
-      if (now%result%lost) exit
-      call tell(drive, pass, at, listener)
-    end do
+    if (allocated(request%drive%time_step)) longest = request%drive%time_step
+    call step_drained(drive, way, shorter*longest, merge(0.0_wp, shorter, &
+      allocated(request%drive%time_step)), steps, at, now)
   end subroutine drain
 
   !> What a step asks to be: below 1 it may be longer, above 1 it has to be shorter.
@@ -171,25 +173,23 @@ contains
     if (problem%law%adhesion > 0) load_unit = pi*problem%law%adhesion
   end function load_unit
 
-  !> Steps of a pass through a way: the halves of those before.
-  subroutine halve_steps(drive, way, pass, before, steps, listener, at, now)
+  !> The halves of a step of the pass before.
+  subroutine halve_step(drive, way, before, steps, at, now)
     type(motion_t), intent(in) :: drive
-    integer, intent(in) :: way, pass
+    integer, intent(in) :: way
     type(pass_t), intent(in) :: before
     type(time_stepper_t), intent(inout) :: steps
-    class(listener_t), intent(inout) :: listener
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
-    integer :: i
 
-    do i = 2, before%held
-      if (before%way(i) /= way .or. now%result%lost) cycle
-      if (.not. before%time(i) > at%time) cycle
-      call go_to(drive, way, 0.5_wp*(at%time + before%time(i)), steps, at, now)
-      if (.not. now%result%lost) call go_to(drive, way, before%time(i), steps, at, now)
-      call tell(drive, pass, at, listener)
+    do while (.not. before%row(now%halved)%time > at%time)
+      now%halved = now%halved + 1
     end do
-  end subroutine halve_steps
+    associate (end => before%row(now%halved)%time)
+      call go_to(drive, way, 0.5_wp*(at%time + end), steps, at, now)
+      if (.not. now%result%lost) call go_to(drive, way, end, steps, at, now)
+    end associate
+  end subroutine halve_step
 
   !> Goes to a time of a way, in shorter steps where bodies move too far in one, and over jumps that
   !> take no time.
@@ -220,7 +220,7 @@ contains
       if (.not. done .and. steps%meshes%traceable) call step_along(steps, at, when, &
         drive%at(way, when), now%inwards, steps%farthest, next, done)
       if (done) then
-        call accept(steps, way, next, smooth, at, now)
+        call accept(steps, next, smooth, at, now)
         now%since = now%since + 1
         if (now%since > patience) now%longest = max(now%longest, 2*try)
         cycle
@@ -239,7 +239,7 @@ contains
       end if
       now%result%jumps = now%result%jumps + 1
       now%recently = 0
-      call accept(steps, way, next, .false., at, now)
+      call accept(steps, next, .false., at, now)
       steps%before = at
       now%longest = least
       now%since = patience

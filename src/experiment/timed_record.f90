@@ -10,8 +10,8 @@ module timed_record
   use time_stepper, only: time_stepper_t
   implicit none
   private
-  public :: timed_result_t, pass_t, accept, take_row, note, lose, most_steps, numbers, &
-    of_tension, of_tension_h0, of_end_h0, of_end_load, of_end_displacement, of_dissipation, &
+  public :: timed_result_t, tally_t, pass_t, accept, take_row, note, make_room, lose, most_steps, &
+    numbers, of_tension, of_tension_h0, of_end_h0, of_end_load, of_end_displacement, of_dissipation, &
     of_suction
 
   !> The numbers that are reported.
@@ -40,13 +40,14 @@ module timed_record
     real(wp) :: lost_at = 0
   end type timed_result_t
 
-  !> A pass: its rows, and the times of its steps and the last three loads.
-  type :: pass_t
+  !> How far a pass has come, all in words of its own: rows so far, the last three loads, the way
+  !> that it is on, the length of the next step [s], and the row of the pass before that halves are
+  !> taken of.
+  type :: tally_t
     type(timed_result_t) :: result
-    type(record_t), allocatable :: row(:)
-    real(wp), allocatable :: time(:)
-    integer, allocatable :: way(:)
-    integer :: held = 0
+    integer :: held = 0, way = 0, halved = 1
+    real(wp) :: step = 0
+    logical :: ended = .false.
     !> Steps and jumps at which it is given up.
     integer :: most = most_steps, most_jumps = 50
     real(wp) :: recent(3, 3) = 0
@@ -56,7 +57,13 @@ module timed_record
     integer :: since = 0
     !> Whether the bodies were coming nearer to each other when they last moved.
     logical :: inwards = .true.
-    real(wp) :: work = 0, inside = 0
+    real(wp) :: work = 0, inside = 0, begun_with = 0
+  end type tally_t
+
+  !> A pass and its rows, of which `kept` are in the journal.
+  type, extends(tally_t) :: pass_t
+    type(record_t), allocatable :: row(:)
+    integer :: kept = 0
   end type pass_t
 
   !> A relative change of gap or radius that is no rounding.
@@ -86,9 +93,8 @@ contains
 
   !> Makes the next instant the present one. smooth: nothing has jumped; else what the bodies hold
   !> less, and dashpots have not taken, is lost in the jump.
-  subroutine accept(steps, way, next, smooth, at, now)
+  subroutine accept(steps, next, smooth, at, now)
     type(time_stepper_t), intent(inout) :: steps
-    integer, intent(in) :: way
     type(instant_t), intent(in) :: next
     logical, intent(in) :: smooth
     type(instant_t), intent(inout) :: at
@@ -109,7 +115,7 @@ contains
     steps%before = at
     at = next
     call take_row(at, now)
-    call note(steps, way, at, now)
+    call note(steps, at, now)
   end subroutine accept
 
   !> Keeps the last three loads, and the largest tension: of the parabola through them where the
@@ -128,7 +134,7 @@ contains
       if (now%recently == 3 .and. f(2) < min(f(1), f(3)) .and. t(3) > t(2) .and. t(2) > t(1)) then
         slope = (f(2:) - f(:2))/(t(2:) - t(:2))
         curvature = (slope(2) - slope(1))/(t(3) - t(1))
-        away = -0.5_wp*(slope(1)/curvature - (t(2) - t(1)))
+        away = -0.5_wp*(slope(1)/curvature + (t(2) - t(1)))
         least = f(2) + away*(slope(1) + curvature*(t(2) - t(1))) + curvature*away**2
         slope = (h(2:) - h(:2))/(t(2:) - t(:2))
         h0 = h(2) + away*merge(slope(1), slope(2), away < 0)
@@ -141,30 +147,17 @@ contains
   end subroutine take_row
 
   !> Adds an instant to the rows, and its qualities to those of the pass.
-  subroutine note(steps, way, at, now)
+  subroutine note(steps, at, now)
     type(time_stepper_t), intent(in) :: steps
-    integer, intent(in) :: way
     type(instant_t), intent(in) :: at
     type(pass_t), intent(inout) :: now
-    type(pass_t) :: longer
     integer :: k
 
-    if (.not. allocated(now%row)) allocate (now%row(1024), now%time(1024), now%way(1024))
-    if (now%held == size(now%row)) then
-      allocate (longer%row(2*now%held), longer%time(2*now%held), longer%way(2*now%held))
-      longer%row(:now%held) = now%row
-      longer%time(:now%held) = now%time
-      longer%way(:now%held) = now%way
-      call move_alloc(longer%row, now%row)
-      call move_alloc(longer%time, now%time)
-      call move_alloc(longer%way, now%way)
-    end if
+    call make_room(now, 1)
     now%held = now%held + 1
-    now%time(now%held) = at%time
-    now%way(now%held) = way
     associate (row => now%row(now%held), result => now%result, problem => steps%problem, &
       grid => steps%meshes%grid(at%mesh))
-      row = record_of(trim(names_of_ways(way)), problem, grid, at%state, stable_unasked, &
+      row = record_of(trim(names_of_ways(now%way)), problem, grid, at%state, stable_unasked, &
         holds(problem, steps%options%tolerance, at%state))
       row%time = at%time
       if (steps%compliance > 0) row%z = problem%law%separation_of(at%position)
@@ -184,5 +177,18 @@ contains
       end do
     end associate
   end subroutine note
+
+  !> Makes room for more rows.
+  subroutine make_room(now, more)
+    type(pass_t), intent(inout) :: now
+    integer, intent(in) :: more
+    type(record_t), allocatable :: longer(:)
+
+    if (.not. allocated(now%row)) allocate (now%row(1024))
+    if (now%held + more <= size(now%row)) return
+    allocate (longer(2*(now%held + more)))
+    longer(:now%held) = now%row(:now%held)
+    call move_alloc(longer, now%row)
+  end subroutine make_room
 
 end module timed_record

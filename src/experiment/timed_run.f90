@@ -11,6 +11,7 @@ module timed_run
   use edge_locked, only: new_mesh_family
   use mesh_digits, only: most_digits
   use records, only: observer_t
+  use journal, only: journal_t
   use numerics_choice, only: choice_t, fixed_choice, fixed_mesh, panels
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
@@ -35,8 +36,8 @@ module timed_run
   !> Passes, and the largest change of the path's coordinate in a step of the first: what changes by
   !> more has jumped, or is to be followed in shorter steps.
   integer, parameter :: most_passes = 9
-  !> Passes that may lose the bodies before one is whole.
-  integer, parameter :: most_tries = 2
+  !> Passes in which the bodies may be lost before two are whole, one after the other.
+  integer, parameter :: most_tries = 3
   real(wp), parameter :: farthest = 0.3_wp
   !> Panels of the memory's mesh over the neck, with so many nodes more than others have; the most
   !> nodes: beyond, what is not resolved is told.
@@ -51,11 +52,13 @@ module timed_run
 
 contains
 
-  !> Goes through the motion of request%drive, and shows the rows of the last pass.
-  subroutine run_timed(request, problem, chosen, observer, result, cost, nodes)
+  !> Goes through the motion of request%drive, and shows the rows of the last pass. What it comes
+  !> to goes into the journal, if there is one.
+  subroutine run_timed(request, problem, chosen, journal, observer, result, cost, nodes)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     type(choice_t), intent(in) :: chosen
+    type(journal_t), pointer, intent(in) :: journal
     class(observer_t), intent(inout) :: observer
     type(timed_result_t), intent(out) :: result
     type(cost_t), intent(inout) :: cost
@@ -77,18 +80,20 @@ contains
       now = none
       call lay_out(request, drive, low, chosen, pass, steps)
       steps%farthest = farthest/2**(pass - 1)
-      call go_through(request, drive, pass, before, steps, observer, now)
+      call go_through(request, drive, pass, before, steps, journal, observer, now)
       if (now%result%lost) then
         ! Finer meshes may hold what was lost; what came before has its errors.
         if (whole > 1) now = before
-        if (whole > 0 .or. pass == most_tries .or. .not. now%result%begun .or. &
+        if (whole > 1 .or. pass == most_tries .or. .not. now%result%begun .or. &
           now%held > most_steps) exit
+        whole = 0
         cycle
       end if
       whole = whole + 1
       if (whole == 1) cycle
       call compare(request%numerics%accuracy, before%result, now%result)
-      enough = relative_error(now%result) <= request%numerics%accuracy .or. &
+      ! The first two may agree by chance.
+      enough = (relative_error(now%result) <= request%numerics%accuracy .and. whole > 2) .or. &
         allocated(request%drive%time_step)
       if (enough .or. 2*now%held > most_steps) exit
     end do
@@ -207,6 +212,7 @@ contains
     type(timed_result_t), intent(inout) :: now
 
     now%error = margin*abs(now%number - before%number)
+    where (before%error < huge(1.0_wp)) now%error = max(now%error, before%error/4)
     now%error(of_tension) = now%error(of_tension) + now%lifted + &
       of_meshes*accuracy*now%number(of_tension)
     now%error(of_end_load) = now%error(of_end_load) + &

@@ -10,7 +10,7 @@ module resumable_stepper
   use ending, only: ending_t, not_kept
   use stepper, only: keeping_stepper_t, branch_point_t, step_result_t
   use reported, only: error_probe_t
-  use journal, only: journal_t, of_step
+  use journal, only: of_step
   use byte_record, only: byte_record_t
   use state_records, only: put_cost, take_cost, put_position, take_position, put_event, &
     take_event, put_frozen, take_frozen
@@ -20,8 +20,6 @@ module resumable_stepper
   public :: resumable_stepper_t
 
   type, extends(keeping_stepper_t) :: resumable_stepper_t
-    !> Where the steps are kept.
-    type(journal_t), pointer :: journal => null()
     !> Time [s] that those solved since took.
     real(wp) :: own_seconds = 0
     !> Whether the solver still lacks the factors of the last record.

@@ -82,6 +82,17 @@ def test_steps_are_of_second_order(run):
         assert 3.6 < (a - b) / (b - c) < 4.4
 
 
+def test_the_largest_tension_is_between_rows(run):
+    found = [run(scene(0.05, 0.125, start=8.0, velocity=4.0, z_end=3.0, time_step=step,
+                       accuracy=accuracy)) for step, accuracy in ((0.02, 1e-3), (0.001, 1e-7))]
+    exact = found[1].summary
+    for key, of_rows in (("max_tension", -found[0].curve["load"].min()),
+                         ("max_tension_h0", found[0].curve["h0"][found[0].curve["load"].argmin()])):
+        off = abs(found[0].summary[key] - exact[key])
+        assert off < 0.3 * abs(of_rows - exact[key])
+        assert off <= found[0].summary[key + "_error"] + exact[key + "_error"]
+
+
 def test_pull_offs_rise_and_fall_with_velocity(run):
     slow, middle, fast = (
         run(scene(0.2, 2.0, velocity=velocity, start=20.0, turn=-4.0, accuracy=1e-3)).summary

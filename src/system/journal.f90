@@ -19,10 +19,10 @@ module journal
   use clock, only: seconds
   implicit none
   private
-  public :: journal_t, of_step, of_eigenvalue
+  public :: journal_t, of_step, of_eigenvalue, of_drive
 
   !> What records of one journal that are of different kinds begin with.
-  integer, parameter :: of_step = 1, of_eigenvalue = 2
+  integer, parameter :: of_step = 1, of_eigenvalue = 2, of_drive = 3
 
   !> Not to be copied while it is open. After the first thing that goes wrong, which is kept in
   !> `trouble`, nothing more is written.

@@ -11,8 +11,8 @@ module state_records
   use byte_record, only: byte_record_t
   implicit none
   private
-  public :: put_cost, take_cost, put_position, take_position, put_event, take_event, put_frozen, &
-    take_frozen
+  public :: put_cost, take_cost, put_state, take_state, put_position, take_position, put_event, &
+    take_event, put_frozen, take_frozen
 
 contains
 
