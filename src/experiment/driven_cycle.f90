@@ -22,8 +22,6 @@ module driven_cycle
     logical :: inward = .true., landed = .false.
     type(curve_state_t) :: before, after
     real(wp) :: energy = 0, uncertainty = 0
-    !> Derivatives of the energy by each parameter of &sensitivity, SI units.
-    real(wp), allocatable :: energy_rate(:)
   end type jump_t
 
   !> What a drive does to the bodies. Lost in all jumps, and over the cycle, the area between the
@@ -37,8 +35,6 @@ module driven_cycle
     type(leg_t), allocatable :: leg(:)
     type(jump_t), allocatable :: jump(:)
     real(wp) :: energy_lost = 0, cycle_energy = 0, uncertainty = 0
-    !> The same energies on finer meshes; unallocated where they are not known.
-    real(wp), allocatable :: fine_energy_lost, fine_cycle_energy
     !> Whether every state was solved, and every jump had an end.
     logical :: solved = .true., caught = .true.
   contains

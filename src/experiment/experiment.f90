@@ -19,11 +19,15 @@ module experiment
   use h0_schedule, only: path_plan, loading_plan, unloading_plan
   use experiment_result, only: experiment_result_t
   use exact_path, only: trace_exactly
-  use result_errors, only: judge_t, begin_judging, judge_locked, judge_fixed
-  use reading_errors, only: judge_readings
-  use result_sensitivities, only: find_sensitivities
+  use finer_solver, only: finer_t, rounding
+  use outcome_places, only: enter_path, enter_cycle, enter_branch, enter_readings, enter_energy
+  use table_places, only: enter_table
+  use place_errors, only: judge_places
+  use place_rates, only: rate_places
   use path, only: follow_path
-  use path_readings, only: read_path
+  use places, only: places_t
+  use reported, only: of_load
+  use path_readings, only: path_readings_t, read_path
   use timed_run, only: run_timed
   use records, only: observer_t
   use clock, only: seconds
@@ -60,6 +64,10 @@ contains
     outcome%chosen = choose(request%numerics, problem, low, allocated(request%profiles))
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
+      if (allocated(outcome%stepped_path)) &
+        call enter_branch(outcome%stepped_path, outcome%places, 'end')
+      call enter_cycle(outcome, outcome%places)
+      call conclude(outcome)
       return
     end if
     fixed = outcome%chosen%is_fixed()
@@ -104,7 +112,7 @@ contains
     type(path_stepper_t), target :: along_path
     type(unique_stepper_t), target :: one_by_one
     class(locked_stepper_t), pointer :: steps
-    type(judge_t) :: judge
+    type(finer_t) :: fine
     real(wp) :: began
 
     ! Not allocatable: compiler note 3.
@@ -126,12 +134,12 @@ contains
     began = seconds()
     select type (steps)
     class is (path_stepper_t)
-      call trace_exactly(request, steps, high, low, observer, judge, store)
+      call trace_exactly(request, steps, high, low, observer, fine, outcome%places, store)
       outcome%left_out = steps%known%left_out
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
       if (request%reads_path()) call read_path(request, steps, observer, outcome%readings)
     class is (unique_stepper_t)
-      call begin_judging(judge, steps, high, low, store)
+      call fine%lay_out(steps, high, low, store)
       if (allocated(request%path)) call run_stepped_path(request, steps, observer, outcome)
     end select
     outcome%nodes = sum(steps%meshes%grid%nodes)
@@ -142,21 +150,52 @@ contains
       steps%cost%estimate_seconds
     began = seconds()
     call observer%hear('estimating errors')
-    call judge_locked(judge, outcome)
-    steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     select type (steps)
     class is (path_stepper_t)
-      if (allocated(outcome%readings)) &
-        call judge_readings(request, steps, judge, high, low, observer, outcome, store)
+      if (allocated(outcome%path)) call enter_path(steps, outcome%path, outcome%places)
     end select
+    if (allocated(outcome%stepped_path)) &
+      call enter_branch(outcome%stepped_path, outcome%places, 'end', steps)
+    call enter_cycle(outcome, outcome%places, steps)
+    select type (steps)
+    class is (path_stepper_t)
+      call enter_energy(steps, outcome, outcome%places)
+      if (allocated(outcome%readings)) call enter_what_is_read(steps, outcome%readings, &
+        outcome%places)
+    end select
+    call judge_places(fine, steps, outcome%places, .false.)
+    call conclude(outcome)
+    steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     if (allocated(request%sensitivity)) then
       select type (steps)
       class is (path_stepper_t)
-        call find_sensitivities(request%sensitivity, steps, observer, outcome)
+        call rate_places(request%sensitivity, steps, observer, outcome)
       end select
     end if
     outcome%cost = steps%cost
   end subroutine run_locked
+
+  !> Enters the places of what was read from the path.
+  subroutine enter_what_is_read(steps, readings, places)
+    class(path_stepper_t), intent(inout) :: steps
+    type(path_readings_t), intent(inout) :: readings
+    type(places_t), intent(inout) :: places
+
+    call enter_readings(readings, places)
+    if (allocated(readings%prescribed)) call enter_table(steps, readings, places)
+  end subroutine enter_what_is_read
+
+  !> The largest error of all that is reported.
+  subroutine conclude(outcome)
+    type(experiment_result_t), intent(inout) :: outcome
+
+    if (.not. allocated(outcome%places%place)) return
+    if (.not. any(outcome%places%place%judged)) return
+    outcome%error_estimate = max(rounding, outcome%places%largest_error())
+    if (allocated(outcome%readings)) outcome%error_estimate = max(outcome%error_estimate, &
+      outcome%places%largest_of('table', of_load)/ &
+      max(outcome%readings%table_load, tiny(1.0_wp)))
+  end subroutine conclude
 
   !> The cycle on a mesh fixed in space, for H0 down to low.
   subroutine run_fixed(request, problem, low, observer, outcome, keeper)
@@ -167,6 +206,7 @@ contains
     type(experiment_result_t), intent(inout) :: outcome
     class(keeping_stepper_t), intent(inout), optional :: keeper
     type(fixed_stepper_t) :: steps
+    type(finer_t) :: fine
     real(wp) :: began
 
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
@@ -185,7 +225,10 @@ contains
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
     call observer%hear('estimating errors')
-    call judge_fixed(steps, low, outcome)
+    call enter_cycle(outcome, outcome%places, steps)
+    call fine%lay_out_fixed(steps, outcome%chosen, low)
+    call judge_places(fine, steps, outcome%places, .false.)
+    call conclude(outcome)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     outcome%cost = steps%cost
   end subroutine run_fixed

@@ -16,18 +16,13 @@ module curve_states
   use path_curve, only: curve_t, no_mesh
   implicit none
   private
-  public :: curve_state_t, curve_solver_t, place_t, reading_t, reading_of
+  public :: curve_state_t, curve_solver_t, place_t
 
   !> A place on a curve.
   type :: place_t
     integer :: interval = 0
     real(wp) :: x = 0
   end type place_t
-
-  !> What is reported of an equilibrium, in the units of `dimensionless_problem`.
-  type :: reading_t
-    real(wp) :: h0 = 0, load = 0, displacement = 0, radius = 0
-  end type reading_t
 
   !> A solved equilibrium at a place: h0, load, gap on the axis, energy in the units of
   !> `dimensionless_problem`, derivatives of h0 and load by x, modes unstable at fixed h0.
@@ -37,11 +32,8 @@ module curve_states
     real(wp) :: slopes(2) = 0, residual = 0
     integer :: modes = 0
     logical :: converged = .false.
-    !> Derivatives of what is reported of it by each parameter of &sensitivity
-    !> (`place_sensitivity`).
-    real(wp), allocatable :: rate(:, :)
-    !> What is reported at the same place of a path on finer meshes (`reading_errors`).
-    type(reading_t), allocatable :: fine
+    !> The equilibrium itself, if it is on a mesh.
+    type(state_t) :: state
   end type curve_state_t
 
   !> A curve, and what solves states on it.
@@ -63,13 +55,6 @@ module curve_states
   integer, parameter :: looks = 8
 
 contains
-
-  !> What is reported of a state.
-  pure type(reading_t) function reading_of(state) result(reading)
-    type(curve_state_t), intent(in) :: state
-
-    reading = reading_t(state%h0, state%load, state%axis_gap - state%h0, state%radius)
-  end function reading_of
 
   !> The equilibrium at a place that is on a mesh, with its tangent by the path's coordinate.
   subroutine equilibrium_at(self, equations, known, place, state, tangent, converged)
@@ -134,6 +119,7 @@ contains
     found%load = state%load
     found%axis_gap = state%axis_gap
     found%residual = state%residual
+    found%state = state
     if (.not. found%converged) return
     associate (node => self%curve%begin_of(place%interval))
       found%radius = radius_of_gap(equations%problem%shape, self%curve%contact_gap, &

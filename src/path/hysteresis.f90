@@ -1,70 +1,51 @@
-!> The energy lost in the jumps of an experiment at controlled h0: the difference of potential
-!> energy between the fold that a jump starts from and the state that it ends in. Over a closed
-!> cycle it is the area between the ways out and back.
+!> The jumps of a cycle at controlled h0. What they lose is the difference of potential energy
+!> between the fold that a jump starts from and the state that it ends in: over a closed cycle the
+!> area between the ways out and back.
 module hysteresis
   use kinds, only: wp
-  use equilibrium, only: equations_t
   use known_path, only: known_path_t, landing_t
-  use potential_energy, only: energy_of
   implicit none
   private
-  public :: lost_energy_t, energy_lost
-
-  !> Lost energy, the same on the finer mesh of the error estimate, and what rounding leaves; in
-  !> units of load times length. The folds that the jumps start from.
-  type :: lost_energy_t
-    real(wp) :: energy = 0, fine_energy = 0, rounding = 0
-    integer, allocatable :: fold(:)
-  end type lost_energy_t
+  public :: folds_of_cycle
 
 contains
 
-  !> Adds what is lost in the jumps that lead from the stable piece `from` to the piece `to`, h0
-  !> going no lower than `lowest`; whole = .false. where no jumps lead there.
-  subroutine energy_lost(equations, known, from, to, lowest, lost, whole)
-    type(equations_t), intent(in) :: equations
+  !> The folds that jumps start from, from the outermost stable piece to the piece `turned` and
+  !> back, h0 going no lower than `lowest`; none where no jumps lead there.
+  function folds_of_cycle(known, turned, lowest) result(fold)
     type(known_path_t), intent(in) :: known
-    integer, intent(in) :: from, to
+    integer, intent(in) :: turned
     real(wp), intent(in) :: lowest
-    type(lost_energy_t), intent(inout) :: lost
-    logical, intent(out) :: whole
+    integer, allocatable :: fold(:)
     integer :: k
+    logical :: whole
 
-    if (.not. allocated(lost%fold)) allocate (lost%fold(0))
-    k = from
-    do while (k /= to)
-      if (to > k) then
-        call add(known%inward(k))
-      else
-        call add(known%outward(k))
-      end if
-      if (.not. whole) return
-    end do
+    allocate (fold(0))
     whole = .true.
+    k = 1
+    do while (k /= turned .and. whole)
+      call add(known%inward(k), turned)
+    end do
+    do while (k /= 1 .and. whole)
+      call add(known%outward(k), 1)
+    end do
+    if (.not. whole) fold = fold(:0)
 
   contains
 
-    subroutine add(landing)
+    subroutine add(landing, to)
       type(landing_t), intent(in) :: landing
-      real(wp) :: before, after, uncertainty(2)
+      integer, intent(in) :: to
 
       whole = landing%piece > 0 .and. landing%converged
       ! Beyond where it was to lead: another way.
       if (whole) whole = (landing%piece - to)*(k - to) >= 0
+      if (whole) whole = known%path%point(landing%fold)%state%h0 >= lowest
       if (.not. whole) return
-      associate (fold => known%path%point(landing%fold))
-        whole = fold%state%h0 >= lowest
-        call energy_of(equations, fold%mesh, fold%state, before, uncertainty(1))
-        call energy_of(equations, landing%mesh, landing%state, after, uncertainty(2))
-        lost%energy = lost%energy + (before - after)
-        if (allocated(fold%fine) .and. allocated(landing%fine)) &
-          lost%fine_energy = lost%fine_energy + (fold%fine%energy - landing%fine%energy)
-        lost%rounding = lost%rounding + sum(uncertainty)
-        lost%fold = [lost%fold, landing%fold]
-      end associate
+      fold = [fold, landing%fold]
       k = landing%piece
     end subroutine add
 
-  end subroutine energy_lost
+  end function folds_of_cycle
 
 end module hysteresis

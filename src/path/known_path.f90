@@ -16,7 +16,6 @@ module known_path
   use mending, only: mender_t, new_mender, left_on_path
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
-  use reported, only: error_t, measure_t
   use state_search, only: neighbours_t, neighbours_of, solve_at_h0
   implicit none
   private
@@ -38,9 +37,6 @@ module known_path
     real(wp) :: coordinate = 0
     type(state_t) :: state
     logical :: converged = .false.
-    !> As for a point of the path.
-    type(measure_t), allocatable :: fine
-    type(error_t), allocatable :: error
   end type landing_t
 
   type :: known_path_t

@@ -15,7 +15,6 @@ module traced_path
   use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
   use edge_locked, only: approach
-  use reported, only: error_t, measure_t
   use path_tangent, only: tangent_t, of_h0, of_load
   use arc, only: arc_t
   use path_extremum, only: extremum_t, find_extrema
@@ -40,9 +39,6 @@ module traced_path
     !> the path has both its ends on one mesh.
     type(state_t), allocatable :: twin
     type(tangent_t), allocatable :: twin_tangent
-    !> What it is on a finer mesh, and its errors: once they were estimated.
-    type(measure_t), allocatable :: fine
-    type(error_t), allocatable :: error
   end type path_point_t
 
   type :: traced_path_t

@@ -59,12 +59,12 @@ contains
         call write_device(problem, readings, results)
         call results%end_table()
         call results%begin_table('device_jumps.csv', jump_columns)
-        call write_jumps(problem, readings, results)
+        call write_jumps(problem, readings, outcome%places, results)
         call results%end_table()
       end if
       if (allocated(readings%loaded)) then
         call results%begin_table('fixed_load.csv', fixed_load_columns)
-        call write_fixed_loads(problem, readings, results)
+        call write_fixed_loads(problem, readings, outcome%places, results)
         call results%end_table()
       end if
       if (.not. allocated(readings%prescribed)) return
@@ -84,7 +84,7 @@ contains
 
     if (.not. (allocated(outcome%readings) .or. allocated(outcome%timed))) return
     call results%begin_table('sensitivity.csv', sensitivity_columns)
-    call write_sensitivity(problem, sensitivity%varied, summary, outcome%readings, results)
+    call write_sensitivity(problem, sensitivity%varied, summary, outcome%places, results)
     call results%end_table()
     if (.not. allocated(outcome%readings)) return
     associate (readings => outcome%readings)

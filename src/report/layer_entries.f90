@@ -1,38 +1,29 @@
-!> What the summary says of layered bodies, and of a scene that is not on the ground of their model.
+!> What the summary says of a scene of layered bodies that is not on the ground of their model.
 module layer_entries
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, largest_tension
   use layered_body, only: layered_body_t
   use layered_surface, only: layered_surface_t
   use records, only: extent_t
+  use reported, only: reported_t, of_h0, of_load
+  use places, only: places_t
   use summary, only: summary_t
   use validity, only: strained
   use quality_warnings, only: short_number
   implicit none
   private
-  public :: summarise_layers, judge_layers
+  public :: judge_layers
 
 contains
 
-  !> The moduli of short and of long waves.
-  subroutine summarise_layers(problem, summary)
-    type(problem_t), intent(in) :: problem
-    type(summary_t), intent(inout) :: summary
-
-    select type (body => problem%body)
-    type is (layered_body_t)
-      call summary%set('top_modulus', 0.5_wp*problem%stiffness)
-      if (body%bottom > 0) &
-        call summary%set('bottom_modulus', 0.5_wp*problem%stiffness/body%bottom)
-    end select
-  end subroutine summarise_layers
-
   !> Warns of layers that are thinner than the force reaches; of soft ones that are pressed to a
   !> part of their thickness that is not small; and of what lies deeper and is strained by the load.
-  subroutine judge_layers(problem, extent, summary)
+  subroutine judge_layers(problem, extent, places, summary)
     type(problem_t), intent(in) :: problem
     type(extent_t), intent(in) :: extent
+    type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
+    type(reported_t) :: finish, lowest
     real(wp) :: reach, deepest, force, strain
     integer :: i
 
@@ -41,11 +32,11 @@ contains
       reach = problem%length
       if (problem%law%edge_gap > 0 .and. problem%law%adhesion > 0) reach = &
         problem%law%adhesion*problem%pressure*problem%length/largest_tension(problem)
-      deepest = 0
-      if (summary%has('end_displacement')) deepest = -summary%number('end_h0')
-      force = 0
-      if (summary%has('max_tension')) force = summary%number('max_tension')
-      if (summary%has('end_load')) force = max(force, abs(summary%number('end_load')))
+      finish = places%place_of('end')
+      lowest = places%place_of('max_tension')
+      deepest = -problem%law%separation_of(finish%at(of_h0))
+      if (.not. places%has('end')) deepest = 0
+      force = problem%load*max(-lowest%at(of_load), abs(finish%at(of_load)))
       do i = 1, 2
         if (size(body%surface(i)%thickness) == 0) cycle
         associate (thickness => body%surface(i)%thickness*problem%lateral)

@@ -2,14 +2,14 @@
 !> forces act and bodies touch, strains that are small, and what a force law says of itself.
 module validity
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t, largest_tension
-  use experiment_result, only: experiment_result_t
+  use dimensionless_problem, only: problem_t, surface_energy, largest_tension
+  use text, only: brief
   use records, only: extent_t
   use summary, only: summary_t
   use quality_warnings, only: short_number
   implicit none
   private
-  public :: judge_law, judge_extent, extent_of, strained
+  public :: judge_law, judge_extent, strained
 
   !> Part of the radius that is worth a note, and a warning: a parabola is off from a circle by a
   !> quarter of its square. Pressure over stiffness, about the strain, that is worth a warning.
@@ -23,6 +23,12 @@ contains
     type(summary_t), intent(inout) :: summary
 
     if (problem%law%caveat /= '') call summary%warn(trim(problem%law%caveat))
+    if (problem%law%rest_gap > 0 .and. .not. problem%law%of_paper) then
+      call take_table_error(problem, summary)
+      if (.not. surface_energy(problem) > 0) &
+        call summary%warn('contact is only metastable: the bodies have less energy apart, '// &
+        'and no classical theory applies')
+    end if
     ! Other shapes than parabolas, circles and ellipses have no radius on the axis.
     if (abs(problem%shape%exponent - 2) > 0) return
     call judge(summary, 'range_over_radius', range_of(problem)/problem%radius, &
@@ -30,15 +36,38 @@ contains
       'Derjaguin''s approximation needs forces of short range')
   end subroutine judge_law
 
-  !> What follows from the states of the experiments.
-  subroutine judge_extent(problem, outcome, summary)
+  !> How well the points of a table tell the depth of the well and the largest tension: the pull-off
+  !> is in proportion to the first for hard bodies and for soft ones, and depends on both between.
+  subroutine take_table_error(problem, summary)
     type(problem_t), intent(in) :: problem
-    type(experiment_result_t), intent(in) :: outcome
     type(summary_t), intent(inout) :: summary
-    type(extent_t) :: extent
+    real(wp) :: of_well(2, 1), of_edge(2, 1), depth(1), tension(1), error
+    !> Beyond this the table and not the mesh decides what is found.
+    real(wp), parameter :: coarse = 1.0e-3_wp
+
+    associate (law => problem%law)
+      of_well = law%table_error([law%rest_gap])
+      if (.not. of_well(2, 1) > 0) return
+      depth = abs(law%energy([law%rest_gap]))
+      error = of_well(2, 1)/max(depth(1), tiny(1.0_wp))
+      if (law%edge_gap > 0) then
+        of_edge = law%table_error([law%edge_gap])
+        tension = abs(law%pressure([law%edge_gap]))
+        error = max(error, of_edge(1, 1)/max(tension(1), tiny(1.0_wp)))
+      end if
+    end associate
+    call summary%set('table_error', error)
+    if (error > coarse) call summary%warn('the points of the table are far apart: work of ' // &
+      'adhesion and pull-off are uncertain by about ' // brief(error) // ' of themselves')
+  end subroutine take_table_error
+
+  !> What follows from the states of the experiments.
+  subroutine judge_extent(problem, extent, summary)
+    type(problem_t), intent(in) :: problem
+    type(extent_t), intent(in) :: extent
+    type(summary_t), intent(inout) :: summary
     real(wp) :: strain
 
-    extent = extent_of(outcome)
     if (extent%contact_radius > 0) call judge(summary, 'contact_over_radius', &
       problem%shape%slope(extent%contact_radius/problem%lateral)*problem%length/problem%lateral, &
       'the contact radius', 'half-spaces with small slopes stand for the bodies')
@@ -74,30 +103,5 @@ contains
     if (problem%law%edge_gap > 0 .and. problem%law%adhesion > 0) range_of = &
       problem%law%adhesion*problem%pressure*problem%length/largest_tension(problem)
   end function range_of
-
-  !> The extent of all rows.
-  type(extent_t) function extent_of(outcome) result(extent)
-    type(experiment_result_t), intent(in) :: outcome
-    integer :: k
-
-    if (allocated(outcome%path)) call join(outcome%path%extent)
-    if (allocated(outcome%stepped_path)) call join(outcome%stepped_path%extent)
-    if (allocated(outcome%loading)) call join(outcome%loading%extent)
-    if (allocated(outcome%timed)) call join(outcome%timed%extent)
-    if (.not. allocated(outcome%unloading)) return
-    do k = 1, size(outcome%unloading)
-      call join(outcome%unloading(k)%extent)
-    end do
-
-  contains
-
-    subroutine join(other)
-      type(extent_t), intent(in) :: other
-
-      extent%contact_radius = max(extent%contact_radius, other%contact_radius)
-      extent%pressure = max(extent%pressure, other%pressure)
-    end subroutine join
-
-  end function extent_of
 
 end module validity

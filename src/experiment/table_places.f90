@@ -1,0 +1,84 @@
+!> Places at which a table of stable states is judged: some of its rows, and between them what cubic
+!> polynomials with their slopes miss.
+module table_places
+  use kinds, only: wp
+  use path_curve, only: curve_node_t, no_mesh
+  use curve_states, only: curve_state_t, curve_solver_t
+  use driven_pieces, only: state_driven
+  use driven_cycle, only: leg_t, nodes_on
+  use path_stepper, only: path_stepper_t
+  use path_readings, only: path_readings_t
+  use reported, only: reported_t, reported_state, of_h0, of_load
+  use places, only: places_t
+  implicit none
+  private
+  public :: enter_table
+
+  !> How many rows of a leg are judged.
+  integer, parameter :: judged_rows = 16
+
+contains
+
+  !> Enters rows of the table as places.
+  subroutine enter_table(steps, readings, places)
+    class(path_stepper_t), intent(inout) :: steps
+    type(path_readings_t), intent(inout) :: readings
+    type(places_t), intent(inout) :: places
+    type(curve_solver_t) :: solver
+    type(curve_node_t), allocatable :: nodes(:)
+    integer :: i, k, row, last
+
+    solver%options = steps%options
+    solver%curve = readings%curve
+    do i = 1, size(readings%prescribed%leg)
+      nodes = nodes_on(readings%curve, readings%prescribed%leg(i))
+      if (size(nodes) < 2) cycle
+      readings%table_load = max(readings%table_load, maxval(abs(nodes%load)))
+      last = 0
+      do k = 1, judged_rows
+        row = 1 + (k - 1)*(size(nodes) - 2)/(judged_rows - 1)
+        if (row == last) cycle
+        last = row
+        call places%enter('table', places%elements('table') + 1, place_of(steps, nodes(row)))
+        call hold(readings%prescribed%leg(i), nodes(row), nodes(row + 1))
+      end do
+    end do
+
+  contains
+
+    !> Holds a polynomial against the state in the middle between a row and the next.
+    subroutine hold(leg, row, next)
+      type(leg_t), intent(in) :: leg
+      type(curve_node_t), intent(in) :: row, next
+      type(curve_state_t) :: state
+
+      associate (driven => readings%prescribed, width => next%h0 - row%h0)
+        if (.not. abs(width) > 0) return
+        call state_driven(solver, steps%equations_t, steps%known, driven%drive, &
+          driven%piece(leg%piece), 0.5_wp*(row%h0 + next%h0), state)
+        if (state%converged) readings%table_interpolation_error = &
+          max(readings%table_interpolation_error, abs(state%load - 0.5_wp*(row%load + next%load) - &
+          width/8*(row%load_slope/row%h0_slope - next%load_slope/next%h0_slope)))
+      end associate
+    end subroutine hold
+
+  end subroutine enter_table
+
+  !> A node of the curve as a place at its h0.
+  type(reported_t) function place_of(steps, node) result(place)
+    class(path_stepper_t), intent(in) :: steps
+    type(curve_node_t), intent(in) :: node
+    logical :: there
+
+    place%mesh = node%mesh
+    place%s = node%x
+    if (node%mesh == no_mesh) then
+      place%at(:of_load) = [node%h0, node%load]
+      return
+    end if
+    call steps%known%path%seen_on(node%point, node%mesh, place%state, place%s, there)
+    place = reported_state(node%mesh, place%state)
+    place%s = node%x
+  end function place_of
+
+end module table_places
