@@ -12,7 +12,7 @@ module exact_path
   use path_stepper, only: path_stepper_t
   use experiment_request, only: request_t
   use places, only: places_t
-  use outcome_places, only: keep_extrema
+  use reported, only: reported_t
   use finer_solver, only: finer_t
   use place_errors, only: judge_places
   implicit none
@@ -52,7 +52,7 @@ contains
     type(tracing_t) :: before
     type(known_path_t) :: nothing
     real(wp) :: worst, began
-    integer :: round, i
+    integer :: round, i, kept
 
     associate (accuracy => request%numerics%accuracy, cost => steps%cost)
       do round = 1, most_rounds
@@ -64,7 +64,12 @@ contains
         call fine%lay_out(steps, h0_high, h0_low, store)
         worst = 0
         if (allocated(request%path)) then
-          call keep_extrema(steps, places)
+          do i = 1, steps%known%path%held
+            associate (point => steps%known%path%point(i))
+              if (point%fold .or. point%load_extremum) &
+                call places%keep(reported_t(point=i), kept)
+            end associate
+          end do
           call judge_places(fine, steps, places, .true.)
           if (allocated(places%place)) worst = maxval([0.0_wp, (places%place(i)%relative_error(), &
             i=1, size(places%place))])

@@ -25,9 +25,8 @@ module experiment
   use place_errors, only: judge_places
   use place_rates, only: rate_places
   use path, only: follow_path
-  use places, only: places_t
   use reported, only: of_load
-  use path_readings, only: path_readings_t, read_path
+  use path_readings, only: read_path
   use timed_run, only: run_timed
   use records, only: observer_t
   use clock, only: seconds
@@ -65,7 +64,7 @@ contains
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
       if (allocated(outcome%stepped_path)) &
-        call enter_branch(outcome%stepped_path, outcome%places, 'end')
+        call enter_branch(outcome%stepped_path, 'end', outcome%places)
       call enter_cycle(outcome, outcome%places)
       call conclude(outcome)
       return
@@ -150,18 +149,15 @@ contains
       steps%cost%estimate_seconds
     began = seconds()
     call observer%hear('estimating errors')
-    select type (steps)
-    class is (path_stepper_t)
-      if (allocated(outcome%path)) call enter_path(steps, outcome%path, outcome%places)
-    end select
+    if (allocated(outcome%path)) call enter_path(outcome%path, outcome%places)
     if (allocated(outcome%stepped_path)) &
-      call enter_branch(outcome%stepped_path, outcome%places, 'end', steps)
-    call enter_cycle(outcome, outcome%places, steps)
+      call enter_branch(outcome%stepped_path, 'end', outcome%places)
+    call enter_cycle(outcome, outcome%places)
+    if (allocated(outcome%readings)) call enter_readings(outcome%readings, outcome%places)
     select type (steps)
     class is (path_stepper_t)
-      call enter_energy(steps, outcome, outcome%places)
-      if (allocated(outcome%readings)) call enter_what_is_read(steps, outcome%readings, &
-        outcome%places)
+      call enter_energy(steps%known, outcome, outcome%places)
+      if (request%table) call enter_table(steps, outcome%readings, outcome%places)
     end select
     call judge_places(fine, steps, outcome%places, .false.)
     call conclude(outcome)
@@ -174,16 +170,6 @@ contains
     end if
     outcome%cost = steps%cost
   end subroutine run_locked
-
-  !> Enters the places of what was read from the path.
-  subroutine enter_what_is_read(steps, readings, places)
-    class(path_stepper_t), intent(inout) :: steps
-    type(path_readings_t), intent(inout) :: readings
-    type(places_t), intent(inout) :: places
-
-    call enter_readings(readings, places)
-    if (allocated(readings%prescribed)) call enter_table(steps, readings, places)
-  end subroutine enter_what_is_read
 
   !> The largest error of all that is reported.
   subroutine conclude(outcome)
@@ -225,7 +211,7 @@ contains
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
     call observer%hear('estimating errors')
-    call enter_cycle(outcome, outcome%places, steps)
+    call enter_cycle(outcome, outcome%places)
     call fine%lay_out_fixed(steps, outcome%chosen, low)
     call judge_places(fine, steps, outcome%places, .false.)
     call conclude(outcome)

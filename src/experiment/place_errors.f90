@@ -10,14 +10,17 @@ module place_errors
   use equilibrium, only: control_t, equations_t, residual_floor
   use solver, only: solver_t
   use edge_locked, only: approach
-  use path_coordinate, only: path_control
+  use path_coordinate, only: path_control, coordinate_of
+  use path_tangent, only: h0_alone => of_h0, load_alone => of_load
+  use potential_energy, only: energy_of
+  use known_path, only: landing_t, landing_over
   use locked_meshes, only: h0_control
   use traced_path, only: traced_path_t
   use path_stepper, only: path_stepper_t
   use path_curve, only: no_mesh
   use tension_search, only: load_tolerance
   use reported, only: reported_t, reported_state, of_h0, of_load, of_displacement, &
-    of_radius, of_edge, nowhere, read_of_states
+    of_energy, of_radius, of_edge, nowhere, read_of_states
   use places, only: places_t
   use path_expansion, only: expansion_t, expansion_about
   use finer_solver, only: finer_t, rounding, worst_residual, what_residual_leaves
@@ -42,13 +45,14 @@ contains
     integer :: i
 
     if (.not. allocated(places%place)) return
+    select type (steps)
+    class is (path_stepper_t)
+      call locate(steps, places)
+    end select
     fine%cost = steps%cost
     do i = 1, size(places%place)
       associate (place => places%place(i))
-        if (place%judged .or. place%mesh == nowhere) cycle
-        if (.not. all) then
-          if (.not. places%is_used(i, .false.)) cycle
-        end if
+        if (place%judged .or. place%mesh == nowhere .or. .not. (all .or. place%read)) cycle
         wanted = dot_product(place%drive, place%at(:2))
         if (place%after > 0) wanted = &
           dot_product(place%drive, places%place(place%after)%fine(:2))
@@ -72,6 +76,61 @@ contains
     end do
     steps%cost = fine%cost
   end subroutine judge_places
+
+  !> Finds the equilibria on the path that places are.
+  subroutine locate(steps, places)
+    class(path_stepper_t), intent(in) :: steps
+    type(places_t), intent(inout) :: places
+    integer :: i, k
+    logical :: inside
+
+    do i = 1, size(places%place)
+      associate (place => places%place(i), known => steps%known)
+        if (place%judged .or. place%mesh == no_mesh) cycle
+        if (place%landing) then
+          call landing_over(known, place%point, k, inside)
+          if (inside) then
+            call take_landing(known%inward(k), place)
+          else
+            call take_landing(known%outward(k), place)
+          end if
+        else if (place%point > 0) then
+          associate (point => known%path%point(place%point))
+            call take(place, point%mesh, point%coordinate, point%state)
+            place%drive = merge(h0_alone, load_alone, point%fold)
+            place%turn_of = place%drive
+          end associate
+        else if (place%has_state() .and. place%mesh /= nowhere) then
+          place%s = coordinate_of(steps%problem, place%mesh, place%state)
+        end if
+        if (place%has_state()) call energy_of(steps%equations_t, place%mesh, place%state, &
+          place%at(of_energy), place%left(of_energy))
+      end associate
+    end do
+  end subroutine locate
+
+  subroutine take_landing(landing, place)
+    type(landing_t), intent(in) :: landing
+    type(reported_t), intent(inout) :: place
+
+    if (landing%converged) call take(place, landing%mesh, landing%coordinate, landing%state)
+    place%judged = .not. landing%converged
+    place%known = landing%converged
+  end subroutine take_landing
+
+  subroutine take(place, mesh, s, state)
+    type(reported_t), intent(inout) :: place
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    type(state_t), intent(in) :: state
+    type(reported_t) :: here
+
+    here = reported_state(mesh, state)
+    place%mesh = mesh
+    place%s = s
+    place%state = state
+    place%at = here%at
+  end subroutine take
 
   !> Judges a place of a path; wanted: what D is there on the finer mesh, unless it turns.
   subroutine judge_on_path(own, fine, path, wanted, place)

@@ -52,7 +52,7 @@ contains
     associate (places => outcome%places)
       do i = 1, size(places%place)
         associate (place => places%place(i))
-          if (place%mesh == nowhere .or. .not. places%is_used(i, .true.)) cycle
+          if (place%mesh == nowhere .or. .not. place%differentiated) cycle
           wanted = 0
           found = .true.
           if (place%after > 0) then

@@ -2,11 +2,10 @@
 !> name, one or more elements, and for each of them one place, or several whose sum it is, such as
 !> the energies before and after jumps.
 module places
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use reported, only: reported_t, nowhere, value_of, unit_of, rates_of, what_is_left, least, &
-    of_h0, of_energy, of_position
+  use reported, only: reported_t, values_of, units_of, rates_of, least, quantities, of_h0
   implicit none
   private
   public :: places_t, readings_t
@@ -27,15 +26,15 @@ module places
   contains
     procedure :: keep
     procedure :: enter
-    procedure :: enter_nothing
+    procedure :: enter_list
     procedure :: forget
     procedure :: has
     procedure :: elements
     procedure :: place_of
-    procedure :: is_used
     procedure :: largest_error
     procedure :: largest_of
     procedure :: read_numbers
+    procedure, private :: parameters
   end type places_t
 
   !> A number as it is reported, element by element, SI units; what does not exist is NaN. rate:
@@ -44,69 +43,89 @@ module places
     real(wp), allocatable :: value(:), error(:), rate(:, :)
   end type readings_t
 
-  !> What a table adds to the error of a run is judged over its largest load; energies have errors of
-  !> their own.
+  !> What a table adds to the error of a run is judged over its largest load; energies have errors
+  !> of their own.
   character(len=*), parameter :: of_table = 'table', of_energies = 'energy_lost'
+  !> What is asked for no derivatives.
+  character(len=*), parameter :: not_differentiated(*) = [character(len=8) :: 'profiles', &
+    'samples', of_table]
 
 contains
 
-  !> Finds a place in the table, or adds it.
-  subroutine keep(self, place, i)
+  !> Finds a place in the table, or adds it, and before it the one that its jump began from.
+  recursive subroutine keep(self, place, i)
     class(places_t), intent(inout) :: self
     type(reported_t), intent(in) :: place
     integer, intent(out) :: i
+    integer :: after
 
-    if (.not. allocated(self%place)) allocate (self%place(0), self%entry(0))
-    if (place%mesh /= nowhere) then
-      do i = 1, size(self%place)
-        if (is_same(self%place(i), place)) return
-      end do
-    end if
+    if (.not. allocated(self%place)) allocate (self%place(0))
+    after = place%after
+    if (place%landing) call self%keep(reported_t(point=place%point), after)
+    do i = 1, size(self%place)
+      if (is_same(self%place(i), place)) return
+    end do
     self%place = [self%place, place]
-    i = size(self%place)
+    self%place(i)%after = after
   end subroutine keep
 
+  !> Whether two places are one: a point of the path, the landing after one, or all numbers agree.
   pure logical function is_same(one, other)
     type(reported_t), intent(in) :: one, other
 
-    is_same = one%mesh == other%mesh .and. abs(one%s - other%s) <= 0 .and. &
-      abs(one%at(of_h0) - other%at(of_h0)) <= 0 .and. all(abs(one%drive - other%drive) <= 0) .and. &
-      all(abs(one%turn_of - other%turn_of) <= 0) .and. one%after == other%after .and. &
-      (one%with_profile .eqv. other%with_profile) .and. &
-      (one%with_radius .eqv. other%with_radius) .and. (one%searched .eqv. other%searched)
+    is_same = one%point == other%point .and. (one%landing .eqv. other%landing) .and. &
+      (one%with_profile .eqv. other%with_profile)
+    if (is_same .and. one%point == 0) is_same = one%mesh == other%mesh .and. &
+      one%after == other%after .and. (one%searched .eqv. other%searched) .and. &
+      all(abs([one%at, one%drive, one%turn_of] - [other%at, other%drive, other%turn_of]) <= 0)
   end function is_same
 
   !> Lets an element of a number be read at a place, or adds `factor` times what is read there.
+  !> Without a place it is `factor` or, without that, does not exist.
   subroutine enter(self, name, element, place, factor)
     class(places_t), intent(inout) :: self
     character(len=*), intent(in) :: name
     integer, intent(in) :: element
-    type(reported_t), intent(in) :: place
+    type(reported_t), intent(in), optional :: place
     real(wp), intent(in), optional :: factor
     type(entry_t) :: entry
 
+    if (.not. allocated(self%entry)) allocate (self%entry(0))
     entry%name = name
     entry%element = element
-    call self%keep(place, entry%place)
+    if (present(place)) then
+      call self%keep(place, entry%place)
+      call mark(entry%place)
+      call mark(self%place(entry%place)%after)
+    end if
+    if (.not. present(place)) entry%factor = ieee_value(1.0_wp, ieee_quiet_nan)
     if (present(factor)) entry%factor = factor
     self%entry = [self%entry, entry]
+
+  contains
+
+    subroutine mark(i)
+      integer, intent(in) :: i
+
+      if (i == 0) return
+      self%place(i)%read = .true.
+      self%place(i)%differentiated = self%place(i)%differentiated .or. &
+        all(not_differentiated /= name)
+    end subroutine mark
+
   end subroutine enter
 
-  !> Enters an element that has no place: it is 0 or, without a value, does not exist.
-  subroutine enter_nothing(self, name, element, value)
+  !> Lets the elements that follow those there are be read at the places of a list.
+  subroutine enter_list(self, name, list)
     class(places_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    integer, intent(in) :: element
-    real(wp), intent(in), optional :: value
-    type(entry_t) :: entry
+    type(reported_t), intent(in) :: list(:)
+    integer :: i
 
-    if (.not. allocated(self%place)) allocate (self%place(0), self%entry(0))
-    entry%name = name
-    entry%element = element
-    entry%factor = ieee_value(1.0_wp, ieee_quiet_nan)
-    if (present(value)) entry%factor = value
-    self%entry = [self%entry, entry]
-  end subroutine enter_nothing
+    do i = 1, size(list)
+      call self%enter(name, self%elements(name) + 1, list(i))
+    end do
+  end subroutine enter_list
 
   !> Takes a number back.
   subroutine forget(self, name)
@@ -149,24 +168,6 @@ contains
       self%place(self%entry(findloc(self%entry%name == name, .true., 1))%place)
   end function place_of
 
-  !> Whether place i is read for any number, or leads to one that is, profiles and samples left out
-  !> if only derivatives count.
-  pure recursive logical function is_used(self, i, for_rates) result(used)
-    class(places_t), intent(in) :: self
-    integer, intent(in) :: i
-    logical, intent(in) :: for_rates
-    integer :: k
-
-    associate (entry => self%entry)
-      used = any(entry%place == i .and. .not. (for_rates .and. &
-        (entry%name == 'profiles' .or. entry%name == 'samples' .or. entry%name == of_table)))
-    end associate
-    do k = i + 1, size(self%place)
-      if (used) return
-      if (self%place(k)%after == i) used = self%is_used(k, for_rates)
-    end do
-  end function is_used
-
   !> The largest relative error of all that is reported; 0 if nothing was judged.
   pure real(wp) function largest_error(self) result(largest)
     class(places_t), intent(in) :: self
@@ -191,8 +192,9 @@ contains
 
     largest = 0
     do i = 1, size(self%entry)
-      associate (entry => self%entry(i))
-        if (entry%name == name) largest = max(largest, self%place(entry%place)%error(quantity))
+      if (self%entry(i)%name /= name) cycle
+      associate (errors => self%place(self%entry(i)%place)%errors())
+        largest = max(largest, errors(quantity))
       end associate
     end do
   end function largest_of
@@ -204,59 +206,57 @@ contains
     character(len=*), intent(in) :: name
     integer, intent(in) :: quantity
     type(readings_t) :: found
-    real(wp), allocatable :: difference(:), left(:)
-    logical, allocatable :: known(:)
+    real(wp), allocatable :: difference(:)
+    real(wp), dimension(quantities) :: units, values, misses, leftovers
     real(wp) :: none
-    integer :: i, n, parameters
+    logical, allocatable :: known(:)
+    integer :: i, n
 
     n = self%elements(name)
-    parameters = 0
-    if (n > 0) parameters = parameters_of(self)
-    allocate (found%value(n), difference(n), left(n), source=0.0_wp)
-    allocate (found%rate(parameters, n), source=0.0_wp)
+    allocate (found%value(n), found%error(n), difference(n), source=0.0_wp)
+    allocate (found%rate(self%parameters(), n), source=0.0_wp)
     allocate (known(n), source=.true.)
+    units = units_of(problem)
     none = ieee_value(none, ieee_quiet_nan)
     do i = 1, merge(size(self%entry), 0, n > 0)
       associate (entry => self%entry(i), k => self%entry(i)%element)
         if (entry%name /= name) cycle
         if (entry%place == 0) then
           found%value(k) = entry%factor
-          difference(k) = entry%factor
+          found%error(k) = entry%factor
           found%rate(:, k) = entry%factor
           cycle
         end if
         associate (place => self%place(entry%place))
-          found%value(k) = found%value(k) + entry%factor*value_of(problem, place, quantity)
+          values = values_of(problem, place)
+          misses = place%margin*(place%measures(place%at) - place%measures(place%fine))
+          leftovers = place%leftovers()
+          found%value(k) = found%value(k) + entry%factor*values(quantity)
           known(k) = known(k) .and. place%known
-          difference(k) = difference(k) + entry%factor*place%margin* &
-            (place%measure(place%at, quantity) - place%measure(place%fine, quantity))
-          left(k) = left(k) + what_is_left(place, quantity)
-          if (.not. place%judged .or. (place%searched .and. quantity == of_h0)) left(k) = none
-          if (quantity == of_position .and. .not. place%drive(1) > 0) left(k) = none
-          if (quantity == of_energy) left(k) = left(k) + epsilon(1.0_wp)* &
-            abs(place%measure(place%at, quantity))
-          if (allocated(place%rate)) then
-            found%rate(:, k) = found%rate(:, k) + entry%factor*rates_of(problem, place, quantity)
-          else
-            found%rate(:, k) = none
-          end if
+          difference(k) = difference(k) + entry%factor*misses(quantity)
+          found%error(k) = found%error(k) + leftovers(quantity)
+          if (.not. place%judged .or. (place%searched .and. quantity == of_h0) .or. &
+            ieee_is_nan(values(quantity))) found%error(k) = none
+          if (allocated(place%rate)) found%rate(:, k) = found%rate(:, k) + &
+            entry%factor*rates_of(problem, place, quantity)
+          if (.not. allocated(place%rate)) found%rate(:, k) = none
         end associate
       end associate
     end do
-    found%error = (abs(difference) + left)*unit_of(problem, quantity)
-    where (.not. known) found%error = &
-      max(abs(found%value), least(quantity)*unit_of(problem, quantity))
+    found%error = (abs(difference) + found%error)*units(quantity)
+    where (.not. known) found%error = max(abs(found%value), least(quantity)*units(quantity))
   end function read_numbers
 
   !> By how many parameters the places are differentiated.
-  pure integer function parameters_of(places) result(parameters)
-    type(places_t), intent(in) :: places
+  pure integer function parameters(self)
+    class(places_t), intent(in) :: self
     integer :: i
 
     parameters = 0
-    do i = 1, size(places%place)
-      if (allocated(places%place(i)%rate)) parameters = size(places%place(i)%rate, 2)
+    if (.not. allocated(self%place)) return
+    do i = 1, size(self%place)
+      if (allocated(self%place(i)%rate)) parameters = size(self%place(i)%rate, 2)
     end do
-  end function parameters_of
+  end function parameters
 
 end module places

@@ -28,6 +28,7 @@ contains
     type(curve_node_t), allocatable :: nodes(:)
     integer :: i, k, row, last
 
+    if (.not. allocated(readings%prescribed)) return
     solver%options = steps%options
     solver%curve = readings%curve
     do i = 1, size(readings%prescribed%leg)

@@ -9,18 +9,18 @@ module reported
   use contact_state, only: state_t
   implicit none
   private
-  public :: reported_t, reported_state, add_reported, drive_weights, value_of, unit_of, rates_of
+  public :: reported_t, reported_state, add_reported, drive_weights, values_of, units_of, rates_of
   public :: of_h0, of_load, of_displacement, of_energy, of_radius, of_edge, of_position, &
     of_tension, of_profile
-  public :: read_of_states, nowhere
-  public :: what_is_left, least
+  public :: read_of_states, quantities, nowhere
+  public :: least
 
   !> What is read of a state: h0, load, displacement, energy of the bodies, contact radius, radius
   !> that the mesh is locked to; and what follows from these: position of the drive, tension, error
   !> of the profile. Of a place `of_energy` is the energy of bodies and drive.
   integer, parameter :: read_of_states = 6, of_h0 = 1, of_load = 2, of_displacement = 3, &
-    of_energy = 4, of_radius = 5, of_edge = 6, of_position = 7, of_tension = 8, &
-    of_profile = 9
+    of_energy = 4, of_radius = 5, of_edge = 6, of_position = 7, of_tension = 8, of_profile = 9, &
+    quantities = 9
   !> The mesh of a place that no mesh has.
   integer, parameter :: nowhere = -1
 
@@ -46,6 +46,8 @@ module reported
     real(wp), dimension(read_of_states) :: at = 0, fine = 0, left = 0
     !> Error of gaps, and of pressures over the largest of them.
     real(wp) :: profile = 0
+    !> Whether it is read for a number, and for derivatives.
+    logical :: read = .false., differentiated = .false.
     !> Whether the finer mesh was asked, and had the place; differences count `margin` times.
     logical :: judged = .false., known = .true.
     real(wp) :: margin = 1
@@ -54,14 +56,18 @@ module reported
   contains
     procedure :: has_state
     procedure :: turns
-    procedure :: measure
-    procedure :: error
+    procedure :: measures
+    procedure :: leftovers
+    procedure :: errors
     procedure :: relative_error
   end type reported_t
 
 
-  !> An error that says that nothing is known; rounding of a whole calculation.
+  !> An error that says that nothing is known.
   real(wp), parameter :: most = 1.0e6_wp
+  !> Errors count against a quantity itself or, if this is larger, against so much.
+  real(wp), parameter :: least(quantities) = [1.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
+    1.0_wp, 0.0_wp, 0.0_wp]
 
 contains
 
@@ -102,141 +108,93 @@ contains
     turns = any(abs(self%turn_of) > 0)
   end function turns
 
-  !> A quantity, of values read at the place.
-  pure real(wp) function measure(self, value, quantity)
+  !> All quantities, of values read at the place.
+  pure function measures(self, value) result(all)
     class(reported_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
-    integer, intent(in) :: quantity
+    real(wp) :: all(quantities)
 
-    select case (quantity)
-    case (of_position)
-      measure = dot_product(self%drive, value(:2))
-    case (of_tension)
-      measure = -value(of_load)
-    case (of_energy)
-      ! At fixed D equilibria are where the energy of bodies and spring, or dead load, is
-      ! stationary.
-      if (self%drive(1) > 0) then
-        measure = value(of_energy) - 0.5_wp*self%drive(2)*value(of_load)**2
-      else
-        measure = value(of_energy) + value(of_load)*value(of_h0)
-      end if
-    case (of_profile)
-      measure = self%profile
-    case default
-      measure = value(quantity)
-    end select
-  end function measure
+    all(:read_of_states) = value
+    ! At fixed D equilibria are where the energy of bodies and spring, or dead load, is stationary.
+    if (self%drive(1) > 0) then
+      all(of_energy) = value(of_energy) - 0.5_wp*self%drive(2)*value(of_load)**2
+    else
+      all(of_energy) = value(of_energy) + value(of_load)*value(of_h0)
+    end if
+    all(of_position) = dot_product(self%drive, value(:2))
+    all(of_tension) = -value(of_load)
+    all(of_profile) = self%profile
+  end function measures
 
-  !> What solving has left of a quantity.
-  pure real(wp) function what_is_left(place, quantity) result(left)
-    type(reported_t), intent(in) :: place
-    integer, intent(in) :: quantity
-
-    select case (quantity)
-    case (of_position)
-      left = dot_product(abs(place%drive), place%left(:2))
-    case (of_tension)
-      left = place%left(of_load)
-    case (of_profile)
-      left = 0
-    case default
-      left = place%left(quantity)
-    end select
-  end function what_is_left
-
-  !> The error of a quantity; as large as itself where the finer mesh has no such place.
-  pure real(wp) function error(self, quantity)
+  !> What solving has left of all quantities, rounding included.
+  pure function leftovers(self) result(all)
     class(reported_t), intent(in) :: self
-    integer, intent(in) :: quantity
+    real(wp) :: all(quantities)
 
-    associate (own => self%measure(self%at, quantity))
-      if (self%known) then
-        error = self%margin*abs(own - self%measure(self%fine, quantity)) + &
-          what_is_left(self, quantity)
-      else
-        error = max(abs(own), least(quantity))
-      end if
+    all(:read_of_states) = self%left
+    all(of_position) = dot_product(abs(self%drive), self%left(:2))
+    all(of_tension) = self%left(of_load)
+    all(of_profile) = 0
+  end function leftovers
+
+  !> The errors of all quantities; as large as themselves where the finer mesh has no such place.
+  pure function errors(self) result(all)
+    class(reported_t), intent(in) :: self
+    real(wp) :: all(quantities)
+
+    associate (own => self%measures(self%at))
+      all = max(abs(own), least)
+      if (self%known) &
+        all = self%margin*abs(own - self%measures(self%fine)) + self%leftovers()
     end associate
-  end function error
+  end function errors
 
-  !> Errors count against the quantity itself or, if this is larger, against so much.
-  pure real(wp) function least(quantity)
-    integer, intent(in) :: quantity
-
-    select case (quantity)
-    case (of_h0, of_displacement, of_position)
-      least = 1
-    case default
-      least = tiny(1.0_wp)
-    end select
-  end function least
-
-  !> The largest error of what is reported of a place, relative; h0 and displacement relative to the
-  !> law's length where they are smaller; 0 if it was not judged.
+  !> The largest error of what is reported of a place, relative; 0 if it was not judged.
   pure real(wp) function relative_error(self) result(largest)
     class(reported_t), intent(in) :: self
+    real(wp) :: part(quantities)
 
     largest = 0
     if (.not. self%judged) return
-    largest = max(min(of(of_load), most), self%profile)
+    part = self%errors()
+    where (part > 0) part = &
+      min(part/max(abs(self%measures(self%at)), least, tiny(1.0_wp)), most)
+    largest = max(part(of_load), self%profile)
     if (self%after > 0) return
-    if (product(self%drive) < 0) then
-      largest = max(largest, of(of_position))
-    else
-      largest = max(largest, of(of_h0))
-    end if
+    if (.not. self%searched) &
+      largest = max(largest, part(merge(of_position, of_h0, product(self%drive) < 0)))
     ! At an extremum h0 or the load stands still while the displacement runs on: where on the flat
     ! top it is found does not move the curve, and no displacement is reported of it.
-    if (.not. self%turns()) largest = max(largest, of(of_displacement))
-    if (self%with_radius .and. self%at(of_radius) > 0) largest = max(largest, of(of_radius))
-
-  contains
-
-    pure real(wp) function of(quantity)
-      integer, intent(in) :: quantity
-
-      of = 0
-      if (quantity == of_h0 .and. self%searched) return
-      of = self%error(quantity)
-      if (of > 0) of = of/max(abs(self%measure(self%at, quantity)), least(quantity))
-    end function of
-
+    if (.not. self%turns()) largest = max(largest, part(of_displacement))
+    if (self%with_radius .and. self%at(of_radius) > 0) largest = max(largest, part(of_radius))
   end function relative_error
 
-  !> A quantity of a place [SI]; under a dead load a drive has no position.
-  pure real(wp) function value_of(problem, place, quantity) result(value)
+  !> All quantities of a place [SI]; under a dead load a drive has no position.
+  pure function values_of(problem, place) result(values)
     type(problem_t), intent(in) :: problem
     type(reported_t), intent(in) :: place
-    integer, intent(in) :: quantity
+    real(wp) :: values(quantities)
 
-    value = place%measure(place%at, quantity)
-    if (quantity == of_position .and. .not. place%drive(1) > 0) then
-      value = ieee_value(value, ieee_quiet_nan)
-    else if (quantity == of_h0 .or. quantity == of_position) then
-      value = problem%law%separation_of(value)
-    else
-      value = value*unit_of(problem, quantity)
-    end if
-  end function value_of
+    values = place%measures(place%at)
+    values([of_h0, of_position]) = problem%law%separation_of(values([of_h0, of_position]))
+    associate (others => [of_load, of_displacement, of_energy, of_radius, of_edge, of_tension, &
+      of_profile], units => units_of(problem))
+      values(others) = values(others)*units(others)
+    end associate
+    if (.not. place%drive(1) > 0) values(of_position) = ieee_value(1.0_wp, ieee_quiet_nan)
+  end function values_of
 
-  pure real(wp) function unit_of(problem, quantity) result(unit)
+  !> The units of all quantities [SI].
+  pure function units_of(problem) result(units)
     type(problem_t), intent(in) :: problem
-    integer, intent(in) :: quantity
+    real(wp) :: units(quantities)
 
-    select case (quantity)
-    case (of_load, of_tension)
-      unit = problem%load
-    case (of_energy)
-      unit = problem%load*problem%length
-    case (of_radius, of_edge)
-      unit = problem%lateral
-    case (of_profile)
-      unit = 1
-    case default
-      unit = problem%length
-    end select
-  end function unit_of
+    units = problem%length
+    units([of_load, of_tension]) = problem%load
+    units(of_energy) = problem%load*problem%length
+    units([of_radius, of_edge]) = problem%lateral
+    units(of_profile) = 1
+  end function units_of
 
   !> The weights of h0 and load in D, SI units.
   pure function drive_weights(problem, drive) result(weights)
@@ -255,7 +213,8 @@ contains
     integer, intent(in) :: quantity
     real(wp) :: rate(size(place%rate, 2))
 
-    associate (weights => drive_weights(problem, place%drive), own => place%rate)
+    associate (weights => drive_weights(problem, place%drive), own => place%rate, &
+      values => values_of(problem, place))
       select case (quantity)
       case (of_position)
         rate = matmul(weights, own(:2, :))
@@ -263,14 +222,9 @@ contains
       case (of_tension)
         rate = -own(of_load, :)
       case (of_energy)
-        associate (load => place%at(of_load)*problem%load, &
-          h0 => problem%law%separation_of(place%at(of_h0)))
-          if (weights(1) > 0) then
-            rate = own(of_energy, :) - weights(2)*load*own(of_load, :)
-          else
-            rate = own(of_energy, :) + load*own(of_h0, :) + h0*own(of_load, :)
-          end if
-        end associate
+        rate = own(of_energy, :) - weights(2)*values(of_load)*own(of_load, :)
+        if (.not. weights(1) > 0) rate = own(of_energy, :) + &
+          values(of_load)*own(of_h0, :) + values(of_h0)*own(of_load, :)
       case default
         rate = own(quantity, :)
       end select

@@ -13,7 +13,7 @@ module regime_rows
   use maugis, only: maugis_lambda, maugis_pull_off, maugis_radius_at_load, maugis_displacement
   use transition_fits, only: carpick_pull_off, carpick_radius_at_load, pietrement_pull_off, &
     pietrement_radius_at_load, pietrement_displacement_at_load
-  use reported, only: reported_t, of_h0, of_load, of_edge
+  use reported, only: reported_t, units_of, of_h0, of_load, of_edge
   use places, only: places_t
   use summary, only: summary_t
   implicit none
@@ -132,9 +132,11 @@ contains
     load = finish%at(of_load)*problem%load
     solved = measured_t(lowest%at(of_load)*problem%load, finish%at(of_edge)*problem%lateral, &
       (problem%law%rest_gap - finish%at(of_h0))*problem%length)
-    load_error = finish%error(of_load)*problem%load
-    uncertain = measured_t(lowest%error(of_load)*problem%load, &
-      finish%error(of_edge)*problem%lateral, finish%error(of_h0)*problem%length)
+    associate (errors => finish%errors()*units_of(problem), &
+      of_lowest => lowest%errors()*units_of(problem))
+      load_error = errors(of_load)
+      uncertain = measured_t(of_lowest(of_load), errors(of_edge), errors(of_h0))
+    end associate
   end subroutine measure
 
   !> What a theory says at a load [N]; NaN where it does not.

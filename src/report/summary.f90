@@ -40,7 +40,6 @@ module summary
     procedure :: numbers_of_row
     procedure :: has
     procedure :: number
-    procedure :: numbers
     procedure :: is_true
     procedure :: text
     procedure :: take_cost
@@ -168,19 +167,6 @@ contains
       if (allocated(value%truth)) number = merge(1, 0, value%truth)
     end associate
   end function number
-
-  !> All numbers of a key; none where it has no value.
-  pure function numbers(self, key)
-    class(summary_t), intent(in) :: self
-    character(len=*), intent(in) :: key
-    real(wp), allocatable :: numbers(:)
-
-    allocate (numbers(0))
-    if (.not. allocated(self%value)) return
-    associate (value => self%value(row_of(key)))
-      if (allocated(value%number)) numbers = value%number
-    end associate
-  end function numbers
 
   !> Whether a key is there and true.
   pure logical function is_true(self, key)
