@@ -19,13 +19,12 @@ module experiment
   use h0_schedule, only: path_plan, loading_plan, unloading_plan
   use experiment_result, only: experiment_result_t
   use exact_path, only: trace_exactly
-  use finer_solver, only: finer_t, rounding
-  use outcome_places, only: enter_path, enter_cycle, enter_branch, enter_readings, enter_energy
+  use finer_solver, only: finer_t
+  use outcome_places, only: enter_all, enter_cycle, enter_energy
   use table_places, only: enter_table
-  use place_errors, only: judge_places
+  use place_errors, only: judge_places, conclude
   use place_rates, only: rate_places
   use path, only: follow_path
-  use reported, only: of_load
   use path_readings, only: read_path
   use timed_run, only: run_timed
   use records, only: observer_t
@@ -63,10 +62,8 @@ contains
     outcome%chosen = choose(request%numerics, problem, low, allocated(request%profiles))
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
-      if (allocated(outcome%stepped_path)) &
-        call enter_branch(outcome%stepped_path, 'end', outcome%places)
-      call enter_cycle(outcome, outcome%places)
-      call conclude(outcome)
+      call enter_all(outcome, outcome%places)
+      call conclude(outcome%places, outcome%error_estimate)
       return
     end if
     fixed = outcome%chosen%is_fixed()
@@ -149,18 +146,14 @@ contains
       steps%cost%estimate_seconds
     began = seconds()
     call observer%hear('estimating errors')
-    if (allocated(outcome%path)) call enter_path(outcome%path, outcome%places)
-    if (allocated(outcome%stepped_path)) &
-      call enter_branch(outcome%stepped_path, 'end', outcome%places)
-    call enter_cycle(outcome, outcome%places)
-    if (allocated(outcome%readings)) call enter_readings(outcome%readings, outcome%places)
+    call enter_all(outcome, outcome%places)
     select type (steps)
     class is (path_stepper_t)
       call enter_energy(steps%known, outcome, outcome%places)
       if (request%table) call enter_table(steps, outcome%readings, outcome%places)
     end select
     call judge_places(fine, steps, outcome%places, .false.)
-    call conclude(outcome)
+    call conclude(outcome%places, outcome%error_estimate)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     if (allocated(request%sensitivity)) then
       select type (steps)
@@ -170,18 +163,6 @@ contains
     end if
     outcome%cost = steps%cost
   end subroutine run_locked
-
-  !> The largest error of all that is reported.
-  subroutine conclude(outcome)
-    type(experiment_result_t), intent(inout) :: outcome
-
-    if (.not. allocated(outcome%places%place)) return
-    if (.not. any(outcome%places%place%judged)) return
-    outcome%error_estimate = max(rounding, outcome%places%largest_error())
-    if (allocated(outcome%readings)) outcome%error_estimate = max(outcome%error_estimate, &
-      outcome%places%largest_of('table', of_load)/ &
-      max(outcome%readings%table_load, tiny(1.0_wp)))
-  end subroutine conclude
 
   !> The cycle on a mesh fixed in space, for H0 down to low.
   subroutine run_fixed(request, problem, low, observer, outcome, keeper)
@@ -214,7 +195,7 @@ contains
     call enter_cycle(outcome, outcome%places)
     call fine%lay_out_fixed(steps, outcome%chosen, low)
     call judge_places(fine, steps, outcome%places, .false.)
-    call conclude(outcome)
+    call conclude(outcome%places, outcome%error_estimate)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     outcome%cost = steps%cost
   end subroutine run_fixed

@@ -15,7 +15,7 @@ module outcome_places
   use experiment_result, only: experiment_result_t
   implicit none
   private
-  public :: enter_path, enter_cycle, enter_branch, enter_readings, enter_energy
+  public :: enter_all, enter_cycle, enter_energy
 
   !> Part of the terms of the slope of a drive's position that cancellation leaves at a turn.
   real(wp), parameter :: turning = 1.0e-6_wp
@@ -24,6 +24,17 @@ module outcome_places
     'device_landing_in', 'device_jump_out', 'device_landing_out']
 
 contains
+
+  !> Enters all but energies and tables.
+  subroutine enter_all(outcome, places)
+    type(experiment_result_t), intent(in) :: outcome
+    type(places_t), intent(inout) :: places
+
+    if (allocated(outcome%path)) call enter_path(outcome%path, places)
+    if (allocated(outcome%stepped_path)) call enter_branch(outcome%stepped_path, 'end', places)
+    call enter_cycle(outcome, places)
+    if (allocated(outcome%readings)) call enter_readings(outcome%readings, places)
+  end subroutine enter_all
 
   !> Enters a path; its folds are exact.
   subroutine enter_path(path, places)

@@ -15,19 +15,13 @@ module path_expansion
   private
   public :: expansion_t, expansion_about
 
-  !> Value, slope and second derivative by the path's coordinate.
-  type :: parabola_t
-    real(wp) :: value = 0, slope = 0, curvature = 0
-  contains
-    procedure :: at
-  end type parabola_t
-
   !> The path near the coordinate s on a finer mesh, and the state there.
   type :: expansion_t
     real(wp) :: s = 0
-    type(parabola_t) :: h0, load, axis_gap
-    real(wp) :: energy = 0
     type(state_t) :: state
+    !> h0, load and gap on the axis: values, slopes and second derivatives by the path's coordinate.
+    real(wp), dimension(3) :: value = 0, slope = 0, curvature = 0
+    real(wp) :: energy = 0
   contains
     procedure :: move_to
     procedure :: distance_to
@@ -50,8 +44,7 @@ contains
 
     near%s = s
     near%state = state
-    near%h0%curvature = about%curvature(h0_alone, s)
-    near%load%curvature = about%curvature(load_alone, s)
+    near%curvature = [about%curvature(h0_alone, s), about%curvature(load_alone, s), 0.0_wp]
   end function expansion_about
 
   !> Moves an expansion along the path until the place is near at which D turns or is `wanted`, and
@@ -91,9 +84,8 @@ contains
     if (found) call tangent_along(fine%equations_t, fine%options, mesh, near%s, near%state, &
       fine%frozen, tangent, found)
     if (.not. found) return
-    near%h0 = parabola_t(near%state%h0, tangent%h0, near%h0%curvature)
-    near%load = parabola_t(near%state%load, tangent%load, near%load%curvature)
-    near%axis_gap = parabola_t(near%state%axis_gap, tangent%axis_gap, 0.0_wp)
+    near%value = [near%state%h0, near%state%load, near%state%axis_gap]
+    near%slope = [tangent%h0, tangent%load, tangent%axis_gap]
     call energy_of(fine%equations_t, mesh, near%state, near%energy, uncertainty)
   end subroutine expand
 
@@ -105,9 +97,9 @@ contains
     logical, intent(in) :: turns
     real(wp) :: missing, slope, curvature, root
 
-    slope = dot_product(weights, [near%h0%slope, near%load%slope])
-    curvature = dot_product(weights, [near%h0%curvature, near%load%curvature])
-    missing = dot_product(weights, [near%h0%value, near%load%value]) - wanted
+    slope = dot_product(weights, near%slope(:2))
+    curvature = dot_product(weights, near%curvature(:2))
+    missing = dot_product(weights, near%value(:2)) - wanted
     root = slope**2 - 2*curvature*missing
     if (root > 0 .and. .not. turns) then
       distance = -2*missing/(slope + sign(sqrt(root), slope))
@@ -125,21 +117,13 @@ contains
     real(wp) :: read(read_of_states)
 
     read = 0
-    associate (h0 => near%h0, load => near%load)
-      read(of_h0) = h0%at(distance)
-      read(of_load) = load%at(distance)
-      read(of_displacement) = near%axis_gap%at(distance) - read(of_h0)
-      read(of_energy) = near%energy - distance*load%value*h0%slope - &
-        0.5_wp*distance**2*(load%slope*h0%slope + load%value*h0%curvature)
+    associate (value => near%value, slope => near%slope, curvature => near%curvature)
+      read(:3) = value + distance*(slope + 0.5_wp*distance*curvature)
+      read(of_displacement) = read(3) - read(of_h0)
+      read(of_energy) = near%energy - distance*value(of_load)*slope(of_h0) - 0.5_wp*distance**2* &
+        (slope(of_load)*slope(of_h0) + value(of_load)*curvature(of_h0))
       read(of_edge) = exp(near%s + distance)
     end associate
   end function read_at
-
-  pure real(wp) function at(self, distance)
-    class(parabola_t), intent(in) :: self
-    real(wp), intent(in) :: distance
-
-    at = self%value + distance*(self%slope + 0.5_wp*distance*self%curvature)
-  end function at
 
 end module path_expansion

@@ -29,9 +29,8 @@ module path_readings
     type(rate_t), allocatable :: rate(:, :)
     !> h0 from which the path was traced, and from which bodies are taken as undeformed until there.
     real(wp) :: traced_from = 0, undeformed_from = 0
-    !> Of the table, the largest error of a load between rows by cubic polynomials, and the largest
-    !> load.
-    real(wp) :: table_interpolation_error = 0, table_load = 0
+    !> Of the table, the largest error of a load between rows by cubic polynomials.
+    real(wp) :: table_interpolation_error = 0
     !> Whether the curve exists and everything on it was solved.
     logical :: solved = .true.
   end type path_readings_t

@@ -26,7 +26,7 @@ module place_errors
   use finer_solver, only: finer_t, rounding, worst_residual, what_residual_leaves
   implicit none
   private
-  public :: judge_places
+  public :: judge_places, conclude
 
   !> What the search for a state along the path leaves of its h0, and a change of h0 small enough
   !> for a derivative and large against rounding (law's lengths).
@@ -76,6 +76,15 @@ contains
     end do
     steps%cost = fine%cost
   end subroutine judge_places
+
+  !> The largest relative error of all that is reported, if anything was judged.
+  pure subroutine conclude(places, estimate)
+    type(places_t), intent(in) :: places
+    real(wp), allocatable, intent(inout) :: estimate
+
+    if (.not. allocated(places%place)) return
+    if (any(places%place%judged)) estimate = max(rounding, places%largest_error())
+  end subroutine conclude
 
   !> Finds the equilibria on the path that places are.
   subroutine locate(steps, places)

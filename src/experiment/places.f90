@@ -5,7 +5,8 @@ module places
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use reported, only: reported_t, values_of, units_of, rates_of, least, quantities, of_h0
+  use reported, only: reported_t, values_of, units_of, rates_of, least, quantities, of_h0, &
+    of_load
   implicit none
   private
   public :: places_t, readings_t
@@ -43,8 +44,7 @@ module places
     real(wp), allocatable :: value(:), error(:), rate(:, :)
   end type readings_t
 
-  !> What a table adds to the error of a run is judged over its largest load; energies have errors
-  !> of their own.
+  !> What is not judged place by place.
   character(len=*), parameter :: of_table = 'table', of_energies = 'energy_lost'
   !> What is asked for no derivatives.
   character(len=*), parameter :: not_differentiated(*) = [character(len=8) :: 'profiles', &
@@ -168,19 +168,26 @@ contains
       self%place(self%entry(findloc(self%entry%name == name, .true., 1))%place)
   end function place_of
 
-  !> The largest relative error of all that is reported; 0 if nothing was judged.
+  !> The largest relative error of all that is reported; 0 if nothing was judged. Loads of a table
+  !> count against the largest of them.
   pure real(wp) function largest_error(self) result(largest)
     class(places_t), intent(in) :: self
+    real(wp) :: load
     integer :: i
 
     largest = 0
+    load = tiny(1.0_wp)
     if (.not. allocated(self%entry)) return
     do i = 1, size(self%entry)
       associate (entry => self%entry(i))
-        if (entry%place > 0 .and. entry%name /= of_table .and. entry%name /= of_energies) &
-          largest = max(largest, self%place(entry%place)%relative_error())
+        if (entry%place == 0 .or. entry%name == of_energies) cycle
+        associate (place => self%place(entry%place))
+          if (entry%name == of_table) load = max(load, abs(place%at(of_load)))
+          if (entry%name /= of_table) largest = max(largest, place%relative_error())
+        end associate
       end associate
     end do
+    largest = max(largest, self%largest_of(of_table, of_load)/load)
   end function largest_error
 
   !> The largest error of a quantity at all places of a number, units of `dimensionless_problem`.

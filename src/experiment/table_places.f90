@@ -34,7 +34,6 @@ contains
     do i = 1, size(readings%prescribed%leg)
       nodes = nodes_on(readings%curve, readings%prescribed%leg(i))
       if (size(nodes) < 2) cycle
-      readings%table_load = max(readings%table_load, maxval(abs(nodes%load)))
       last = 0
       do k = 1, judged_rows
         row = 1 + (k - 1)*(size(nodes) - 2)/(judged_rows - 1)
