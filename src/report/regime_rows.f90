@@ -218,12 +218,9 @@ contains
     character(len=16) :: percent
     integer :: i, best, where_worst
 
-    worst = huge(1.0_wp)
+    worst = largest_of_each(errors)
     do i = 1, size(worst)
-      if (any(ieee_is_nan(errors(:, i)))) cycle
-      if (maxval(abs(errors(:, i))) >= huge(1.0_wp)) cycle
-      worst(i) = maxval(abs(errors(:, i)))
-      call summary%set('regime_worst_' // trim(theories(i)), worst(i))
+      if (worst(i) < huge(1.0_wp)) call summary%set('regime_worst_' // trim(theories(i)), worst(i))
     end do
     best = minloc(worst(:fits_from - 1), 1)
     call summary%set('regime_theory', merge(real(best, wp), 0.0_wp, worst(best) <= acceptable))
@@ -245,17 +242,22 @@ contains
     real(wp), intent(in) :: errors(:, :)
     type(summary_t), intent(inout) :: summary
     real(wp) :: worst(size(closed))
-    integer :: i, best
+    integer :: best
 
-    worst = huge(1.0_wp)
-    do i = 1, size(closed)
-      if (all(abs(errors(:2, closed(i))) < huge(1.0_wp))) &
-        worst(i) = maxval(abs(errors(:2, closed(i))))
-    end do
+    worst = largest_of_each(errors(:2, closed))
     best = minloc(worst, 1)
     if (.not. worst(best) < huge(1.0_wp)) return
     call summary%set('regime_formula', trim(theories(closed(best))))
     call summary%set('regime_formula_error', worst(best))
   end subroutine recommend_formula
+
+  !> The largest error of each theory; of one that does not have all, it is huge.
+  pure function largest_of_each(errors) result(largest)
+    real(wp), intent(in) :: errors(:, :)
+    real(wp) :: largest(size(errors, 2))
+
+    largest = maxval(abs(errors), 1)
+    where (.not. all(abs(errors) < huge(1.0_wp), 1)) largest = huge(1.0_wp)
+  end function largest_of_each
 
 end module regime_rows

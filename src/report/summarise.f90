@@ -22,8 +22,7 @@ module summarise
   use fixed_load_rows, only: summarise_fixed_loads
   use regime_rows, only: summarise_regime
   use rate_entries, only: summarise_timed
-  use validity, only: judge_law, judge_extent
-  use layer_entries, only: judge_layers
+  use validity, only: judge_law, judge_extent, judge_layers
   use quality_warnings, only: judge_resolution, judge_accuracy, judge_stopping, short_number
   implicit none
   private
