@@ -19,14 +19,17 @@ contains
 
   !> Whether a key of &summary or &cost is a list, though it may hold one value: 0 or 1.
   subroutine is_list(key, list)
-    use result_rows, only: row_of, rows
+    use result_rows, only: rows
     character(len=*), intent(in) :: key
     integer(c_int), intent(out) :: list
     integer :: row
 
     list = 0
-    row = row_of(key)
-    if (row > 0) list = merge(1_c_int, 0_c_int, rows(row)%list)
+    do row = 1, size(rows)
+      ! The entry of a number, or that of its errors.
+      if (rows(row)%list .and. (rows(row)%key == key .or. &
+        trim(rows(row)%key) // rows(row)%error == key)) list = 1
+    end do
   end subroutine is_list
 
   !> The force law of a deck: pressure [Pa], its derivative by the separation [Pa/m] and its

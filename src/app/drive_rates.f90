@@ -12,68 +12,57 @@ module drive_rates
   use listener, only: listener_t
   use records, only: silent_observer_t
   use stepper, only: keeping_stepper_t
-  use summarise, only: summary_of
-  use summary, only: summary_t
+  use timed_record, only: timed_result_t, numbers
+  use rate_entries, only: si_numbers
   implicit none
   private
   public :: rate_drive
 
-  !> What is differentiated.
-  character(len=*), parameter :: keys(*) = [character(len=26) :: 'max_tension', &
-    'max_tension_h0', 'effective_work_of_adhesion', 'max_suction', 'energy_dissipated', &
-    'end_displacement', 'end_load']
   !> The largest change of a number over itself. Differences lack about its square, and have the
   !> errors of the runs over it: its cube is the accuracy.
   real(wp), parameter :: largest = 0.05_wp
 
 contains
 
-  !> Gives the numbers of a summary their derivatives by each parameter of &sensitivity.
-  subroutine rate_drive(scene, keeper, listener, summary)
+  !> Gives the numbers of a drive their derivatives by each parameter of &sensitivity.
+  subroutine rate_drive(scene, keeper, listener, timed)
     type(scene_t), intent(in) :: scene
     class(keeping_stepper_t), intent(inout) :: keeper
     class(listener_t), intent(inout) :: listener
-    type(summary_t), intent(inout) :: summary
-    type(summary_t) :: side(2)
-    real(wp) :: change
+    type(timed_result_t), intent(inout) :: timed
+    real(wp) :: change, side(numbers, 2)
     real(wp), allocatable :: rate(:, :)
     logical :: found
     integer :: i, j
 
     associate (varied => scene%sensitivity%varied)
-      allocate (rate(size(varied), size(keys)))
+      allocate (rate(size(varied), numbers))
       change = min(largest, scene%numerics%accuracy**(1.0_wp/3))
       do j = 1, size(varied)
         associate (name => varied(j)%parameter%name, value => varied(j)%parameter%value)
           call listener%hear('differentiating by '//name)
           do i = 1, 2
             call run_with(scene, name, value*(1 + merge(-change, change, i == 1)), keeper, &
-              side(i), found)
+              side(:, i), found)
             if (.not. found) then
-              call summary%fail_with('sensitivity: a run with another '//name// &
-                ' did not come to its end; not all derivatives were found')
+              timed%not_rated = name
               return
             end if
           end do
-          do i = 1, size(keys)
-            rate(j, i) = (side(2)%number(trim(keys(i))) - side(1)%number(trim(keys(i))))/ &
-              (2*change*value)
-          end do
+          rate(j, :) = (side(:, 2) - side(:, 1))/(2*change*value)
         end associate
       end do
     end associate
-    do i = 1, size(keys)
-      if (summary%has(trim(keys(i)))) call summary%set_rate(trim(keys(i)), rate(:, i:i))
-    end do
+    timed%rate = rate
   end subroutine rate_drive
 
   !> What a run of the scene with another value of a number finds.
-  subroutine run_with(scene, name, value, keeper, summary, found)
+  subroutine run_with(scene, name, value, keeper, side, found)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: value
     class(keeping_stepper_t), intent(inout) :: keeper
-    type(summary_t), intent(out) :: summary
+    real(wp), intent(out) :: side(:)
     logical, intent(out) :: found
     type(scene_t) :: variant
     type(problem_t) :: problem
@@ -81,13 +70,14 @@ contains
     type(silent_observer_t) :: observer
     type(failure_t), allocatable :: error
 
+    side = 0
     call swept_scene(scene, name, [value], variant, error)
     found = .not. allocated(error)
     if (.not. found) return
     problem = problem_of(variant)
     call run_experiment(variant, problem, observer, outcome, keeper)
-    summary = summary_of(variant, problem, outcome)
-    found = summary%is_true('converged')
+    found = outcome%timed%begun .and. .not. outcome%timed%lost
+    if (found) side = si_numbers(problem, outcome%timed)
   end subroutine run_with
 
 end module drive_rates

@@ -21,7 +21,8 @@ module simulation
   use derived_tables, only: write_derived_tables, write_path_tables, &
     write_sensitivities
   use stability_records, only: stability_recorder_t
-  use summarise, only: summary_of, describe_problem
+  use summarise, only: summary_of
+  use problem_numbers, only: describe_problem
   use summary, only: summary_t
   use results, only: results_t, journal_of, to_stream
   use publication, only: mend
@@ -209,10 +210,10 @@ contains
       call run_experiment(scene, problem, results, outcome, keeper)
     end if
     call write_path_tables(problem, outcome, results)
+    if (allocated(scene%sensitivity) .and. allocated(outcome%timed)) &
+      call rate_drive(scene, keeper, results, outcome%timed)
     summary = summary_of(scene, problem, outcome)
     call recorder%warn(summary)
-    if (allocated(scene%sensitivity) .and. allocated(scene%drive)) &
-      call rate_drive(scene, keeper, results, summary)
     if (allocated(scene%sensitivity)) &
       call write_sensitivities(scene%sensitivity, problem, outcome, summary, results)
     cost = outcome%cost
@@ -243,7 +244,7 @@ contains
     call results%begin_table('fit.csv')
     call write_fit_rows(outcome, results)
     call results%write_text('fit.nml', fit_text(outcome, scene%title))
-    if (allocated(outcome%problem)) call describe_problem(scene, outcome%problem, summary)
+    if (allocated(outcome%problem)) call describe_problem(outcome%problem, summary)
     lines = doubts_of(outcome)
     if (.not. outcome%fitted%found) call summary%set('converged', .false.)
     do i = 1, size(lines)

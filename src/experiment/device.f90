@@ -33,8 +33,6 @@ module device
     type(leg_t), allocatable :: leg(:)
     type(jump_t), allocatable :: jump(:)
     real(wp) :: energy_lost = 0, cycle_energy = 0, uncertainty = 0
-    !> The same energies on finer meshes; unallocated where they are not known.
-    real(wp), allocatable :: fine_energy_lost, fine_cycle_energy
     !> Whether every state was solved, and every jump had an end.
     logical :: solved = .true., caught = .true.
   contains

@@ -12,7 +12,10 @@ module exact_path
   use path_stepper, only: path_stepper_t
   use experiment_request, only: request_t
   use path_demand, only: farthest_wanted
-  use result_errors, only: judge_t, begin_judging, judge_path_points
+  use places, only: places_t
+  use reported, only: reported_t
+  use finer_solver, only: finer_t
+  use place_errors, only: judge_places
   implicit none
   private
   public :: trace_exactly
@@ -25,11 +28,12 @@ module exact_path
   !> they come from something else, such as rounding, and a further one is in vain.
   real(wp), parameter :: helped = 0.3_wp
 
-  !> A path that was traced, its meshes, what judges it and what was found.
+  !> A path that was traced, its meshes, what judges it, its extrema and the largest error of them.
   type :: tracing_t
     type(mesh_family_t) :: meshes
     type(known_path_t) :: known
-    type(judge_t) :: judge
+    type(finer_t) :: fine
+    type(places_t) :: places
     real(wp) :: worst = 0
   end type tracing_t
 
@@ -38,18 +42,19 @@ contains
   !> Traces the path on steps%meshes; where it is shown and its folds and extrema
   !> are not as exact as asked for, again on meshes of more digits, if these can help. The better
   !> path stays, and what is found along it can be judged. h0: law's lengths; store: of meshes.
-  subroutine trace_exactly(request, steps, h0_high, h0_low, listener, judge, store)
+  subroutine trace_exactly(request, steps, h0_high, h0_low, listener, fine, places, store)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout), target :: steps
     real(wp), intent(in) :: h0_high, h0_low
     class(listener_t), intent(inout) :: listener
-    type(judge_t), intent(out) :: judge
+    type(finer_t), intent(out) :: fine
+    type(places_t), intent(out) :: places
     type(mesh_store_t), intent(inout), target, optional :: store
     type(tracing_t) :: before
     type(known_path_t) :: nothing
     real(wp), allocatable :: farthest
     real(wp) :: worst, began
-    integer :: round
+    integer :: round, i, kept
 
     if (request%reads_path()) farthest = farthest_wanted(request, steps%problem)
     associate (accuracy => request%numerics%accuracy, cost => steps%cost)
@@ -57,12 +62,24 @@ contains
         call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, &
           accuracy*10.0_wp**(-further_digits*(round - 1)))
         began = seconds()
-        call begin_judging(judge, steps, h0_high, h0_low, store)
+        fine = finer_t()
+        places = places_t()
+        call fine%lay_out(steps, h0_high, h0_low, store)
         worst = 0
-        if (allocated(request%path)) call judge_path_points(judge, worst)
+        if (allocated(request%path)) then
+          do i = 1, steps%known%path%held
+            associate (point => steps%known%path%point(i))
+              if (point%fold .or. point%load_extremum) &
+                call places%keep(reported_t(point=i), kept)
+            end associate
+          end do
+          call judge_places(fine, steps, places, .true.)
+          if (allocated(places%place)) worst = maxval([0.0_wp, (places%place(i)%relative_error(), &
+            i=1, size(places%place))])
+        end if
         cost%estimate_seconds = cost%estimate_seconds + seconds() - began
         if (round > 1 .and. (is_lost(steps%known) .or. .not. worst < before%worst)) then
-          call go_back(before, steps, judge)
+          call go_back(before, steps, fine, places)
           return
         end if
         if (.not. worst > accuracy .or. round == most_rounds) return
@@ -70,7 +87,8 @@ contains
         if (steps%known%left_out > too_much*accuracy .or. .not. digits_help(steps)) return
         before%meshes = steps%meshes
         before%known = steps%known
-        before%judge = judge
+        before%fine = fine
+        before%places = places
         before%worst = worst
         steps%meshes = new_mesh_family(steps%problem, h0_high, h0_low, &
           before%meshes%digits + further_digits, store=store)
@@ -98,14 +116,16 @@ contains
   end function is_lost
 
   !> Makes the path traced before that of the steps again.
-  subroutine go_back(before, steps, judge)
+  subroutine go_back(before, steps, fine, places)
     type(tracing_t), intent(in) :: before
     class(path_stepper_t), intent(inout) :: steps
-    type(judge_t), intent(inout) :: judge
+    type(finer_t), intent(inout) :: fine
+    type(places_t), intent(inout) :: places
 
     steps%meshes = before%meshes
     steps%known = before%known
-    judge = before%judge
+    fine = before%fine
+    places = before%places
   end subroutine go_back
 
 end module exact_path

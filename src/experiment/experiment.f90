@@ -19,9 +19,11 @@ module experiment
   use h0_schedule, only: path_plan, loading_plan, unloading_plan
   use experiment_result, only: experiment_result_t
   use exact_path, only: trace_exactly
-  use result_errors, only: judge_t, begin_judging, judge_locked, judge_fixed
-  use reading_errors, only: judge_readings
-  use result_sensitivities, only: find_sensitivities
+  use finer_solver, only: finer_t
+  use outcome_places, only: enter_all, enter_cycle, enter_energy
+  use table_places, only: enter_table
+  use place_errors, only: judge_places, conclude
+  use place_rates, only: rate_places
   use path, only: follow_path
   use path_readings, only: read_path
   use timed_run, only: run_timed
@@ -61,6 +63,8 @@ contains
     outcome%chosen = choose(request%numerics, problem, low, allocated(request%profiles))
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
+      call enter_all(outcome, outcome%places)
+      call conclude(outcome%places, outcome%error_estimate)
       return
     end if
     fixed = outcome%chosen%is_fixed()
@@ -109,7 +113,7 @@ contains
     type(path_stepper_t), target :: along_path
     type(unique_stepper_t), target :: one_by_one
     class(locked_stepper_t), pointer :: steps
-    type(judge_t) :: judge
+    type(finer_t) :: fine
     real(wp) :: began
 
     ! Not allocatable: compiler note 3.
@@ -131,12 +135,12 @@ contains
     began = seconds()
     select type (steps)
     class is (path_stepper_t)
-      call trace_exactly(request, steps, high, low, observer, judge, store)
+      call trace_exactly(request, steps, high, low, observer, fine, outcome%places, store)
       outcome%left_out = steps%known%left_out
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
       if (request%reads_path()) call read_path(request, steps, observer, outcome%readings)
     class is (unique_stepper_t)
-      call begin_judging(judge, steps, high, low, store)
+      call fine%lay_out(steps, high, low, store)
       if (allocated(request%path)) call run_stepped_path(request, steps, observer, outcome)
     end select
     outcome%nodes = sum(steps%meshes%grid%nodes)
@@ -147,17 +151,19 @@ contains
       steps%cost%estimate_seconds
     began = seconds()
     call observer%hear('estimating errors')
-    call judge_locked(judge, outcome)
-    steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
+    call enter_all(outcome, outcome%places)
     select type (steps)
     class is (path_stepper_t)
-      if (allocated(outcome%readings)) &
-        call judge_readings(request, steps, judge, high, low, observer, outcome, store)
+      call enter_energy(steps%known, outcome, outcome%places)
+      if (request%table) call enter_table(steps, outcome%readings, outcome%places)
     end select
+    call judge_places(fine, steps, outcome%places, .false.)
+    call conclude(outcome%places, outcome%error_estimate)
+    steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     if (allocated(request%sensitivity)) then
       select type (steps)
       class is (path_stepper_t)
-        call find_sensitivities(request%sensitivity, steps, observer, outcome)
+        call rate_places(request%sensitivity, steps, observer, outcome)
       end select
     end if
     outcome%cost = steps%cost
@@ -172,6 +178,7 @@ contains
     type(experiment_result_t), intent(inout) :: outcome
     class(keeping_stepper_t), intent(inout), optional :: keeper
     type(fixed_stepper_t) :: steps
+    type(finer_t) :: fine
     real(wp) :: began
 
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
@@ -190,7 +197,10 @@ contains
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     began = seconds()
     call observer%hear('estimating errors')
-    call judge_fixed(steps, low, outcome)
+    call enter_cycle(outcome, outcome%places)
+    call fine%lay_out_fixed(steps, outcome%chosen, low)
+    call judge_places(fine, steps, outcome%places, .false.)
+    call conclude(outcome%places, outcome%error_estimate)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     outcome%cost = steps%cost
   end subroutine run_fixed

@@ -5,6 +5,7 @@ module experiment_result
   use equilibrium, only: cost_t
   use stepped_branch, only: branch_t
   use path, only: path_t
+  use places, only: places_t
   use path_readings, only: path_readings_t
   use timed_record, only: timed_result_t
   implicit none
@@ -17,11 +18,8 @@ module experiment_result
     type(path_readings_t), allocatable :: readings
     type(timed_result_t), allocatable :: timed
     type(branch_t), allocatable :: stepped_path, loading, unloading(:)
-    !> Lost in a cycle of approach and separation, and how well that is known.
-    real(wp), allocatable :: energy_lost, energy_uncertainty
-    !> The folds of the path that its jumps start from; derivatives by each parameter, SI units.
-    integer, allocatable :: jumps(:)
-    real(wp), allocatable :: energy_rate(:)
+    !> The places that numbers are reported of.
+    type(places_t) :: places
     !> Whether all derivatives exist that were asked for.
     logical :: differentiated = .true.
     !> Largest estimated relative error of what is reported.

@@ -7,10 +7,9 @@ module path
   use traced_path, only: traced_path_t
   use ending, only: ending_t, state_lost
   use known_path, only: known_path_t, interval_at
-  use locked_meshes, only: h0_control
   use path_stepper, only: path_stepper_t
   use path_rows, only: row_t, row_of_point, row_at_h0, rows_between
-  use reported, only: reported_t, reported_state, error_probe_t, add_reported
+  use reported, only: reported_t, reported_state, add_reported, of_load
   use records, only: observer_t, record_t, extent_t, record_of, stable_yes, stable_no
   implicit none
   private
@@ -132,12 +131,8 @@ contains
     type(path_stepper_t), intent(in) :: steps
     type(row_t), intent(in) :: row
     type(reported_t) :: reported
-    type(error_probe_t) :: witness
 
-    witness%mesh = row%mesh
-    witness%control = h0_control(steps%problem%shape, steps%meshes, row%mesh, row%state%h0)
-    witness%state = row%state
-    reported = reported_state(witness)
+    reported = reported_state(row%mesh, row%state)
     if (row%point == 0) return
     associate (point => steps%known%path%point(row%point))
       if (point%fold .or. point%load_extremum) reported%point = row%point
@@ -192,8 +187,8 @@ contains
       handicap = 0
       if (lowest%point > 0 .and. row%point > 0 .and. reported%point == 0) handicap = 1
       if (lowest%point == 0 .and. reported%point > 0) handicap = -1
-      lowers = reported%load < lowest%load - &
-        handicap*10.0_wp**(-steps%meshes%digits)*abs(lowest%load)
+      lowers = reported%at(of_load) < lowest%at(of_load) - &
+        handicap*10.0_wp**(-steps%meshes%digits)*abs(lowest%at(of_load))
     end function lowers
 
   end subroutine take

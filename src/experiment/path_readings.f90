@@ -34,10 +34,8 @@ module path_readings
     type(rate_t), allocatable :: rate(:, :)
     !> h0 from which the path was traced, and from which bodies are taken as undeformed until there.
     real(wp) :: traced_from = 0, undeformed_from = 0
-    !> Margin of errors, which are differences from what finer meshes say; of the table, the largest
-    !> error of a load, and between rows by cubic polynomials.
-    real(wp) :: margin = 1
-    real(wp), allocatable :: table_error, table_interpolation_error
+    !> Of the table, the largest error of a load between rows by cubic polynomials.
+    real(wp) :: table_interpolation_error = 0
     !> Whether the path has more than a point and everything on it was solved.
     logical :: solved = .true.
   end type path_readings_t

@@ -150,8 +150,8 @@ contains
       if (.not. event%ending%early()) event%ending%cause = beyond_path
       return
     end if
-    if (landing%state%load < lowest%load) &
-      lowest = extreme_t(landing%state%load, from, landing%fold, .true.)
+    if (landing%after%load < lowest%load) &
+      lowest = extreme_t(landing%after%load, from, landing%fold, .true.)
     position%piece = landing%piece
     position%held = 0
   end subroutine step_over

@@ -10,8 +10,8 @@ module rigid_bodies
   use discretisation, only: discretisation_t
   use contact_state, only: state_t, state_from
   use ending, only: touching, turn_not_reached
-  use reported, only: reported_t, error_t, add_reported, relative_error
-  use error_estimate, only: rounding
+  use reported, only: reported_t, add_reported, of_h0, of_load
+  use finer_solver, only: rounding
   use records, only: observer_t, record_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
@@ -90,22 +90,10 @@ contains
     end do
     outcome%cost%states = outcome%cost%states + branch%states
     if (branch%states == 0) return
-    if (.not. allocated(outcome%error_estimate)) outcome%error_estimate = rounding
     associate (n => branch%states)
       branch%finish = reported_at(problem, plan%h0(n))
       call find_largest_tension(problem, plan%h0(:n), load(:n), branch)
     end associate
-    call count_error(branch%finish)
-    if (allocated(branch%lowest)) call count_error(branch%lowest)
-
-  contains
-
-    subroutine count_error(reported)
-      type(reported_t), intent(in) :: reported
-
-      outcome%error_estimate = max(outcome%error_estimate, relative_error(reported))
-    end subroutine count_error
-
   end subroutine run_branch
 
   !> Hands step i of a branch to the observer; with positions only where its profile is asked for.
@@ -209,11 +197,11 @@ contains
     k = minloc([(load_undeformed(problem, gap(i)), i=1, size(gap))], 1)
     found = lowest_about(problem, gap(k), gap(max(1, k - 1)), gap(min(size(gap), k + 1)))
     k = minloc(load, 1)
-    if (load(k) < found%load - found%error%load) then
+    if (load(k) < found%at(of_load) - found%left(of_load)) then
       of_rows = lowest_about(problem, h0(k), h0(max(1, k - 1)), h0(min(size(h0), k + 1)))
-      if (of_rows%load < found%load) found = of_rows
+      if (of_rows%at(of_load) < found%at(of_load)) found = of_rows
     end if
-    if (found%load < 0) branch%lowest = found
+    if (found%at(of_load) < 0) branch%lowest = found
   end subroutine find_largest_tension
 
   !> The lowest load about a state, between two values of h0 where it is higher, or one of which is
@@ -231,7 +219,7 @@ contains
     found = reported_at(problem, h0)
     if (.not. (slopes(1) < 0 .and. slopes(2) > 0)) then
       ! A turn between neighbours that was not resolved.
-      if (low < h0 .and. h0 < high) found%error%h0 = high - low
+      if (low < h0 .and. h0 < high) found%left(of_h0) = high - low
       return
     end if
     search = new_root_search(low, slopes(1), high, slopes(2))
@@ -244,7 +232,7 @@ contains
     shift = apart*(high - low)
     curvature = (load_slope_undeformed(problem, search%root + shift) - &
       load_slope_undeformed(problem, search%root - shift))/(2*shift)
-    found%error%h0 = min(high - low, given_error(problem, search%root) + &
+    found%left(of_h0) = min(high - low, given_error(problem, search%root) + &
       (slope%error + abs(slope%value))/max(curvature, tiny(1.0_wp)))
   end function lowest_about
 
@@ -256,10 +244,13 @@ contains
     type(measured_t) :: load
 
     load = measured_load(problem, h0)
-    reported%h0 = h0
-    reported%load = load%value
-    reported%error = error_t(load=load%error + rounding*abs(load%value) + &
-      given_error(problem, h0)*abs(load_slope_undeformed(problem, h0)), profile=rounding)
+    reported%at(of_h0) = h0
+    reported%at(of_load) = load%value
+    reported%fine = reported%at
+    reported%left(of_load) = load%error + rounding*abs(load%value) + &
+      given_error(problem, h0)*abs(load_slope_undeformed(problem, h0))
+    reported%profile = rounding
+    reported%judged = .true.
   end function reported_at
 
   !> What rounding leaves of an h0 that is given in metres.

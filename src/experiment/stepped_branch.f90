@@ -6,7 +6,7 @@ module stepped_branch
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
   use tension_search, only: tension_search_t
-  use reported, only: reported_t, reported_state, add_reported
+  use reported, only: reported_t, reported_state, add_reported, of_h0, of_load
   use records, only: observer_t, record_t, extent_t, record_of, stable_yes, stable_unasked
   implicit none
   private
@@ -99,9 +99,9 @@ contains
         last%mesh = position%mesh
         branch%last_piece = position%piece
         if (plan%profile(i)) &
-          call add_reported(branch%profile, reported_state(steps%witness(last)))
+          call add_reported(branch%profile, reported_state(last%mesh, last%state))
         if (position%piece == 0 .and. any(i == [1, (1 + size(plan%h0))/2])) &
-          call add_reported(branch%sample, reported_state(steps%witness(last)))
+          call add_reported(branch%sample, reported_state(last%mesh, last%state))
       end if
       do k = 1, size(keep)
         if (place(k) == i) kept(k) = position
@@ -110,7 +110,7 @@ contains
         call search%note_state(steps, last_h0, plan%h0(i), previous, position, event)
       last_h0 = plan%h0(i)
     end do
-    if (allocated(last%state%gap)) branch%finish = reported_state(steps%witness(last))
+    if (allocated(last%state%gap)) branch%finish = reported_state(last%mesh, last%state)
     call search%finish(steps, last_h0)
     if (allocated(branch%lowest) .or. .not. allocated(search%lowest)) return
     branch%lowest = search%lowest
@@ -126,7 +126,9 @@ contains
     real(wp), intent(in) :: h0
 
     if (event%jumped .and. .not. allocated(branch%jump)) then
-      branch%jump = reported_t(h0=event%jump_h0, load=event%jump_load, point=event%fold)
+      branch%jump = reported_t(point=event%fold)
+      branch%jump%at(of_h0) = event%jump_h0
+      branch%jump%at(of_load) = event%jump_load
       branch%jump_uncertainty = event%jump_uncertainty
     end if
     if (allocated(event%lowest)) call lower(branch, steps, position, event)
@@ -152,13 +154,13 @@ contains
     associate (lowest => event%lowest)
       if (.not. lowest%load < 0) return
       if (allocated(branch%lowest)) then
-        if (lowest%load >= branch%lowest%load) return
+        if (lowest%load >= branch%lowest%at(of_load)) return
       end if
       if (lowest%point == 0) then
-        branch%lowest = reported_state(steps%witness(position))
+        branch%lowest = reported_state(position%mesh, position%state)
       else
-        branch%lowest = reported_t(h0=lowest%h0, load=lowest%load, point=lowest%point, &
-          landing=lowest%landing)
+        branch%lowest = reported_t(point=lowest%point, landing=lowest%landing)
+        branch%lowest%at(of_load) = lowest%load
       end if
     end associate
   end subroutine lower

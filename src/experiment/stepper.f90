@@ -7,8 +7,6 @@ module stepper
   use contact_state, only: state_t
   use solver, only: solver_t
   use ending, only: ending_t
-  use locked_meshes, only: h0_control
-  use reported, only: error_probe_t
   use journal, only: journal_t
   implicit none
   private
@@ -63,7 +61,6 @@ module stepper
     procedure(go_to), deferred :: step_to
     procedure :: grid
     procedure :: spacing_over_neck
-    procedure :: witness
   end type stepper_t
 
   !> A stepper between an experiment and whoever solves, which keeps the steps.
@@ -128,17 +125,6 @@ contains
     spacing_over_neck = over_neck(self%problem, &
       position%state%scale*self%meshes%grid(position%mesh)%spacing)
   end function spacing_over_neck
-
-  !> The witness of a position's state: what its h0 was prescribed as.
-  pure function witness(self, position)
-    class(stepper_t), intent(in) :: self
-    type(branch_point_t), intent(in) :: position
-    type(error_probe_t) :: witness
-
-    witness%mesh = position%mesh
-    witness%control = h0_control(self%problem%shape, self%meshes, position%mesh, position%state%h0)
-    witness%state = position%state
-  end function witness
 
   !> Makes `state` the position's present one; on another mesh, or after a jump, the past is
   !> forgotten. foretold: the state was predicted from the past and needed no correction. Such a

@@ -4,7 +4,7 @@ module tension_search
   use kinds, only: wp
   use interpolation, only: interpolated_maximum
   use stepper, only: stepper_t, branch_point_t, step_result_t
-  use reported, only: reported_t, reported_state
+  use reported, only: reported_t, reported_state, of_h0, of_load
   implicit none
   private
   public :: tension_search_t, load_tolerance
@@ -60,12 +60,14 @@ contains
 
     if (.not. load < 0) return
     if (allocated(self%lowest)) then
-      if (load >= self%lowest%load) return
+      if (load >= self%lowest%at(of_load)) return
     end if
     if (present(position)) then
-      self%lowest = reported_state(steps%witness(position))
+      self%lowest = reported_state(position%mesh, position%state)
     else
-      self%lowest = reported_t(h0=h0, load=load)
+      self%lowest = reported_t()
+      self%lowest%at(of_h0) = h0
+      self%lowest%at(of_load) = load
     end if
   end subroutine lower
 

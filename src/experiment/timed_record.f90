@@ -25,6 +25,10 @@ module timed_record
   !> dissipated by the work of the drive, less what dashpots and jumps take.
   type :: timed_result_t
     real(wp) :: number(numbers) = 0, error(numbers) = huge(1.0_wp)
+    !> Derivatives by each parameter of &sensitivity, (parameters, numbers), SI units; the parameter
+    !> with another value of which a run did not come to its end.
+    real(wp), allocatable :: rate(:, :)
+    character(len=:), allocatable :: not_rated
     real(wp) :: balance = 0
     !> By how much the largest tension is above that of any row.
     real(wp) :: lifted = 0

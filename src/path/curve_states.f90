@@ -15,8 +15,8 @@ module curve_states
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   implicit none
   private
-  public :: curve_state_t, place_t, reading_t, reading_of, states_of_points, state_of, &
-    state_where, states_where, find_turns, equilibrium_at
+  public :: curve_state_t, place_t, states_of_points, state_of, state_where, states_where, &
+    find_turns, equilibrium_at
 
   !> A place between point `interval` of a path and the next, at the path's coordinate x.
   type :: place_t
@@ -24,12 +24,7 @@ module curve_states
     real(wp) :: x = 0
   end type place_t
 
-  !> What is reported of an equilibrium, in the units of `dimensionless_problem`.
-  type :: reading_t
-    real(wp) :: h0 = 0, load = 0, displacement = 0, radius = 0
-  end type reading_t
-
-  !> An equilibrium at a place: h0, load, gap on the axis, energy in the units of
+  !> A solved equilibrium at a place: h0, load, gap on the axis, energy in the units of
   !> `dimensionless_problem`, derivatives of h0 and load by x, modes unstable at fixed h0.
   !> radius: of the contact, lateral units; what rounding leaves of the energy.
   type, extends(place_t) :: curve_state_t
@@ -39,24 +34,15 @@ module curve_states
     logical :: converged = .false.
     !> Of a point of the path: whether it is there again on the next mesh.
     logical :: again = .false.
-    !> Derivatives of what is reported of it by each parameter of &sensitivity
-    !> (`place_sensitivity`).
-    real(wp), allocatable :: rate(:, :)
-    !> What is reported at the same place of a path on finer meshes (`reading_errors`).
-    type(reading_t), allocatable :: fine
+    !> The equilibrium itself and its mesh; `no_mesh` has none.
+    type(state_t) :: state
+    integer :: mesh = no_mesh
   end type curve_state_t
 
   !> Parts of an interval of undeformed bodies at whose ends the slope is looked at.
   integer, parameter :: looks = 8
 
 contains
-
-  !> What is reported of a state.
-  pure type(reading_t) function reading_of(state) result(reading)
-    type(curve_state_t), intent(in) :: state
-
-    reading = reading_t(state%h0, state%load, state%axis_gap - state%h0, state%radius)
-  end function reading_of
 
   !> What is reported of the points of a path, up to the end of its last stable piece. Modes are
   !> those on the more unstable side.
@@ -143,29 +129,28 @@ contains
     found%interval = place%interval
     found%x = place%x
     found%modes = path%point(place%interval)%modes
+    found%mesh = path%point(place%interval)%mesh
     found%converged = converged
     if (.not. converged) return
+    found%state = state
     found%h0 = state%h0
     found%load = state%load
     found%axis_gap = state%axis_gap
     found%residual = state%residual
     found%slopes = [tangent%h0, tangent%load]
-    associate (mesh => path%point(place%interval)%mesh)
-      found%radius = radius_of_gap(solver%problem%shape, contact_level_of(solver%problem), &
-        solver%meshes%grid(mesh), state)
-      call energy_of(solver%equations_t, mesh, state, found%energy, found%uncertainty)
-    end associate
+    found%radius = radius_of_gap(solver%problem%shape, contact_level_of(solver%problem), &
+      solver%meshes%grid(found%mesh), state)
+    call energy_of(solver%equations_t, found%mesh, state, found%energy, found%uncertainty)
   end function told
 
   !> The equilibrium in interval i between x = from and x = to, where Q goes one way, at which Q is
-  !> `wanted`; equilibrium: its gaps, where it is on a mesh.
-  subroutine state_where(solver, path, i, weights, wanted, from, to, state, equilibrium)
+  !> `wanted`.
+  subroutine state_where(solver, path, i, weights, wanted, from, to, state)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2), wanted, from, to
     type(curve_state_t), intent(out) :: state
-    type(state_t), intent(out), optional :: equilibrium
     type(path_span_t) :: span
     type(found_t) :: found
     type(root_search_t) :: search
@@ -184,7 +169,6 @@ contains
     span = new_path_span(path, i)
     call find_place(solver, span%arc_t, [from, to], weights, found, done, wanted)
     state = told(solver, path, place_t(i, found%coordinate), found%state, found%tangent, done)
-    if (present(equilibrium)) equilibrium = found%state
 
   contains
 

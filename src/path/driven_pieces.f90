@@ -39,12 +39,9 @@ module driven_pieces
   type :: jump_t
     logical :: inward = .true., landed = .false.
     type(curve_state_t) :: before, after
-    !> The piece that it leads to (0: there is none), and the gaps there.
+    !> The piece that it leads to; 0: there is none.
     integer :: piece = 0
-    type(state_t) :: state
     real(wp) :: energy = 0, uncertainty = 0
-    !> Derivatives of the energy by each parameter of &sensitivity, SI units.
-    real(wp), allocatable :: energy_rate(:)
   end type jump_t
 
   !> The part of itself by which D falls at least over a piece: where a turn is a state of the path
@@ -238,20 +235,19 @@ contains
   end function interval_with
 
   !> The state of a piece at which D has a value between those at its ends.
-  subroutine state_driven(solver, path, drive, piece, wanted, state, equilibrium)
+  subroutine state_driven(solver, path, drive, piece, wanted, state)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
     type(drive_t), intent(in) :: drive
     type(driven_piece_t), intent(in) :: piece
     real(wp), intent(in) :: wanted
     type(curve_state_t), intent(out) :: state
-    type(state_t), intent(out), optional :: equilibrium
     real(wp) :: ends(2)
     integer :: i
 
     i = interval_with(path, piece, drive%weights, wanted)
     ends = part_of(path%point(i:i + 1)%coordinate, i, piece%first, piece%last)
-    call state_where(solver, path, i, drive%weights, wanted, ends(1), ends(2), state, equilibrium)
+    call state_where(solver, path, i, drive%weights, wanted, ends(1), ends(2), state)
   end subroutine state_driven
 
   !> Where the bodies land that leave a piece over the turn at its inner or outer end: on the
@@ -272,7 +268,7 @@ contains
     associate (position => drive%position(jump%before))
       jump%piece = piece_with(pieces, drive, position, from, inward)
       if (jump%piece == 0) return
-      call state_driven(solver, path, drive, pieces(jump%piece), position, jump%after, jump%state)
+      call state_driven(solver, path, drive, pieces(jump%piece), position, jump%after)
     end associate
     jump%landed = jump%after%converged
     if (.not. jump%landed) return

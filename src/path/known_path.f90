@@ -6,22 +6,18 @@ module known_path
   use listener, only: listener_t
   use contact_state, only: state_t
   use solver, only: solver_t
-  use reported, only: error_t, measure_t
   use path_tangent, only: of_h0
   use driven_pieces, only: drive_t, driven_piece_t, jump_t, find_pieces, find_jump, interval_with
   use tracing, only: tracing_t, trace
   implicit none
   private
-  public :: known_path_t, landing_t, lost_energy_t, trace_pieces, interval_at, lowest_point, &
-    landing_over, energy_lost
+  public :: known_path_t, landing_t, trace_pieces, interval_at, lowest_point, landing_over, &
+    folds_of_cycle
 
   !> A jump at prescribed h0: the fold that it starts from, a point of the path (0: there is no
-  !> jump), and the mesh of the state that it leads to.
+  !> jump).
   type, extends(jump_t) :: landing_t
-    integer :: fold = 0, mesh = 1
-    !> Of that state, as for a point of the path.
-    type(measure_t), allocatable :: fine
-    type(error_t), allocatable :: error
+    integer :: fold = 0
   end type landing_t
 
   !> The pieces that are stable at prescribed h0, and the landings from each over the fold at its
@@ -30,13 +26,6 @@ module known_path
     type(driven_piece_t), allocatable :: piece(:)
     type(landing_t), allocatable :: inward(:), outward(:)
   end type known_path_t
-
-  !> Energy lost in jumps, the same on the finer mesh of the error estimate, and what rounding
-  !> leaves; in units of load times length. The folds that the jumps start from.
-  type :: lost_energy_t
-    real(wp) :: energy = 0, fine_energy = 0, rounding = 0
-    integer, allocatable :: fold(:)
-  end type lost_energy_t
 
 contains
 
@@ -86,45 +75,45 @@ contains
       landing%fold = merge(left%last%interval + 1, left%first%interval, inward)
     end associate
     call find_jump(solver, known%path, drive_t(of_h0), known%piece, from, inward, landing%jump_t)
-    if (landing%landed) landing%mesh = known%path%point(landing%after%interval)%mesh
   end subroutine land
 
-  !> Adds what is lost in the jumps that lead from one stable piece to another, h0 going no lower
-  !> than `lowest`; whole = .false. where no jumps lead there. Over a closed cycle it is the area
-  !> between the ways out and back.
-  subroutine energy_lost(known, from, to, lowest, lost, whole)
+  !> The folds that jumps start from in a cycle at controlled h0, from the outermost stable piece to
+  !> the piece `turned` and back, h0 going no lower than `lowest`; none where no jumps lead there.
+  !> What they lose is, over a closed cycle, the area between the ways out and back.
+  function folds_of_cycle(known, turned, lowest) result(fold)
     type(known_path_t), intent(in) :: known
-    integer, intent(in) :: from, to
+    integer, intent(in) :: turned
     real(wp), intent(in) :: lowest
-    type(lost_energy_t), intent(inout) :: lost
-    logical, intent(out) :: whole
-    type(landing_t) :: landing
+    integer, allocatable :: fold(:)
     integer :: k
+    logical :: whole
 
-    if (.not. allocated(lost%fold)) allocate (lost%fold(0))
+    allocate (fold(0))
     whole = .true.
-    k = from
-    do while (k /= to)
-      if (to > k) then
-        landing = known%inward(k)
-      else
-        landing = known%outward(k)
-      end if
-      ! Beyond where it was to lead: another way.
-      whole = landing%landed .and. (landing%piece - to)*(k - to) >= 0
-      if (.not. whole) return
-      associate (fold => known%path%point(landing%fold))
-        whole = fold%state%h0 >= lowest
-        if (.not. whole) return
-        lost%energy = lost%energy + landing%energy
-        if (allocated(fold%fine) .and. allocated(landing%fine)) &
-          lost%fine_energy = lost%fine_energy + (fold%fine%energy - landing%fine%energy)
-        lost%rounding = lost%rounding + landing%uncertainty
-      end associate
-      lost%fold = [lost%fold, landing%fold]
-      k = landing%piece
+    k = 1
+    do while (k /= turned .and. whole)
+      call add(known%inward(k), turned)
     end do
-  end subroutine energy_lost
+    do while (k /= 1 .and. whole)
+      call add(known%outward(k), 1)
+    end do
+    if (.not. whole) fold = fold(:0)
+
+  contains
+
+    subroutine add(landing, to)
+      type(landing_t), intent(in) :: landing
+      integer, intent(in) :: to
+
+      ! Not beyond where it was to lead: that is another way.
+      whole = landing%landed .and. (landing%piece - to)*(k - to) >= 0
+      if (whole) whole = known%path%point(landing%fold)%state%h0 >= lowest
+      if (.not. whole) return
+      fold = [fold, landing%fold]
+      k = landing%piece
+    end subroutine add
+
+  end function folds_of_cycle
 
   !> The landing over a fold: inward(k) or outward(k), with inside telling which; k = 0 where the
   !> fold is no end of a stable piece.

@@ -18,16 +18,14 @@ module place_sensitivity
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   use variation, only: variation_t
+  use reported, only: of_h0, of_load, of_displacement, of_energy, of_radius
   use state_sensitivity, only: change_t, place_on_path_t, differentiate, move
   implicit none
   private
   public :: local_t, find_local, local_undeformed, at_fixed, at_extremum
-  public :: of_h0, of_load, of_displacement, of_energy, of_radius
 
-  !> What is reported of a state: h0 [m], load [N], displacement [m], potential energy [J], contact
-  !> radius [m].
-  integer, parameter :: quantities = 5
-  integer, parameter :: of_h0 = 1, of_load = 2, of_displacement = 3, of_energy = 4, of_radius = 5
+  !> Of a state: h0 [m], load [N], displacement [m], potential energy [J], contact radius [m].
+  integer, parameter :: quantities = of_radius
 
   !> rate(:, i): derivatives of the quantities by parameter i at a fixed place; slope: by s; along:
   !> of the separations at the nodes and of h0 by s.

@@ -1,94 +1,234 @@
-!> States that numbers are reported of, with the errors of these numbers.
+!> Places that numbers are reported of, and what is read there. A place is an equilibrium and what
+!> defines it: D = drive(1) h0 + drive(2) load turns there along the path, or has a value. Its
+!> value, its error and its derivatives are questions asked of the same place: by whoever finds it,
+!> by `place_errors` and by `place_rates`.
 module reported
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
+  use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
-  use equilibrium, only: control_t
   implicit none
   private
-  public :: error_probe_t, error_t, measure_t, reported_t, reported_state, &
-    add_reported, relative_error
+  public :: reported_t, reported_state, add_reported, drive_weights, values_of, units_of, rates_of
+  public :: of_h0, of_load, of_displacement, of_energy, of_radius, of_edge, of_position, &
+    of_tension, of_profile
+  public :: read_of_states, quantities, nowhere
+  public :: least
 
-  !> A state at a given h0, and what was prescribed there; solved again on a finer mesh, it tells
-  !> the error of the numbers that are reported of it.
-  type :: error_probe_t
-    integer :: mesh = 1
-    type(control_t) :: control
-    type(state_t) :: state
-  end type error_probe_t
+  !> What is read of a state: h0, load, displacement, energy of the bodies, contact radius, radius
+  !> that the mesh is locked to; and what follows from these: position of the drive, tension, error
+  !> of the profile. Of a place `of_energy` is the energy of bodies and drive.
+  integer, parameter :: read_of_states = 6, of_h0 = 1, of_load = 2, of_displacement = 3, &
+    of_energy = 4, of_radius = 5, of_edge = 6, of_position = 7, of_tension = 8, of_profile = 9, &
+    quantities = 9
+  !> The mesh of a place that no mesh has.
+  integer, parameter :: nowhere = -1
 
-  !> What a state is reported by, in the units of `dimensionless_problem`.
-  type :: measure_t
-    real(wp) :: h0 = 0, displacement = 0, load = 0, energy = 0
-  end type measure_t
-
-  !> Errors of the same; and of its profile: the gaps, and the pressures over the largest of them.
-  !> Where they are not known, they are as large as what they are of.
-  type :: error_t
-    real(wp) :: h0 = 0, displacement = 0, load = 0, profile = 0
-    logical :: known = .true.
-    !> Of the radius of what a mesh in contact is locked to, lateral units. Theories are compared
-    !> with it; it is not part of `relative_error`, since locks far from the edge of contact are
-    !> found less well than what is reported.
-    real(wp) :: radius = 0
-  end type error_t
-
-  !> A state that numbers are reported of, in the units of `dimensionless_problem`, and where it
-  !> comes from: a point of the traced path, or the landing after a jump over a point, or else a
-  !> state at a given h0, which is on the path or not.
+  !> A place, in the units of `dimensionless_problem`.
   type :: reported_t
-    real(wp) :: h0 = 0, displacement = 0, load = 0
+    !> The point of the traced path that it is (0: none), or over which the jump leads that lands
+    !> here.
     integer :: point = 0
     logical :: landing = .false.
-    !> Its h0 was found by a search between steps, and no error of that is known.
-    logical :: searched = .false.
-    type(error_probe_t), allocatable :: witness
-    type(error_t), allocatable :: error
-    !> Derivatives by each parameter of &sensitivity, SI units.
-    type(measure_t), allocatable :: rate(:)
+    !> The equilibrium, its mesh and its coordinate there; mesh 0 has undeformed bodies.
+    integer :: mesh = nowhere
+    real(wp) :: s = 0
+    type(state_t) :: state
+    !> The weights of h0 and load in D; of what turns here along the path, if anything does: D or,
+    !> before it, h0; and the place in the table where the jump began that ended here, at the same
+    !> D.
+    real(wp) :: drive(2) = [1.0_wp, 0.0_wp], turn_of(2) = 0
+    integer :: after = 0
+    !> Whether profile and contact radius are asked for; whether h0 was found by a search between
+    !> steps, and no error of that is known.
+    logical :: with_profile = .false., with_radius = .false., searched = .false.
+    !> What is read: here; at the same place of a finer mesh; what solving has left of it.
+    real(wp), dimension(read_of_states) :: at = 0, fine = 0, left = 0
+    !> Error of gaps, and of pressures over the largest of them.
+    real(wp) :: profile = 0
+    !> Whether it is read for a number, and for derivatives.
+    logical :: read = .false., differentiated = .false.
+    !> Whether the finer mesh was asked, and had the place; differences count `margin` times.
+    logical :: judged = .false., known = .true.
+    real(wp) :: margin = 1
+    !> Derivatives of what is read by each parameter of &sensitivity, SI units.
+    real(wp), allocatable :: rate(:, :)
+  contains
+    procedure :: has_state
+    procedure :: turns
+    procedure :: measures
+    procedure :: leftovers
+    procedure :: errors
+    procedure :: relative_error
   end type reported_t
+
 
   !> An error that says that nothing is known.
   real(wp), parameter :: most = 1.0e6_wp
+  !> Errors count against a quantity itself or, if this is larger, against so much.
+  real(wp), parameter :: least(quantities) = [1.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
+    1.0_wp, 0.0_wp, 0.0_wp]
 
 contains
 
-  !> A witness's state as one that is reported.
-  pure function reported_state(witness) result(reported)
-    type(error_probe_t), intent(in) :: witness
-    type(reported_t) :: reported
+  !> A state as a place at its h0.
+  pure function reported_state(mesh, state) result(place)
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+    type(reported_t) :: place
 
-    associate (state => witness%state)
-      reported%h0 = state%h0
-      reported%displacement = state%axis_gap - state%h0
-      reported%load = state%load
-    end associate
-    reported%witness = witness
+    place%mesh = mesh
+    place%state = state
+    place%at(of_h0) = state%h0
+    place%at(of_load) = state%load
+    place%at(of_displacement) = state%axis_gap - state%h0
+    place%at(of_edge) = state%scale
   end function reported_state
 
   !> Adds to a list. An argument may be a function's result: compiler note 1.
-  subroutine add_reported(list, reported)
+  subroutine add_reported(list, place)
     type(reported_t), allocatable, intent(inout) :: list(:)
-    type(reported_t), intent(in) :: reported
+    type(reported_t), intent(in) :: place
 
     if (.not. allocated(list)) allocate (list(0))
-    list = [list, reported]
+    list = [list, place]
   end subroutine add_reported
 
-  !> The largest error of a reported state: of the load relative to itself, of h0 and displacement
-  !> relative to themselves or, where they are smaller, to the law's length; 0 if it is not known.
-  pure real(wp) function relative_error(reported) result(largest)
-    type(reported_t), intent(in) :: reported
+  !> Whether the place has an equilibrium on a mesh.
+  pure logical function has_state(self)
+    class(reported_t), intent(in) :: self
+
+    has_state = allocated(self%state%gap)
+  end function has_state
+
+  !> Whether something turns here.
+  pure logical function turns(self)
+    class(reported_t), intent(in) :: self
+
+    turns = any(abs(self%turn_of) > 0)
+  end function turns
+
+  !> All quantities, of values read at the place.
+  pure function measures(self, value) result(all)
+    class(reported_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+    real(wp) :: all(quantities)
+
+    all(:read_of_states) = value
+    ! At fixed D equilibria are where the energy of bodies and spring, or dead load, is stationary.
+    if (self%drive(1) > 0) then
+      all(of_energy) = value(of_energy) - 0.5_wp*self%drive(2)*value(of_load)**2
+    else
+      all(of_energy) = value(of_energy) + value(of_load)*value(of_h0)
+    end if
+    all(of_position) = dot_product(self%drive, value(:2))
+    all(of_tension) = -value(of_load)
+    all(of_profile) = self%profile
+  end function measures
+
+  !> What solving has left of all quantities, rounding included.
+  pure function leftovers(self) result(all)
+    class(reported_t), intent(in) :: self
+    real(wp) :: all(quantities)
+
+    all(:read_of_states) = self%left
+    all(of_position) = dot_product(abs(self%drive), self%left(:2))
+    all(of_tension) = self%left(of_load)
+    all(of_profile) = 0
+  end function leftovers
+
+  !> The errors of all quantities; as large as themselves where the finer mesh has no such place.
+  pure function errors(self) result(all)
+    class(reported_t), intent(in) :: self
+    real(wp) :: all(quantities)
+
+    associate (own => self%measures(self%at))
+      all = max(abs(own), least)
+      if (self%known) &
+        all = self%margin*abs(own - self%measures(self%fine)) + self%leftovers()
+    end associate
+  end function errors
+
+  !> The largest error of what is reported of a place, relative; 0 if it was not judged.
+  pure real(wp) function relative_error(self) result(largest)
+    class(reported_t), intent(in) :: self
+    real(wp) :: part(quantities)
 
     largest = 0
-    if (.not. allocated(reported%error)) return
-    associate (error => reported%error)
-      if (error%load > 0) largest = min(error%load/max(abs(reported%load), tiny(1.0_wp)), most)
-      largest = max(largest, error%h0/max(abs(reported%h0), 1.0_wp), error%profile)
-      ! At an extremum h0 or the load stands still while the displacement runs on: where on the flat
-      ! top it is found does not move the curve, and no displacement is reported of it.
-      if (reported%point == 0) largest = max(largest, &
-        error%displacement/max(abs(reported%displacement), 1.0_wp))
-    end associate
+    if (.not. self%judged) return
+    part = self%errors()
+    where (part > 0) part = &
+      min(part/max(abs(self%measures(self%at)), least, tiny(1.0_wp)), most)
+    largest = max(part(of_load), self%profile)
+    if (self%after > 0) return
+    if (.not. self%searched) &
+      largest = max(largest, part(merge(of_position, of_h0, product(self%drive) < 0)))
+    ! At an extremum h0 or the load stands still while the displacement runs on: where on the flat
+    ! top it is found does not move the curve, and no displacement is reported of it.
+    if (.not. self%turns()) largest = max(largest, part(of_displacement))
+    if (self%with_radius .and. self%at(of_radius) > 0) largest = max(largest, part(of_radius))
   end function relative_error
+
+  !> All quantities of a place [SI]; under a dead load a drive has no position.
+  pure function values_of(problem, place) result(values)
+    type(problem_t), intent(in) :: problem
+    type(reported_t), intent(in) :: place
+    real(wp) :: values(quantities)
+
+    values = place%measures(place%at)
+    values([of_h0, of_position]) = problem%law%separation_of(values([of_h0, of_position]))
+    associate (others => [of_load, of_displacement, of_energy, of_radius, of_edge, of_tension, &
+      of_profile], units => units_of(problem))
+      values(others) = values(others)*units(others)
+    end associate
+    if (.not. place%drive(1) > 0) values(of_position) = ieee_value(1.0_wp, ieee_quiet_nan)
+  end function values_of
+
+  !> The units of all quantities [SI].
+  pure function units_of(problem) result(units)
+    type(problem_t), intent(in) :: problem
+    real(wp) :: units(quantities)
+
+    units = problem%length
+    units([of_load, of_tension]) = problem%load
+    units(of_energy) = problem%load*problem%length
+    units([of_radius, of_edge]) = problem%lateral
+    units(of_profile) = 1
+  end function units_of
+
+  !> The weights of h0 and load in D, SI units.
+  pure function drive_weights(problem, drive) result(weights)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: drive(2)
+    real(wp) :: weights(2)
+
+    weights = drive
+    if (drive(1) > 0) weights(2) = drive(2)*problem%length/problem%load
+  end function drive_weights
+
+  !> Derivatives of a quantity of a place by each parameter [SI].
+  pure function rates_of(problem, place, quantity) result(rate)
+    type(problem_t), intent(in) :: problem
+    type(reported_t), intent(in) :: place
+    integer, intent(in) :: quantity
+    real(wp) :: rate(size(place%rate, 2))
+
+    associate (weights => drive_weights(problem, place%drive), own => place%rate, &
+      values => values_of(problem, place))
+      select case (quantity)
+      case (of_position)
+        rate = matmul(weights, own(:2, :))
+        if (.not. weights(1) > 0) rate = ieee_value(1.0_wp, ieee_quiet_nan)
+      case (of_tension)
+        rate = -own(of_load, :)
+      case (of_energy)
+        rate = own(of_energy, :) - weights(2)*values(of_load)*own(of_load, :)
+        if (.not. weights(1) > 0) rate = own(of_energy, :) + &
+          values(of_load)*own(of_h0, :) + values(of_h0)*own(of_load, :)
+      case default
+        rate = own(quantity, :)
+      end select
+    end associate
+  end function rates_of
 
 end module reported

@@ -9,7 +9,6 @@ module traced_path
   use contact_state, only: state_t
   use undeformed, only: load_undeformed, load_slope_undeformed
   use edge_locked, only: approach
-  use reported, only: error_t, measure_t
   use path_tangent, only: tangent_t
   use arc, only: arc_t
   implicit none
@@ -29,9 +28,6 @@ module traced_path
     integer :: modes = 0
     !> Whether it is an extremum, of h0 or of the load.
     logical :: fold = .false., load_extremum = .false.
-    !> What it is on a finer mesh, and its errors: once they were estimated.
-    type(measure_t), allocatable :: fine
-    type(error_t), allocatable :: error
   end type path_point_t
 
   type :: traced_path_t

@@ -7,6 +7,7 @@ module case_columns
   use failure, only: failure_t
   use text, only: brief, word_of
   use deck_numbers, only: find_number
+  use places, only: readings_t
   use result_rows, only: row_t, rows
   use scene_groups, only: scene_t
   use summary, only: summary_t
@@ -63,6 +64,7 @@ contains
     type(summary_t), intent(in) :: summary
     type(scene_t), intent(in) :: scene
     real(wp), allocatable :: values(:)
+    type(readings_t) :: found
     integer, allocatable :: single(:)
     integer :: i, k
 
@@ -75,7 +77,9 @@ contains
     end do
     do k = 1, turning_points(scene)
       do i = 1, size(rows)
-        if (each_turn(rows(i))) values = [values, item(summary%numbers(rows(i)%key), k)]
+        if (.not. each_turn(rows(i))) cycle
+        found = summary%numbers_of_row(i)
+        values = [values, item(found%value, k)]
       end do
     end do
   end function numbers_of

@@ -48,11 +48,11 @@ contains
         call results%begin_table('device.csv')
         call write_device(problem, readings, results)
         call results%begin_table('device_jumps.csv')
-        call write_jumps(problem, readings, results)
+        call write_jumps(problem, readings, outcome%places, results)
       end if
       if (allocated(readings%loaded)) then
         call results%begin_table('fixed_load.csv')
-        call write_fixed_loads(problem, readings, results)
+        call write_fixed_loads(problem, readings, outcome%places, results)
       end if
       if (.not. allocated(readings%prescribed)) return
       call results%begin_table('table.csv')
@@ -70,7 +70,7 @@ contains
 
     if (.not. (allocated(outcome%readings) .or. allocated(outcome%timed))) return
     call results%begin_table('sensitivity.csv')
-    call write_sensitivity(problem, sensitivity%varied, summary, outcome%readings, results)
+    call write_sensitivity(problem, sensitivity%varied, summary, outcome%places, results)
     if (.not. allocated(outcome%readings)) return
     associate (readings => outcome%readings)
       if (.not. allocated(readings%rate)) return

@@ -5,11 +5,10 @@ module device_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use curve_states, only: curve_state_t
-  use driven_pieces, only: drive_t, jump_t
+  use driven_pieces, only: drive_t
   use device, only: driven_t, leg_t, nodes_on
-  use reading_numbers, only: error_of, state_errors
-  use place_sensitivity, only: of_load
-  use reading_sensitivities, only: weights_of
+  use reported, only: of_h0, of_load, of_energy, of_radius, of_position
+  use places, only: places_t, readings_t
   use path_readings, only: path_readings_t
   use results, only: results_t
   use tables, only: cells
@@ -84,22 +83,28 @@ contains
   end subroutine write_device
 
   !> Writes the rows of device_jumps.csv.
-  subroutine write_jumps(problem, readings, results)
+  subroutine write_jumps(problem, readings, places, results)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
+    type(places_t), intent(in) :: places
     type(results_t), intent(inout) :: results
-    real(wp) :: after(3)
-    integer :: i, k
+    integer, parameter :: of_both(*) = [of_position, of_h0, of_load, of_radius]
+    type(readings_t) :: before(size(of_both)), after(size(of_both))
+    integer :: i, j, k, n
 
+    n = 0
+    do k = 1, size(of_both)
+      before(k) = places%read_numbers(problem, 'jump_before', of_both(k))
+      after(k) = places%read_numbers(problem, 'jump_after', of_both(k))
+    end do
     do i = 1, size(readings%device)
-      do k = 1, size(readings%device(i)%jump)
-        associate (driven => readings%device(i), jump => readings%device(i)%jump(k))
-          after = ieee_value(1.0_wp, ieee_quiet_nan)
-          if (jump%landed) after = si_of(problem, jump%after)
-          call results%row(cells([driven%stiffness]) // ',' // direction_of(jump%inward), &
-            [z_of(problem, driven%drive, jump%before), &
-            si_of(problem, jump%before), after, jump%energy*problem%load*problem%length, &
-            jump_errors(problem, readings, driven, jump)])
+      do j = 1, size(readings%device(i)%jump)
+        n = n + 1
+        associate (jump => readings%device(i)%jump(j))
+          call results%row(cells([readings%device(i)%stiffness]) // ',' // &
+            direction_of(jump%inward), [(before(k)%value(n), k=1, size(of_both)), &
+            (after(k)%value(n), k=2, size(of_both)), jump%energy*problem%load*problem%length, &
+            before(1)%error(n), before(3)%error(n), after(3)%error(n)])
         end associate
       end do
     end do
@@ -113,16 +118,6 @@ contains
     if (inward) direction = 'approach'
   end function direction_of
 
-  !> h0, load and contact radius in SI units.
-  pure function si_of(problem, state) result(values)
-    type(problem_t), intent(in) :: problem
-    type(curve_state_t), intent(in) :: state
-    real(wp) :: values(3)
-
-    values = [problem%law%separation_of(state%h0), state%load*problem%load, &
-      state%radius*problem%lateral]
-  end function si_of
-
   !> Position of the drive [m].
   pure real(wp) function z_of(problem, drive, state) result(z)
     type(problem_t), intent(in) :: problem
@@ -133,133 +128,28 @@ contains
     if (drive%weights(1) > 0) z = problem%law%separation_of(drive%position(state))
   end function z_of
 
-  !> What the drives leave in the summary, an element for each stiffness: the first jump of each
-  !> way, and the energy; with derivatives by so many parameters.
-  subroutine summarise_device(problem, readings, parameters, summary)
+  !> What the drives leave in the summary besides what is read at places, an element for each
+  !> stiffness.
+  subroutine summarise_device(problem, readings, places, summary)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
-    integer, intent(in) :: parameters
+    type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
-    real(wp) :: unit
-    integer :: i
+    type(readings_t) :: lost
 
-    unit = problem%load*problem%length
-    associate (device => readings%device)
+    lost = places%read_numbers(problem, 'device_energy', of_energy)
+    associate (device => readings%device, unit => problem%load*problem%length)
       call summary%set('device_stiffness', device%stiffness)
-      call take_jumps('device_jump_in', .true.)
-      call take_jumps('device_jump_out', .false.)
-      call summary%set('device_energy_lost', device%energy_lost*unit)
-      call summary%set('device_energy_lost_error', [(unit*error_of(readings%margin, &
-        device(i)%energy_lost, device(i)%fine_energy_lost) + unit*device(i)%uncertainty, &
-        i=1, size(device))])
-      call summary%set_rate('device_energy_lost', reshape([(energy_rates(device(i), parameters), &
-        i=1, size(device))], [parameters, size(device)]))
-      call summary%set('device_cycle_energy', device%cycle_energy*unit)
-      call summary%set('device_cycle_energy_error', [(unit*error_of(readings%margin, &
-        device(i)%cycle_energy, device(i)%fine_cycle_energy) + unit*uncertainty(device(i)), &
-        i=1, size(device))])
-      call summary%set('device_energy_uncertainty', [(unit*max(uncertainty(device(i)), &
-        error_of(readings%margin, device(i)%energy_lost, device(i)%fine_energy_lost)), &
-        i=1, size(device))])
+      call summary%set('device_cycle_energy', device%cycle_energy*unit, &
+        lost%error + uncertainty(device)*unit)
+      call summary%set('device_energy_uncertainty', max(uncertainty(device)*unit, lost%error))
       if (.not. all(device%caught)) call summary%warn('device: no stable state is known ' // &
         'that catches the bodies after a jump; see device_jumps.csv')
       if (any(uncertainty(device) > known_energy*abs(device%energy_lost))) &
         call summary%warn('device: the energy lost in jumps is not the area of the cycle; ' // &
         'a smaller accuracy may help')
     end associate
-
-  contains
-
-    subroutine take_jumps(name, inward)
-      character(len=*), intent(in) :: name
-      logical, intent(in) :: inward
-      real(wp), dimension(size(readings%device)) :: z, before, after, z_error, before_error, &
-        after_error
-      real(wp), dimension(parameters, size(readings%device)) :: z_rate, before_rate, after_rate
-      integer :: k, first
-
-      z = ieee_value(1.0_wp, ieee_quiet_nan)
-      before = z
-      after = z
-      z_error = z
-      before_error = z
-      after_error = z
-      z_rate = z(1)
-      before_rate = z_rate
-      after_rate = z_rate
-      do k = 1, size(readings%device)
-        associate (driven => readings%device(k))
-          first = findloc(driven%jump%inward, inward, 1)
-          if (first == 0) cycle
-          associate (jump => driven%jump(first))
-            z(k) = z_of(problem, driven%drive, jump%before)
-            before(k) = jump%before%load*problem%load
-            if (jump%landed) after(k) = jump%after%load*problem%load
-            associate (errors => jump_errors(problem, readings, driven, jump))
-              z_error(k) = errors(1)
-              before_error(k) = errors(2)
-              if (jump%landed) after_error(k) = errors(3)
-            end associate
-            if (allocated(jump%before%rate)) then
-              before_rate(:, k) = jump%before%rate(of_load, :)
-              if (driven%drive%weights(1) > 0) z_rate(:, k) = &
-                matmul(weights_of(problem, driven%drive), jump%before%rate(:2, :))
-            end if
-            if (allocated(jump%after%rate)) after_rate(:, k) = jump%after%rate(of_load, :)
-          end associate
-        end associate
-      end do
-      call summary%set(name // '_z', z)
-      call summary%set(name // '_load', before)
-      call summary%set(name // '_load_after', after)
-      call summary%set(name // '_z_error', z_error)
-      call summary%set(name // '_load_error', before_error)
-      call summary%set(name // '_load_after_error', after_error)
-      call summary%set_rate(name // '_z', z_rate)
-      call summary%set_rate(name // '_load', before_rate)
-      call summary%set_rate(name // '_load_after', after_rate)
-    end subroutine take_jumps
-
   end subroutine summarise_device
-
-  !> Errors of the position [m] and of the loads [N] before and after a jump.
-  pure function jump_errors(problem, readings, driven, jump) result(errors)
-    type(problem_t), intent(in) :: problem
-    type(path_readings_t), intent(in) :: readings
-    type(driven_t), intent(in) :: driven
-    type(jump_t), intent(in) :: jump
-    real(wp) :: errors(3)
-
-    associate (before => state_errors(readings%margin, jump%before), &
-      after => state_errors(readings%margin, jump%after), drive => driven%drive)
-      errors = [before%h0, before%load, after%load]
-      if (allocated(jump%before%fine)) then
-        errors(1) = error_of(readings%margin, drive%position(jump%before), &
-          dot_product(drive%weights, [jump%before%fine%h0, jump%before%fine%load]))
-      else
-        errors(1) = max(abs(drive%position(jump%before)), 1.0_wp)
-      end if
-    end associate
-    errors = errors*[problem%length, problem%load, problem%load]
-    if (.not. driven%drive%weights(1) > 0) errors(1) = ieee_value(1.0_wp, ieee_quiet_nan)
-  end function jump_errors
-
-  !> Derivatives of the energy lost by each parameter; NaN where a jump has none.
-  pure function energy_rates(driven, parameters) result(rate)
-    type(driven_t), intent(in) :: driven
-    integer, intent(in) :: parameters
-    real(wp) :: rate(parameters)
-    integer :: i
-
-    rate = 0
-    do i = 1, size(driven%jump)
-      if (allocated(driven%jump(i)%energy_rate)) then
-        rate = rate + driven%jump(i)%energy_rate
-      else
-        rate = ieee_value(rate, ieee_quiet_nan)
-      end if
-    end do
-  end function energy_rates
 
   !> How well the energy lost is known: the two routes to it share the states where jumps start and
   !> end, but one takes the energy of these and the other the load on the way between them.

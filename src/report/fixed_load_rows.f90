@@ -3,7 +3,8 @@ module fixed_load_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use path_readings, only: path_readings_t, loaded_state_t
-  use reading_numbers, only: state_errors
+  use reported, only: of_h0, of_displacement, of_radius
+  use places, only: places_t, readings_t
   use tables, only: cells
   use results, only: results_t
   use summary, only: summary_t
@@ -15,20 +16,22 @@ module fixed_load_rows
 contains
 
   !> Writes the rows of fixed_load.csv: load by load, each from afar inward.
-  subroutine write_fixed_loads(problem, readings, results)
+  subroutine write_fixed_loads(problem, readings, places, results)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
+    type(places_t), intent(in) :: places
     type(results_t), intent(inout) :: results
+    type(readings_t) :: h0, displacement, radius
     integer :: i
 
+    h0 = places%read_numbers(problem, 'fixed_load', of_h0)
+    displacement = places%read_numbers(problem, 'fixed_load', of_displacement)
+    radius = places%read_numbers(problem, 'fixed_load', of_radius)
     do i = 1, size(readings%loaded)
-      associate (loaded => readings%loaded(i), state => readings%loaded(i)%state, &
-        errors => state_errors(readings%margin, readings%loaded(i)%state))
-        call results%row(cells([loaded%wanted*problem%load, &
-          problem%law%separation_of(state%h0), (state%axis_gap - state%h0)*problem%length, &
-          state%radius*problem%lateral]) // merge(',1', ',0', loaded%stable), &
-          [errors%h0*problem%length, errors%displacement*problem%length, &
-          errors%radius*problem%lateral])
+      associate (loaded => readings%loaded(i))
+        call results%row(cells([loaded%wanted*problem%load, h0%value(i), &
+          displacement%value(i), radius%value(i)]) // merge(',1', ',0', loaded%stable), &
+          [h0%error(i), displacement%error(i), radius%error(i)])
       end associate
     end do
   end subroutine write_fixed_loads

@@ -5,6 +5,7 @@ module quality_warnings
   use scene_groups, only: scene_t
   use mending, only: too_much
   use experiment_result, only: experiment_result_t
+  use outcome_quality, only: quality_t
   use summary, only: summary_t
   implicit none
   private
@@ -27,73 +28,75 @@ module quality_warnings
 contains
 
   !> Whether the neck is resolved, and what to do if not. locked: on a mesh locked to the edge.
-  subroutine judge_resolution(locked, summary)
+  subroutine judge_resolution(locked, quality, summary)
     logical, intent(in) :: locked
+    type(quality_t), intent(in) :: quality
     type(summary_t), intent(inout) :: summary
     character(len=:), allocatable :: advice
-    real(wp) :: spacing
+    logical :: resolved
 
-    if (.not. summary%has('spacing_over_neck')) return
-    spacing = summary%number('spacing_over_neck')
-    call summary%set('resolved', spacing <= merge(resolved_locked, resolved_spacing, locked))
-    if (summary%is_true('resolved')) return
-    if (locked) then
-      advice = '; ask for a higher accuracy'
-    else
-      advice = ', which is then pinned between them; use '// &
-        short_number(spacing/resolved_spacing)//' times as many nodes or grid = ''panels'''
-    end if
-    call summary%warn('under-resolved: nodes are '//short_number(spacing)// &
-      ' neck widths apart at the contact edge'//advice)
+    associate (spacing => quality%spacing)
+      if (.not. spacing > 0) return
+      resolved = spacing <= merge(resolved_locked, resolved_spacing, locked)
+      call summary%set('resolved', resolved)
+      if (resolved) return
+      if (locked) then
+        advice = '; ask for a higher accuracy'
+      else
+        advice = ', which is then pinned between them; use '// &
+          short_number(spacing/resolved_spacing)//' times as many nodes or grid = ''panels'''
+      end if
+      call summary%warn('under-resolved: nodes are '//short_number(spacing)// &
+        ' neck widths apart at the contact edge'//advice)
+    end associate
   end subroutine judge_resolution
 
   !> Whether the numbers are as good as the deck asks for; on a grid that the deck has chosen,
   !> whether they are any good. And whether residuals count as converged because rounding allows no
   !> better, though they may show in a displacement of one of the law's lengths.
-  subroutine judge_accuracy(scene, outcome, summary)
+  subroutine judge_accuracy(scene, outcome, quality, summary)
     type(scene_t), intent(in) :: scene
     type(experiment_result_t), intent(in) :: outcome
+    type(quality_t), intent(in) :: quality
     type(summary_t), intent(inout) :: summary
-    real(wp) :: enough, estimate
+    real(wp) :: enough
 
     associate (tolerance => outcome%chosen%options%tolerance)
       if (summary%is_true('converged') .and. .not. outcome%chosen%options%stop_on_change .and. &
-        summary%number('worst_residual') > &
+        quality%residual > &
         max(tolerance, scene%numerics%accuracy, usual_residual)) &
         call summary%warn('rounding leaves residuals of up to '// &
-        short_number(summary%number('worst_residual'))// &
+        short_number(quality%residual)// &
         ' lengths of the force law, above the tolerance of '//short_number(tolerance))
     end associate
     if (outcome%left_out > too_much*scene%numerics%accuracy) &
       call summary%warn( &
       'the mesh does not resolve the force law: '//short_number(outcome%left_out)// &
       ' of the load is left out between nodes; smoother forces are resolved')
-    if (.not. summary%has('error_estimate')) return
-    estimate = summary%number('error_estimate')
+    if (.not. allocated(outcome%error_estimate)) return
     enough = clearly*scene%numerics%accuracy
     if (outcome%chosen%is_fixed()) enough = max(enough, meaningless)
-    if (estimate >= 1) then
+    if (outcome%error_estimate >= 1) then
       call summary%warn('the error could not be estimated: a finer mesh has no such states, or '// &
         'these did not converge; the numbers may mean nothing')
-    else if (estimate > enough) then
-      call summary%warn('the error is estimated as '//short_number(estimate)// &
+    else if (outcome%error_estimate > enough) then
+      call summary%warn('the error is estimated as '//short_number(outcome%error_estimate)// &
         ', above the accuracy of '//short_number(scene%numerics%accuracy)//' asked for')
     end if
   end subroutine judge_accuracy
 
-  !> Whether equations that were not asked to hold hold all the same; `ended`: every branch came to
-  !> its end.
-  subroutine judge_stopping(outcome, ended, summary)
+  !> Whether equations that were not asked to hold hold all the same.
+  subroutine judge_stopping(outcome, quality, summary)
     type(experiment_result_t), intent(in) :: outcome
-    logical, intent(in) :: ended
+    type(quality_t), intent(in) :: quality
     type(summary_t), intent(inout) :: summary
 
     if (.not. outcome%chosen%options%stop_on_change) return
     call summary%warn('the iteration was stopped on a small change of the displacement, '// &
       'which is not convergence: the largest residual left is '// &
-      short_number(summary%number('worst_residual'))//' lengths of the force law')
-    call summary%set('converged', ended .and. &
-      summary%number('worst_residual') <= outcome%chosen%options%tolerance)
+      short_number(quality%residual)//' lengths of the force law')
+    call summary%set('converged', .not. quality%early .and. &
+      quality%residual <= outcome%chosen%options%tolerance)
   end subroutine judge_stopping
 
   !> A number for a message, to three digits.

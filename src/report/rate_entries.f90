@@ -3,14 +3,13 @@ module rate_entries
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t, adhesion_strength
   use scene_groups, only: scene_t
-  use timed_record, only: timed_result_t, of_tension, of_tension_h0, of_end_h0, of_end_load, &
-    of_end_displacement, of_dissipation, of_suction
+  use timed_record, only: timed_result_t, numbers, of_tension, of_tension_h0, of_end_h0, &
+    of_end_load, of_end_displacement, of_dissipation, of_suction
   use summary, only: summary_t
-  use summary_entries, only: widen_spacing
   use quality_warnings, only: short_number
   implicit none
   private
-  public :: summarise_timed
+  public :: summarise_timed, si_numbers
 
   !> The part of the memory that panels may leave without a word. What it makes of the gap is much
   !> smoother: of 100 random cycles none with less was off by more than its errors.
@@ -27,8 +26,6 @@ contains
     type(timed_result_t), intent(in) :: timed
     type(summary_t), intent(inout) :: summary
 
-    call summary%set('worst_residual', timed%worst_residual)
-    call widen_spacing(summary, timed%worst_spacing)
     if (allocated(scene%creep) .and. problem%law%adhesion > 0) call summary%set('sigma_relaxed', &
       adhesion_strength(problem)*scene%creep%relaxed())
     if (.not. timed%begun) then
@@ -42,20 +39,20 @@ contains
         'was found that the bodies go on to, or steps were too many; the curve ends there')
       return
     end if
+    if (allocated(timed%not_rated)) call summary%fail_with('sensitivity: a run with another ' // &
+      timed%not_rated // ' did not come to its end; not all derivatives were found')
     if (timed%number(of_tension) > 0) then
-      call take('max_tension', of_tension, problem%load)
-      call summary%set('max_tension_h0', &
-        problem%law%separation_of(timed%number(of_tension_h0)))
-      call summary%set('max_tension_h0_error', timed%error(of_tension_h0)*problem%length)
+      call take('max_tension', of_tension)
+      call take('max_tension_h0', of_tension_h0)
       if (problem%shape%parabolic) call take('effective_work_of_adhesion', of_tension, &
-        problem%load/(1.5_wp*pi*problem%radius))
+        1/(1.5_wp*pi*problem%radius))
     end if
-    call take('energy_dissipated', of_dissipation, problem%load*problem%length)
+    call take('energy_dissipated', of_dissipation)
     call summary%set('end_h0', problem%law%separation_of(timed%number(of_end_h0)))
-    call take('end_displacement', of_end_displacement, problem%length)
-    call take('end_load', of_end_load, problem%load)
+    call take('end_displacement', of_end_displacement)
+    call take('end_load', of_end_load)
     if (allocated(scene%fluid)) then
-      call take('max_suction', of_suction, problem%pressure)
+      call take('max_suction', of_suction)
       if (timed%number(of_suction)*problem%pressure > atmosphere) call warn_of_cavities()
     end if
     if (timed%memory_tail > unresolved) call summary%warn('the mesh does not resolve what the ' // &
@@ -75,15 +72,46 @@ contains
       end associate
     end subroutine warn_of_cavities
 
-    subroutine take(key, which, unit)
+    !> Enters a number, times a factor, with its error and derivatives.
+    subroutine take(key, which, factor)
       character(len=*), intent(in) :: key
       integer, intent(in) :: which
-      real(wp), intent(in) :: unit
+      real(wp), intent(in), optional :: factor
+      real(wp) :: number(1), error(1), times
+      real(wp), allocatable :: rate(:, :)
 
-      call summary%set(key, timed%number(which)*unit)
-      call summary%set(key // '_error', timed%error(which)*unit)
+      times = 1
+      if (present(factor)) times = factor
+      associate (si => si_numbers(problem, timed), units => units_of(problem))
+        number = times*si(which)
+        error = times*timed%error(which)*units(which)
+      end associate
+      allocate (rate(0, 1))
+      if (allocated(timed%rate)) rate = times*timed%rate(:, which:which)
+      call summary%set(key, number, error, rate)
     end subroutine take
 
   end subroutine summarise_timed
+
+  !> The numbers of a drive in SI units.
+  pure function si_numbers(problem, timed) result(si)
+    type(problem_t), intent(in) :: problem
+    type(timed_result_t), intent(in) :: timed
+    real(wp) :: si(numbers)
+
+    si = timed%number*units_of(problem)
+    si([of_tension_h0, of_end_h0]) = &
+      problem%law%separation_of(timed%number([of_tension_h0, of_end_h0]))
+  end function si_numbers
+
+  pure function units_of(problem) result(units)
+    type(problem_t), intent(in) :: problem
+    real(wp) :: units(numbers)
+
+    units([of_tension, of_end_load]) = problem%load
+    units([of_tension_h0, of_end_h0, of_end_displacement]) = problem%length
+    units(of_dissipation) = problem%load*problem%length
+    units(of_suction) = problem%pressure
+  end function units_of
 
 end module rate_entries

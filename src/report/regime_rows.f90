@@ -13,7 +13,8 @@ module regime_rows
   use maugis, only: maugis_lambda, maugis_pull_off, maugis_radius_at_load, maugis_displacement
   use transition_fits, only: carpick_pull_off, carpick_radius_at_load, pietrement_pull_off, &
     pietrement_radius_at_load, pietrement_displacement_at_load
-  use experiment_result, only: experiment_result_t
+  use reported, only: reported_t, units_of, of_h0, of_load, of_edge
+  use places, only: places_t
   use summary, only: summary_t
   implicit none
   private
@@ -40,9 +41,9 @@ contains
   !> The contact radius is where the tension is largest. In the theories bodies touch at no
   !> separation, here at the gap at rest: indentations count from there, their errors are relative
   !> to a^2/R.
-  subroutine summarise_regime(problem, outcome, summary)
+  subroutine summarise_regime(problem, places, summary)
     type(problem_t), intent(in) :: problem
-    type(experiment_result_t), intent(in) :: outcome
+    type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
     type(measured_t) :: solved
     type(measured_t) :: uncertain
@@ -55,7 +56,7 @@ contains
     gamma = surface_energy(problem)
     strength = largest_tension(problem)
     call summary%set('regime_tabor', tabor_parameter(problem))
-    call measure(problem, outcome, load, solved, load_error, uncertain, there)
+    call measure(problem, places, load, solved, load_error, uncertain, there)
     if (.not. (there .and. gamma > 0 .and. strength > 0)) then
       call summary%warn('regime: the path does not end in a contact that theories can be ' // &
         'compared with')
@@ -72,8 +73,7 @@ contains
       ! With E* = y/2 and the range gamma/strength.
       call summary%set('regime_tabor_range', (4*r*strength**3/(y**2*gamma))**(1.0_wp/3))
       call summary%set('regime_maugis_lambda', maugis_lambda(r, y, gamma, strength))
-      call summary%set('regime_load_number', load/(pi*gamma*r))
-      call summary%set('regime_load_number_error', load_error/(pi*gamma*r))
+      call summary%set('regime_load_number', load/(pi*gamma*r), load_error/(pi*gamma*r))
       errors = all_errors(load, solved)
       ! What each number may be off by changes the errors of the theories by so much.
       spread = abs(all_errors(load + load_error, solved) - errors) + &
@@ -81,8 +81,7 @@ contains
         abs(all_errors(load, sum_of(solved, measured_t(radius=uncertain%radius))) - errors)
       do i = 1, size(theories)
         if (is_of_layers(i) .and. .not. has_layers) cycle
-        call summary%set('regime_error_' // trim(theories(i)), errors(:, i))
-        call summary%set('regime_error_' // trim(theories(i)) // '_error', spread(:, i))
+        call summary%set('regime_error_' // trim(theories(i)), errors(:, i), spread(:, i))
       end do
     end associate
     call recommend(errors, summary)
@@ -119,29 +118,24 @@ contains
   end function is_of_layers
 
   !> What the path says, with errors; there = .false.: it has no pull-off, or no contact at its end.
-  subroutine measure(problem, outcome, load, solved, load_error, uncertain, there)
+  subroutine measure(problem, places, load, solved, load_error, uncertain, there)
     type(problem_t), intent(in) :: problem
-    type(experiment_result_t), intent(in) :: outcome
+    type(places_t), intent(in) :: places
     real(wp), intent(out) :: load, load_error
     type(measured_t), intent(out) :: solved, uncertain
     logical, intent(out) :: there
+    type(reported_t) :: lowest, finish
 
-    load = 0
-    load_error = 0
-    there = .false.
-    if (.not. allocated(outcome%path)) return
-    associate (path => outcome%path)
-      there = allocated(path%lowest) .and. allocated(path%finish)
-      if (there) there = path%finish%witness%mesh /= approach .and. path%lowest%load < 0
-      if (.not. there) return
-      load = path%finish%load*problem%load
-      solved = measured_t(path%lowest%load*problem%load, &
-        path%finish%witness%state%scale*problem%lateral, &
-        (problem%law%rest_gap - path%finish%h0)*problem%length)
-      if (.not. (allocated(path%lowest%error) .and. allocated(path%finish%error))) return
-      load_error = path%finish%error%load*problem%load
-      uncertain = measured_t(path%lowest%error%load*problem%load, &
-        path%finish%error%radius*problem%lateral, path%finish%error%h0*problem%length)
+    lowest = places%place_of('path_tension')
+    finish = places%place_of('path_end')
+    there = finish%mesh > approach .and. lowest%at(of_load) < 0
+    load = finish%at(of_load)*problem%load
+    solved = measured_t(lowest%at(of_load)*problem%load, finish%at(of_edge)*problem%lateral, &
+      (problem%law%rest_gap - finish%at(of_h0))*problem%length)
+    associate (errors => finish%errors()*units_of(problem), &
+      of_lowest => lowest%errors()*units_of(problem))
+      load_error = errors(of_load)
+      uncertain = measured_t(of_lowest(of_load), errors(of_edge), errors(of_h0))
     end associate
   end subroutine measure
 
@@ -224,12 +218,9 @@ contains
     character(len=16) :: percent
     integer :: i, best, where_worst
 
-    worst = huge(1.0_wp)
+    worst = largest_of_each(errors)
     do i = 1, size(worst)
-      if (any(ieee_is_nan(errors(:, i)))) cycle
-      if (maxval(abs(errors(:, i))) >= huge(1.0_wp)) cycle
-      worst(i) = maxval(abs(errors(:, i)))
-      call summary%set('regime_worst_' // trim(theories(i)), worst(i))
+      if (worst(i) < huge(1.0_wp)) call summary%set('regime_worst_' // trim(theories(i)), worst(i))
     end do
     best = minloc(worst(:fits_from - 1), 1)
     call summary%set('regime_theory', merge(real(best, wp), 0.0_wp, worst(best) <= acceptable))
@@ -251,17 +242,22 @@ contains
     real(wp), intent(in) :: errors(:, :)
     type(summary_t), intent(inout) :: summary
     real(wp) :: worst(size(closed))
-    integer :: i, best
+    integer :: best
 
-    worst = huge(1.0_wp)
-    do i = 1, size(closed)
-      if (all(abs(errors(:2, closed(i))) < huge(1.0_wp))) &
-        worst(i) = maxval(abs(errors(:2, closed(i))))
-    end do
+    worst = largest_of_each(errors(:2, closed))
     best = minloc(worst, 1)
     if (.not. worst(best) < huge(1.0_wp)) return
     call summary%set('regime_formula', trim(theories(closed(best))))
     call summary%set('regime_formula_error', worst(best))
   end subroutine recommend_formula
+
+  !> The largest error of each theory; of one that does not have all, it is huge.
+  pure function largest_of_each(errors) result(largest)
+    real(wp), intent(in) :: errors(:, :)
+    real(wp) :: largest(size(errors, 2))
+
+    largest = maxval(abs(errors), 1)
+    where (.not. all(abs(errors) < huge(1.0_wp), 1)) largest = huge(1.0_wp)
+  end function largest_of_each
 
 end module regime_rows

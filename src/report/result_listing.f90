@@ -53,6 +53,8 @@ contains
       if (rows(i)%group /= group) cycle
       call list_one(unit, trim(rows(i)%key), trim(rows(i)%unit), sweep_note(rows(i)), &
         rows(i)%meaning)
+      if (rows(i)%error /= '') call list_one(unit, trim(rows(i)%key) // trim(rows(i)%error), &
+        trim(rows(i)%unit), '', 'estimated error of ' // trim(rows(i)%key))
     end do
   end subroutine list_rows
 

@@ -1,6 +1,10 @@
 !> The one table of what a run reports: summary.nml, the columns of sweep.csv and what Python reads
-!> follow it. A new number is one row here and one `set` where it is known (`summarise`).
+!> follow it. A number that is read at a place of the path is one row here, which names the place
+!> and what is read there; with its error and derivatives it is in the summary then. A new place is
+!> entered in `outcome_places`. Other numbers are a row here and a `set` where they are known.
 module result_rows
+  use reported, only: of_h0, of_load, of_displacement, of_energy, of_position, of_tension, &
+    of_profile
   implicit none
   private
   public :: row_t, rows, row_of, in_summary, in_cost
@@ -21,7 +25,14 @@ module result_rows
     character(len=14) :: sweep = never
     integer :: group = in_summary
     logical :: list = .false.
+    !> The place and the quantity (`reported`), for what is read at one.
+    character(len=20) :: place = ''
+    integer :: quantity = 0
+    !> What the entry with its error is called behind the key; empty without one.
+    character(len=12) :: error = ''
   end type row_t
+
+  character(len=*), parameter :: judged = '_error'
 
   !> In the order in which they are written.
   type(row_t), parameter :: rows(*) = [ &
@@ -65,54 +76,47 @@ module result_rows
     row_t('pietrement_troyon_pull_off', 'N', &
       'with theories = ''pietrement_troyon'': pull-off, positive'), &
     row_t('pietrement_troyon_radius', 'm', 'contact radius under no load'), &
-    row_t('max_tension', 'N', 'largest tension of all branches, positive', always), &
-    row_t('max_tension_h0', 'm', 'h0 at the largest tension', always), &
-    row_t('max_tension_error', 'N', 'estimated error of max_tension'), &
-    row_t('max_tension_h0_error', 'm', 'estimated error of max_tension_h0'), &
-    row_t('jump_in_h0', 'm', 'h0 at which the approaching bodies jump into contact', always), &
-    row_t('jump_in_load', 'N', 'load just before the jump into contact', always), &
-    row_t('jump_in_h0_error', 'm', 'estimated error of jump_in_h0'), &
-    row_t('jump_in_load_error', 'N', 'estimated error of jump_in_load'), &
+    row_t('max_tension', 'N', 'largest tension of all branches, positive', always, &
+      place='max_tension', quantity=of_tension, error=judged), &
+    row_t('max_tension_h0', 'm', 'h0 at the largest tension', always, &
+      place='max_tension', quantity=of_h0, error=judged), &
+    row_t('jump_in_h0', 'm', 'h0 at which the approaching bodies jump into contact', always, &
+      place='jump_in', quantity=of_h0, error=judged), &
+    row_t('jump_in_load', 'N', 'load just before the jump into contact', always, &
+      place='jump_in', quantity=of_load, error=judged), &
     row_t('jump_in_uncertainty', 'm', &
       'on a fixed grid: h0 of the jump is known to within plus or minus this'), &
     row_t('jump_out_h0', 'm', &
-      'h0 at which the retreating bodies jump apart, in the first unloading that does', always), &
-    row_t('jump_out_load', 'N', 'load just before the bodies jump apart', always), &
-    row_t('jump_out_h0_error', 'm', 'estimated error of jump_out_h0'), &
-    row_t('jump_out_load_error', 'N', 'estimated error of jump_out_load'), &
+      'h0 at which the retreating bodies jump apart, in the first unloading that does', always, &
+      place='jump_out', quantity=of_h0, error=judged), &
+    row_t('jump_out_load', 'N', 'load just before the bodies jump apart', always, &
+      place='jump_out', quantity=of_load, error=judged), &
     row_t('jump_out_uncertainty', 'm', &
       'on a fixed grid: h0 of the jump is known to within plus or minus this'), &
     row_t('unload_from', 'm', 'turning point of each unloading', list=.true.), &
     row_t('unload_max_tension', 'N', 'largest tension of each unloading, positive', turning, &
-      list=.true.), &
+      list=.true., place='unload_max_tension', quantity=of_tension, error=judged), &
     row_t('unload_max_tension_h0', 'm', 'h0 at the largest tension of each unloading', &
-      list=.true.), &
+      list=.true., place='unload_max_tension', quantity=of_h0, error=judged), &
     row_t('unload_jump_out_h0', 'm', &
-      'h0 at which the bodies jump apart in each unloading', turning, list=.true.), &
-    row_t('unload_max_tension_error', 'N', 'estimated error of unload_max_tension', list=.true.), &
-    row_t('unload_max_tension_h0_error', 'm', 'estimated error of unload_max_tension_h0', &
-      list=.true.), &
-    row_t('unload_jump_out_h0_error', 'm', 'estimated error of unload_jump_out_h0', list=.true.), &
-    row_t('folds_h0', 'm', 'h0 of every fold of the path, in order', list=.true.), &
-    row_t('folds_load', 'N', 'load at every fold of the path', list=.true.), &
+      'h0 at which the bodies jump apart in each unloading', turning, list=.true., &
+      place='unload_jump_out', quantity=of_h0, error=judged), &
+    row_t('folds_h0', 'm', 'h0 of every fold of the path, in order', list=.true., &
+      place='folds', quantity=of_h0, error=judged), &
+    row_t('folds_load', 'N', 'load at every fold of the path', list=.true., &
+      place='folds', quantity=of_load, error=judged), &
     row_t('folds_stable', '', 'whether the path is stable after each fold, 1 or 0', list=.true.), &
-    row_t('folds_h0_error', 'm', 'estimated error of folds_h0', list=.true.), &
-    row_t('folds_load_error', 'N', 'estimated error of folds_load', list=.true.), &
-    row_t('load_folds_h0', 'm', 'h0 of every extremum of the load along the path', list=.true.), &
-    row_t('load_folds_load', 'N', 'load at every extremum', list=.true.), &
-    row_t('load_folds_h0_error', 'm', 'estimated error of load_folds_h0', list=.true.), &
-    row_t('load_folds_load_error', 'N', 'estimated error of load_folds_load', list=.true.), &
-    row_t('energy_lost', 'J', 'energy lost in the jumps of a cycle', always), &
-    row_t('energy_lost_uncertainty', 'J', 'estimated error of energy_lost'), &
+    row_t('load_folds_h0', 'm', 'h0 of every extremum of the load along the path', list=.true., &
+      place='load_folds', quantity=of_h0, error=judged), &
+    row_t('load_folds_load', 'N', 'load at every extremum', list=.true., &
+      place='load_folds', quantity=of_load, error=judged), &
+    row_t('energy_lost', 'J', 'energy lost in the jumps of a cycle', always, &
+      place='energy_lost', quantity=of_energy, error='_uncertainty'), &
     row_t('energy_dissipated', 'J', 'work of a drive in time less what bodies hold in the end', &
-      drive), &
-    row_t('energy_dissipated_error', 'J', 'estimated error of energy_dissipated'), &
+      drive, error=judged), &
     row_t('effective_work_of_adhesion', 'J/m^2', &
-      'largest tension of a drive in time over 1.5 pi R', drive), &
-    row_t('effective_work_of_adhesion_error', 'J/m^2', &
-      'estimated error of effective_work_of_adhesion'), &
-    row_t('max_suction', 'Pa', 'largest suction of a fluid that drains', fluid), &
-    row_t('max_suction_error', 'Pa', 'estimated error of max_suction'), &
+      'largest tension of a drive in time over 1.5 pi R', drive, error=judged), &
+    row_t('max_suction', 'Pa', 'largest suction of a fluid that drains', fluid, error=judged), &
     row_t('sigma_relaxed', '', 'strength of adhesion of viscoelastic bodies at rest'), &
     row_t('time_steps', '', 'number of steps of a drive in time', drive), &
     row_t('path_traced_h0', 'm', 'h0 from which the path was traced for what is read from it'), &
@@ -121,30 +125,22 @@ module result_rows
     row_t('device_stiffness', 'N/m', &
       'stiffness of each spring; 0: dead load; Infinity: h0 is prescribed', list=.true.), &
     row_t('device_jump_in_z', 'm', 'position of the drive at the first jump of each approach', &
-      list=.true.), &
-    row_t('device_jump_in_load', 'N', 'load just before it', list=.true.), &
-    row_t('device_jump_in_load_after', 'N', 'load just after it', list=.true.), &
-    row_t('device_jump_in_z_error', 'm', 'estimated error of device_jump_in_z', list=.true.), &
-    row_t('device_jump_in_load_error', 'N', &
-      'estimated error of device_jump_in_load', list=.true.), &
-    row_t('device_jump_in_load_after_error', 'N', &
-      'estimated error of device_jump_in_load_after', list=.true.), &
+      list=.true., place='device_jump_in', quantity=of_position, error=judged), &
+    row_t('device_jump_in_load', 'N', 'load just before it', list=.true., &
+      place='device_jump_in', quantity=of_load, error=judged), &
+    row_t('device_jump_in_load_after', 'N', 'load just after it', list=.true., &
+      place='device_landing_in', quantity=of_load, error=judged), &
     row_t('device_jump_out_z', 'm', 'position of the drive at the first jump of each retreat', &
-      list=.true.), &
-    row_t('device_jump_out_load', 'N', 'load just before it', list=.true.), &
-    row_t('device_jump_out_load_after', 'N', 'load just after it', list=.true.), &
-    row_t('device_jump_out_z_error', 'm', 'estimated error of device_jump_out_z', list=.true.), &
-    row_t('device_jump_out_load_error', 'N', &
-      'estimated error of device_jump_out_load', list=.true.), &
-    row_t('device_jump_out_load_after_error', 'N', &
-      'estimated error of device_jump_out_load_after', list=.true.), &
+      list=.true., place='device_jump_out', quantity=of_position, error=judged), &
+    row_t('device_jump_out_load', 'N', 'load just before it', list=.true., &
+      place='device_jump_out', quantity=of_load, error=judged), &
+    row_t('device_jump_out_load_after', 'N', 'load just after it', list=.true., &
+      place='device_landing_out', quantity=of_load, error=judged), &
     row_t('device_energy_lost', 'J', &
-      'energy lost in all jumps of each cycle, bodies and spring', list=.true.), &
-    row_t('device_energy_lost_error', 'J', 'estimated error of device_energy_lost', list=.true.), &
+      'energy lost in all jumps of each cycle, bodies and spring', list=.true., &
+      place='device_energy', quantity=of_energy, error=judged), &
     row_t('device_cycle_energy', 'J', &
-      'the same as the area between approach and retreat', list=.true.), &
-    row_t('device_cycle_energy_error', 'J', &
-      'estimated error of device_cycle_energy', list=.true.), &
+      'the same as the area between approach and retreat', list=.true., error=judged), &
     row_t('device_energy_uncertainty', 'J', 'difference of the two, or the error of either', &
       list=.true.), &
     row_t('fixed_load', 'N', 'loads whose equilibria were looked for', list=.true.), &
@@ -158,28 +154,22 @@ module result_rows
       'Tabor''s parameter with the range, surface energy over largest tension', regime), &
     row_t('regime_maugis_lambda', '', 'Maugis'' parameter', regime), &
     row_t('regime_load_number', '', &
-      'load of the last state over pi times surface energy times radius', regime), &
-    row_t('regime_load_number_error', '', 'estimated error of regime_load_number'), &
+      'load of the last state over pi times surface energy times radius', regime, error=judged), &
     row_t('regime_error_hertz', '', &
-      'errors of Hertz theory: pull-off, contact radius, indentation over a^2/R', list=.true.), &
-    row_t('regime_error_hertz_error', '', 'by how much these are uncertain', list=.true.), &
-    row_t('regime_error_jkr', '', 'the same of JKR theory', list=.true.), &
-    row_t('regime_error_jkr_error', '', 'by how much these are uncertain', list=.true.), &
-    row_t('regime_error_dmt', '', 'the same of DMT theory', list=.true.), &
-    row_t('regime_error_dmt_error', '', 'by how much these are uncertain', list=.true.), &
-    row_t('regime_error_maugis', '', 'the same of Maugis-Dugdale theory', list=.true.), &
-    row_t('regime_error_maugis_error', '', 'by how much these are uncertain', list=.true.), &
-    row_t('regime_error_hertz_layered', '', 'the same of Hertz theory of layers', list=.true.), &
-    row_t('regime_error_hertz_layered_error', '', 'by how much these are uncertain', list=.true.), &
-    row_t('regime_error_jkr_layered', '', 'the same of JKR theory of layers', list=.true.), &
-    row_t('regime_error_jkr_layered_error', '', 'by how much these are uncertain', list=.true.), &
+      'errors of Hertz theory: pull-off, contact radius, indentation over a^2/R', list=.true., &
+      error=judged), &
+    row_t('regime_error_jkr', '', 'the same of JKR theory', list=.true., error=judged), &
+    row_t('regime_error_dmt', '', 'the same of DMT theory', list=.true., error=judged), &
+    row_t('regime_error_maugis', '', 'the same of Maugis-Dugdale theory', list=.true., &
+      error=judged), &
+    row_t('regime_error_hertz_layered', '', 'the same of Hertz theory of layers', list=.true., &
+      error=judged), &
+    row_t('regime_error_jkr_layered', '', 'the same of JKR theory of layers', list=.true., &
+      error=judged), &
     row_t('regime_error_carpick', '', 'the same of Carpick''s formula, which has no indentation', &
-      list=.true.), &
-    row_t('regime_error_carpick_error', '', 'by how much these are uncertain', list=.true.), &
+      list=.true., error=judged), &
     row_t('regime_error_pietrement', '', 'the same of Pietrement and Troyon''s formula', &
-      list=.true.), &
-    row_t('regime_error_pietrement_error', '', 'by how much these are uncertain', &
-      list=.true.), &
+      list=.true., error=judged), &
     row_t('regime_worst_hertz', '', 'the largest of the three for Hertz theory', regime), &
     row_t('regime_worst_jkr', '', 'the same for JKR theory', regime), &
     row_t('regime_worst_dmt', '', 'the same for DMT theory', regime), &
@@ -196,14 +186,15 @@ module result_rows
       'and contact radius'), &
     row_t('regime_formula_error', '', 'the larger error of these two', regime), &
     row_t('end_h0', 'm', &
-      'h0 of the last equilibrium of the loading; without a loading, of the path', always), &
-    row_t('end_displacement', 'm', 'displacement of the last equilibrium', always), &
-    row_t('end_load', 'N', 'load of the last equilibrium', always), &
-    row_t('end_displacement_error', 'm', 'estimated error of end_displacement'), &
-    row_t('end_load_error', 'N', 'estimated error of end_load'), &
+      'h0 of the last equilibrium of the loading; without a loading, of the path', always, &
+      place='end', quantity=of_h0), &
+    row_t('end_displacement', 'm', 'displacement of the last equilibrium', always, &
+      place='end', quantity=of_displacement, error=judged), &
+    row_t('end_load', 'N', 'load of the last equilibrium', always, &
+      place='end', quantity=of_load, error=judged), &
     row_t('profiles_error', '', &
       'error of each profile: of gaps over the law''s length or of pressures over the largest', &
-      list=.true.), &
+      list=.true., place='profiles', quantity=of_profile), &
     row_t('jump_criterion_29_h0', 'm', &
       'h0 at which approaching bodies first violate (29)', approximations), &
     row_t('jump_criterion_29_load', 'N', 'load there', approximations), &

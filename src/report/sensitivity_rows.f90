@@ -5,7 +5,8 @@ module sensitivity_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use variation, only: variation_t
-  use place_sensitivity, only: of_h0, of_displacement, of_radius
+  use reported, only: of_h0, of_displacement, of_radius
+  use places, only: places_t, readings_t
   use path_sensitivity, only: rate_t, held
   use driven_pieces, only: through_spring
   use path_readings, only: path_readings_t, loaded_state_t
@@ -23,86 +24,69 @@ module sensitivity_rows
 
 contains
 
-  !> Writes the rows of sensitivity.csv; a drive in time has no readings.
-  subroutine write_sensitivity(problem, varied, summary, readings, results)
+  !> Writes the rows of sensitivity.csv, quantity by quantity in the order of the summary, then
+  !> those for the rows of fixed_load.csv.
+  subroutine write_sensitivity(problem, varied, summary, places, results)
     type(problem_t), intent(in) :: problem
     type(variation_t), intent(in) :: varied(:)
     type(summary_t), intent(in) :: summary
-    type(path_readings_t), intent(in), optional :: readings
+    type(places_t), intent(in) :: places
     type(results_t), intent(inout) :: results
-
-    call write_of_summary(varied, summary, results)
-    if (.not. present(readings)) return
-    if (allocated(readings%loaded)) call write_of_loaded(problem, varied, readings%loaded, results)
-  end subroutine write_sensitivity
-
-  !> Writes rows of sensitivity.csv, quantity by quantity in the order of the summary.
-  subroutine write_of_summary(varied, summary, results)
-    type(variation_t), intent(in) :: varied(:)
-    type(summary_t), intent(in) :: summary
-    type(results_t), intent(inout) :: results
-    real(wp), allocatable :: values(:), rate(:, :)
-    character(len=40) :: name
-    integer :: i, j, k
-
-    do i = 1, size(rows)
-      rate = summary%rate(trim(rows(i)%key))
-      values = summary%numbers(trim(rows(i)%key))
-      do k = 1, size(rate, 2)
-        name = rows(i)%key
-        if (rows(i)%list) write (name, '(2a, i0, a)') trim(rows(i)%key), '(', k, ')'
-        do j = 1, size(rate, 1)
-          call write_line(results, trim(name), varied(j), values(k), rate(j, k))
-        end do
-      end do
-    end do
-  end subroutine write_of_summary
-
-  !> Writes one row.
-  subroutine write_line(results, quantity, varied, value, rate)
-    type(results_t), intent(inout) :: results
-    character(len=*), intent(in) :: quantity
-    type(variation_t), intent(in) :: varied
-    real(wp), intent(in) :: value, rate
-
-    call results%row(quantity // ',' // varied%parameter%name, &
-      [value, rate, rate*varied%parameter%value/value])
-  end subroutine write_line
-
-  !> Writes rows of sensitivity.csv for the rows of fixed_load.csv.
-  subroutine write_of_loaded(problem, varied, loaded, results)
-    type(problem_t), intent(in) :: problem
-    type(variation_t), intent(in) :: varied(:)
-    type(loaded_state_t), intent(in) :: loaded(:)
-    type(results_t), intent(inout) :: results
-    character(len=12) :: row
+    type(readings_t) :: h0, displacement, radius
     integer :: i
 
-    do i = 1, size(loaded)
-      write (row, '(a, i0, a)') '(', i, ')'
-      associate (state => loaded(i)%state)
-        if (.not. allocated(state%rate)) cycle
-        call add('h0', problem%law%separation_of(state%h0), state%rate(of_h0, :))
-        call add('displacement', (state%axis_gap - state%h0)*problem%length, &
-          state%rate(of_displacement, :))
-        if (state%radius > 0) call add('contact_radius', state%radius*problem%lateral, &
-          state%rate(of_radius, :))
-      end associate
+    do i = 1, size(rows)
+      call write_number(trim(rows(i)%key), summary%numbers_of_row(i), rows(i)%list)
+    end do
+    h0 = places%read_numbers(problem, 'fixed_load', of_h0)
+    displacement = places%read_numbers(problem, 'fixed_load', of_displacement)
+    radius = places%read_numbers(problem, 'fixed_load', of_radius)
+    do i = 1, size(h0%value)
+      call write_element('fixed_load.h0', h0, i)
+      call write_element('fixed_load.displacement', displacement, i)
+      if (radius%value(i) > 0) call write_element('fixed_load.contact_radius', radius, i)
     end do
 
   contains
 
-    subroutine add(column, value, rate)
-      character(len=*), intent(in) :: column
-      real(wp), intent(in) :: value, rate(:)
+    subroutine write_number(key, number, is_list)
+      character(len=*), intent(in) :: key
+      type(readings_t), intent(in) :: number
+      logical, intent(in) :: is_list
+      integer :: k
+
+      do k = 1, size(number%rate, 2)
+        if (is_list) call write_element(key, number, k)
+        if (.not. is_list) call write_lines(key, number, k)
+      end do
+    end subroutine write_number
+
+    subroutine write_element(key, number, k)
+      character(len=*), intent(in) :: key
+      type(readings_t), intent(in) :: number
+      integer, intent(in) :: k
+      character(len=12) :: element
+
+      write (element, '(a, i0, a)') '(', k, ')'
+      call write_lines(key // trim(element), number, k)
+    end subroutine write_element
+
+    subroutine write_lines(quantity, number, k)
+      character(len=*), intent(in) :: quantity
+      type(readings_t), intent(in) :: number
+      integer, intent(in) :: k
       integer :: j
 
-      do j = 1, size(rate)
-        call write_line(results, 'fixed_load.' // column // trim(row), varied(j), value, rate(j))
+      do j = 1, size(number%rate, 1)
+        associate (value => number%value(k), rate => number%rate(j, k), &
+          parameter => varied(j)%parameter)
+          call results%row(quantity // ',' // parameter%name, &
+            [value, rate, rate*parameter%value/value])
+        end associate
       end do
-    end subroutine add
+    end subroutine write_lines
 
-  end subroutine write_of_loaded
+  end subroutine write_sensitivity
 
   !> Writes the rows of curve_sensitivity.csv: the curve at prescribed h0 and then behind each
   !> spring, for each parameter.

@@ -1,9 +1,11 @@
 !> The summary of a run: a value for each row of `result_rows` that the run has, and the text of
 !> summary.nml made of them. gfortran, f90nml and this program read it.
 module summary
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, long
   use equilibrium, only: cost_t
   use namelist_writer, only: line_t, assignment_of
+  use places, only: readings_t
   use result_rows, only: rows, row_of, in_summary, in_cost
   implicit none
   private
@@ -18,8 +20,9 @@ module summary
     integer(long), allocatable :: count(:)
     logical, allocatable :: truth
     character(len=:), allocatable :: text
-    !> Derivatives of the numbers by each parameter of &sensitivity, (parameters, numbers).
-    real(wp), allocatable :: rate(:, :)
+    !> Errors of the numbers, and derivatives by each parameter of &sensitivity, (parameters,
+    !> numbers).
+    real(wp), allocatable :: error(:), rate(:, :)
   end type value_t
 
   !> What has no value is absent from the file. Where one value of an array does not exist, such as
@@ -34,12 +37,9 @@ module summary
     procedure :: note
     procedure :: fail_with
     generic :: set => set_number, set_numbers, set_count, set_counts, set_truth, set_text
-    procedure :: set_rate
-    procedure :: rate
-    procedure :: drop
+    procedure :: numbers_of_row
     procedure :: has
     procedure :: number
-    procedure :: numbers
     procedure :: is_true
     procedure :: text
     procedure :: take_cost
@@ -59,47 +59,47 @@ contains
     i = row_of(key)
   end subroutine find
 
-  !> Derivatives of the numbers that a key has, (parameters, numbers); with no parameters, none.
-  subroutine set_rate(self, key, rate)
-    class(summary_t), intent(inout) :: self
-    character(len=*), intent(in) :: key
-    real(wp), intent(in) :: rate(:, :)
-    integer :: i
-
-    call self%find(key, i)
-    if (allocated(self%value(i)%rate)) deallocate (self%value(i)%rate)
-    if (size(rate, 1) > 0) self%value(i)%rate = rate
-  end subroutine set_rate
-
-  !> The derivatives of a key's numbers; none where it has none.
-  pure function rate(self, key)
+  !> The numbers that row i has, with what its errors and derivatives are, if any.
+  pure function numbers_of_row(self, i) result(found)
     class(summary_t), intent(in) :: self
-    character(len=*), intent(in) :: key
-    real(wp), allocatable :: rate(:, :)
+    integer, intent(in) :: i
+    type(readings_t) :: found
 
-    allocate (rate(0, 0))
+    allocate (found%value(0), found%rate(0, 0))
     if (.not. allocated(self%value)) return
-    associate (value => self%value(row_of(key)))
-      if (allocated(value%rate)) rate = value%rate
-    end associate
-  end function rate
+    if (allocated(self%value(i)%number)) found%value = self%value(i)%number
+    if (allocated(self%value(i)%rate)) found%rate = self%value(i)%rate
+  end function numbers_of_row
 
-  subroutine set_number(self, key, value)
+  subroutine set_number(self, key, value, error)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: key
     real(wp), intent(in) :: value
+    real(wp), intent(in), optional :: error
 
-    call self%set_numbers(key, [value])
+    if (present(error)) then
+      call self%set_numbers(key, [value], [error])
+    else
+      call self%set_numbers(key, [value])
+    end if
   end subroutine set_number
 
-  subroutine set_numbers(self, key, values)
+  !> Numbers with their errors, of which one alone that is not known is left out, and derivatives;
+  !> of no parameters there are none.
+  subroutine set_numbers(self, key, values, error, rate)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: key
     real(wp), intent(in) :: values(:)
+    real(wp), intent(in), optional :: error(:), rate(:, :)
     integer :: i
 
     call self%find(key, i)
     self%value(i)%number = values
+    if (present(error)) then
+      if (rows(i)%list .or. .not. any(ieee_is_nan(error))) self%value(i)%error = error
+    end if
+    if (.not. present(rate)) return
+    if (size(rate, 1) > 0) self%value(i)%rate = rate
   end subroutine set_numbers
 
   subroutine set_count(self, key, value)
@@ -141,20 +141,6 @@ contains
     self%value(i)%text = value
   end subroutine set_text
 
-  !> Leaves a key out after all.
-  subroutine drop(self, key)
-    class(summary_t), intent(inout) :: self
-    character(len=*), intent(in) :: key
-    integer :: i
-
-    call self%find(key, i)
-    if (allocated(self%value(i)%number)) deallocate (self%value(i)%number)
-    if (allocated(self%value(i)%count)) deallocate (self%value(i)%count)
-    if (allocated(self%value(i)%truth)) deallocate (self%value(i)%truth)
-    if (allocated(self%value(i)%text)) deallocate (self%value(i)%text)
-    if (allocated(self%value(i)%rate)) deallocate (self%value(i)%rate)
-  end subroutine drop
-
   !> Whether a key has a value.
   pure logical function has(self, key)
     class(summary_t), intent(in) :: self
@@ -181,19 +167,6 @@ contains
       if (allocated(value%truth)) number = merge(1, 0, value%truth)
     end associate
   end function number
-
-  !> All numbers of a key; none where it has no value.
-  pure function numbers(self, key)
-    class(summary_t), intent(in) :: self
-    character(len=*), intent(in) :: key
-    real(wp), allocatable :: numbers(:)
-
-    allocate (numbers(0))
-    if (.not. allocated(self%value)) return
-    associate (value => self%value(row_of(key)))
-      if (allocated(value%number)) numbers = value%number
-    end associate
-  end function numbers
 
   !> Whether a key is there and true.
   pure logical function is_true(self, key)
@@ -303,7 +276,8 @@ contains
       key = trim(rows(i)%key)
       associate (value => self%value(i))
         text = text // assignment_of(key, value%number) // assignment_of(key, value%count) // &
-          assignment_of(key, value%truth) // assignment_of(key, value%text)
+          assignment_of(key, value%truth) // assignment_of(key, value%text) // &
+          assignment_of(key // trim(rows(i)%error), value%error)
         if (key == 'warnings') text = text // assignment_of(key, self%warnings)
         if (key == 'notes') text = text // assignment_of(key, self%notes)
       end associate

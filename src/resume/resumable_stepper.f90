@@ -9,7 +9,6 @@ module resumable_stepper
   use equilibrium, only: control_t, cost_t
   use ending, only: ending_t, not_kept
   use stepper, only: keeping_stepper_t, branch_point_t, step_result_t
-  use reported, only: error_probe_t
   use journal, only: of_step
   use byte_record, only: byte_record_t
   use state_records, only: put_cost, take_cost, put_position, take_position, put_event, &
@@ -33,7 +32,6 @@ module resumable_stepper
     procedure :: step_to
     procedure :: grid
     procedure :: spacing_over_neck
-    procedure :: witness
     procedure, private :: recall
     procedure, private :: catch_up
     procedure, private :: keep
@@ -166,13 +164,5 @@ contains
 
     spacing_over_neck = self%steps%spacing_over_neck(position)
   end function spacing_over_neck
-
-  pure function witness(self, position)
-    class(resumable_stepper_t), intent(in) :: self
-    type(branch_point_t), intent(in) :: position
-    type(error_probe_t) :: witness
-
-    witness = self%steps%witness(position)
-  end function witness
 
 end module resumable_stepper

@@ -77,3 +77,13 @@ def test_the_estimate_bounds_the_error_within_a_hundred(snapin, tmp_path, kind, 
         assert error <= accuracy
         if error > KNOWN:
             assert error <= estimate <= 100 * widest, (accuracy, error, widest, estimate)
+
+
+def test_the_energy_lost_is_known_where_the_bodies_land_under_the_largest_tension(snapin, tmp_path):
+    """A landing is judged behind the fold that its jump starts from, whichever is found first."""
+    deck = lennard_jones(8.7, loading={"h0_start": 24.0, "h0_end": -20.0, "h0_step": 0.5},
+                         unloading={"from": [2.0, -20.0], "h0_end": 24.0, "h0_step": 0.5})
+    (tmp_path / "landing.nml").write_text(deck)
+    assert snapin("landing.nml", cwd=tmp_path).returncode == 0
+    summary = f90nml.read(tmp_path / "results" / "landing" / "summary.nml")["summary"]
+    assert summary["energy_lost_uncertainty"] < 1e-3 * summary["energy_lost"]

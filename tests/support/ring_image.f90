@@ -114,6 +114,8 @@ program ring_image
   use scene_problem, only: problem_of
   use experiment, only: run_experiment
   use experiment_result, only: experiment_result_t
+  use places, only: readings_t
+  use result_rows, only: row_of
   use summarise, only: summary_of
   use summary, only: summary_t, summary_text
   use ring_image_body, only: ring_image_t
@@ -129,7 +131,7 @@ program ring_image
   character(len=1000) :: file, number(2)
   character(len=*), parameter :: told(*) = [character(len=16) :: 'max_tension', 'jump_in_h0', &
     'jump_out_h0', 'jump_in_load', 'end_load']
-  real(wp), allocatable :: rate(:, :)
+  type(readings_t) :: found
   real(wp) :: strength, depth
   integer :: j, k
 
@@ -154,9 +156,9 @@ program ring_image
   summary = summary_of(scene, problem, outcome)
   print '(a)', summary_text(summary)
   do k = 1, size(told)
-    if (.not. summary%has(trim(told(k)))) cycle
-    rate = summary%rate(trim(told(k)))
-    if (size(rate) > 0) print '(3a, *(es25.16))', 'rate,', trim(told(k)), ',', rate(:, 1)
+    found = summary%numbers_of_row(row_of(trim(told(k))))
+    if (size(found%rate) > 0) print '(3a, *(es25.16))', 'rate,', trim(told(k)), ',', &
+      found%rate(:, 1)
   end do
 
 contains

@@ -1,0 +1,136 @@
+!> What solves on finer meshes, well below the accuracy, to find errors by comparison. What is left
+!> out is the error of the finer mesh, smaller by a factor that the margin covers.
+module finer_solver
+  use kinds, only: wp
+  use mesh_store, only: mesh_store_t
+  use edge_locked, only: new_mesh_family
+  use contact_state, only: state_t, far_gap
+  use equilibrium, only: control_t
+  use solver, only: solver_t
+  use numerics_choice, only: choice_t, fixed_mesh, companion
+  implicit none
+  private
+  public :: finer_t, rounding, worst_residual, what_residual_leaves
+
+  !> Solves on finer meshes, which get their kernels when they are needed. Differences count
+  !> `margin` times. store: of meshes, if there is one.
+  type, extends(solver_t) :: finer_t
+    real(wp) :: margin = 1
+    type(mesh_store_t), pointer :: store => null()
+  contains
+    procedure :: lay_out
+    procedure :: lay_out_fixed
+    procedure :: prepare
+    procedure :: find
+    procedure, private :: take_over
+  end type finer_t
+
+  !> Digits that edge-locked finer meshes have more.
+  real(wp), parameter :: more_digits = 1.5_wp
+  !> Differences are raised by this much for the error of the finer mesh: a tenth or less for
+  !> panels, a third for a uniform grid, which is of second order and of lower order in places; and
+  !> because other states may be somewhat worse than those compared. Against a grid twice as coarse
+  !> the difference itself is two to three times the error.
+  real(wp), parameter :: usual = 3, of_fixed = 2.5_wp, of_coarser = 1.2_wp, of_less_gained = 6, &
+    of_kinks = 12
+  !> Rounding of a whole calculation, below which no error is claimed.
+  real(wp), parameter :: rounding = 1.0e-13_wp
+  !> What an iteration may leave over what is left of an extremum's place; and how often it goes on
+  !> with factors: they were made nearby.
+  real(wp), parameter :: residual_over_place = 1.0e-3_wp
+  integer, parameter :: patience = 4
+  !> A residual that leaves no doubt which state it is of (law's lengths).
+  real(wp), parameter :: nearly_solved = 1.0e-6_wp
+  !> A residual that differs from node to node may move a state by this many times as much as one
+  !> that is the same everywhere, which acts like a change of h0.
+  real(wp), parameter :: worst_residual = 3
+
+contains
+
+  !> Lays out meshes finer than the edge-locked ones of `steps`, which stay what they are, for H0
+  !> from high to low.
+  subroutine lay_out(self, steps, high, low, store)
+    class(finer_t), intent(inout) :: self
+    class(solver_t), intent(in) :: steps
+    real(wp), intent(in) :: high, low
+    type(mesh_store_t), intent(inout), target, optional :: store
+    integer :: k
+
+    call self%take_over(steps)
+    ! Without a contact edge nothing locks the mesh to what is sharp in a fall, and short panels may
+    ! hold what is not smooth, a law's or a body's: more nodes gain less.
+    self%margin = usual
+    if (.not. steps%problem%law%edge_gap > 0 .or. any([(steps%meshes%has_short_panels(k), &
+      k=1, size(steps%meshes%grid))])) self%margin = of_less_gained
+    if (steps%problem%law%has_kink) self%margin = of_kinks
+    self%meshes = new_mesh_family(steps%problem, high, low, &
+      steps%meshes%digits + more_digits, shape_only=.true., coarser=steps%meshes)
+    if (present(store)) self%store => store
+  end subroutine lay_out
+
+  !> The same for a mesh fixed in space, for H0 down to low: a finer one or, where that would cost
+  !> too much, a coarser one.
+  subroutine lay_out_fixed(self, steps, chosen, low)
+    class(finer_t), intent(inout) :: self
+    class(solver_t), intent(in) :: steps
+    type(choice_t), intent(in) :: chosen
+    real(wp), intent(in) :: low
+
+    call self%take_over(steps)
+    allocate (self%meshes%grid(1))
+    self%meshes%grid(1) = fixed_mesh(companion(chosen), steps%problem, low)
+    self%margin = merge(of_fixed, of_coarser, &
+      self%meshes%grid(1)%nodes > steps%meshes%grid(1)%nodes)
+    self%cost%kernel_entries = self%cost%kernel_entries + self%meshes%grid(1)%kernel_entries()
+  end subroutine lay_out_fixed
+
+  !> Takes over the problem of `steps`.
+  subroutine take_over(self, steps)
+    class(finer_t), intent(inout) :: self
+    class(solver_t), intent(in) :: steps
+
+    self%problem = steps%problem
+    self%cost = steps%cost
+    associate (own => self%options, given => steps%options)
+      own%slope_error = given%slope_error
+      own%tolerance = min(given%tolerance, residual_over_place*given%place_error)
+      own%patience = patience
+    end associate
+  end subroutine take_over
+
+  !> Sees that a mesh has its kernel.
+  subroutine prepare(self, mesh)
+    class(finer_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+
+    if (allocated(self%meshes%grid(mesh)%kernel)) return
+    if (associated(self%store)) then
+      call self%meshes%complete(mesh, self%store)
+    else
+      call self%meshes%complete(mesh)
+    end if
+    self%cost%kernel_entries = self%cost%kernel_entries + &
+      self%meshes%grid(mesh)%kernel_entries()
+  end subroutine prepare
+
+  !> Solves as well as an error has to be known. found: it leaves no doubt which state it is.
+  subroutine find(self, control, state, found)
+    class(finer_t), intent(inout) :: self
+    type(control_t), intent(in) :: control
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: found
+
+    call self%solve(control, state, found)
+    found = found .or. state%residual < nearly_solved
+  end subroutine find
+
+  !> What the residual of a state amounts to as a change of its h0, at most. The rounding of the
+  !> gaps far out, which are large, changes nothing else.
+  pure real(wp) function what_residual_leaves(state) result(left)
+    type(state_t), intent(in) :: state
+
+    left = rounding + worst_residual* &
+      max(state%residual - 4*epsilon(1.0_wp)*min(maxval(state%gap), far_gap), 0.0_wp)
+  end function what_residual_leaves
+
+end module finer_solver

@@ -1,0 +1,236 @@
+!> The one walk through what the experiments found: it enters the places that numbers are reported
+!> of into the table, under the names that `result_rows` has.
+module outcome_places
+  use kinds, only: wp
+  use path_tangent, only: h0_alone => of_h0, load_alone => of_load
+  use known_path, only: known_path_t, folds_of_cycle
+  use curve_states, only: curve_state_t
+  use device, only: driven_t
+  use path_readings, only: path_readings_t
+  use reported, only: reported_t, of_h0, of_load, of_energy
+  use places, only: places_t
+  use stepped_branch, only: branch_t
+  use path, only: path_t
+  use experiment_result, only: experiment_result_t
+  implicit none
+  private
+  public :: enter_all, enter_cycle, enter_energy
+
+  !> Part of the terms of the slope of a drive's position that cancellation leaves at a turn.
+  real(wp), parameter :: turning = 1.0e-6_wp
+  !> Numbers that each drive has or not.
+  character(len=*), parameter :: of_each_way(*) = [character(len=18) :: 'device_jump_in', &
+    'device_landing_in', 'device_jump_out', 'device_landing_out']
+
+contains
+
+  !> Enters all but energies and tables.
+  subroutine enter_all(outcome, places)
+    type(experiment_result_t), intent(in) :: outcome
+    type(places_t), intent(inout) :: places
+
+    if (allocated(outcome%path)) call enter_path(outcome%path, places)
+    if (allocated(outcome%stepped_path)) call enter_branch(outcome%stepped_path, 'end', places)
+    call enter_cycle(outcome, places)
+    if (allocated(outcome%readings)) call enter_readings(outcome%readings, places)
+  end subroutine enter_all
+
+  !> Enters a path; its folds are exact.
+  subroutine enter_path(path, places)
+    type(path_t), intent(in) :: path
+    type(places_t), intent(inout) :: places
+    integer :: n
+
+    call places%enter_list('folds', path%fold)
+    call places%enter_list('load_folds', path%extremum)
+    call enter_profiles(path%profile, places)
+    n = size(path%fold)
+    if (n > 0) then
+      ! What a stretch of the path begins with may be another fold.
+      if (path%first_piece == 1) call places%enter('jump_in', 1, path%fold(1))
+      if (path%unstable_after(n) == 0) call places%enter('jump_out', 1, path%fold(n))
+    end if
+    if (allocated(path%lowest)) then
+      call places%enter('path_tension', 1, path%lowest)
+      call enter_tension(path%lowest, places)
+    end if
+    if (.not. allocated(path%finish)) return
+    if (path%fallen) then
+      ! How a fall ends is of no interest and on no mesh.
+      call places%enter('end', 1, reported_t(at=path%finish%at))
+    else
+      call places%enter('path_end', 1, path%finish)
+      call places%enter('end', 1, path%finish)
+    end if
+  end subroutine enter_path
+
+  !> Enters a cycle; where the path has the jumps, they are exact.
+  subroutine enter_cycle(outcome, places)
+    type(experiment_result_t), intent(in) :: outcome
+    type(places_t), intent(inout) :: places
+    integer :: k
+
+    if (allocated(outcome%loading)) then
+      call enter_branch(outcome%loading, 'end', places)
+      if (allocated(outcome%loading%jump) .and. .not. places%has('jump_in')) &
+        call places%enter('jump_in', 1, outcome%loading%jump)
+    end if
+    if (.not. allocated(outcome%unloading)) return
+    do k = 1, size(outcome%unloading)
+      associate (branch => outcome%unloading(k))
+        call enter_branch(branch, 'samples', places)
+        ! What is not allocated is absent.
+        call places%enter('unload_max_tension', k, branch%lowest)
+        call places%enter('unload_jump_out', k, branch%jump)
+        if (allocated(branch%jump) .and. .not. places%has('jump_out')) &
+          call places%enter('jump_out', 1, branch%jump)
+      end associate
+    end do
+  end subroutine enter_cycle
+
+  !> Enters what every branch has; finish: the name under which its last state is entered.
+  subroutine enter_branch(branch, finish, places)
+    type(branch_t), intent(in) :: branch
+    character(len=*), intent(in) :: finish
+    type(places_t), intent(inout) :: places
+
+    if (allocated(branch%lowest)) call enter_tension(branch%lowest, places)
+    if (allocated(branch%finish)) then
+      if (finish == 'end') call places%forget(finish)
+      call places%enter(finish, places%elements(finish) + 1, branch%finish)
+    end if
+    if (allocated(branch%profile)) call enter_profiles(branch%profile, places)
+    if (allocated(branch%sample)) call places%enter_list('samples', branch%sample)
+  end subroutine enter_branch
+
+  subroutine enter_profiles(list, places)
+    type(reported_t), intent(in) :: list(:)
+    type(places_t), intent(inout) :: places
+    type(reported_t) :: place
+    integer :: i
+
+    do i = 1, size(list)
+      place = list(i)
+      place%with_profile = .true.
+      call places%enter('profiles', places%elements('profiles') + 1, place)
+    end do
+  end subroutine enter_profiles
+
+  !> Keeps the largest tension.
+  subroutine enter_tension(lowest, places)
+    type(reported_t), intent(in) :: lowest
+    type(places_t), intent(inout) :: places
+    type(reported_t) :: before
+
+    before = places%place_of('max_tension')
+    if (.not. lowest%at(of_load) < before%at(of_load)) return
+    call places%forget('max_tension')
+    call places%enter('max_tension', 1, lowest)
+  end subroutine enter_tension
+
+  !> Enters what was read from the path: jumps and energies of drives, states under given loads.
+  subroutine enter_readings(readings, places)
+    type(path_readings_t), intent(in) :: readings
+    type(places_t), intent(inout) :: places
+    type(reported_t) :: place
+    integer :: i
+
+    if (allocated(readings%device)) then
+      do i = 1, size(readings%device)
+        call enter_driven(readings, i, readings%device(i), places)
+      end do
+    end if
+    if (.not. allocated(readings%loaded)) return
+    do i = 1, size(readings%loaded)
+      place = of_curve(readings%loaded(i)%state, load_alone)
+      place%with_radius = .true.
+      call places%enter('fixed_load', i, place)
+    end do
+  end subroutine enter_readings
+
+  !> Enters the jumps of drive i, one by one and the first of each way, and the energy they lose.
+  subroutine enter_driven(readings, i, driven, places)
+    type(path_readings_t), intent(in) :: readings
+    integer, intent(in) :: i
+    type(driven_t), intent(in) :: driven
+    type(places_t), intent(inout) :: places
+    type(reported_t), allocatable :: before, after
+    character(len=3) :: way
+    integer :: k
+
+    call places%enter('device_energy', i, factor=0.0_wp)
+    do k = 1, size(driven%jump)
+      associate (jump => driven%jump(k), drive => driven%drive%weights)
+        before = of_curve(jump%before, drive)
+        ! Before the drive turns round h0 may.
+        before%turn_of = merge(drive, h0_alone, abs(dot_product(drive, jump%before%slopes)) <= &
+          turning*sum(abs(drive*jump%before%slopes)))
+        if (allocated(after)) deallocate (after)
+        if (jump%landed) then
+          after = of_curve(jump%after, drive)
+          call places%keep(before, after%after)
+          call places%enter('device_energy', i, before)
+          call places%enter('device_energy', i, after, -1.0_wp)
+        else
+          call places%enter('device_energy', i)
+        end if
+        ! An `after` that is not allocated is absent.
+        call places%enter('jump_before', places%elements('jump_before') + 1, before)
+        call places%enter('jump_after', places%elements('jump_after') + 1, after)
+        way = merge('in ', 'out', jump%inward)
+        if (places%has('device_jump_' // way, i)) cycle
+        call places%enter('device_jump_' // way, i, before)
+        call places%enter('device_landing_' // way, i, after)
+      end associate
+    end do
+    do k = 1, size(of_each_way)
+      if (.not. places%has(of_each_way(k), i)) call places%enter(of_each_way(k), i)
+    end do
+  end subroutine enter_driven
+
+  !> A state of the curve as a place; its D has the given weights.
+  function of_curve(state, weights) result(place)
+    type(curve_state_t), intent(in) :: state
+    real(wp), intent(in) :: weights(2)
+    type(reported_t) :: place
+
+    place%mesh = state%mesh
+    place%s = state%x
+    place%state = state%state
+    place%drive = weights
+    place%at = [state%h0, state%load, state%axis_gap - state%h0, state%energy, state%radius, &
+      state%state%scale]
+    place%left(of_energy) = state%uncertainty
+  end function of_curve
+
+  !> Enters the energy that a cycle loses: that of a path that goes from afar through all its jumps,
+  !> or of a loading and the first unloading that come back to where they began.
+  subroutine enter_energy(known, outcome, places)
+    type(known_path_t), intent(in) :: known
+    type(experiment_result_t), intent(in) :: outcome
+    type(places_t), intent(inout) :: places
+    integer, allocatable :: fold(:)
+    real(wp) :: lowest
+    integer :: turned, i
+
+    turned = 0
+    lowest = -huge(1.0_wp)
+    if (allocated(outcome%path)) then
+      if (outcome%path%first_piece == 1 .and. allocated(outcome%path%finish)) then
+        turned = outcome%path%last_piece
+        lowest = outcome%path%finish%at(of_h0)
+      end if
+    else if (allocated(outcome%loading) .and. allocated(outcome%unloading)) then
+      associate (there => outcome%loading, back => outcome%unloading(1))
+        if (there%first_piece == 1 .and. back%last_piece == 1) turned = back%first_piece
+      end associate
+    end if
+    if (turned < 2) return
+    fold = folds_of_cycle(known, turned, lowest)
+    do i = 1, size(fold)
+      call places%enter('energy_lost', 1, reported_t(point=fold(i)))
+      call places%enter('energy_lost', 1, reported_t(point=fold(i), landing=.true.), -1.0_wp)
+    end do
+  end subroutine enter_energy
+
+end module outcome_places

@@ -1,0 +1,264 @@
+!> Errors of what is reported: each place is found again on a finer mesh, along the path or, where
+!> there is one state for every h0, at its h0; and the same is read there. What the iteration has
+!> left of the state itself is in the difference; what it has left on the finer mesh is added: a
+!> residual acts like an h0 that is off by as much.
+module place_errors
+  use kinds, only: wp
+  use regridding, only: regrid
+  use contact_state, only: state_t, gap_at, radius_of_gap
+  use dimensionless_problem, only: contact_level_of
+  use equilibrium, only: control_t, equations_t, residual_floor
+  use solver, only: solver_t
+  use edge_locked, only: approach
+  use path_coordinate, only: path_control, coordinate_of
+  use path_tangent, only: h0_alone => of_h0, load_alone => of_load
+  use potential_energy, only: energy_of
+  use known_path, only: landing_t, landing_over
+  use locked_meshes, only: h0_control
+  use traced_path, only: traced_path_t, no_mesh
+  use path_stepper, only: path_stepper_t
+  use tension_search, only: load_tolerance
+  use reported, only: reported_t, reported_state, of_h0, of_load, of_displacement, &
+    of_energy, of_radius, of_edge, nowhere, read_of_states
+  use places, only: places_t
+  use path_expansion, only: expansion_t, expansion_about
+  use finer_solver, only: finer_t, rounding, worst_residual, what_residual_leaves
+  implicit none
+  private
+  public :: judge_places, conclude
+
+  !> What the search for a state along the path leaves of its h0, and a change of h0 small enough
+  !> for a derivative and large against rounding (law's lengths).
+  real(wp), parameter :: tight = 3.0e-11_wp, shift = 1.0e-5_wp
+
+contains
+
+  !> Judges all places that are read, or all there are, and were not judged; the steps count what
+  !> that cost. A place is behind the one that its jump began from.
+  subroutine judge_places(fine, steps, places, all)
+    type(finer_t), intent(inout) :: fine
+    class(solver_t), intent(inout) :: steps
+    type(places_t), intent(inout) :: places
+    logical, intent(in) :: all
+    real(wp) :: wanted
+    integer :: i
+
+    if (.not. allocated(places%place)) return
+    select type (steps)
+    class is (path_stepper_t)
+      call locate(steps, places)
+    end select
+    fine%cost = steps%cost
+    do i = 1, size(places%place)
+      associate (place => places%place(i))
+        if (place%judged .or. place%mesh == nowhere .or. .not. (all .or. place%read)) cycle
+        wanted = dot_product(place%drive, place%at(:2))
+        if (place%after > 0) wanted = &
+          dot_product(place%drive, places%place(place%after)%fine(:2))
+        place%judged = .true.
+        place%margin = fine%margin
+        place%fine = place%at
+        if (place%mesh == no_mesh) then
+          place%left = rounding*abs(place%at)
+          cycle
+        end if
+        select type (steps)
+        class is (path_stepper_t)
+          call judge_on_path(steps%equations_t, fine, steps%known%path, wanted, place)
+          if (place%after > 0) place%known = place%known .and. places%place(place%after)%known
+        class default
+          call judge_at_h0(steps%equations_t, fine, place)
+        end select
+        if (place%searched) place%left(of_load) = place%left(of_load) + &
+          load_tolerance*abs(place%at(of_load))
+      end associate
+    end do
+    steps%cost = fine%cost
+  end subroutine judge_places
+
+  !> The largest relative error of all that is reported, if anything was judged.
+  pure subroutine conclude(places, estimate)
+    type(places_t), intent(in) :: places
+    real(wp), allocatable, intent(inout) :: estimate
+
+    if (.not. allocated(places%place)) return
+    if (any(places%place%judged)) estimate = max(rounding, places%largest_error())
+  end subroutine conclude
+
+  !> Finds the equilibria on the path that places are.
+  subroutine locate(steps, places)
+    class(path_stepper_t), intent(in) :: steps
+    type(places_t), intent(inout) :: places
+    integer :: i, k
+    logical :: inside
+
+    do i = 1, size(places%place)
+      associate (place => places%place(i), known => steps%known)
+        if (place%judged .or. place%mesh == no_mesh) cycle
+        if (place%landing) then
+          call landing_over(known, place%point, k, inside)
+          if (inside) then
+            call take_landing(known%inward(k), place)
+          else
+            call take_landing(known%outward(k), place)
+          end if
+        else if (place%point > 0) then
+          associate (point => known%path%point(place%point))
+            call take(place, point%mesh, point%coordinate, point%state)
+            place%drive = merge(h0_alone, load_alone, point%fold)
+            place%turn_of = place%drive
+          end associate
+        else if (place%has_state() .and. place%mesh /= nowhere) then
+          place%s = coordinate_of(steps%problem, place%mesh, place%state)
+        end if
+        if (place%has_state()) call energy_of(steps%equations_t, place%mesh, place%state, &
+          place%at(of_energy), place%left(of_energy))
+      end associate
+    end do
+  end subroutine locate
+
+  subroutine take_landing(landing, place)
+    type(landing_t), intent(in) :: landing
+    type(reported_t), intent(inout) :: place
+
+    if (landing%landed) call take(place, landing%after%mesh, landing%after%x, landing%after%state)
+    place%judged = .not. landing%landed
+    place%known = landing%landed
+  end subroutine take_landing
+
+  subroutine take(place, mesh, s, state)
+    type(reported_t), intent(inout) :: place
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    type(state_t), intent(in) :: state
+    type(reported_t) :: here
+
+    here = reported_state(mesh, state)
+    place%mesh = mesh
+    place%s = s
+    place%state = state
+    place%at = here%at
+  end subroutine take
+
+  !> Judges a place of a path; wanted: what D is there on the finer mesh, unless it turns.
+  subroutine judge_on_path(own, fine, path, wanted, place)
+    type(equations_t), intent(in) :: own
+    type(finer_t), intent(inout) :: fine
+    type(traced_path_t), intent(in) :: path
+    real(wp), intent(in) :: wanted
+    type(reported_t), intent(inout) :: place
+    type(expansion_t) :: near
+    type(state_t) :: right
+    real(wp) :: distance, left, moved(read_of_states)
+    logical :: found
+
+    call fine%prepare(place%mesh)
+    near = expansion_about(path%arc_about(place%mesh, place%s), place%s, guess_of(own, fine, place))
+    call near%move_to(fine, place%mesh, merge(place%turn_of, place%drive, place%turns()), &
+      place%turns(), wanted, distance, place%known)
+    if (.not. place%known) return
+    associate (at => place%at, there => place%fine)
+      there = near%read_at(distance)
+      if (place%mesh == approach) there(of_edge) = at(of_edge)
+      there(of_radius) = at(of_radius)
+      left = 0
+      if (place%turns() .or. place%after > 0) left = tight
+      ! Of its h0 rounding leaves more than the search where bodies yield much.
+      if (place%turns()) left = max(left, residual_floor(fine%problem, place%state))
+      place%left(of_load) = (rounding + worst_residual*tight)*abs(at(of_load))
+      place%left(of_displacement) = left + rounding*abs(at(of_displacement))
+      if (place%turns()) then
+        place%left(of_h0) = left
+      else
+        ! What the iteration leaves moves a state at a given D as if that were off by as much of h0.
+        left = max(left, what_residual_leaves(near%state))
+        moved = near%read_at(near%distance_to(place%drive, .false., wanted + place%drive(1)*left))
+        place%left(:of_displacement) = place%left(:of_displacement) + &
+          abs(moved(:of_displacement) - there(:of_displacement))
+        if (abs(place%drive(1)) <= 0) place%left(of_h0) = place%left(of_h0) + left
+        ! A given value is exact; a landing's is that of the turn.
+        if (abs(place%drive(2)) <= 0) then
+          place%left(of_h0) = 0
+          there(of_h0) = wanted
+        end if
+        if (abs(place%drive(1)) <= 0 .and. place%after == 0) there(of_load) = at(of_load)
+      end if
+    end associate
+    if (.not. (place%with_profile .or. place%with_radius)) return
+    right = near%state
+    call fine%find(path_control(fine%problem, place%mesh, near%s + distance), right, found)
+    if (place%with_profile) place%profile = 1
+    if (place%with_profile .and. found) place%profile = profile_error(own, fine, place, right)
+    if (place%with_radius .and. found) place%fine(of_radius) = radius_of_gap(own%problem%shape, &
+      contact_level_of(own%problem), fine%meshes%grid(place%mesh), right)
+
+  end subroutine judge_on_path
+
+  !> Judges a place without a path, where its h0 tells the state.
+  subroutine judge_at_h0(own, fine, place)
+    type(equations_t), intent(in) :: own
+    type(finer_t), intent(inout) :: fine
+    type(reported_t), intent(inout) :: place
+    type(reported_t) :: there, beside
+    type(state_t) :: state
+    type(control_t) :: control
+    real(wp) :: left
+
+    ! What did not converge has no counterpart.
+    place%known = place%state%residual < 1
+    if (.not. place%known) return
+    call fine%prepare(place%mesh)
+    state = guess_of(own, fine, place)
+    fine%frozen%factors%valid = .false.
+    control = h0_control(own%problem%shape, own%meshes, place%mesh, place%at(of_h0))
+    call fine%find(control, state, place%known)
+    if (.not. place%known) return
+    there = reported_state(place%mesh, state)
+    place%fine = there%at
+    place%left = rounding*abs(place%at)
+    if (place%with_profile) place%profile = profile_error(own, fine, place, state)
+    left = what_residual_leaves(state)/shift
+    control%value = control%value + shift
+    call fine%find(control, state, place%known)
+    if (.not. place%known) return
+    beside = reported_state(place%mesh, state)
+    place%left = place%left + left*abs(beside%at - there%at)
+    place%left(of_h0) = 0
+  end subroutine judge_at_h0
+
+  !> The state of a place on the finer mesh, to begin with.
+  pure type(state_t) function guess_of(own, fine, place) result(state)
+    type(equations_t), intent(in) :: own
+    type(finer_t), intent(in) :: fine
+    type(reported_t), intent(in) :: place
+
+    state = regrid(own%problem%shape, place%state, own%meshes%grid(place%mesh), &
+      fine%meshes%grid(place%mesh), place%state%scale)
+  end function guess_of
+
+  !> The largest difference of gaps, and of pressures over the largest of them, between a place and
+  !> the same on a finer mesh, on the axis and at its nodes; raised by the margin.
+  pure real(wp) function profile_error(own, fine, place, right) result(largest)
+    type(equations_t), intent(in) :: own
+    type(finer_t), intent(in) :: fine
+    type(reported_t), intent(in) :: place
+    type(state_t), intent(in) :: right
+    real(wp) :: x, gap, strongest
+    integer :: j
+
+    associate (law => own%problem%law, finer => fine%meshes%grid(place%mesh), state => place%state)
+      strongest = max(maxval(abs(right%pressure)), tiny(1.0_wp))
+      largest = max(abs(right%axis_gap - state%axis_gap), &
+        maxval(abs(law%pressure([right%axis_gap]) - law%pressure([state%axis_gap])))/strongest)
+      do j = 1, size(state%gap)
+        x = state%scale*own%meshes%grid(place%mesh)%x(j)/right%scale
+        if (x > finer%end) exit
+        gap = gap_at(own%problem%shape, finer, right, x)
+        largest = max(largest, abs(gap - state%gap(j)), &
+          maxval(abs(law%pressure([gap]) - state%pressure(j)))/strongest)
+      end do
+    end associate
+    largest = fine%margin*largest
+  end function profile_error
+
+end module place_errors

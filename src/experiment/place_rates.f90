@@ -1,0 +1,117 @@
+!> Derivatives of what is reported by the parameters of &sensitivity: of each place that is read,
+!> and of the curve of what is read from the path.
+module place_rates
+  use kinds, only: wp
+  use listener, only: listener_t
+  use frozen_jacobian, only: frozen_jacobian_t
+  use path_sensitivity, only: rates_along
+  use traced_path, only: traced_path_t, no_mesh
+  use variation, only: variation_t, along_path
+  use state_sensitivity, only: place_on_path_t
+  use place_sensitivity, only: local_t, find_local, local_undeformed, at_fixed, at_extremum
+  use reported, only: reported_t, drive_weights, of_h0, nowhere
+  use places, only: places_t
+  use path_stepper, only: path_stepper_t
+  use experiment_request, only: sensitivity_t
+  use experiment_result, only: experiment_result_t
+  implicit none
+  private
+  public :: rate_places
+
+  !> Part of the distance of two points of the path over which second derivatives are taken, and
+  !> that distance where it is not known.
+  real(wp), parameter :: part = 0.015_wp, usual = 0.1_wp
+
+contains
+
+  !> Differentiates all places that numbers are read at, and the curve. A place is behind the one
+  !> that its jump began from.
+  subroutine rate_places(sensitivity, steps, listener, outcome)
+    type(sensitivity_t), intent(in) :: sensitivity
+    class(path_stepper_t), intent(inout) :: steps
+    class(listener_t), intent(inout) :: listener
+    type(experiment_result_t), intent(inout) :: outcome
+    ! The first is the path's coordinate.
+    type(variation_t) :: varied(size(sensitivity%varied) + 1)
+    real(wp) :: wanted(size(sensitivity%varied))
+    logical :: found
+    integer :: i
+
+    call listener%hear('differentiating')
+    varied(1) = along_path(steps%problem)
+    varied(2:) = sensitivity%varied
+    if (allocated(outcome%readings)) then
+      if (outcome%readings%solved) then
+        call rates_along(steps%equations_t, steps%known%path, varied(2:), outcome%readings%rate, found)
+        outcome%differentiated = found
+      end if
+    end if
+    associate (places => outcome%places)
+      do i = 1, size(places%place)
+        associate (place => places%place(i))
+          if (place%mesh == nowhere .or. .not. place%differentiated) cycle
+          wanted = 0
+          found = .true.
+          if (place%after > 0) then
+            found = allocated(places%place(place%after)%rate)
+            if (found) wanted = matmul(drive_weights(steps%problem, place%drive), &
+              places%place(place%after)%rate(:2, :))
+          end if
+          if (found) call rate_place(steps, varied, wanted, place, found)
+        end associate
+        outcome%differentiated = outcome%differentiated .and. found
+      end do
+    end associate
+  end subroutine rate_places
+
+  !> Differentiates a place whose D changes as `wanted` says, if nothing turns there.
+  subroutine rate_place(steps, varied, wanted, place, found)
+    class(path_stepper_t), intent(inout) :: steps
+    type(variation_t), intent(in) :: varied(:)
+    real(wp), intent(in) :: wanted(:)
+    type(reported_t), intent(inout) :: place
+    logical, intent(out) :: found
+    type(frozen_jacobian_t) :: frozen
+    type(place_on_path_t) :: at
+    type(local_t) :: local
+
+    at = place_on_path_t(place%mesh, place%s, place%state)
+    if (place%turns()) then
+      found = place%mesh /= no_mesh
+      if (found) call at_extremum(steps%equations_t, steps%options, at, &
+        drive_weights(steps%problem, place%turn_of), &
+        apart_at(steps%known%path, place%mesh, place%s), varied, place%rate, found)
+      return
+    end if
+    found = .true.
+    if (place%mesh == no_mesh) then
+      local = local_undeformed(steps%problem, place%at(of_h0), varied)
+    else
+      call find_local(steps%equations_t, at, frozen, varied, local, found)
+    end if
+    if (found) place%rate = at_fixed(local, drive_weights(steps%problem, place%drive), wanted)
+  end subroutine rate_place
+
+  !> Over which distance of the coordinate second derivatives are taken at s: a part of that between
+  !> the points of the path about it, polished ones aside, which may be as near as they like.
+  pure real(wp) function apart_at(path, mesh, s) result(apart)
+    type(traced_path_t), intent(in) :: path
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: s
+    real(wp) :: below, above
+    integer :: i
+
+    below = s - usual
+    above = s + usual
+    do i = 1, path%held
+      if (path%point(i)%fold .or. path%point(i)%load_extremum) cycle
+      if (path%point(i)%mesh /= mesh) cycle
+      associate (at => path%point(i)%coordinate)
+        if (at < s) below = max(below, at)
+        if (at > s) above = min(above, at)
+      end associate
+    end do
+    apart = part*(above - below)
+  end function apart_at
+
+end module place_rates

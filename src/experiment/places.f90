@@ -1,0 +1,269 @@
+!> The table of places that numbers are reported of (`reported`). A number of the summary has a
+!> name, one or more elements, and for each of them one place, or several whose sum it is, such as
+!> the energies before and after jumps.
+module places
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use reported, only: reported_t, values_of, units_of, rates_of, least, quantities, of_h0, &
+    of_load
+  implicit none
+  private
+  public :: places_t, readings_t
+
+  integer, parameter :: name_length = 24
+
+  !> An element of a number is the sum of `factor` times what is read at its places; without a place
+  !> it is `factor` itself: 0, or NaN for what does not exist.
+  type :: entry_t
+    character(len=name_length) :: name = ''
+    integer :: element = 1, place = 0
+    real(wp) :: factor = 1
+  end type entry_t
+
+  type :: places_t
+    type(reported_t), allocatable :: place(:)
+    type(entry_t), allocatable :: entry(:)
+  contains
+    procedure :: keep
+    procedure :: enter
+    procedure :: enter_list
+    procedure :: forget
+    procedure :: has
+    procedure :: elements
+    procedure :: place_of
+    procedure :: largest_error
+    procedure :: largest_of
+    procedure :: read_numbers
+    procedure, private :: parameters
+  end type places_t
+
+  !> A number as it is reported, element by element, SI units; what does not exist is NaN. rate:
+  !> (parameters, elements).
+  type :: readings_t
+    real(wp), allocatable :: value(:), error(:), rate(:, :)
+  end type readings_t
+
+  !> What is not judged place by place.
+  character(len=*), parameter :: of_table = 'table', of_energies = 'energy_lost'
+  !> What is asked for no derivatives.
+  character(len=*), parameter :: not_differentiated(*) = [character(len=8) :: 'profiles', &
+    'samples', of_table]
+
+contains
+
+  !> Finds a place in the table, or adds it, and before it the one that its jump began from.
+  recursive subroutine keep(self, place, i)
+    class(places_t), intent(inout) :: self
+    type(reported_t), intent(in) :: place
+    integer, intent(out) :: i
+    integer :: after
+
+    if (.not. allocated(self%place)) allocate (self%place(0))
+    after = place%after
+    if (place%landing) call self%keep(reported_t(point=place%point), after)
+    do i = 1, size(self%place)
+      if (is_same(self%place(i), place)) return
+    end do
+    self%place = [self%place, place]
+    self%place(i)%after = after
+  end subroutine keep
+
+  !> Whether two places are one: a point of the path, the landing after one, or all numbers agree.
+  pure logical function is_same(one, other)
+    type(reported_t), intent(in) :: one, other
+
+    is_same = one%point == other%point .and. (one%landing .eqv. other%landing) .and. &
+      (one%with_profile .eqv. other%with_profile)
+    if (is_same .and. one%point == 0) is_same = one%mesh == other%mesh .and. &
+      one%after == other%after .and. (one%searched .eqv. other%searched) .and. &
+      all(abs([one%at, one%drive, one%turn_of] - [other%at, other%drive, other%turn_of]) <= 0)
+  end function is_same
+
+  !> Lets an element of a number be read at a place, or adds `factor` times what is read there.
+  !> Without a place it is `factor` or, without that, does not exist.
+  subroutine enter(self, name, element, place, factor)
+    class(places_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: element
+    type(reported_t), intent(in), optional :: place
+    real(wp), intent(in), optional :: factor
+    type(entry_t) :: entry
+
+    if (.not. allocated(self%entry)) allocate (self%entry(0))
+    entry%name = name
+    entry%element = element
+    if (present(place)) then
+      call self%keep(place, entry%place)
+      call mark(entry%place)
+      call mark(self%place(entry%place)%after)
+    end if
+    if (.not. present(place)) entry%factor = ieee_value(1.0_wp, ieee_quiet_nan)
+    if (present(factor)) entry%factor = factor
+    self%entry = [self%entry, entry]
+
+  contains
+
+    subroutine mark(i)
+      integer, intent(in) :: i
+
+      if (i == 0) return
+      self%place(i)%read = .true.
+      self%place(i)%differentiated = self%place(i)%differentiated .or. &
+        all(not_differentiated /= name)
+    end subroutine mark
+
+  end subroutine enter
+
+  !> Lets the elements that follow those there are be read at the places of a list.
+  subroutine enter_list(self, name, list)
+    class(places_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    type(reported_t), intent(in) :: list(:)
+    integer :: i
+
+    do i = 1, size(list)
+      call self%enter(name, self%elements(name) + 1, list(i))
+    end do
+  end subroutine enter_list
+
+  !> Takes a number back.
+  subroutine forget(self, name)
+    class(places_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+
+    if (allocated(self%entry)) self%entry = pack(self%entry, self%entry%name /= name)
+  end subroutine forget
+
+  !> Whether there is such a number, or this element of it.
+  pure logical function has(self, name, element)
+    class(places_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in), optional :: element
+
+    has = .false.
+    if (.not. allocated(self%entry)) return
+    if (present(element)) then
+      has = any(self%entry%name == name .and. self%entry%element == element)
+    else
+      has = any(self%entry%name == name)
+    end if
+  end function has
+
+  !> How many elements a number has.
+  pure integer function elements(self, name)
+    class(places_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+
+    elements = 0
+    if (self%has(name)) elements = maxval(self%entry%element, self%entry%name == name)
+  end function elements
+
+  !> The place at which a number is read; one that no mesh has, if the number does not exist.
+  pure type(reported_t) function place_of(self, name) result(place)
+    class(places_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+
+    if (self%has(name)) place = &
+      self%place(self%entry(findloc(self%entry%name == name, .true., 1))%place)
+  end function place_of
+
+  !> The largest relative error of all that is reported; 0 if nothing was judged. Loads of a table
+  !> count against the largest of them.
+  pure real(wp) function largest_error(self) result(largest)
+    class(places_t), intent(in) :: self
+    real(wp) :: load
+    integer :: i
+
+    largest = 0
+    load = tiny(1.0_wp)
+    if (.not. allocated(self%entry)) return
+    do i = 1, size(self%entry)
+      associate (entry => self%entry(i))
+        if (entry%place == 0 .or. entry%name == of_energies) cycle
+        associate (place => self%place(entry%place))
+          if (entry%name == of_table) load = max(load, abs(place%at(of_load)))
+          if (entry%name /= of_table) largest = max(largest, place%relative_error())
+        end associate
+      end associate
+    end do
+    largest = max(largest, self%largest_of(of_table, of_load)/load)
+  end function largest_error
+
+  !> The largest error of a quantity at all places of a number, units of `dimensionless_problem`.
+  pure real(wp) function largest_of(self, name, quantity) result(largest)
+    class(places_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: quantity
+    integer :: i
+
+    largest = 0
+    do i = 1, size(self%entry)
+      if (self%entry(i)%name /= name) cycle
+      associate (errors => self%place(self%entry(i)%place)%errors())
+        largest = max(largest, errors(quantity))
+      end associate
+    end do
+  end function largest_of
+
+  !> The elements of a number, with errors and derivatives; none where it does not exist.
+  function read_numbers(self, problem, name, quantity) result(found)
+    class(places_t), intent(in) :: self
+    type(problem_t), intent(in) :: problem
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: quantity
+    type(readings_t) :: found
+    real(wp), allocatable :: difference(:)
+    real(wp), dimension(quantities) :: units, values, misses, leftovers
+    real(wp) :: none
+    logical, allocatable :: known(:)
+    integer :: i, n
+
+    n = self%elements(name)
+    allocate (found%value(n), found%error(n), difference(n), source=0.0_wp)
+    allocate (found%rate(self%parameters(), n), source=0.0_wp)
+    allocate (known(n), source=.true.)
+    units = units_of(problem)
+    none = ieee_value(none, ieee_quiet_nan)
+    do i = 1, merge(size(self%entry), 0, n > 0)
+      associate (entry => self%entry(i), k => self%entry(i)%element)
+        if (entry%name /= name) cycle
+        if (entry%place == 0) then
+          found%value(k) = entry%factor
+          found%error(k) = entry%factor
+          found%rate(:, k) = entry%factor
+          cycle
+        end if
+        associate (place => self%place(entry%place))
+          values = values_of(problem, place)
+          misses = place%margin*(place%measures(place%at) - place%measures(place%fine))
+          leftovers = place%leftovers()
+          found%value(k) = found%value(k) + entry%factor*values(quantity)
+          known(k) = known(k) .and. place%known
+          difference(k) = difference(k) + entry%factor*misses(quantity)
+          found%error(k) = found%error(k) + leftovers(quantity)
+          if (.not. place%judged .or. (place%searched .and. quantity == of_h0) .or. &
+            ieee_is_nan(values(quantity))) found%error(k) = none
+          if (allocated(place%rate)) found%rate(:, k) = found%rate(:, k) + &
+            entry%factor*rates_of(problem, place, quantity)
+          if (.not. allocated(place%rate)) found%rate(:, k) = none
+        end associate
+      end associate
+    end do
+    found%error = (abs(difference) + found%error)*units(quantity)
+    where (.not. known) found%error = max(abs(found%value), least(quantity)*units(quantity))
+  end function read_numbers
+
+  !> By how many parameters the places are differentiated.
+  pure integer function parameters(self)
+    class(places_t), intent(in) :: self
+    integer :: i
+
+    parameters = 0
+    if (.not. allocated(self%place)) return
+    do i = 1, size(self%place)
+      if (allocated(self%place(i)%rate)) parameters = size(self%place(i)%rate, 2)
+    end do
+  end function parameters
+
+end module places

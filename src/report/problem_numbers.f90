@@ -1,0 +1,136 @@
+!> Numbers that follow from the problem alone: of the force law, of the theories, of layers. With
+!> parameters of &sensitivity they are found for varied problems too, whose differences are the
+!> derivatives.
+module problem_numbers
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t, adhesion_strength, tabor_parameter, surface_energy, &
+    largest_tension
+  use classical, only: jkr_pull_off, dmt_pull_off
+  use convex_contact, only: jkr_like_pull_off
+  use layered_body, only: layered_body_t
+  use law_scan, only: surroundings_t, surroundings_of
+  use variation, only: variation_t
+  use result_rows, only: rows, row_of
+  use summary, only: summary_t
+  implicit none
+  private
+  public :: describe_problem
+
+  !> A number for each row; NaN where there is none.
+  type :: numbers_t
+    real(wp) :: of_row(size(rows)) = 0
+  contains
+    procedure :: set
+  end type numbers_t
+
+contains
+
+  !> Enters the numbers of a problem, with derivatives by what is varied.
+  subroutine describe_problem(problem, summary, varied)
+    type(problem_t), intent(in) :: problem
+    type(summary_t), intent(inout) :: summary
+    type(variation_t), intent(in), optional :: varied(:)
+    type(numbers_t) :: own, other
+    real(wp), allocatable :: rate(:, :)
+    integer :: i, j, k
+
+    own = numbers_of(problem)
+    j = 0
+    if (present(varied)) j = size(varied)
+    allocate (rate(j, size(rows)), source=0.0_wp)
+    do j = 1, size(rate, 1)
+      do k = 1, size(varied(j)%problem)
+        other = numbers_of(varied(j)%problem(k))
+        ! Of differences, so that what does not depend on a parameter has no derivative.
+        rate(j, :) = rate(j, :) + varied(j)%weight(k)*(other%of_row - own%of_row)
+      end do
+    end do
+    do i = 1, size(rows)
+      if (.not. ieee_is_nan(own%of_row(i))) &
+        call summary%set(trim(rows(i)%key), own%of_row(i:i), rate=rate(:, i:i))
+    end do
+  end subroutine describe_problem
+
+  subroutine set(self, key, value)
+    class(numbers_t), intent(inout) :: self
+    character(len=*), intent(in) :: key
+    real(wp), intent(in) :: value
+
+    self%of_row(row_of(key)) = value
+  end subroutine set
+
+  type(numbers_t) function numbers_of(problem) result(numbers)
+    type(problem_t), intent(in) :: problem
+
+    numbers%of_row = ieee_value(1.0_wp, ieee_quiet_nan)
+    if (problem%law%adhesion > 0) then
+      if (problem%law%work > 0) then
+        call numbers%set('surface_energy', surface_energy(problem))
+        call take_pull_offs(problem, numbers)
+      end if
+      if (.not. problem%rigid) then
+        call numbers%set('sigma', adhesion_strength(problem))
+        if (problem%shape%exponent > 0) call numbers%set('tabor', tabor_parameter(problem))
+      end if
+    else if (problem%law%coupling_name /= '' .and. .not. problem%rigid) then
+      call numbers%set(trim(problem%law%coupling_name), problem%coupling)
+    end if
+    select type (body => problem%body)
+    type is (layered_body_t)
+      ! The moduli of short and of long waves.
+      call numbers%set('top_modulus', 0.5_wp*problem%stiffness)
+      if (body%bottom > 0) &
+        call numbers%set('bottom_modulus', 0.5_wp*problem%stiffness/body%bottom)
+    end select
+    if (problem%law%rest_gap > 0) then
+      call numbers%set('rest_gap', problem%law%separation_of(problem%law%rest_gap))
+      if (.not. problem%law%of_paper) call take_forces(problem, numbers)
+    end if
+  end function numbers_of
+
+  !> Pull-offs of the theories. Of other shapes than the parabola that of JKR theory depends on the
+  !> stiffness, and that of rigid bodies on more of the law than its surface energy.
+  subroutine take_pull_offs(problem, numbers)
+    type(problem_t), intent(in) :: problem
+    type(numbers_t), intent(inout) :: numbers
+
+    if (problem%shape%parabolic) call numbers%set('dmt_pull_off', &
+      -dmt_pull_off(problem%radius, surface_energy(problem)))
+    ! JKR of layered bodies is with &classical.
+    if (.not. problem%body%is_homogeneous()) return
+    if (problem%shape%parabolic) then
+      call numbers%set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
+    else if (.not. problem%rigid) then
+      call numbers%set('jkr_pull_off', -jkr_like_pull_off(problem)*problem%load)
+    end if
+  end subroutine take_pull_offs
+
+  !> The well of contact and what lies outside it; nothing of what the law does not have.
+  subroutine take_forces(problem, numbers)
+    type(problem_t), intent(in) :: problem
+    type(numbers_t), intent(inout) :: numbers
+    type(surroundings_t) :: outside
+    real(wp) :: energy
+
+    associate (law => problem%law)
+      energy = problem%pressure*problem%length
+      call numbers%set('work_of_adhesion', surface_energy(problem))
+      if (law%edge_gap > 0) then
+        call numbers%set('edge_gap', law%separation_of(law%edge_gap))
+        call numbers%set('cohesive_stress', largest_tension(problem))
+        call numbers%set('cohesive_range', law%adhesion*energy/largest_tension(problem))
+      end if
+      outside = surroundings_of(law)
+      if (outside%has_barrier) then
+        call numbers%set('barrier_pressure', outside%barrier_pressure*problem%pressure)
+        call numbers%set('barrier_energy', outside%barrier_energy*energy)
+      end if
+      if (outside%has_well) then
+        call numbers%set('secondary_minimum_gap', law%separation_of(outside%well_gap))
+        call numbers%set('secondary_minimum_energy', outside%well_energy*energy)
+      end if
+    end associate
+  end subroutine take_forces
+
+end module problem_numbers
