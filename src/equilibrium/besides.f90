@@ -17,8 +17,9 @@ module besides
     procedure :: at_scale
   end type besides_t
 
-  !> Part of the position over which its change is taken.
-  real(wp), parameter :: apart = 1.0e-5_wp
+  !> Part of the position over which its change is taken: to about as many digits, which is plenty
+  !> for what a scale may be off by.
+  real(wp), parameter :: apart = 1.0e-6_wp
 
 contains
 
@@ -54,7 +55,7 @@ contains
         r = scale*grid%x(i - first_node + 1)
       end select
       besides%value(i) = value(r)
-      besides%growth(i) = (value((1 + apart)*r) - value((1 - apart)*r))/(2*apart)
+      besides%growth(i) = (value((1 + apart)*r) - besides%value(i))/apart
     end do
 
   contains

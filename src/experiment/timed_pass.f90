@@ -22,7 +22,7 @@ module timed_pass
   public :: go_through
 
   !> contact radius over the width of the neck. Longest and first step, parts of a way.
-  real(wp), parameter :: bend = 2.0e-3_wp, edge_moves = 1, longest_part = 0.05_wp, &
+  real(wp), parameter :: bend = 8.0e-3_wp, edge_moves = 2, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
   !> Steps after one that was too long before longer ones are tried again.
   integer, parameter :: patience = 3
@@ -134,11 +134,11 @@ contains
     type(pass_t), intent(inout) :: now
     real(wp) :: whole, shorter, longest
 
-    shorter = 0.5_wp**(pass - 1)
+    shorter = 0.5_wp**(pass - 2)
     whole = drive%time(way) - drive%time(way - 1)
     if (.not. now%step > 0) now%step = shorter*first_drained*whole
     longest = longest_part*whole
-    if (allocated(request%drive%time_step)) longest = 2*request%drive%time_step
+    if (allocated(request%drive%time_step)) longest = request%drive%time_step
     call step_drained(drive, way, shorter*longest, merge(0.0_wp, shorter, &
       allocated(request%drive%time_step)), steps, at, now)
   end subroutine drain

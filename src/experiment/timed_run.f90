@@ -36,8 +36,8 @@ module timed_run
   !> Passes, and the largest change of the path's coordinate in a step of the first: what changes by
   !> more has jumped, or is to be followed in shorter steps.
   integer, parameter :: most_passes = 9
-  !> Passes that may lose the bodies before one is whole.
-  integer, parameter :: most_tries = 2
+  !> Passes in which the bodies may be lost before two are whole, one after the other.
+  integer, parameter :: most_tries = 3
   real(wp), parameter :: farthest = 0.3_wp
   !> Panels of the memory's mesh over the neck, with so many nodes more than others have; the most
   !> nodes: beyond, what is not resolved is told.
@@ -84,14 +84,16 @@ contains
       if (now%result%lost) then
         ! Finer meshes may hold what was lost; what came before has its errors.
         if (whole > 1) now = before
-        if (whole > 0 .or. pass == most_tries .or. .not. now%result%begun .or. &
+        if (whole > 1 .or. pass == most_tries .or. .not. now%result%begun .or. &
           now%held > most_steps) exit
+        whole = 0
         cycle
       end if
       whole = whole + 1
       if (whole == 1) cycle
       call compare(request%numerics%accuracy, before%result, now%result)
-      enough = relative_error(now%result) <= request%numerics%accuracy .or. &
+      ! The first two may agree by chance.
+      enough = (relative_error(now%result) <= request%numerics%accuracy .and. whole > 2) .or. &
         allocated(request%drive%time_step)
       if (enough .or. 2*now%held > most_steps) exit
     end do
@@ -212,6 +214,7 @@ contains
     type(timed_result_t), intent(inout) :: now
 
     now%error = margin*abs(now%number - before%number)
+    where (before%error < huge(1.0_wp)) now%error = max(now%error, before%error/4)
     now%error(of_tension) = now%error(of_tension) + now%lifted + &
       of_meshes*accuracy*now%number(of_tension)
     now%error(of_end_load) = now%error(of_end_load) + &
