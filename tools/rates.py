@@ -29,7 +29,7 @@ import snapin  # noqa: E402
 DOCS = pages.ROOT / "docs"
 # Strength at once, and the velocities of the bell in lengths of the law over the time of retardation.
 SIGMA = 0.2
-SPEEDS = [0.02 * 10 ** (k / 3) for k in range(22)]
+SPEEDS = [0.002 * 10 ** (k / 3) for k in range(25)]
 RATIOS = [2.0, 5.0, 10.0]
 # In these units R is as short as the range of the force.
 warnings.simplefilter("ignore", snapin.SnapinWarning)
@@ -63,7 +63,7 @@ def draw_bell():
 def draw_cycles():
     """Load against h0 at several velocities."""
     figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
-    for velocity in (0.02, 0.2, 2.0, 20.0, 200.0, 2.0e4):
+    for velocity in (0.002, 0.2, 2.0, 20.0, 200.0, 2.0e5):
         curve = driven(10.0, velocity).curve
         axes.plot(curve["h0"], curve["load"] / (math.pi * SIGMA), lw=1.2, label=f"{velocity:g}")
     axes.set(xlabel="$h_0$ over $z_0$", ylabel="load over $\\pi R w$", xlim=(-4.2, 12), ylim=(-5, 6))
@@ -139,7 +139,7 @@ def draw_drainage():
         panels[1].plot(retreat["h0"] * 1e9, retreat["load"] * 1e9, color=colour, label=name)
     panels[0].set(xlabel="separation on the axis, nm", ylabel="load on approach, nN", xlim=(0.5, 1e3),
                   ylim=(0.1, 300))
-    panels[1].set(xlabel="$h_0$, nm", ylabel="load, nN", xlim=(-3, 20), ylim=(-900, 300))
+    panels[1].set(xlabel="$h_0$, nm", ylabel="load, nN", xlim=(-1, 10), ylim=(-1500, 300))
     panels[0].legend()
     figure.savefig(DOCS / "rates_drainage.png", dpi=110)
 

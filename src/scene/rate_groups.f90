@@ -16,7 +16,7 @@ module rate_groups
   !> Accuracy of a drive where the deck names none: each further digit takes three times the steps.
   real(wp), parameter :: usual_accuracy = 1.0e-4_wp
   !> Most steps of a given length.
-  real(wp), parameter :: most_steps = 1.0e5_wp
+  real(wp), parameter :: most_steps = 4.0e4_wp
   !> Groups that show bodies at rest.
   character(len=*), parameter :: at_rest(*) = [character(len=16) :: 'loading', 'unloading', &
     'equilibrium_path', 'profiles', 'stability', 'fit', 'regime']
@@ -94,7 +94,7 @@ contains
       if (allocated(drive%time_step)) then
         time = (drive%z_start - 2*drive%z_turn + drive%z_end)/drive%velocity + drive%dwell
         if (time > most_steps*drive%time_step) call deck%mistake('drive', 'time_step', &
-          'the drive takes ' // brief(time) // ' s, more than 1e5 steps of this length', error)
+          'the drive takes ' // brief(time) // ' s, more than 4e4 steps of this length', error)
       end if
       do i = 1, size(at_rest)
         if (deck%has_group(trim(at_rest(i)))) call deck%mistake(trim(at_rest(i)), '', &

@@ -19,7 +19,8 @@ DRIVES = {
     "behind a spring": driven(viscoelastic=CREEP, drive={"stiffness": 0.5, "z_start": 40.0}),
     "a fluid": driven(viscoelastic=CREEP, fluid={"viscosity": 0.01}),
     "a fluid alone": driven(fluid={"viscosity": 0.01}),
-    "layers": driven(1.0, layer={"young": 4.0, "poisson": 0.3, "thickness": 3.0}),
+    "layers": driven(1.0, layer={"young": 4.0, "poisson": 0.3, "thickness": 3.0, "base": "rigid"},
+                     fluid={"viscosity": 0.01}),
 }
 
 
