@@ -26,9 +26,9 @@ module drained_way
 
 contains
 
-  !> A step from an instant on, or a shorter one to be tried next. Steps follow the motion, `part` of
-  !> what they might be; if that is 0, they are the longest, and only those are shortened that have
-  !> no end near.
+  !> A step from an instant on, or a shorter one to be tried next. Steps follow the motion and are
+  !> `part` of what they might be. If `part` is 0, they are the longest, and a step is shortened
+  !> only if the motion has no end nearby.
   subroutine step_drained(drive, way, longest, part, steps, at, now)
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: way

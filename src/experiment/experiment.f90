@@ -93,8 +93,8 @@ contains
     nullify (journal)
     if (present(keeper)) journal => keeper%journal
     allocate (outcome%timed)
-    call run_timed(request, driven, outcome%chosen, journal, observer, outcome%timed, outcome%cost, &
-      outcome%nodes)
+    call run_timed(request, driven, outcome%chosen, journal, observer, outcome%timed, &
+      outcome%cost, outcome%nodes)
     outcome%error_estimate = outcome%timed%estimate
   end subroutine run_driven
 

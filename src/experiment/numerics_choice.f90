@@ -14,8 +14,8 @@ module numerics_choice
   public :: choice_t, choose, fixed_choice, fixed_mesh, companion
   public :: grid_names, unchosen, edge_locked, uniform, panels
 
-  !> Grids: none, since nothing is solved or bodies are rigid; panels locked to the contact edge; and
-  !> two that are fixed in space. What results call them.
+  !> Grids: none, since nothing is solved or bodies are rigid; panels locked to the contact edge;
+  !> two that are fixed in space. Their names in results.
   integer, parameter :: unchosen = 0, no_grid = 1, edge_locked = 2, uniform = 3, panels = 4
   character(len=*), parameter :: grid_names(*) = [character(len=11) :: 'none', 'edge_locked', &
     'uniform', 'panels']

@@ -42,7 +42,8 @@ contains
     varied(2:) = sensitivity%varied
     if (allocated(outcome%readings)) then
       if (outcome%readings%solved) then
-        call rates_along(steps%equations_t, steps%known%path, varied(2:), outcome%readings%rate, found)
+        call rates_along(steps%equations_t, steps%known%path, varied(2:), &
+          outcome%readings%rate, found)
         outcome%differentiated = found
       end if
     end if

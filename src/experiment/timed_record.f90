@@ -11,8 +11,8 @@ module timed_record
   implicit none
   private
   public :: timed_result_t, tally_t, pass_t, accept, take_row, note, make_room, lose, most_steps, &
-    numbers, of_tension, of_tension_h0, of_end_h0, of_end_load, of_end_displacement, of_dissipation, &
-    of_suction
+    numbers, of_tension, of_tension_h0, of_end_h0, of_end_load, of_end_displacement, &
+    of_dissipation, of_suction
 
   !> The numbers that are reported.
   integer, parameter :: of_tension = 1, of_tension_h0 = 2, of_end_h0 = 3, of_end_load = 4, &

@@ -77,7 +77,8 @@ contains
       logical, intent(in) :: stable
 
       call results%row(cells([driven%stiffness]) // ',' // direction, &
-        [z_of(problem, driven%drive, state), si_of(problem, state)], [stable])
+        [z_of(problem, driven%drive, state), problem%law%separation_of(state%h0), &
+        state%load*problem%load, state%radius*problem%lateral], [stable])
     end subroutine add
 
   end subroutine write_device

@@ -11,11 +11,13 @@ DRIVE = {"velocity": 8.0, "z_start": 15.0, "z_turn": -1.0, "dwell": 0.3}
 
 
 def driven(sigma=0.1, drive=(), **groups):
-    return lennard_jones(sigma, drive={**DRIVE, **dict(drive)}, numerics={"accuracy": 1e-3}, **groups)
+    return lennard_jones(sigma, drive={**DRIVE, **dict(drive)}, numerics={"accuracy": 1e-3},
+                         **groups)
 
 
 DRIVES = {
-    "bodies that remember": driven(viscoelastic=CREEP, sensitivity={"parameters": "drive.velocity"}),
+    "bodies that remember": driven(viscoelastic=CREEP,
+                                   sensitivity={"parameters": "drive.velocity"}),
     "behind a spring": driven(viscoelastic=CREEP, drive={"stiffness": 0.5, "z_start": 40.0}),
     "a fluid": driven(viscoelastic=CREEP, fluid={"viscosity": 0.01}),
     "a fluid alone": driven(fluid={"viscosity": 0.01}),
