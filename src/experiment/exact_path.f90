@@ -13,7 +13,7 @@ module exact_path
   use experiment_request, only: request_t
   use path_demand, only: farthest_wanted
   use places, only: places_t
-  use reported, only: reported_t
+  use reported, only: point_of_path
   use finer_solver, only: finer_t
   use place_errors, only: judge_places
   implicit none
@@ -52,6 +52,7 @@ contains
     type(mesh_store_t), intent(inout), target, optional :: store
     type(tracing_t) :: before
     type(known_path_t) :: nothing
+    type(finer_t) :: blank
     real(wp), allocatable :: farthest
     real(wp) :: worst, began
     integer :: round, i, kept
@@ -62,7 +63,7 @@ contains
         call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, &
           accuracy*10.0_wp**(-further_digits*(round - 1)))
         began = seconds()
-        fine = finer_t()
+        fine = blank
         places = places_t()
         call fine%lay_out(steps, h0_high, h0_low, store)
         worst = 0
@@ -70,7 +71,7 @@ contains
           do i = 1, steps%known%path%held
             associate (point => steps%known%path%point(i))
               if (point%fold .or. point%load_extremum) &
-                call places%keep(reported_t(point=i), kept)
+                call places%keep(point_of_path(i), kept)
             end associate
           end do
           call judge_places(fine, steps, places, .true.)

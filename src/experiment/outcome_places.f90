@@ -7,7 +7,7 @@ module outcome_places
   use curve_states, only: curve_state_t
   use device, only: driven_t
   use path_readings, only: path_readings_t
-  use reported, only: reported_t, of_h0, of_load, of_energy
+  use reported, only: reported_t, point_of_path, of_h0, of_load, of_energy
   use places, only: places_t
   use stepped_branch, only: branch_t
   use path, only: path_t
@@ -39,6 +39,7 @@ contains
   subroutine enter_path(path, places)
     type(path_t), intent(in) :: path
     type(places_t), intent(inout) :: places
+    type(reported_t) :: fall
     integer :: n
 
     call places%enter_list('folds', path%fold)
@@ -57,7 +58,8 @@ contains
     if (.not. allocated(path%finish)) return
     if (path%fallen) then
       ! How a fall ends is of no interest and on no mesh.
-      call places%enter('end', 1, reported_t(at=path%finish%at))
+      fall%at = path%finish%at
+      call places%enter('end', 1, fall)
     else
       call places%enter('path_end', 1, path%finish)
       call places%enter('end', 1, path%finish)
@@ -228,8 +230,8 @@ contains
     if (turned < 2) return
     fold = folds_of_cycle(known, turned, lowest)
     do i = 1, size(fold)
-      call places%enter('energy_lost', 1, reported_t(point=fold(i)))
-      call places%enter('energy_lost', 1, reported_t(point=fold(i), landing=.true.), -1.0_wp)
+      call places%enter('energy_lost', 1, point_of_path(fold(i)))
+      call places%enter('energy_lost', 1, point_of_path(fold(i), .true.), -1.0_wp)
     end do
   end subroutine enter_energy
 

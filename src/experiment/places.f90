@@ -5,8 +5,8 @@ module places
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use reported, only: reported_t, values_of, units_of, rates_of, least, quantities, of_h0, &
-    of_load
+  use reported, only: reported_t, point_of_path, values_of, units_of, rates_of, least, quantities, &
+    of_h0, of_load
   implicit none
   private
   public :: places_t, readings_t
@@ -61,7 +61,7 @@ contains
 
     if (.not. allocated(self%place)) allocate (self%place(0))
     after = place%after
-    if (place%landing) call self%keep(reported_t(point=place%point), after)
+    if (place%landing) call self%keep(point_of_path(place%point), after)
     do i = 1, size(self%place)
       if (is_same(self%place(i), place)) return
     end do

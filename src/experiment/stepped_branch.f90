@@ -6,7 +6,7 @@ module stepped_branch
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
   use tension_search, only: tension_search_t
-  use reported, only: reported_t, reported_state, add_reported, of_h0, of_load
+  use reported, only: reported_t, reported_state, point_of_path, add_reported, of_h0, of_load
   use records, only: observer_t, record_t, extent_t, record_of, stable_yes, stable_unasked
   implicit none
   private
@@ -126,7 +126,7 @@ contains
     real(wp), intent(in) :: h0
 
     if (event%jumped .and. .not. allocated(branch%jump)) then
-      branch%jump = reported_t(point=event%fold)
+      branch%jump = point_of_path(event%fold)
       branch%jump%at(of_h0) = event%jump_h0
       branch%jump%at(of_load) = event%jump_load
       branch%jump_uncertainty = event%jump_uncertainty
@@ -159,7 +159,7 @@ contains
       if (lowest%point == 0) then
         branch%lowest = reported_state(position%mesh, position%state)
       else
-        branch%lowest = reported_t(point=lowest%point, landing=lowest%landing)
+        branch%lowest = point_of_path(lowest%point, lowest%landing)
         branch%lowest%at(of_load) = lowest%load
       end if
     end associate

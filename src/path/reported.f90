@@ -9,7 +9,8 @@ module reported
   use contact_state, only: state_t
   implicit none
   private
-  public :: reported_t, reported_state, add_reported, drive_weights, values_of, units_of, rates_of
+  public :: reported_t, reported_state, point_of_path, add_reported, drive_weights, values_of, &
+    units_of, rates_of
   public :: of_h0, of_load, of_displacement, of_energy, of_radius, of_edge, of_position, &
     of_tension, of_profile
   public :: read_of_states, quantities, nowhere
@@ -84,6 +85,16 @@ contains
     place%at(of_displacement) = state%axis_gap - state%h0
     place%at(of_edge) = state%scale
   end function reported_state
+
+  !> A point of the traced path as a place, or the state where a jump over it lands.
+  pure function point_of_path(point, landing) result(place)
+    integer, intent(in) :: point
+    logical, intent(in), optional :: landing
+    type(reported_t) :: place
+
+    place%point = point
+    if (present(landing)) place%landing = landing
+  end function point_of_path
 
   !> Adds to a list. An argument may be a function's result: compiler note 1.
   subroutine add_reported(list, place)

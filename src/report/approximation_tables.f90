@@ -89,21 +89,21 @@ contains
 
     form = by_quadrature
     if (has_form(problem, closed_form)) form = closed_form
-    call set(of_criterion, form, at_criterion, 'jump_criterion_29')
-    call set(of_equation_37, attraction_only, at_criterion, 'jump_equation_37')
-    call set(of_attraction, attraction_only, at_fold, 'fold_attractive_only')
-    call set(of_fold, form, at_fold, 'fold_'//trim(names(form)))
+    jumps(of_criterion) = jump_of(form, at_criterion, 'jump_criterion_29')
+    jumps(of_equation_37) = jump_of(attraction_only, at_criterion, 'jump_equation_37')
+    jumps(of_attraction) = jump_of(attraction_only, at_fold, 'fold_attractive_only')
+    jumps(of_fold) = jump_of(form, at_fold, 'fold_'//trim(names(form)))
 
   contains
 
-    pure subroutine set(which, form, condition, theory)
-      integer, intent(in) :: which, form, condition
+    pure type(slow_state_t) function jump_of(form, condition, theory) result(jump)
+      integer, intent(in) :: form, condition
       character(len=*), intent(in) :: theory
       real(wp) :: gap
 
       gap = slow_gap(problem, form, condition)
-      if (.not. ieee_is_nan(gap)) jumps(which) = state_at(problem, form, gap, theory)
-    end subroutine set
+      if (.not. ieee_is_nan(gap)) jump = state_at(problem, form, gap, theory)
+    end function jump_of
 
   end function jumps_of
 
