@@ -191,7 +191,6 @@ contains
     if (place%with_profile .and. found) place%profile = profile_error(own, fine, place, right)
     if (place%with_radius .and. found) place%fine(of_radius) = radius_of_gap(own%problem%shape, &
       contact_level_of(own%problem), fine%meshes%grid(place%mesh), right)
-
   end subroutine judge_on_path
 
   !> Judges a place without a path, where its h0 tells the state.

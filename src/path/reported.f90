@@ -63,7 +63,6 @@ module reported
     procedure :: relative_error
   end type reported_t
 
-
   !> An error that says that nothing is known.
   real(wp), parameter :: most = 1.0e6_wp
   !> Errors count against a quantity itself or, if this is larger, against so much.

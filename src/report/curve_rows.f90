@@ -8,8 +8,6 @@ module curve_rows
   private
   public :: columns_of_curve, curve_row
 
-
-
 contains
 
   !> The columns of the table; with those of stability where `eigenvalues` are shown, and as many of
