@@ -1,5 +1,6 @@
 !> J0 at many places: some ten times as fast as the intrinsic function, to 1e-14.
 module bessel
+  use, intrinsic :: iso_c_binding, only: c_int, c_double
   use kinds, only: wp, pi
   use chebyshev, only: chebyshev_points, chebyshev_series, power_series
   implicit none
@@ -9,12 +10,8 @@ module bessel
   !> Up to `near`, J0 is a series in the square of its argument; beyond, amplitude and phase are
   !> series in the inverse square: J0 + i Y0 = sqrt(2/(pi x)) amplitude exp(i (x - pi/4 - lag/x)).
   real(wp), parameter :: near = 8
+  !> Degrees are those of bessel_values.c.
   integer, parameter :: degree = 14, degree_far = 8, degree_cosine = 7
-  !> pi in two parts, of which the first has so few digits that whole multiples of it are exact;
-  !> and a number to which another is added, and from which it is taken, to round that.
-  real(wp), parameter :: pi_first = 3.140625_wp, pi_rest = 9.67653589793115998e-4_wp
-  real(wp), parameter :: rounder = 1.5_wp*2.0_wp**52
-
   !> The series, in powers of a variable from -1 to 1.
   type :: bessel_t
     private
@@ -23,6 +20,26 @@ module bessel
   contains
     procedure :: j0
   end type bessel_t
+
+  ! bessel_values.c
+  interface
+    pure subroutine near_values(count, x, value, near, series) bind(c, name='snapin_j0_near')
+      import :: c_int, c_double
+      integer(c_int), intent(in), value :: count
+      real(c_double), intent(in) :: x(*), series(*)
+      real(c_double), intent(inout) :: value(*)
+      real(c_double), intent(in), value :: near
+    end subroutine near_values
+
+    pure subroutine far_values(count, x, value, near, amplitude, lag, cosine) &
+      bind(c, name='snapin_j0_far')
+      import :: c_int, c_double
+      integer(c_int), intent(in), value :: count
+      real(c_double), intent(in) :: x(*), amplitude(*), lag(*), cosine(*)
+      real(c_double), intent(inout) :: value(*)
+      real(c_double), intent(in), value :: near
+    end subroutine far_values
+  end interface
 
 contains
 
@@ -55,51 +72,15 @@ contains
   !> J0 at x >= 0, ascending, of which none may be above 1e6.
   pure subroutine j0(self, x, value)
     class(bessel_t), intent(in) :: self
-    real(wp), intent(in) :: x(:)
-    real(wp), intent(out) :: value(:)
-    real(wp) :: phase(size(x)), at, sum, turns
-    integer :: i, j, far
+    real(wp), intent(in), contiguous :: x(:)
+    real(wp), intent(out), contiguous :: value(:)
+    integer :: far
 
     far = findloc(x > near, .true., 1)
     if (far == 0) far = size(x) + 1
-    ! Loops are short, each over one series, so that compilers make them work on several places.
-    do i = 1, far - 1
-      at = 2*(x(i)/near)**2 - 1
-      sum = self%near(degree)
-      do j = degree - 1, 0, -1
-        sum = sum*at + self%near(j)
-      end do
-      value(i) = sum
-    end do
-    do i = far, size(x)
-      at = 2*(near/x(i))**2 - 1
-      sum = self%lag(degree_far)
-      do j = degree_far - 1, 0, -1
-        sum = sum*at + self%lag(j)
-      end do
-      phase(i) = -pi/4 - sum/x(i)
-    end do
-    do i = far, size(x)
-      at = 2*(near/x(i))**2 - 1
-      sum = self%amplitude(degree_far)
-      do j = degree_far - 1, 0, -1
-        sum = sum*at + self%amplitude(j)
-      end do
-      value(i) = sum*sqrt(2/pi/x(i))
-    end do
-    do i = far, size(x)
-      ! The cosine of x + phase beside the whole multiple of pi next to it.
-      turns = ((x(i) + phase(i))*(1/pi) + rounder) - rounder
-      at = ((x(i) - turns*pi_first) - turns*pi_rest) + phase(i)
-      at = 2*(at*(2/pi))**2 - 1
-      sum = self%cosine(degree_cosine)
-      do j = degree_cosine - 1, 0, -1
-        sum = sum*at + self%cosine(j)
-      end do
-      ! Odd multiples change the sign: the multiple modulo 2 is 0, 1 or -1.
-      turns = turns - 2*((0.5_wp*turns + rounder) - rounder)
-      value(i) = value(i)*sum*(1 - 2*turns**2)
-    end do
+    call near_values(far - 1, x, value, near, self%near)
+    call far_values(size(x) - far + 1, x(far:), value(far:), near, self%amplitude, self%lag, &
+      self%cosine)
   end subroutine j0
 
 end module bessel
