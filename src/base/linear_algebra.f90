@@ -6,7 +6,7 @@ module linear_algebra
   implicit none
   private
   public :: multiply, multiply_left, multiply_transposed, &
-    multiply_by_transposed, factorisation_t, factorise, solve, determinant_sign, &
+    add_by_transposed, factorisation_t, factorise, solve, determinant_sign, &
     log_determinant, claim_buffers, eigenvalues, solve_tridiagonal, singular_values
 
   !> LU factors of a square matrix, from `factorise`.
@@ -79,14 +79,14 @@ contains
     end if
   end subroutine factorise
 
-  !> c = matmul(a, transpose(b)).
-  subroutine multiply_by_transposed(a, b, c)
+  !> Adds matmul(a, transpose(b)) to the first rows of c.
+  subroutine add_by_transposed(a, b, c)
     real(wp), intent(in), contiguous :: a(:, :), b(:, :)
-    real(wp), intent(out) :: c(:, :)
+    real(wp), intent(inout), contiguous :: c(:, :)
 
     call dgemm('n', 't', size(a, 1), size(b, 1), size(a, 2), 1.0_wp, a, size(a, 1), b, size(b, 1), &
-      0.0_wp, c, size(c, 1))
-  end subroutine multiply_by_transposed
+      1.0_wp, c, size(c, 1))
+  end subroutine add_by_transposed
 
   !> Overwrites b with the solution; factors must be valid.
   subroutine solve(factors, b)

@@ -20,7 +20,7 @@ module drainage
   use discretisation, only: discretisation_t
   use running_integrals, only: running_integrals_t, new_running_integrals
   use carried_values, only: carried_t, new_carried
-  use linear_algebra, only: multiply, multiply_by_transposed
+  use linear_algebra, only: multiply, add_by_transposed
   use besides, only: besides_t
   implicit none
   private
@@ -184,7 +184,8 @@ contains
         flow(:, i) = self%weight*film%gathered(:, i)/m
         flow(i, i) = flow(i, i) - gathered(i)*slope(i)/m(i)**2
       end do
-      call multiply_by_transposed(film%beyond, transpose(flow), by_gap)
+      by_gap = 0
+      call add_by_transposed(film%beyond, transpose(flow), by_gap)
       by_gap = times*by_gap
       by_scale = 2*self%pressure(mesh, scale, gap, now)/scale + self%pressure(mesh, scale, gap, &
         self%known%growth/scale - self%weight*shape_slope)

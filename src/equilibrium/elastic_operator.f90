@@ -9,7 +9,7 @@
 !> axis, the centre, the nodes. Homogeneous bodies have no second part; nothing is made for them.
 module elastic_operator
   use kinds, only: wp
-  use linear_algebra, only: multiply, multiply_left, multiply_by_transposed
+  use linear_algebra, only: multiply
   use mesh_waves, only: mesh_waves_t, new_mesh_waves
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, first_node
@@ -39,7 +39,6 @@ module elastic_operator
     procedure :: matrix
     procedure :: unlike_scaling
     procedure, private :: prepare
-    procedure, private :: fill_remainder
   end type elastic_operator_t
 
 contains
@@ -68,7 +67,7 @@ contains
       if (allocated(self%remainder)) then
         call multiply(self%remainder, columns, pressure, more)
       else
-        call through_waves(self%waves_of(self%now), self%strength, pressure(:columns), more)
+        call self%waves_of(self%now)%times(self%strength, pressure(:columns), more)
       end if
       rise = rise + more
     end if
@@ -94,7 +93,8 @@ contains
       end do
     else
       call self%prepare(problem, grid, scale)
-      call self%fill_remainder()
+      if (.not. allocated(self%remainder)) &
+        call self%waves_of(self%now)%matrix(self%strength, self%remainder)
       do j = 1, size(a, 2)
         a(:, j) = yielding*factor(j)*(grid%kernel(first:last, j) + self%remainder(first:last, j))
       end do
@@ -116,24 +116,10 @@ contains
     if (problem%body%is_homogeneous()) return
     call self%prepare(problem, grid, scale)
     associate (waves => self%waves_of(self%now), n => size(self%strength))
-      call through_waves(waves, -2*waves%weight(:n)*problem%body%growth(waves%k(:n)/scale), &
-        pressure, rows)
+      call waves%times(-2*waves%weight(:n)*problem%body%growth(waves%k(:n)/scale), pressure, rows)
     end associate
     more = 2*problem%coupling*rows(first:)
   end subroutine unlike_scaling
-
-  !> The first rows of the second part's product with pressures on the first nodes, for waves of
-  !> these strengths.
-  subroutine through_waves(waves, strength, pressure, rise)
-    type(mesh_waves_t), intent(in) :: waves
-    real(wp), intent(in) :: strength(:), pressure(:)
-    real(wp), intent(out) :: rise(:)
-
-    real(wp) :: amplitude(size(strength))
-
-    call multiply_left(pressure, waves%spectrum, amplitude)
-    call multiply(waves%wave, size(strength), strength*amplitude, rise)
-  end subroutine through_waves
 
   !> Finds the strengths of the waves at this scale, of this body, on this mesh.
   subroutine prepare(self, problem, grid, scale)
@@ -179,22 +165,5 @@ contains
     end do
     place = 1 + modulo(place, size(waves))
   end subroutine find
-
-  !> Makes the matrix of the second part, unless it is there.
-  subroutine fill_remainder(self)
-    class(elastic_operator_t), intent(inout) :: self
-    real(wp), allocatable :: strong(:, :)
-    integer :: q
-
-    if (allocated(self%remainder)) return
-    associate (waves => self%waves_of(self%now), n => size(self%strength))
-      allocate (strong(size(waves%spectrum, 1), n), &
-        self%remainder(size(waves%wave, 1), size(waves%spectrum, 1)))
-      do q = 1, n
-        strong(:, q) = self%strength(q)*waves%spectrum(:, q)
-      end do
-      call multiply_by_transposed(waves%wave(:, :n), strong, self%remainder)
-    end associate
-  end subroutine fill_remainder
 
 end module elastic_operator

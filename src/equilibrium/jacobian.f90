@@ -4,7 +4,7 @@ module jacobian
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
-  use linear_algebra, only: factorisation_t, factorise, multiply_by_transposed
+  use linear_algebra, only: factorisation_t, factorise, add_by_transposed
   use elastic_operator, only: elastic_operator_t
   use besides, only: besides_t
   use contact_state, only: state_t
@@ -102,7 +102,8 @@ contains
           control%kind == at_h0_with_edge)
       end block
       call equations%operator%matrix(problem, grid, c, spread(1.0_wp, 1, n), axis_row, yields)
-      call multiply_by_transposed(yields, slopes, rise)
+      rise = 0
+      call add_by_transposed(yields, slopes, rise)
       load = 0
       if (h0_is_prescribed(control) .and. control%compliance > 0) &
         load = 2*pi*control%compliance*c**2*matmul(slopes, grid%weight(:n))

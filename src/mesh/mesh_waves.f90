@@ -10,7 +10,7 @@
 module mesh_waves
   use kinds, only: wp
   use quadrature, only: lagrange_basis
-  use linear_algebra, only: multiply_by_transposed
+  use linear_algebra, only: multiply, multiply_left, add_by_transposed
   use bessel, only: bessel_t, new_bessel
   use wave_quadrature, only: wave_rule
   use panel_map, only: panel_map_t, algebraic_map
@@ -46,11 +46,17 @@ module mesh_waves
   integer, parameter :: hat = 2
   real(wp), parameter :: rung = 1.5_wp
 
+  !> Waves that were added at once; `before` were there. wave: (rows, waves) in rows as those of the
+  !> mesh's kernel, up to the last that any of them moves; spectrum: (nodes, waves).
+  type :: wave_block_t
+    integer :: before = 0
+    real(wp), allocatable :: wave(:, :), spectrum(:, :)
+  end type wave_block_t
+
   type :: mesh_waves_t
     !> Wave numbers in one over the mesh's scale, in order, and weights, (waves).
     real(wp), allocatable :: k(:), weight(:)
-    !> (first_node - 1 + nodes, waves) in rows as those of the mesh's kernel; (nodes, waves).
-    real(wp), allocatable :: wave(:, :), spectrum(:, :)
+    type(wave_block_t), allocatable, private :: block(:)
     !> Up to the first wave number functions are of low degree; up to the last there are waves.
     real(wp) :: range(2) = 0
     !> The mesh's positions.
@@ -59,6 +65,8 @@ module mesh_waves
   contains
     procedure :: belong_to
     procedure :: add
+    procedure :: times
+    procedure :: matrix
   end type mesh_waves_t
 
 contains
@@ -70,8 +78,7 @@ contains
 
     waves%x = grid%x
     waves%range = [first, 0.0_wp]
-    allocate (waves%k(0), waves%weight(0), waves%wave(first_node - 1 + grid%nodes, 0), &
-      waves%spectrum(grid%nodes, 0))
+    allocate (waves%k(0), waves%weight(0), waves%block(0))
     waves%bessel = new_bessel()
   end function new_mesh_waves
 
@@ -91,8 +98,9 @@ contains
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: last
     real(wp) :: x(first_node - 1 + grid%nodes), last_of(first_node - 1 + grid%nodes)
-    real(wp), allocatable :: k(:), weight(:), rows(:, :), wave(:, :), spectrum(:, :)
-    integer :: i, p, before
+    real(wp), allocatable :: k(:), weight(:), rows(:, :), spectrum(:, :)
+    type(wave_block_t), allocatable :: blocks(:)
+    integer :: i, p, before, moved
 
     x([axis_row, centre_row]) = [0.0_wp, grid%centre]
     x(first_node:) = grid%x
@@ -110,25 +118,75 @@ contains
     self%range(2) = last
     self%k = [self%k, k]
     self%weight = [self%weight, weight]
-    allocate (wave(size(x), size(self%k)))
-    allocate (spectrum(grid%nodes, size(self%k)), source=0.0_wp)
-    wave(:, :before) = self%wave
-    spectrum(:, :before) = self%spectrum
     allocate (rows(size(k), size(x)))
     do i = 1, size(x)
       call find_wave(self%bessel, x(i), last_of(i), from_of_place, k, rows(:, i))
+      if (k(1) < last_of(i)) moved = i
     end do
-    wave(:, before + 1:) = transpose(rows)
+    allocate (spectrum(grid%nodes, size(k)), source=0.0_wp)
     do p = 1, size(grid%panel)
       associate (own => first_node - 1 + grid%first(p) - 1 + &
         [(i, i=1, size(grid%local(grid%which(p))%node))])
         call add_spectrum(self%bessel, grid, p, k, &
-          count(k <= from_of_place*minval(last_of(own))), rows(:, own), spectrum(:, before + 1:))
+          count(k <= from_of_place*minval(last_of(own))), rows(:, own), spectrum)
       end associate
     end do
-    call move_alloc(wave, self%wave)
-    call move_alloc(spectrum, self%spectrum)
+    allocate (blocks(size(self%block) + 1))
+    do i = 1, size(self%block)
+      blocks(i)%before = self%block(i)%before
+      call move_alloc(self%block(i)%wave, blocks(i)%wave)
+      call move_alloc(self%block(i)%spectrum, blocks(i)%spectrum)
+    end do
+    blocks(i)%before = before
+    blocks(i)%wave = transpose(rows(:, :moved))
+    call move_alloc(spectrum, blocks(i)%spectrum)
+    call move_alloc(blocks, self%block)
   end subroutine add
+
+  !> Sum_q wave(i, q) strength(q) Sum_j spectrum(j, q) pressure(j), of as many waves as there are
+  !> strengths and for as many rows as there are of `sums`.
+  subroutine times(self, strength, pressure, sums)
+    class(mesh_waves_t), intent(in) :: self
+    real(wp), intent(in) :: strength(:), pressure(:)
+    real(wp), intent(out) :: sums(:)
+    real(wp) :: amplitude(size(strength)), part(size(sums))
+    integer :: b, n, rows
+
+    sums = 0
+    do b = 1, size(self%block)
+      associate (block => self%block(b), before => self%block(b)%before)
+        n = min(size(strength) - before, size(block%wave, 2))
+        if (n <= 0) exit
+        rows = min(size(sums), size(block%wave, 1))
+        call multiply_left(pressure, block%spectrum, amplitude(:n))
+        call multiply(block%wave, n, strength(before + 1:before + n)*amplitude(:n), part(:rows))
+        sums(:rows) = sums(:rows) + part(:rows)
+      end associate
+    end do
+  end subroutine times
+
+  !> sums(i, j) = Sum_q wave(i, q) strength(q) spectrum(j, q).
+  subroutine matrix(self, strength, sums)
+    class(mesh_waves_t), intent(in) :: self
+    real(wp), intent(in) :: strength(:)
+    real(wp), allocatable, intent(out) :: sums(:, :)
+    real(wp), allocatable :: strong(:, :)
+    integer :: b, n, q
+
+    allocate (sums(first_node - 1 + size(self%x), size(self%x)), source=0.0_wp)
+    do b = 1, size(self%block)
+      associate (block => self%block(b), before => self%block(b)%before)
+        n = min(size(strength) - before, size(block%wave, 2))
+        if (n <= 0) exit
+        allocate (strong(size(block%wave, 1), n))
+        do q = 1, n
+          strong(:, q) = strength(before + q)*block%wave(:, q)
+        end do
+        call add_by_transposed(strong, block%spectrum(:, :n), sums)
+        deallocate (strong)
+      end associate
+    end do
+  end subroutine matrix
 
   !> What the polynomials of a panel have of the waves, in order. Its own nodes do for the longest,
   !> of which `whole` are at the nodes what `wave`, (waves, nodes), says; for others it is cut into
@@ -185,15 +243,15 @@ contains
         x = grid%centre + panel%offset(fine%node)
         weight = (ends(2) - ends(1))*fine%weight*panel%speed(fine%node)*x
         last_of = last_on(grid, p, fine%node, passing)
-        allocate (basis(size(local%node), n), rows(now - before, n), &
-          part(size(local%node), now - before))
+        allocate (basis(size(local%node), n), rows(now - before, n))
+        allocate (part(size(local%node), now - before), source=0.0_wp)
         do i = 1, n
           basis(:, i) = weight(i)*lagrange_basis(local%node, local%barycentric, fine%node(i))
           if (panel%kind == algebraic_map) basis(:, i) = basis(:, i)* &
             ((1 - fine%node(i))/(1 - local%node))**panel%decay
           call find_wave(bessel, x(i), last_of(i), from, k(before + 1:now), rows(:, i))
         end do
-        call multiply_by_transposed(basis, rows, part)
+        call add_by_transposed(basis, rows, part)
         ! Neighbours that are hat functions share a node.
         spectrum(first:last, before + 1:now) = spectrum(first:last, before + 1:now) + part
         deallocate (basis, rows, part)
