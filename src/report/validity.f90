@@ -27,7 +27,7 @@ contains
     type(summary_t), intent(inout) :: summary
 
     if (problem%law%caveat /= '') call summary%warn(trim(problem%law%caveat))
-    if (problem%law%rest_gap > 0 .and. .not. problem%law%of_paper) then
+    if (problem%law%rest_gap > 0) then
       call take_table_error(problem, summary)
       if (.not. surface_energy(problem) > 0) &
         call summary%warn('contact is only metastable: the bodies have less energy apart, '// &

@@ -94,7 +94,6 @@ contains
       this = new_exponential(strengths(i)/merge(lengths(i), 1.0_wp, of_energy), lengths(i))
       this%sense = sense
       this%coupling_name = ''
-      this%of_paper = .false.
       this%group = group
       this%strength_key = key
       allocate (term, source=this)
@@ -108,7 +107,6 @@ contains
     type(exponential_t) :: law
 
     law%length = decay_length
-    law%of_paper = .true.
     law%pressure_unit = p0
     law%range = 45
     law%coupling_name = 'big_lambda'

@@ -112,7 +112,6 @@ contains
 
     law%length = z0
     law%has_z0 = .true.
-    law%of_paper = .true.
     law%pressure_unit = hamaker/(16*pi*z0**2)/z0
     law%range = 60
     law%tail_power = 3

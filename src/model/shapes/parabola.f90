@@ -122,12 +122,13 @@ contains
     opening = a
   end function opening
 
-  pure function hertz_gap(self, a, x) result(gap)
+  pure function hertz_gap(self, a, beyond) result(gap)
     class(parabola_t), intent(in) :: self
-    real(wp), intent(in) :: a, x(:)
-    real(wp) :: gap(size(x))
+    real(wp), intent(in) :: a, beyond(:)
+    real(wp), dimension(size(beyond)) :: gap, tangent
 
-    gap = a**2/pi*(sqrt(max(x**2 - 1, 0.0_wp)) + (x**2 - 2)*acos(min(1/x, 1.0_wp)))
+    tangent = sqrt(beyond*(2 + beyond))
+    gap = a**2/pi*(tangent + (tangent**2 - 1)*atan(tangent))
   end function hertz_gap
 
 end module parabola
