@@ -7,7 +7,7 @@ module device
   use solver, only: solver_t
   use path_tangent, only: of_h0
   use traced_path, only: traced_path_t
-  use curve_states, only: curve_state_t
+  use curve_states, only: path_state_t
   use driven_pieces, only: drive_t, driven_piece_t, jump_t, find_pieces, find_jump, piece_with, &
     state_driven
   implicit none
@@ -18,7 +18,7 @@ module device
   type :: leg_t
     logical :: inward = .true.
     integer :: piece = 0
-    type(curve_state_t) :: from, to
+    type(path_state_t) :: from, to
     logical :: jumps = .false.
   end type leg_t
 
@@ -52,7 +52,7 @@ contains
     type(driven_t), intent(out) :: driven
     !> Where the bodies are: the number of the piece, and the state.
     integer :: here, outermost
-    type(curve_state_t) :: state
+    type(path_state_t) :: state
 
     allocate (driven%leg(0), driven%jump(0))
     driven%drive = drive
@@ -124,7 +124,7 @@ contains
       logical, intent(in) :: inward
       real(wp), intent(out) :: at
       logical, intent(out) :: stops
-      type(curve_state_t) :: there
+      type(path_state_t) :: there
 
       at = 0
       associate (piece => driven%piece(here))
@@ -158,9 +158,9 @@ contains
 
   !> The nodes of the path that a leg passes, in the order of the leg.
   pure function nodes_on(all_nodes, leg) result(nodes)
-    type(curve_state_t), intent(in) :: all_nodes(:)
+    type(path_state_t), intent(in) :: all_nodes(:)
     type(leg_t), intent(in) :: leg
-    type(curve_state_t), allocatable :: nodes(:)
+    type(path_state_t), allocatable :: nodes(:)
 
     associate (first => min(leg%from%interval, leg%to%interval) + 1, &
       last => max(leg%from%interval, leg%to%interval))

@@ -98,27 +98,23 @@ contains
   end function list_key
 
   !> Row of a whole number between `low` and `high`.
-  pure function integer_key(group, key, meaning, low, high, default, otherwise, required) &
-    result(spec)
+  pure function integer_key(group, key, meaning, low, high, default, otherwise) result(spec)
     character(len=*), intent(in) :: group, key, meaning
     integer, intent(in) :: low, high
     character(len=*), intent(in), optional :: default, otherwise
-    logical, intent(in), optional :: required
     type(key_spec) :: spec
 
-    spec = key_row(group, key, integer_value, meaning, default, otherwise, required)
+    spec = key_row(group, key, integer_value, meaning, default, otherwise)
     spec%low = low
     spec%high = high
   end function integer_key
 
   !> Row of a logical key.
-  pure function logical_key(group, key, meaning, default, otherwise, required) result(spec)
-    character(len=*), intent(in) :: group, key, meaning
-    character(len=*), intent(in), optional :: default, otherwise
-    logical, intent(in), optional :: required
+  pure function logical_key(group, key, meaning, default) result(spec)
+    character(len=*), intent(in) :: group, key, meaning, default
     type(key_spec) :: spec
 
-    spec = key_row(group, key, logical_value, meaning, default, otherwise, required)
+    spec = key_row(group, key, logical_value, meaning, default)
   end function logical_key
 
   !> Row of a key that is one of the blank-separated words `choices`.

@@ -18,7 +18,7 @@ module place_sensitivity
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   use variation, only: variation_t
-  use reported, only: of_h0, of_load, of_displacement, of_energy, of_radius
+  use reported_place, only: of_h0, of_load, of_displacement, of_energy, of_radius
   use state_sensitivity, only: change_t, place_on_path_t, differentiate, move
   implicit none
   private

@@ -3,7 +3,7 @@ module fixed_load_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use path_readings, only: path_readings_t, loaded_state_t
-  use reported, only: of_h0, of_displacement, of_radius
+  use reported_place, only: of_h0, of_displacement, of_radius
   use places, only: places_t, readings_t
   use tables, only: cells
   use results, only: results_t

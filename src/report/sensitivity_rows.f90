@@ -5,7 +5,7 @@ module sensitivity_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use variation, only: variation_t
-  use reported, only: of_h0, of_displacement, of_radius
+  use reported_place, only: of_h0, of_displacement, of_radius
   use places, only: places_t, readings_t
   use path_sensitivity, only: rate_t, held
   use driven_pieces, only: through_spring

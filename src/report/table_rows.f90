@@ -5,7 +5,7 @@ module table_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, surface_energy
   use maugis, only: maugis_units_t, maugis_units
-  use curve_states, only: curve_state_t
+  use curve_states, only: path_state_t
   use path_readings, only: path_readings_t
   use device, only: nodes_on
   use results, only: results_t
@@ -21,7 +21,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
     type(results_t), intent(inout) :: results
-    type(curve_state_t), allocatable :: nodes(:)
+    type(path_state_t), allocatable :: nodes(:)
     integer :: i, j
 
     associate (driven => readings%prescribed)
@@ -41,7 +41,7 @@ contains
 
     subroutine add(inward, state, at_jump)
       logical, intent(in) :: inward, at_jump
-      type(curve_state_t), intent(in) :: state
+      type(path_state_t), intent(in) :: state
       type(maugis_units_t) :: unit
       real(wp) :: si(4)
 

@@ -126,8 +126,8 @@ contains
     self%known = self%steps%frozen%renewals
   end subroutine catch_up
 
-  !> Adds a step to the journal; it was begun at the time `began`, in the position `before`, of which
-  !> the number is enough.
+  !> Adds a step to the journal; it was begun at the time `began`, in the position `before`, of
+  !> which the number is enough.
   subroutine keep(self, h0, before, position, event, began)
     class(resumable_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0, began
