@@ -282,9 +282,8 @@ contains
   end subroutine make_room
 
   !> What two cases took together.
-  pure function sum_of(a, b) result(total)
+  pure type(cost_t) function sum_of(a, b) result(total)
     type(cost_t), intent(in) :: a, b
-    type(cost_t) :: total
 
     total%operator_products = a%operator_products + b%operator_products
     total%operator_columns = a%operator_columns + b%operator_columns

@@ -136,8 +136,7 @@ contains
   !> The number of columns goes with them.
   subroutine pass_matrix(self, values)
     class(byte_record_t), intent(inout) :: self
-    real(wp), allocatable :: values(:, :)
-    real(wp), allocatable :: flat(:)
+    real(wp), allocatable :: values(:, :), flat(:)
     integer :: columns
 
     if (.not. self%reading) then

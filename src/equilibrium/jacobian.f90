@@ -174,8 +174,7 @@ contains
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: change(:)
-    real(wp) :: product(size(change))
-    real(wp) :: rise(first_node - 1 + size(state%gap)), column(size(change))
+    real(wp) :: product(size(change)), rise(first_node - 1 + size(state%gap)), column(size(change))
 
     associate (problem => equations%problem, grid => equations%meshes%grid(control%mesh), &
       n => size(state%gap), m => size(change), cost => equations%cost)

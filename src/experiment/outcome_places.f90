@@ -190,10 +190,9 @@ contains
   end subroutine enter_driven
 
   !> A state of the curve as a place; its D has the given weights.
-  function of_curve(state, weights) result(place)
+  type(place_t) function of_curve(state, weights) result(place)
     type(path_state_t), intent(in) :: state
     real(wp), intent(in) :: weights(2)
-    type(place_t) :: place
 
     place%mesh = state%mesh
     place%s = state%x

@@ -127,10 +127,9 @@ contains
   end function piece_of
 
   !> A row as one that is reported.
-  function place_of_row(steps, row) result(reported)
+  type(place_t) function place_of_row(steps, row) result(reported)
     type(path_stepper_t), intent(in) :: steps
     type(row_t), intent(in) :: row
-    type(place_t) :: reported
 
     reported = place_of_state(row%mesh, row%state)
     if (row%point == 0) return

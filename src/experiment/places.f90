@@ -207,12 +207,11 @@ contains
   end function largest_of
 
   !> The elements of a number, with errors and derivatives; none where it does not exist.
-  function read_numbers(self, problem, name, quantity) result(found)
+  type(readings_t) function read_numbers(self, problem, name, quantity) result(found)
     class(places_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
     character(len=*), intent(in) :: name
     integer, intent(in) :: quantity
-    type(readings_t) :: found
     real(wp), allocatable :: difference(:)
     real(wp), dimension(quantities) :: units, values, misses, leftovers
     real(wp) :: none

@@ -134,8 +134,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
     logical, intent(in) :: wanted
-    real(wp), allocatable :: r(:)
-    real(wp), allocatable :: gap(:)
+    real(wp), allocatable :: r(:), gap(:)
 
     allocate (r(0))
     if (.not. wanted) return

@@ -52,10 +52,9 @@ contains
 
   !> The noise of a signal at equal steps, which is a straight line in z over each run. run(i):
   !> number of the run of sample i.
-  pure function noise_of(z, signal, run) result(noise)
+  pure type(noise_t) function noise_of(z, signal, run) result(noise)
     real(wp), intent(in) :: z(:), signal(:)
     integer, intent(in) :: run(:)
-    type(noise_t) :: noise
     real(wp) :: r(size(z)), covariance(0:longest)
     integer :: k, i, n
 

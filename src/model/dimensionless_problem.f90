@@ -43,12 +43,11 @@ module dimensionless_problem
 contains
 
   !> stiffness [Pa] as in `bodies`; it is not used for rigid bodies.
-  function new_problem(law, shape, stiffness, rigid) result(problem)
+  type(problem_t) function new_problem(law, shape, stiffness, rigid) result(problem)
     class(force_law_t), intent(in) :: law
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: stiffness
     logical, intent(in) :: rigid
-    type(problem_t) :: problem
 
     allocate (problem%law, source=law)
     allocate (problem%shape, source=shape)

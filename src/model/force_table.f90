@@ -103,8 +103,7 @@ contains
   pure function values(self, gap) result(value)
     class(force_table_t), intent(in) :: self
     real(wp), intent(in) :: gap
-    real(wp) :: value(3)
-    real(wp) :: u, t, q(0:2), fall, du, ddu, z
+    real(wp) :: value(3), u, t, q(0:2), fall, du, ddu, z
     integer :: i, n
 
     if (gap < 1) then

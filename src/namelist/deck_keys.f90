@@ -44,10 +44,9 @@ module deck_keys
 contains
 
   !> Row of a group.
-  pure function group(name, meaning, required, always, ignored) result(spec)
+  pure type(key_spec) function group(name, meaning, required, always, ignored) result(spec)
     character(len=*), intent(in) :: name, meaning
     logical, intent(in), optional :: required, always, ignored
-    type(key_spec) :: spec
 
     spec%group = name
     spec%meaning = meaning
@@ -110,9 +109,8 @@ contains
   end function integer_key
 
   !> Row of a logical key.
-  pure function logical_key(group, key, meaning, default) result(spec)
+  pure type(key_spec) function logical_key(group, key, meaning, default) result(spec)
     character(len=*), intent(in) :: group, key, meaning, default
-    type(key_spec) :: spec
 
     spec = key_row(group, key, logical_value, meaning, default)
   end function logical_key

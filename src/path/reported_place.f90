@@ -72,10 +72,9 @@ module reported_place
 contains
 
   !> A state as a place at its h0.
-  pure function place_of_state(mesh, state) result(place)
+  pure type(place_t) function place_of_state(mesh, state) result(place)
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state
-    type(place_t) :: place
 
     place%mesh = mesh
     place%state = state
@@ -86,10 +85,9 @@ contains
   end function place_of_state
 
   !> A point of the traced path as a place, or the state where a jump over it lands.
-  pure function point_of_path(point, landing) result(place)
+  pure type(place_t) function point_of_path(point, landing) result(place)
     integer, intent(in) :: point
     logical, intent(in), optional :: landing
-    type(place_t) :: place
 
     place%point = point
     if (present(landing)) place%landing = landing

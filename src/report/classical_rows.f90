@@ -146,10 +146,9 @@ contains
   end function is_layered
 
   !> The contacts of layered bodies down to an h0 [m].
-  function layered_contact_of(problem, h0) result(contact)
+  type(layered_contact_t) function layered_contact_of(problem, h0) result(contact)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
-    type(layered_contact_t) :: contact
 
     select type (body => problem%body)
     type is (layered_body_t)

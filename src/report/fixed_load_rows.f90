@@ -12,7 +12,6 @@ module fixed_load_rows
   private
   public :: write_fixed_loads, summarise_fixed_loads
 
-
 contains
 
   !> Writes the rows of fixed_load.csv: load by load, each from afar inward.
@@ -42,8 +41,7 @@ contains
     real(wp), intent(in) :: loads(:)
     type(loaded_state_t), intent(in) :: loaded(:)
     type(summary_t), intent(inout) :: summary
-    integer :: held(size(loads)), stable(size(loads))
-    integer :: i
+    integer :: held(size(loads)), stable(size(loads)), i
 
     do i = 1, size(loads)
       associate (same => abs(loaded%wanted - loads(i)/problem%load) <= 0)

@@ -44,8 +44,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
-    type(measured_t) :: solved
-    type(measured_t) :: uncertain
+    type(measured_t) :: solved, uncertain
     type(layered_contact_t) :: layered
     real(wp), allocatable :: errors(:, :), spread(:, :)
     real(wp) :: load, load_error, gamma, strength

@@ -17,7 +17,6 @@ module sensitivity_rows
   private
   public :: write_sensitivity, write_curve_sensitivity
 
-
   !> Where z changes along the path by less than this part of its terms, or of the law's units, it
   !> turns round.
   real(wp), parameter :: turning = 1.0e-8_wp

@@ -32,11 +32,10 @@ module summarise
 contains
 
   !> The summary of a run: a line for each experiment and table.
-  function summary_of(scene, problem, outcome) result(summary)
+  type(summary_t) function summary_of(scene, problem, outcome) result(summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
     type(experiment_result_t), intent(in) :: outcome
-    type(summary_t) :: summary
     type(quality_t) :: quality
 
     call summary%set('title', scene%title)

@@ -13,7 +13,6 @@ module table_rows
   private
   public :: write_contact_table
 
-
 contains
 
   !> Writes the rows of table.csv.

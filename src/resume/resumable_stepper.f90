@@ -36,7 +36,6 @@ module resumable_stepper
     procedure, private :: keep
   end type resumable_stepper_t
 
-
 contains
 
   subroutine approach_to(self, h0, position, event)
