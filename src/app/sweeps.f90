@@ -74,8 +74,7 @@ contains
     queue%results => results
     queue%columns = columns_of(scene)
     call recall_cases(queue)
-    if (allocated(scene%sweep%file)) &
-      call queue%rows%open(scene%sweep%file%path, scene%deck, error)
+    if (allocated(scene%sweep%file)) call queue%rows%open(scene%sweep%file%path, scene%deck, error)
     if (allocated(error)) then
       call move_alloc(error, results%trouble)
     else if (crew%workers > 0) then

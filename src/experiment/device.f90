@@ -12,7 +12,7 @@ module device
     state_driven
   implicit none
   private
-  public :: driven_t, leg_t, nodes_on, drive_bodies
+  public :: driven_t, leg_t, states_on, drive_bodies
 
   !> A way along one stable piece, of this number in `driven_t`; jumps: from its end.
   type :: leg_t
@@ -156,18 +156,19 @@ contains
 
   end subroutine drive_bodies
 
-  !> The nodes of the path that a leg passes, in the order of the leg.
-  pure function nodes_on(all_nodes, leg) result(nodes)
+  !> The states of a leg in its order: its ends, and the nodes of the path that it passes.
+  pure function states_on(all_nodes, leg) result(states)
     type(path_state_t), intent(in) :: all_nodes(:)
     type(leg_t), intent(in) :: leg
-    type(path_state_t), allocatable :: nodes(:)
+    type(path_state_t), allocatable :: nodes(:), states(:)
 
     associate (first => min(leg%from%interval, leg%to%interval) + 1, &
       last => max(leg%from%interval, leg%to%interval))
       nodes = pack(all_nodes(first:last), .not. all_nodes(first:last)%again)
     end associate
     if (.not. leg%inward) nodes = nodes(size(nodes):1:-1)
-  end function nodes_on
+    states = [leg%from, nodes, leg%to]
+  end function states_on
 
   !> The energy put in along all legs: minus the integral of the conjugate over the position.
   pure real(wp) function area(self, path)

@@ -4,7 +4,7 @@ module table_places
   use kinds, only: wp
   use curve_states, only: path_state_t
   use driven_pieces, only: state_driven
-  use device, only: leg_t, nodes_on
+  use device, only: leg_t, states_on
   use path_stepper, only: path_stepper_t
   use path_readings, only: path_readings_t
   use reported_place, only: place_t, place_of_state, of_load
@@ -29,7 +29,8 @@ contains
 
     if (.not. allocated(readings%prescribed)) return
     do i = 1, size(readings%prescribed%leg)
-      nodes = nodes_on(readings%node, readings%prescribed%leg(i))
+      nodes = states_on(readings%node, readings%prescribed%leg(i))
+      nodes = nodes(2:size(nodes) - 1)
       if (size(nodes) < 2) cycle
       last = 0
       do k = 1, judged_rows

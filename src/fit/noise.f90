@@ -37,8 +37,7 @@ contains
   pure real(wp) function long_deviation(self) result(deviation)
     class(noise_t), intent(in) :: self
 
-    deviation = self%left(self%order)/ &
-      abs(1 - sum(self%weight(:self%order, max(1, self%order))))
+    deviation = self%left(self%order)/ abs(1 - sum(self%weight(:self%order, max(1, self%order))))
   end function long_deviation
 
   !> Uncorrelated noise.

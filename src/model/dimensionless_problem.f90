@@ -59,8 +59,7 @@ contains
     problem%radius = shape%radius
     problem%stiffness = stiffness
     problem%rigid = rigid
-    if (.not. rigid) problem%coupling = &
-      law%pressure_unit/stiffness*sqrt(shape%radius/law%length)
+    if (.not. rigid) problem%coupling = law%pressure_unit/stiffness*sqrt(shape%radius/law%length)
   end function new_problem
 
   !> sigma (40): the coupling times the surface energy; 0 without adhesion.

@@ -126,8 +126,7 @@ contains
     i = piece_of(self%u, u)
     t = min(u, self%u(n)) - self%u(i)
     associate (c => self%cubic(:, i))
-      q = [c(1) + t*(c(2) + t*(c(3) + t*c(4))), c(2) + t*(2*c(3) + 3*t*c(4)), &
-        2*c(3) + 6*t*c(4)]
+      q = [c(1) + t*(c(2) + t*(c(3) + t*c(4))), c(2) + t*(2*c(3) + 3*t*c(4)), 2*c(3) + 6*t*c(4)]
     end associate
     if (u >= self%u(n)) q(1:) = 0
     fall = exp(-self%rate*u)

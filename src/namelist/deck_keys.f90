@@ -209,8 +209,7 @@ contains
       if (below) text = merge(' > ', ' >=', spec%low_open)
       if (below) text = trim(text) // ' ' // brief(spec%low)
       if (below .and. above) text = text // ' and'
-      if (above) text = text // trim(merge(' < ', ' <=', spec%high_open)) // ' ' // &
-        brief(spec%high)
+      if (above) text = text // trim(merge(' < ', ' <=', spec%high_open)) // ' ' // brief(spec%high)
     end if
     if (len_trim(spec%unit) > 0) then
       if (below .or. above) then

@@ -6,7 +6,7 @@ module device_rows
   use dimensionless_problem, only: problem_t
   use curve_states, only: path_state_t
   use driven_pieces, only: drive_t
-  use device, only: driven_t, leg_t, nodes_on
+  use device, only: driven_t, leg_t, states_on
   use reported_place, only: of_h0, of_load, of_energy, of_radius, of_position
   use places, only: places_t, readings_t
   use path_readings, only: path_readings_t
@@ -57,17 +57,14 @@ contains
     subroutine add_leg(driven, leg)
       type(driven_t), intent(in) :: driven
       type(leg_t), intent(in) :: leg
-      character(len=:), allocatable :: direction
-      type(path_state_t), allocatable :: nodes(:)
+      type(path_state_t), allocatable :: states(:)
       integer :: j
 
-      direction = direction_of(leg%inward)
-      call add(driven, direction, leg%from, .true.)
-      nodes = nodes_on(readings%node, leg)
-      do j = 1, size(nodes)
-        call add(driven, direction, nodes(j), .true.)
+      states = states_on(readings%node, leg)
+      do j = 1, size(states)
+        call add(driven, direction_of(leg%inward), states(j), &
+          .not. (leg%jumps .and. j == size(states)))
       end do
-      call add(driven, direction, leg%to, .not. leg%jumps)
     end subroutine add_leg
 
     subroutine add(driven, direction, state, stable)

@@ -7,7 +7,7 @@ module table_rows
   use maugis, only: maugis_units_t, maugis_units
   use curve_states, only: path_state_t
   use path_readings, only: path_readings_t
-  use device, only: nodes_on
+  use device, only: states_on
   use results, only: results_t
   implicit none
   private
@@ -20,18 +20,16 @@ contains
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
     type(results_t), intent(inout) :: results
-    type(path_state_t), allocatable :: nodes(:)
+    type(path_state_t), allocatable :: states(:)
     integer :: i, j
 
     associate (driven => readings%prescribed)
       do i = 1, size(driven%leg)
         associate (leg => driven%leg(i))
-          nodes = nodes_on(readings%node, leg)
-          call add(leg%inward, leg%from, .false.)
-          do j = 1, size(nodes)
-            call add(leg%inward, nodes(j), .false.)
+          states = states_on(readings%node, leg)
+          do j = 1, size(states)
+            call add(leg%inward, states(j), leg%jumps .and. j == size(states))
           end do
-          call add(leg%inward, leg%to, leg%jumps)
         end associate
       end do
     end associate

@@ -199,8 +199,7 @@ contains
     if (r > contact_radius) then
       outside = sqrt((r - contact_radius)*(r + contact_radius))
       gap = hertz_gap(r, contact_radius, radius) &
-        + sqrt(4*pi*surface_energy*contact_radius/stiffness) &
-        *2/pi*atan2(outside, contact_radius)
+        + sqrt(4*pi*surface_energy*contact_radius/stiffness) *2/pi*atan2(outside, contact_radius)
     end if
   end function jkr_gap
 

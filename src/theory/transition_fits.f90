@@ -56,8 +56,7 @@ contains
     lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
     fit = new_fit(lambda, maugis_units(radius, stiffness, surface_energy))
     associate (alpha => fit%alpha)
-      width = 1.264_wp + &
-        alpha*(0.950_wp + alpha*(-1.365_wp + alpha*(1.417_wp - alpha*0.451_wp)))
+      width = 1.264_wp + alpha*(0.950_wp + alpha*(-1.365_wp + alpha*(1.417_wp - alpha*0.451_wp)))
       fit%pull_off = -fit%pull_off*(2 + alpha*(-0.767_wp + alpha*0.267_wp))
     end associate
     fit%radius = fit%radius*width

@@ -103,8 +103,7 @@ program dispatcher
   implicit none
 
   !> A million cases at most; so many are handed out as are asked for.
-  character(len=*), parameter :: deck = &
-    '&bodies radius = 1e-6, stiffness = 1e10 / ' // &
+  character(len=*), parameter :: deck = '&bodies radius = 1e-6, stiffness = 1e10 / ' // &
     '&force law = ''lennard_jones'', hamaker = 1e-19, z0 = 3e-10 / ' // &
     '&equilibrium_path h0_end = -1e-9 / &sweep scale = ''log'', ' // &
     'key = ''bodies.stiffness'', ''force.hamaker'', from = 1e8, 1e-20, to = 1e11, 1e-19, count = '

@@ -69,8 +69,7 @@ contains
     call read_columns(deck, 'tabulated', 'file', columns, trouble)
     if (.not. allocated(trouble)) call put_in_order(columns, trouble)
     if (allocated(trouble)) then
-      call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, &
-        error)
+      call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, error)
       return
     end if
     call take_table(deck, columns, this, error)
