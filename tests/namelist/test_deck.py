@@ -4,7 +4,8 @@ All through `snapin --check`, which prints "DECK: ok" or the mistakes and comput
 """
 
 import pytest
-from support.decks import ACCEPTED, BODIES, FORCE, GOOD, LOADING, assert_refused, with_bodies, with_extra
+from support.decks import (
+    ACCEPTED, BODIES, FORCE, GOOD, LOADING, assert_refused, with_bodies, with_extra)
 
 
 @pytest.mark.parametrize("text", ACCEPTED.values(), ids=ACCEPTED.keys())

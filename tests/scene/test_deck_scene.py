@@ -7,7 +7,8 @@ import re
 
 import pytest
 from conftest import ROOT
-from support.decks import BODIES, FORCE, GOOD, LAYERED, LOADING, assert_refused, with_bodies, with_extra
+from support.decks import (
+    BODIES, FORCE, GOOD, LAYERED, LOADING, assert_refused, with_bodies, with_extra)
 
 # --- Refused
 
