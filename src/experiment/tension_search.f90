@@ -4,7 +4,7 @@ module tension_search
   use kinds, only: wp
   use interpolation, only: interpolated_maximum
   use stepper, only: stepper_t, branch_point_t, step_result_t
-  use reported, only: reported_t, reported_state, point_of_path, of_h0, of_load
+  use reported, only: reported_t, reported_state, of_h0, of_load
   implicit none
   private
   public :: tension_search_t, load_tolerance
@@ -57,6 +57,7 @@ contains
     class(stepper_t), intent(in) :: steps
     real(wp), intent(in) :: load, h0
     type(branch_point_t), intent(in), optional :: position
+    type(reported_t) :: blank
 
     if (.not. load < 0) return
     if (allocated(self%lowest)) then
@@ -65,8 +66,7 @@ contains
     if (present(position)) then
       self%lowest = reported_state(position%mesh, position%state)
     else
-      ! No point of a path.
-      self%lowest = point_of_path(0)
+      self%lowest = blank
       self%lowest%at(of_h0) = h0
       self%lowest%at(of_load) = load
     end if
