@@ -168,9 +168,11 @@ contains
   subroutine write_help(unit)
     integer, intent(in) :: unit
     integer :: status, i
-    character(len=*), parameter :: lines(*) = [character(len=90) :: '', &
+    character(len=*), parameter :: lines(*) = [character(len=90) :: &
+      '', &
       'Elastic deformation and adhesion of two bodies near and in contact. Each DECK, a', &
-      'namelist file or - for standard input, is computed into results/<name of the deck>/.', '', &
+      'namelist file or - for standard input, is computed into results/<name of the deck>/.', &
+      '', &
       '  --out DIR   write to DIR/<name of the deck>/ instead (-o); to standard output if DIR', &
       '              is -: each piece of a file after a line with its name and its bytes', &
       '  --into DIR  write the results of one deck into DIR itself', &
@@ -181,9 +183,14 @@ contains
       '  --keys      print every group and key a deck may hold: unit, default, meaning; or those', &
       '              that are named, as GROUP or GROUP.KEY', &
       '  --results   print every file, column and entry of results: unit, meaning', &
-      '  --version   print version, compiler and libraries', '  --help      print this (-h)', '', &
+      '  --version   print version, compiler and libraries', &
+      '  --help      print this (-h)', &
+      '', &
       'Exit status: 0 done; 1 a calculation failed; 2 deck or command line wrong, and nothing', &
-      'written.', '', 'A deck to start from (SI units):', '', &
+      'written.', &
+      '', &
+      'A deck to start from (SI units):', &
+      '', &
       '  &bodies radius = 1.5e-2, stiffness = 1.0e10 /            ! sphere radius, E/(1-nu^2)', &
       '  &force law = ''lennard_jones'', hamaker = 1.0e-19, z0 = 0.5e-9 /', &
       '  &loading h0_start = 7e-9, h0_end = -2e-9, h0_step = 0.05e-9 /', &

@@ -57,7 +57,7 @@ contains
     end if
     if (.not. allocated(path%finish)) return
     if (path%fallen) then
-      ! How a fall ends is of no interest and on no mesh.
+      ! The end of a fall gets no error: it is on no mesh.
       fall%at = path%finish%at
       call places%enter('end', 1, fall)
     else
@@ -229,7 +229,7 @@ contains
     fold = folds_of_cycle(known, turned, lowest)
     do i = 1, size(fold)
       call places%enter('energy_lost', 1, point_of_path(fold(i)))
-      call places%enter('energy_lost', 1, point_of_path(fold(i), .true.), -1.0_wp)
+      call places%enter('energy_lost', 1, point_of_path(fold(i), landing=.true.), -1.0_wp)
     end do
   end subroutine enter_energy
 

@@ -10,7 +10,6 @@ module place_rates
   use state_sensitivity, only: place_on_path_t
   use place_sensitivity, only: local_t, find_local, local_undeformed, at_fixed, at_extremum
   use reported_place, only: place_t, drive_weights, of_h0, nowhere
-  use places, only: places_t
   use path_stepper, only: path_stepper_t
   use experiment_request, only: sensitivity_t
   use experiment_result, only: experiment_result_t

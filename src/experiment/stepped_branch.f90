@@ -158,7 +158,7 @@ contains
       if (lowest%point == 0) then
         branch%lowest = place_of_state(position%mesh, position%state)
       else
-        branch%lowest = point_of_path(lowest%point, lowest%landing)
+        branch%lowest = point_of_path(lowest%point, landing=lowest%landing)
         branch%lowest%at(of_load) = lowest%load
       end if
     end associate

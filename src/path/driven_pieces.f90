@@ -9,7 +9,6 @@ module driven_pieces
   use quadrature, only: gauss_legendre
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use interpolation, only: hermite_t
-  use contact_state, only: state_t
   use solver, only: solver_t
   use traced_path, only: traced_path_t
   use curve_states, only: path_state_t, path_place_t, state_of, state_where, find_turns

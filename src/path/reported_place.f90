@@ -84,7 +84,7 @@ contains
     place%at(of_edge) = state%scale
   end function place_of_state
 
-  !> A point of the traced path as a place, or the state where a jump over it lands.
+  !> The place of a point of the traced path; landing: of the state where the jump from it lands.
   pure type(place_t) function point_of_path(point, landing) result(place)
     integer, intent(in) :: point
     logical, intent(in), optional :: landing

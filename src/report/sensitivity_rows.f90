@@ -9,7 +9,7 @@ module sensitivity_rows
   use places, only: places_t, readings_t
   use path_sensitivity, only: rate_t, held
   use driven_pieces, only: through_spring
-  use path_readings, only: path_readings_t, loaded_state_t
+  use path_readings, only: path_readings_t
   use results, only: results_t
   use result_rows, only: rows
   use summary, only: summary_t
