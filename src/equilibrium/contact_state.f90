@@ -44,9 +44,8 @@ contains
   end subroutine become
 
   !> An empty state on so many nodes.
-  pure function state_from(nodes) result(state)
+  pure type(state_t) function state_from(nodes) result(state)
     integer, intent(in) :: nodes
-    type(state_t) :: state
 
     allocate (state%gap(nodes), state%pressure(nodes), source=0.0_wp)
   end function state_from

@@ -43,11 +43,10 @@ module shape
   end type shape_t
 
   abstract interface
-    elemental function profile_function(self, r) result(value)
+    elemental real(wp) function profile_function(self, r) result(value)
       import :: shape_t, wp
       class(shape_t), intent(in) :: self
       real(wp), intent(in) :: r
-      real(wp) :: value
     end function profile_function
   end interface
 

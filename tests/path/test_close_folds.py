@@ -1,12 +1,7 @@
 """Claims about folds that a step could pass over, and about errors of paths."""
 
 import pytest
-from support.scenes import lennard_jones, runner
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("extremes"))
+from support.scenes import lennard_jones
 
 
 # --- Folds that a step passes over

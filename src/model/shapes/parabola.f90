@@ -47,26 +47,23 @@ contains
   end subroutine read_shape
 
   !> radius: R [m].
-  pure function new_parabola(radius) result(shape)
+  pure type(parabola_t) function new_parabola(radius) result(shape)
     real(wp), intent(in) :: radius
-    type(parabola_t) :: shape
 
     shape%radius = radius
     shape%parabolic = .true.
   end function new_parabola
 
-  elemental function height(self, r) result(value)
+  elemental real(wp) function height(self, r) result(value)
     class(parabola_t), intent(in) :: self
     real(wp), intent(in) :: r
-    real(wp) :: value
 
     value = 0.5_wp*r**2
   end function height
 
-  elemental function slope(self, r) result(value)
+  elemental real(wp) function slope(self, r) result(value)
     class(parabola_t), intent(in) :: self
     real(wp), intent(in) :: r
-    real(wp) :: value
 
     value = r
   end function slope
