@@ -101,9 +101,9 @@ contains
     end do
   end subroutine hermite_weights
 
-  !> The nodes (rising) whose polynomial tells about the interval from x(i) to the next: its ends and
-  !> one on either side, or two on one side where the other has none. Neighbours must be well apart:
-  !> one too near makes the polynomial worse.
+  !> The nodes (rising) whose polynomial tells about the interval from x(i) to the next: its ends
+  !> and one on either side, or two on one side where the other has none. Neighbours must be well
+  !> apart: one too near makes the polynomial worse.
   pure subroutine find_nodes_about(x, i, nodes, n)
     real(wp), intent(in) :: x(:)
     integer, intent(in) :: i

@@ -71,8 +71,8 @@ contains
 
   end subroutine find_far
 
-  !> The step of z about each sample: the mean over its way or, where samples lie farther apart, half
-  !> the distance to the second on either side.
+  !> The step of z about each sample: the mean over its way or, where samples lie farther apart,
+  !> half the distance to the second on either side.
   pure function steps_about(measured) result(step)
     type(measured_t), intent(in) :: measured
     real(wp) :: step(size(measured%z))
