@@ -24,15 +24,18 @@ contains
     use failure, only: bad_input
     use maugis, only: maugis_displacement, maugis_load, maugis_pull_off, &
       maugis_radius_at_displacement, maugis_radius_at_edge_ratio, maugis_radius_at_load
-    use transition_fits, only: carpick_pull_off, carpick_radius_at_load, &
-      pietrement_displacement_at_load, pietrement_pull_off, pietrement_radius_at_load
+    use transition_fits, only: fit_t, carpick_fit, pietrement_fit
     character(len=*), intent(in) :: theory, quantity
     integer(c_int), intent(in) :: n
     real(c_double), intent(in) :: x(n), a, radius, stiffness, surface_energy, strength
     real(c_double), intent(out) :: y(n)
     integer(c_int), intent(out) :: stat
+    type(fit_t) :: fit
 
     stat = 0
+    if (theory == 'carpick') fit = carpick_fit(radius, stiffness, surface_energy, strength)
+    if (theory == 'pietrement_troyon') &
+      fit = pietrement_fit(radius, stiffness, surface_energy, strength)
     associate (r => radius, k => stiffness, gamma => surface_energy)
       select case (theory//' '//quantity)
       case ('hertz radius at load'); y = hertz_radius_at_load(x, r, k)
@@ -42,11 +45,9 @@ contains
         y = hertz_radius_at_displacement(x, r)
       case ('jkr radius at displacement'); y = jkr_radius_at_displacement(x, r, k, gamma)
       case ('maugis radius at load'); y = maugis_radius_at_load(x, r, k, gamma, strength)
-      case ('carpick radius at load'); y = carpick_radius_at_load(x, r, k, gamma, strength)
-      case ('pietrement_troyon radius at load')
-        y = pietrement_radius_at_load(x, r, k, gamma, strength)
-      case ('pietrement_troyon displacement at load')
-        y = pietrement_displacement_at_load(x, r, k, gamma, strength)
+      case ('carpick radius at load', 'pietrement_troyon radius at load')
+        y = fit%radius_at_load(x)
+      case ('pietrement_troyon displacement at load'); y = fit%displacement_at_load(x)
       case ('maugis radius at displacement')
         y = maugis_radius_at_displacement(x, r, k, gamma, strength)
       case ('maugis radius at edge_ratio')
@@ -69,8 +70,7 @@ contains
       case ('jkr pull_off at displacement'); y = jkr_pull_off_fixed_displacement(r, gamma)
       case ('dmt pull_off at load'); y = dmt_pull_off(r, gamma)
       case ('maugis pull_off at load'); y = maugis_pull_off(r, k, gamma, strength)
-      case ('carpick pull_off at load'); y = carpick_pull_off(r, k, gamma, strength)
-      case ('pietrement_troyon pull_off at load'); y = pietrement_pull_off(r, k, gamma, strength)
+      case ('carpick pull_off at load', 'pietrement_troyon pull_off at load'); y = fit%pull_off
       case default
         y = 0
         stat = bad_input

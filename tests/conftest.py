@@ -16,6 +16,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import pytest  # noqa: E402
 from support.decks import RUNTIME_ERROR  # noqa: E402
 from support.processes import HANG  # noqa: E402
+from support.scenes import runner  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -72,6 +73,12 @@ def snapin(snapin_path):
             errors="replace", timeout=timeout, check=False, **kwargs)
 
     return run
+
+
+@pytest.fixture(scope="module")
+def run(snapin, tmp_path_factory):
+    """`support.scenes.runner`, whose runs the tests of a module share."""
+    return runner(snapin, tmp_path_factory.mktemp("run"))
 
 
 @pytest.fixture

@@ -76,8 +76,8 @@ contains
     do while (busy > 0)
       call crew%receive(answers, from)
       busy = busy - 1
-      call answers%take(cases)
-      call answers%take(seconds)
+      call answers%pass(cases)
+      call answers%pass(seconds)
       do i = 1, cases
         call foreman%take_answer(answers)
       end do
@@ -102,9 +102,9 @@ contains
         if (.not. found) exit
       end do
       if (held == 0) return
-      call message%put(job)
-      call message%put(held)
-      call message%put_words(batch%words(:batch%held))
+      call message%pass(job)
+      call message%pass(held)
+      call message%add(batch%words(:batch%held))
       call crew%send(message, to)
       busy = busy + 1
       sent = sent + 1
@@ -122,15 +122,15 @@ contains
 
     do
       call crew%receive(batch, from)
-      call batch%take(job)
+      call batch%pass(job)
       if (job == no_job) return
-      call batch%take(cases)
+      call batch%pass(cases)
       call answers%clear()
       call worker%work(job, cases, batch, answers, seconds)
       call message%clear()
-      call message%put(cases)
-      call message%put(seconds)
-      call message%put_words(answers%words(:answers%held))
+      call message%pass(cases)
+      call message%pass(seconds)
+      call message%add(answers%words(:answers%held))
       call crew%send(message, from)
     end do
   end subroutine work_through
@@ -141,7 +141,7 @@ contains
     type(byte_record_t) :: message
     integer :: to
 
-    call message%put(no_job)
+    call message%pass(no_job)
     do to = 1, crew%workers
       call crew%send(message, to)
     end do

@@ -18,8 +18,7 @@ module simulation
   use blas_threads, only: thread_count
   use linear_algebra, only: claim_buffers
   use equilibrium, only: cost_t
-  use derived_tables, only: write_derived_tables, write_path_tables, &
-    write_sensitivities
+  use derived_tables, only: write_derived_tables, write_path_tables, write_sensitivities
   use stability_records, only: stability_recorder_t
   use summarise, only: summary_of
   use problem_numbers, only: describe_problem

@@ -63,8 +63,7 @@ program snapin
 contains
 
   !> Prints the keys of the groups that are named, or these keys, or all; returns the exit status.
-  function show_keys() result(status)
-    integer :: status
+  integer function show_keys() result(status)
     type(key_spec), allocatable :: specs(:)
     character(len=:), allocatable :: name
     logical, allocatable :: shown(:)
@@ -87,8 +86,7 @@ contains
 
   !> Validates all decks, then computes them one by one; returns the exit status. Every deck is
   !> read before anything is written, so that a wrong one leaves nothing behind.
-  function run_decks() result(status)
-    integer :: status
+  integer function run_decks() result(status)
     type(scene_t), allocatable :: scenes(:)
     type(failure_t), allocatable :: trouble
     character(len=:), allocatable :: folder, said

@@ -17,10 +17,10 @@ module sweep_case
   use case_columns, only: numbers_of
   use mesh_store, only: mesh_store_t
   use byte_record, only: byte_record_t
-  use state_records, only: put_cost, take_cost
+  use state_records, only: pass_cost
   implicit none
   private
-  public :: case_t, take_case, put_case, run_case
+  public :: case_t, pass_case, run_case
 
   !> Characters of what is said of a case that failed.
   integer, parameter :: failure_width = 160
@@ -99,31 +99,20 @@ contains
     call self%progress%detail(label)
   end subroutine hear
 
-  !> Adds a case to a record, as `take_case` finds it there.
-  subroutine put_case(case, record)
-    type(case_t), intent(in) :: case
+  !> A case in a record.
+  subroutine pass_case(record, case)
     type(byte_record_t), intent(inout) :: record
-
-    call record%put(case%number)
-    call record%put(case%converged)
-    call record%put(case%numbers)
-    call record%put(trim(case%failure))
-    call put_cost(record, case%cost)
-    call record%put(case%values)
-  end subroutine put_case
-
-  subroutine take_case(case, record)
-    type(case_t), intent(out) :: case
-    type(byte_record_t), intent(inout) :: record
+    type(case_t), intent(inout) :: case
     character(len=:), allocatable :: failure
 
-    call record%take(case%number)
-    call record%take(case%converged)
-    call record%take(case%numbers)
-    call record%take(failure)
-    call take_cost(record, case%cost)
-    call record%take(case%values)
+    call record%pass(case%number)
+    call record%pass(case%converged)
+    call record%pass(case%numbers)
+    failure = trim(case%failure)
+    call record%pass(failure)
     case%failure = failure
-  end subroutine take_case
+    call pass_cost(record, case%cost)
+    call record%pass(case%values)
+  end subroutine pass_case
 
 end module sweep_case

@@ -6,7 +6,7 @@ module sweeps
   use clock, only: clock_now => seconds
   use linear_algebra, only: claim_buffers
   use scene_groups, only: scene_t
-  use sweep_case, only: case_t, put_case, take_case, run_case
+  use sweep_case, only: case_t, pass_case, run_case
   use case_rows, only: case_rows_t
   use equilibrium, only: cost_t
   use progress, only: progress_t
@@ -74,8 +74,7 @@ contains
     queue%results => results
     queue%columns = columns_of(scene)
     call recall_cases(queue)
-    if (allocated(scene%sweep%file)) &
-      call queue%rows%open(scene%sweep%file%path, scene%deck, error)
+    if (allocated(scene%sweep%file)) call queue%rows%open(scene%sweep%file%path, scene%deck, error)
     if (allocated(error)) then
       call move_alloc(error, results%trouble)
     else if (crew%workers > 0) then
@@ -135,8 +134,8 @@ contains
     self%job = job
     allocate (of_batch(cases))
     do i = 1, cases
-      call batch%take(of_batch(i)%number)
-      call batch%take(of_batch(i)%values)
+      call batch%pass(of_batch(i)%number)
+      call batch%pass(of_batch(i)%values)
     end do
     seconds = clock_now()
     !$omp parallel do schedule(dynamic, 1)
@@ -146,7 +145,7 @@ contains
     !$omp end parallel do
     seconds = clock_now() - seconds
     do i = 1, cases
-      call put_case(of_batch(i), answers)
+      call pass_case(answers, of_batch(i))
     end do
   end subroutine work
 
@@ -189,8 +188,8 @@ contains
 
     call self%next(case, found)
     if (.not. found) return
-    call batch%put(case%number)
-    call batch%put(case%values)
+    call batch%pass(case%number)
+    call batch%pass(case%values)
   end subroutine put_next
 
   subroutine take_answer(self, answers)
@@ -198,17 +197,17 @@ contains
     type(byte_record_t), intent(inout) :: answers
     type(case_t) :: case
 
-    call take_case(case, answers)
+    call pass_case(answers, case)
     call self%enter(case)
   end subroutine take_answer
 
   !> Takes a case that has been computed.
   subroutine enter(self, case)
     class(queue_t), intent(inout) :: self
-    type(case_t), intent(in) :: case
+    type(case_t), intent(inout) :: case
     type(byte_record_t) :: record
 
-    call put_case(case, record)
+    call pass_case(record, case)
     call self%results%journal%append(record)
     call self%add(case)
     call self%results%progress%step('case', failed=.not. case%converged)
@@ -224,7 +223,7 @@ contains
     do
       call queue%results%journal%next(record, found)
       if (.not. found) exit
-      call take_case(case, record)
+      call pass_case(record, case)
       call queue%add(case)
       call queue%results%progress%step('case', failed=.not. case%converged, given=.true.)
     end do
@@ -282,9 +281,8 @@ contains
   end subroutine make_room
 
   !> What two cases took together.
-  pure function sum_of(a, b) result(total)
+  pure type(cost_t) function sum_of(a, b) result(total)
     type(cost_t), intent(in) :: a, b
-    type(cost_t) :: total
 
     total%operator_products = a%operator_products + b%operator_products
     total%operator_columns = a%operator_columns + b%operator_columns

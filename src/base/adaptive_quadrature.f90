@@ -116,8 +116,7 @@ contains
     magnitude = half*sum(weights*abs(values))
     variation = half*sum(weights*abs(values - 0.5_wp*whole/half))
     error = abs(whole - half*sum(gauss_weights*values(2::2)))
-    if (error > 0 .and. variation > 0) error = &
-      variation*min(1.0_wp, (200*error/variation)**1.5_wp)
+    if (error > 0 .and. variation > 0) error = variation*min(1.0_wp, (200*error/variation)**1.5_wp)
     self%magnitude = self%magnitude + magnitude - self%piece(3, self%next)
     if (error > max(negligible*self%magnitude, rounding*magnitude)) then
       call self%cut(0.5_wp*magnitude, done)

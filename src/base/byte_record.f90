@@ -1,27 +1,32 @@
 !> Numbers and texts packed into one row of 64-bit words, and back, bit by bit the same.
+!>
+!> Whoever packs something names its components once: `pass` writes them into a record, or reads
+!> them from one that was filled.
 module byte_record
   use kinds, only: wp, long
   implicit none
   private
   public :: byte_record_t
 
-  !> What is put in comes out in the same order.
+  !> What is passed in comes out in the same order.
   type :: byte_record_t
     !> words(:held) are in use, of so many as there is room for. To be read only.
     integer(long), allocatable :: words(:)
     integer :: held = 0
-    integer, private :: room = 0
-    !> Whether more was taken out than had been put in; what was taken then is zero or empty.
+    !> Whether `pass` reads. To be read only.
+    logical :: reading = .false.
+    !> Whether more was read than there is; what was read then is zero or empty.
     logical :: exhausted = .false.
-    integer, private :: taken = 0
+    integer, private :: room = 0, taken = 0
   contains
     procedure :: clear
-    generic :: put => put_long, put_integer, put_real, put_reals, put_logical, put_text
-    generic :: take => take_long, take_integer, take_real, take_reals, take_logical, take_text
-    procedure, private :: put_long, put_integer, put_real, put_reals, put_logical, put_text
-    procedure, private :: take_long, take_integer, take_real, take_reals, take_logical, take_text
-    procedure :: put_words
-    procedure :: take_words
+    procedure :: fill
+    procedure :: add
+    !> No intent: it is written, so that it may be a constant, unless the record is one to be read.
+    generic :: pass => pass_words, pass_integer, pass_real, pass_reals, pass_matrix, &
+      pass_logical, pass_text
+    procedure, private :: pass_words, pass_integer, pass_real, pass_reals, pass_matrix, &
+      pass_logical, pass_text
   end type byte_record_t
 
   !> Characters in a word.
@@ -29,181 +34,152 @@ module byte_record
 
 contains
 
-  !> Empties it.
+  !> Empties it, to be written.
   subroutine clear(self)
     class(byte_record_t), intent(inout) :: self
 
     self%held = 0
     self%taken = 0
+    self%reading = .false.
     self%exhausted = .false.
   end subroutine clear
 
-  !> Words as they are: what takes them out knows how many.
-  subroutine put_words(self, words)
+  !> Makes it the record of these words, to be read.
+  subroutine fill(self, words)
     class(byte_record_t), intent(inout) :: self
     integer(long), intent(in) :: words(:)
 
-    call make_room(self, size(words))
-    self%words(self%held + 1:self%held + size(words)) = words
-    self%held = self%held + size(words)
-  end subroutine put_words
+    call self%clear()
+    call self%add(words)
+    self%reading = .true.
+  end subroutine fill
 
-  !> Sees to it that so many words more can be put.
-  subroutine make_room(self, more)
-    type(byte_record_t), intent(inout) :: self
-    integer, intent(in) :: more
+  !> Adds words as they are.
+  subroutine add(self, words)
+    class(byte_record_t), intent(inout) :: self
+    integer(long), intent(in) :: words(:)
     integer(long), allocatable :: larger(:)
 
-    if (self%held + more <= self%room) return
-    allocate (larger(max(256, 2*(self%held + more))))
-    if (self%held > 0) larger(:self%held) = self%words(:self%held)
-    call move_alloc(larger, self%words)
-    self%room = size(self%words)
-  end subroutine make_room
-
-  subroutine put_long(self, value)
-    class(byte_record_t), intent(inout) :: self
-    integer(long), intent(in) :: value
-
-    if (self%held == self%room) call make_room(self, 1)
-    self%held = self%held + 1
-    self%words(self%held) = value
-  end subroutine put_long
+    if (self%held + size(words) > self%room) then
+      allocate (larger(max(256, 2*(self%held + size(words)))))
+      if (self%held > 0) larger(:self%held) = self%words(:self%held)
+      call move_alloc(larger, self%words)
+      self%room = size(self%words)
+    end if
+    self%words(self%held + 1:self%held + size(words)) = words
+    self%held = self%held + size(words)
+  end subroutine add
 
   !> As many words as there are in `words`.
-  subroutine take_words(self, words)
+  subroutine pass_words(self, words)
     class(byte_record_t), intent(inout) :: self
-    integer(long), intent(out) :: words(:)
+    integer(long) :: words(:)
 
-    words = 0
-    if (size(words) > self%held - self%taken) then
+    if (.not. self%reading) then
+      call self%add(words)
+    else if (size(words) > self%held - self%taken) then
+      words = 0
       self%exhausted = .true.
-      return
+    else
+      words = self%words(self%taken + 1:self%taken + size(words))
+      self%taken = self%taken + size(words)
     end if
-    words = self%words(self%taken + 1:self%taken + size(words))
-    self%taken = self%taken + size(words)
-  end subroutine take_words
+  end subroutine pass_words
 
-  subroutine put_integer(self, value)
+  subroutine pass_integer(self, value)
     class(byte_record_t), intent(inout) :: self
-    integer, intent(in) :: value
+    integer :: value
+    integer(long) :: words(1)
 
-    call self%put_long(int(value, long))
-  end subroutine put_integer
+    words = value
+    call self%pass(words)
+    if (self%reading) value = int(words(1))
+  end subroutine pass_integer
 
-  subroutine put_logical(self, value)
+  subroutine pass_logical(self, value)
     class(byte_record_t), intent(inout) :: self
-    logical, intent(in) :: value
+    logical :: value
+    integer(long) :: words(1)
 
-    call self%put_long(merge(1_long, 0_long, value))
-  end subroutine put_logical
+    if (.not. self%reading) words = merge(1_long, 0_long, value)
+    call self%pass(words)
+    if (self%reading) value = words(1) /= 0
+  end subroutine pass_logical
 
-  subroutine put_real(self, value)
+  subroutine pass_real(self, value)
     class(byte_record_t), intent(inout) :: self
-    real(wp), intent(in) :: value
+    real(wp) :: value
+    integer(long) :: words(1)
 
-    call self%put_long(transfer(value, 0_long))
-  end subroutine put_real
+    words = transfer(value, words)
+    call self%pass(words)
+    if (self%reading) value = transfer(words(1), value)
+  end subroutine pass_real
 
   !> The number of values goes with them.
-  subroutine put_reals(self, values)
+  subroutine pass_reals(self, values)
     class(byte_record_t), intent(inout) :: self
-    real(wp), intent(in) :: values(:)
-    integer :: i
+    real(wp), allocatable :: values(:)
+    integer :: count, i
 
-    call self%put(size(values))
-    call make_room(self, size(values))
-    do i = 1, size(values)
-      self%words(self%held + i) = transfer(values(i), 0_long)
+    if (.not. self%reading) count = size(values)
+    call pass_count(self, count)
+    if (self%reading) then
+      if (allocated(values)) deallocate (values)
+      allocate (values(count))
+    end if
+    do i = 1, count
+      call self%pass(values(i))
     end do
-    self%held = self%held + size(values)
-  end subroutine put_reals
+  end subroutine pass_reals
+
+  !> The number of columns goes with them.
+  subroutine pass_matrix(self, values)
+    class(byte_record_t), intent(inout) :: self
+    real(wp), allocatable :: values(:, :), flat(:)
+    integer :: columns
+
+    if (.not. self%reading) then
+      columns = size(values, 2)
+      flat = reshape(values, [size(values)])
+    end if
+    call pass_count(self, columns)
+    call self%pass(flat)
+    if (self%reading) values = reshape(flat, [size(flat)/max(columns, 1), columns])
+  end subroutine pass_matrix
 
   !> Its length goes with it.
-  subroutine put_text(self, text)
+  subroutine pass_text(self, text)
     class(byte_record_t), intent(inout) :: self
-    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: text
+    integer(long) :: words(1)
     character(len=letters) :: piece
-    integer :: first
+    integer :: length, first, last
 
-    call self%put(len(text))
-    do first = 1, len(text), letters
-      piece = text(first:min(first + letters - 1, len(text)))
-      call self%put_long(transfer(piece, 0_long))
+    if (.not. self%reading) length = len(text)
+    call pass_count(self, length)
+    if (self%reading) then
+      if (allocated(text)) deallocate (text)
+      allocate (character(len=length) :: text)
+    end if
+    do first = 1, length, letters
+      last = min(first + letters - 1, length)
+      if (.not. self%reading) piece = text(first:last)
+      words = transfer(piece, words)
+      call self%pass(words)
+      if (self%reading) text(first:last) = transfer(words, piece)
     end do
-  end subroutine put_text
-
-  subroutine take_long(self, value)
-    class(byte_record_t), intent(inout) :: self
-    integer(long), intent(out) :: value
-    integer(long) :: words(1)
-
-    call self%take_words(words)
-    value = words(1)
-  end subroutine take_long
-
-  subroutine take_integer(self, value)
-    class(byte_record_t), intent(inout) :: self
-    integer, intent(out) :: value
-    integer(long) :: words(1)
-
-    call self%take_words(words)
-    value = int(words(1))
-  end subroutine take_integer
-
-  subroutine take_logical(self, value)
-    class(byte_record_t), intent(inout) :: self
-    logical, intent(out) :: value
-    integer(long) :: words(1)
-
-    call self%take_words(words)
-    value = words(1) /= 0
-  end subroutine take_logical
-
-  subroutine take_real(self, value)
-    class(byte_record_t), intent(inout) :: self
-    real(wp), intent(out) :: value
-    integer(long) :: words(1)
-
-    call self%take_words(words)
-    value = transfer(words(1), value)
-  end subroutine take_real
-
-  subroutine take_reals(self, values)
-    class(byte_record_t), intent(inout) :: self
-    real(wp), allocatable, intent(out) :: values(:)
-    integer(long), allocatable :: words(:)
-    integer :: count
-
-    call take_count(self, count)
-    allocate (words(count), values(count))
-    call self%take_words(words)
-    values = transfer(words, values, count)
-  end subroutine take_reals
-
-  subroutine take_text(self, text)
-    class(byte_record_t), intent(inout) :: self
-    character(len=:), allocatable, intent(out) :: text
-    integer(long), allocatable :: words(:)
-    integer :: length, count
-
-    call take_count(self, length)
-    count = (length + letters - 1)/letters
-    allocate (words(count))
-    call self%take_words(words)
-    allocate (character(len=length) :: text)
-    text = transfer(words, repeat(' ', count*letters))
-  end subroutine take_text
+  end subroutine pass_text
 
   !> A number of items, never more than could be held.
-  subroutine take_count(self, count)
+  subroutine pass_count(self, count)
     class(byte_record_t), intent(inout) :: self
-    integer, intent(out) :: count
+    integer, intent(inout) :: count
 
-    call self%take(count)
-    if (count >= 0 .and. count <= letters*self%held) return
+    call self%pass(count)
+    if (.not. self%reading .or. (count >= 0 .and. count <= letters*self%held)) return
     self%exhausted = .true.
     count = 0
-  end subroutine take_count
+  end subroutine pass_count
 
 end module byte_record

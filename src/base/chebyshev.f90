@@ -20,8 +20,7 @@ contains
   !> Coefficients of the polynomial through `value` at `chebyshev_points`.
   pure function chebyshev_series(value) result(coefficient)
     real(wp), intent(in) :: value(0:)
-    real(wp) :: coefficient(0:ubound(value, 1))
-    real(wp) :: weighted(0:ubound(value, 1))
+    real(wp) :: coefficient(0:ubound(value, 1)), weighted(0:ubound(value, 1))
     integer :: n, j, k
 
     n = ubound(value, 1)
@@ -67,8 +66,7 @@ contains
   !> The integral of the series from -1 to x, as a series of one degree more.
   pure function series_integral(coefficient) result(integral)
     real(wp), intent(in) :: coefficient(0:)
-    real(wp) :: integral(0:ubound(coefficient, 1) + 1)
-    real(wp) :: padded(0:ubound(coefficient, 1) + 2)
+    real(wp) :: integral(0:ubound(coefficient, 1) + 1), padded(0:ubound(coefficient, 1) + 2)
     integer :: k
 
     padded = 0

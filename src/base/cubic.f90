@@ -13,8 +13,7 @@ contains
   !> is 0; at the left end the first two pieces are one cubic. Four points at least.
   function spline(x, y) result(coefficient)
     real(wp), intent(in) :: x(:), y(:)
-    real(wp) :: coefficient(0:3, size(x) - 1)
-    real(wp) :: width(size(x) - 1), chord(size(x) - 1)
+    real(wp) :: coefficient(0:3, size(x) - 1), width(size(x) - 1), chord(size(x) - 1)
     real(wp) :: below(size(x) - 1), middle(size(x)), above(size(x) - 1), slope(size(x))
     integer :: n, i
 
@@ -64,8 +63,7 @@ contains
   !> The cubics of given values and slopes at the points.
   pure function with_slopes(y, slope, width) result(coefficient)
     real(wp), intent(in) :: y(:), slope(:), width(:)
-    real(wp) :: coefficient(0:3, size(width))
-    real(wp) :: chord(size(width))
+    real(wp) :: coefficient(0:3, size(width)), chord(size(width))
     integer :: n
 
     n = size(y)

@@ -101,33 +101,43 @@ contains
     end do
   end subroutine hermite_weights
 
-  !> The nodes (rising) whose polynomial tells about the interval from x(i) to the next: its ends,
-  !> with the nearest on either side that is well apart. (A neighbour nearer to an interval makes
-  !> its polynomial worse.)
+  !> The nodes (rising) whose polynomial tells about the interval from x(i) to the next: its ends
+  !> and one on either side, or two on one side where the other has none. Neighbours must be well
+  !> apart: one too near makes the polynomial worse.
   pure subroutine find_nodes_about(x, i, nodes, n)
     real(wp), intent(in) :: x(:)
     integer, intent(in) :: i
     integer, intent(out) :: nodes(most_hermite_nodes), n
-    real(wp), parameter :: well_apart = 0.1_wp
-    real(wp) :: least
-    integer :: j
+    integer, allocatable :: before(:), after(:)
 
-    n = 0
-    least = well_apart*(x(i + 1) - x(i))
-    do j = i - 1, 1, -1
-      if (x(i) - x(j) < least) cycle
-      n = 1
-      nodes(1) = j
-      exit
-    end do
-    nodes(n + 1:n + 2) = [i, i + 1]
-    n = n + 2
-    do j = i + 2, size(x)
-      if (x(j) - x(i + 1) < least) cycle
-      n = n + 1
-      nodes(n) = j
-      exit
-    end do
+    before = apart(i, -1)
+    after = apart(i + 1, 1)
+    if (size(after) > 0) before = before(:min(1, size(before)))
+    if (size(before) > 0) after = after(:min(1, size(after)))
+    n = size(before) + 2 + size(after)
+    nodes(:n) = [before(size(before):1:-1), i, i + 1, after]
+
+  contains
+
+    !> The first two nodes from node j to one side, each well apart from the one before it.
+    pure function apart(j, side) result(found)
+      integer, intent(in) :: j, side
+      integer, allocatable :: found(:)
+      real(wp), parameter :: well_apart = 0.1_wp
+      integer :: k, newest
+
+      allocate (found(0))
+      newest = j
+      k = j + side
+      do while (k >= 1 .and. k <= size(x) .and. size(found) < 2)
+        if (.not. abs(x(k) - x(newest)) < well_apart*(x(i + 1) - x(i))) then
+          found = [found, k]
+          newest = k
+        end if
+        k = k + side
+      end do
+    end function apart
+
   end subroutine find_nodes_about
 
   !> Hermite's polynomial with the given values and slopes at `at` (all different).

@@ -38,8 +38,7 @@ contains
   pure function legendre_values(x, count) result(values)
     real(wp), intent(in) :: x(:)
     integer, intent(in) :: count
-    real(wp) :: values(size(x), count)
-    real(wp) :: z(size(x)), forward
+    real(wp) :: values(size(x), count), z(size(x)), forward
     integer :: m
 
     z = 2*x - 1
@@ -57,8 +56,7 @@ contains
   !> against ln(s) are -1 for degree 0 and (-1)**(m+1)/(m(m+1)) for degree m.
   pure function logarithm_weights(x, w) result(v)
     real(wp), intent(in) :: x(:), w(:)
-    real(wp) :: v(size(x))
-    real(wp) :: before(size(x)), now(size(x)), next(size(x)), z(size(x))
+    real(wp) :: v(size(x)), before(size(x)), now(size(x)), next(size(x)), z(size(x))
     integer :: m
 
     z = 2*x - 1
@@ -76,8 +74,7 @@ contains
   !> Barycentric weights of the nodes x, scaled to a largest magnitude of 1.
   pure function barycentric_weights(x) result(b)
     real(wp), intent(in) :: x(:)
-    real(wp) :: b(size(x))
-    real(wp) :: width
+    real(wp) :: b(size(x)), width
     integer :: j, k
 
     ! Differences are measured in quarters of the width (the interval's capacity), which

@@ -20,8 +20,7 @@ module anderson
   !> Differences of unknowns and of steps, newest last.
   type :: history_t
     integer :: held = 0
-    real(wp), allocatable :: dz(:, :), df(:, :)
-    real(wp), allocatable :: z_before(:), f_before(:)
+    real(wp), allocatable :: dz(:, :), df(:, :), z_before(:), f_before(:)
   end type history_t
 
   !> An iteration: the unknowns z, their residual g, minus the plain step f and the step made; the

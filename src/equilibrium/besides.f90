@@ -35,10 +35,9 @@ contains
 
   !> A rise that is known on the rows of a mesh fixed in space (scale 1), for another mesh at about
   !> a scale. Far out it is that of a load on a point.
-  pure function rise_at(material, risen, grid, scale) result(besides)
+  pure type(besides_t) function rise_at(material, risen, grid, scale) result(besides)
     type(discretisation_t), intent(in) :: material, grid
     real(wp), intent(in) :: risen(:), scale
-    type(besides_t) :: besides
     real(wp) :: r
     integer :: i, rows
 

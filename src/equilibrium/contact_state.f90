@@ -1,13 +1,14 @@
 !> A state of the two bodies on the nodes of a mesh, dimensionless, and searches for the position of
 !> a given gap.
 module contact_state
-  use kinds, only: wp
+  use kinds, only: wp, pi
   use shape, only: shape_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use root_finding, only: root_search_t, new_root_search
   implicit none
   private
-  public :: state_t, state_from, load_reach, gap_at_end, gap_at, radius_of_gap, far_gap
+  public :: state_t, state_from, load_reach, gap_at_end, gap_at, radius_of_gap, felt_load, far_gap
 
   !> At gaps this large, in the law's lengths, no force depends on the last digits.
   real(wp), parameter :: far_gap = 1000
@@ -43,9 +44,8 @@ contains
   end subroutine become
 
   !> An empty state on so many nodes.
-  pure function state_from(nodes) result(state)
+  pure type(state_t) function state_from(nodes) result(state)
     integer, intent(in) :: nodes
-    type(state_t) :: state
 
     allocate (state%gap(nodes), state%pressure(nodes), source=0.0_wp)
   end function state_from
@@ -57,6 +57,17 @@ contains
 
     load_reach = state%scale*grid%end
   end function load_reach
+
+  !> The load that errors of a state are measured against, over 2 pi: its own load or, if that is
+  !> larger, the adhesion, but no more than all pressures of the state together make.
+  pure real(wp) function felt_load(problem, grid, state) result(load)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+
+    load = max(abs(state%load)/(2*pi), min(problem%law%adhesion, &
+      state%scale**2*sum(grid%weight*abs(state%pressure))))
+  end function felt_load
 
   !> The gap at the end of a bounded mesh, with the deformation of the last node.
   pure real(wp) function gap_at_end(shape, grid, state) result(gap)

@@ -130,8 +130,7 @@ contains
           do i = 1, size(value)
             value(i) = value(i) + past%weight*carried%at(from, ratio*x(i))
             growth(i) = growth(i) + past%weight/(2*apart)* &
-              (carried%at(from, (1 + apart)*ratio*x(i)) - &
-              carried%at(from, (1 - apart)*ratio*x(i)))
+              (carried%at(from, (1 + apart)*ratio*x(i)) - carried%at(from, (1 - apart)*ratio*x(i)))
           end do
         end associate
       end associate

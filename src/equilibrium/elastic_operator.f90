@@ -12,7 +12,7 @@ module elastic_operator
   use linear_algebra, only: multiply
   use mesh_waves, only: mesh_waves_t, new_mesh_waves
   use dimensionless_problem, only: problem_t
-  use discretisation, only: discretisation_t, first_node
+  use discretisation, only: discretisation_t
   implicit none
   private
   public :: elastic_operator_t

@@ -14,7 +14,7 @@ module equilibrium
   use beyond_mesh, only: load_beyond
   use discretisation, only: axis_row, centre_row, first_node
   use contact_scales, only: largest_floor
-  use contact_state, only: state_t, state_from, load_reach, gap_at_end, far_gap
+  use contact_state, only: state_t, load_reach, gap_at_end, far_gap
   use edge_locked, only: mesh_family_t
   use elastic_operator, only: elastic_operator_t
   use besides, only: besides_t

@@ -115,8 +115,7 @@ contains
   end subroutine add_drainage
 
   !> Factorises the Jacobian of bodies at rest on any mesh, locked to a given gap.
-  subroutine factorise_on(problem, grid, operator, locked_gap, control, state, factors, cost, &
-    shift)
+  subroutine factorise_on(problem, grid, operator, locked_gap, control, state, factors, cost, shift)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(elastic_operator_t), intent(inout) :: operator
@@ -133,8 +132,7 @@ contains
   end subroutine factorise_on
 
   !> Assembles the matrix to be factorised.
-  subroutine fill(problem, grid, operator, locked_gap, control, state, factors, cost, &
-    shift)
+  subroutine fill(problem, grid, operator, locked_gap, control, state, factors, cost, shift)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(elastic_operator_t), intent(inout) :: operator
@@ -175,8 +173,7 @@ contains
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: change(:)
-    real(wp) :: product(size(change))
-    real(wp) :: rise(first_node - 1 + size(state%gap)), column(size(change))
+    real(wp) :: product(size(change)), rise(first_node - 1 + size(state%gap)), column(size(change))
 
     associate (problem => equations%problem, grid => equations%meshes%grid(control%mesh), &
       n => size(state%gap), m => size(change), cost => equations%cost)
@@ -233,8 +230,7 @@ contains
     real(wp) :: more(centre_row - 1 + size(column))
 
     associate (c => state%scale, n => size(state%gap))
-      call operator%unlike_scaling(problem, grid, c, state%pressure, centre_row, &
-        more(centre_row:))
+      call operator%unlike_scaling(problem, grid, c, state%pressure, centre_row, more(centre_row:))
       column(:n) = -problem%shape%unlike_scaling(c, grid%x(:n)) - (state%gap - state%h0)/c - &
         more(first_node:)
       column(n + 1) = problem%shape%unlike_scaling(c, 1.0_wp) + (locked_gap - state%h0)/c + &

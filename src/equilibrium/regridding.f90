@@ -12,12 +12,11 @@ contains
 
   !> The state on another mesh at a given scale. Gaps are interpolated; beyond the old mesh the
   !> deformation decays as 1/r.
-  pure function regrid(shape, state, from, to, scale) result(new)
+  pure type(state_t) function regrid(shape, state, from, to, scale) result(new)
     class(shape_t), intent(in) :: shape
     type(state_t), intent(in) :: state
     type(discretisation_t), intent(in) :: from, to
     real(wp), intent(in) :: scale
-    type(state_t) :: new
     real(wp) :: r, raised
     integer :: j
 

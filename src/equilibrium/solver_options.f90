@@ -34,18 +34,16 @@ contains
 
   !> The options with a tolerance near rounding, for states whose place on the path must be exact.
   !> Where rounding allows no better, its floor counts (`residual_floor`).
-  pure function tightened(options) result(tight)
+  pure type(solver_options_t) function tightened(options) result(tight)
     type(solver_options_t), intent(in) :: options
-    type(solver_options_t) :: tight
 
     tight = options
     tight%tolerance = min(options%tolerance, tight_tolerance)
   end function tightened
 
   !> Newton's method: the accelerated iteration with a new Jacobian at every step and no history.
-  pure function newton_of(options) result(newton)
+  pure type(solver_options_t) function newton_of(options) result(newton)
     type(solver_options_t), intent(in) :: options
-    type(solver_options_t) :: newton
 
     newton = options
     newton%patience = 1

@@ -7,18 +7,18 @@ module device
   use solver, only: solver_t
   use path_tangent, only: of_h0
   use traced_path, only: traced_path_t
-  use curve_states, only: curve_state_t
+  use curve_states, only: path_state_t
   use driven_pieces, only: drive_t, driven_piece_t, jump_t, find_pieces, find_jump, piece_with, &
     state_driven
   implicit none
   private
-  public :: driven_t, leg_t, nodes_on, drive_bodies
+  public :: driven_t, leg_t, states_on, drive_bodies
 
   !> A way along one stable piece, of this number in `driven_t`; jumps: from its end.
   type :: leg_t
     logical :: inward = .true.
     integer :: piece = 0
-    type(curve_state_t) :: from, to
+    type(path_state_t) :: from, to
     logical :: jumps = .false.
   end type leg_t
 
@@ -52,7 +52,7 @@ contains
     type(driven_t), intent(out) :: driven
     !> Where the bodies are: the number of the piece, and the state.
     integer :: here, outermost
-    type(curve_state_t) :: state
+    type(path_state_t) :: state
 
     allocate (driven%leg(0), driven%jump(0))
     driven%drive = drive
@@ -124,7 +124,7 @@ contains
       logical, intent(in) :: inward
       real(wp), intent(out) :: at
       logical, intent(out) :: stops
-      type(curve_state_t) :: there
+      type(path_state_t) :: there
 
       at = 0
       associate (piece => driven%piece(here))
@@ -156,18 +156,19 @@ contains
 
   end subroutine drive_bodies
 
-  !> The nodes of the path that a leg passes, in the order of the leg.
-  pure function nodes_on(all_nodes, leg) result(nodes)
-    type(curve_state_t), intent(in) :: all_nodes(:)
+  !> The states of a leg in its order: its ends, and the nodes of the path that it passes.
+  pure function states_on(all_nodes, leg) result(states)
+    type(path_state_t), intent(in) :: all_nodes(:)
     type(leg_t), intent(in) :: leg
-    type(curve_state_t), allocatable :: nodes(:)
+    type(path_state_t), allocatable :: nodes(:), states(:)
 
     associate (first => min(leg%from%interval, leg%to%interval) + 1, &
       last => max(leg%from%interval, leg%to%interval))
       nodes = pack(all_nodes(first:last), .not. all_nodes(first:last)%again)
     end associate
     if (.not. leg%inward) nodes = nodes(size(nodes):1:-1)
-  end function nodes_on
+    states = [leg%from, nodes, leg%to]
+  end function states_on
 
   !> The energy put in along all legs: minus the integral of the conjugate over the position.
   pure real(wp) function area(self, path)

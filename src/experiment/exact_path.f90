@@ -13,7 +13,7 @@ module exact_path
   use experiment_request, only: request_t
   use path_demand, only: farthest_wanted
   use places, only: places_t
-  use reported, only: point_of_path
+  use reported_place, only: point_of_path
   use finer_solver, only: finer_t
   use place_errors, only: judge_places
   implicit none

@@ -36,8 +36,7 @@ module experiment_request
   !> &device: stiffness of each spring [N/m], 0 for a dead load; none: h0 is prescribed. Where the
   !> drive starts and turns [m], unallocated: as far as the path is known.
   type :: device_t
-    real(wp), allocatable :: stiffness(:)
-    real(wp), allocatable :: z_start, z_end
+    real(wp), allocatable :: stiffness(:), z_start, z_end
   end type device_t
 
   !> &fixed_load: the loads [N].

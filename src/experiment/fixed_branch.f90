@@ -77,11 +77,10 @@ contains
   end subroutine continue_to
 
   !> The state that a step to h0 is expected to lead to.
-  function expected_at(self, h0, position) result(expected)
+  type(state_t) function expected_at(self, h0, position) result(expected)
     class(fixed_branch_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(in) :: position
-    type(state_t) :: expected
 
     if (self%options%mixing .or. &
       .not. over_neck(self%problem, self%meshes%grid(1)%spacing) <= resolved) then

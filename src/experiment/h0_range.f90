@@ -12,10 +12,9 @@ module h0_range
 contains
 
   !> The h0 [m] from which a path is shown: beyond any contact, or as the scene says.
-  function path_start(request, problem) result(start)
+  real(wp) function path_start(request, problem) result(start)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
-    real(wp) :: start
 
     start = problem%law%separation_of(beyond_contact(problem))
     if (.not. allocated(request%path)) return

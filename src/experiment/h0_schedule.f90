@@ -33,11 +33,10 @@ contains
 
   !> The plan of a path on which there is one state for every h0; far: where it may begin, law's
   !> lengths.
-  function path_plan(request, law, far) result(plan)
+  type(h0_schedule_t) function path_plan(request, law, far) result(plan)
     class(request_t), intent(in) :: request
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: far
-    type(h0_schedule_t) :: plan
     real(wp) :: start
 
     associate (finish => request%path%h0_end)
@@ -52,11 +51,10 @@ contains
   end function path_plan
 
   !> The plan of the loading; also: values that it goes through as well, law's lengths.
-  function loading_plan(request, law, also) result(plan)
+  type(h0_schedule_t) function loading_plan(request, law, also) result(plan)
     class(request_t), intent(in) :: request
     class(force_law_t), intent(in) :: law
     real(wp), intent(in), optional :: also(:)
-    type(h0_schedule_t) :: plan
 
     associate (loading => request%loading)
       plan = schedule_of('loading', loading%h0_start, loading%h0_end, loading%h0_step, request, &
@@ -65,11 +63,10 @@ contains
   end function loading_plan
 
   !> The plan of unloading k.
-  function unloading_plan(request, law, k) result(plan)
+  type(h0_schedule_t) function unloading_plan(request, law, k) result(plan)
     class(request_t), intent(in) :: request
     class(force_law_t), intent(in) :: law
     integer, intent(in) :: k
-    type(h0_schedule_t) :: plan
     character(len=24) :: name
 
     ! Not by a function of deferred length, which cases of a sweep would share: compiler note 4.

@@ -48,12 +48,11 @@ module numerics_choice
 contains
 
   !> For H0 down to h0_low (law's lengths); profiles: whether some are asked for.
-  function choose(numerics, problem, h0_low, profiles) result(chosen)
+  type(choice_t) function choose(numerics, problem, h0_low, profiles) result(chosen)
     type(numerics_t), intent(in) :: numerics
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_low
     logical, intent(in) :: profiles
-    type(choice_t) :: chosen
 
     if (problem%rigid) then
       chosen%grid = no_grid
@@ -109,12 +108,11 @@ contains
   end function choose
 
   !> A grid that is fixed in space, whatever the iteration.
-  function fixed_choice(numerics, problem, h0_low, grid) result(chosen)
+  type(choice_t) function fixed_choice(numerics, problem, h0_low, grid) result(chosen)
     type(numerics_t), intent(in) :: numerics
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_low
     integer, intent(in) :: grid
-    type(choice_t) :: chosen
 
     chosen%grid = grid
     call size_grid(chosen, numerics, problem, h0_low)
@@ -156,11 +154,10 @@ contains
 
   !> The mesh of a fixed grid: equal spacing, or equal panels as far as the contact reaches and
   !> doubling ones beyond.
-  function fixed_mesh(chosen, problem, h0_low) result(mesh)
+  type(discretisation_t) function fixed_mesh(chosen, problem, h0_low) result(mesh)
     type(choice_t), intent(in) :: chosen
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_low
-    type(discretisation_t) :: mesh
     real(wp) :: widest, finest
     real(wp), allocatable :: outer(:)
     integer :: count, j
@@ -183,9 +180,8 @@ contains
   !> Another choice of a fixed grid, to estimate the error by: panels of two more nodes; twice the
   !> nodes on the same length and a fifth farther out, or where that would cost more than the run,
   !> half of them and a fifth less far.
-  pure function companion(chosen)
+  pure type(choice_t) function companion(chosen)
     type(choice_t), intent(in) :: chosen
-    type(choice_t) :: companion
 
     companion = chosen
     companion%panel_order = chosen%panel_order + 2

@@ -4,10 +4,10 @@ module outcome_places
   use kinds, only: wp
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
   use known_path, only: known_path_t, folds_of_cycle
-  use curve_states, only: curve_state_t
+  use curve_states, only: path_state_t
   use device, only: driven_t
   use path_readings, only: path_readings_t
-  use reported, only: reported_t, point_of_path, of_h0, of_load, of_energy
+  use reported_place, only: place_t, point_of_path, of_h0, of_load, of_energy
   use places, only: places_t
   use stepped_branch, only: branch_t
   use path, only: path_t
@@ -39,7 +39,7 @@ contains
   subroutine enter_path(path, places)
     type(path_t), intent(in) :: path
     type(places_t), intent(inout) :: places
-    type(reported_t) :: fall
+    type(place_t) :: fall
     integer :: n
 
     call places%enter_list('folds', path%fold)
@@ -57,7 +57,7 @@ contains
     end if
     if (.not. allocated(path%finish)) return
     if (path%fallen) then
-      ! How a fall ends is of no interest and on no mesh.
+      ! The end of a fall gets no error: it is on no mesh.
       fall%at = path%finish%at
       call places%enter('end', 1, fall)
     else
@@ -106,9 +106,9 @@ contains
   end subroutine enter_branch
 
   subroutine enter_profiles(list, places)
-    type(reported_t), intent(in) :: list(:)
+    type(place_t), intent(in) :: list(:)
     type(places_t), intent(inout) :: places
-    type(reported_t) :: place
+    type(place_t) :: place
     integer :: i
 
     do i = 1, size(list)
@@ -120,9 +120,9 @@ contains
 
   !> Keeps the largest tension.
   subroutine enter_tension(lowest, places)
-    type(reported_t), intent(in) :: lowest
+    type(place_t), intent(in) :: lowest
     type(places_t), intent(inout) :: places
-    type(reported_t) :: before
+    type(place_t) :: before
 
     before = places%place_of('max_tension')
     if (.not. lowest%at(of_load) < before%at(of_load)) return
@@ -134,12 +134,12 @@ contains
   subroutine enter_readings(readings, places)
     type(path_readings_t), intent(in) :: readings
     type(places_t), intent(inout) :: places
-    type(reported_t) :: place
+    type(place_t) :: place
     integer :: i
 
     if (allocated(readings%device)) then
       do i = 1, size(readings%device)
-        call enter_driven(readings, i, readings%device(i), places)
+        call enter_driven(i, readings%device(i), places)
       end do
     end if
     if (.not. allocated(readings%loaded)) return
@@ -151,12 +151,11 @@ contains
   end subroutine enter_readings
 
   !> Enters the jumps of drive i, one by one and the first of each way, and the energy they lose.
-  subroutine enter_driven(readings, i, driven, places)
-    type(path_readings_t), intent(in) :: readings
+  subroutine enter_driven(i, driven, places)
     integer, intent(in) :: i
     type(driven_t), intent(in) :: driven
     type(places_t), intent(inout) :: places
-    type(reported_t), allocatable :: before, after
+    type(place_t), allocatable :: before, after
     character(len=3) :: way
     integer :: k
 
@@ -191,10 +190,9 @@ contains
   end subroutine enter_driven
 
   !> A state of the curve as a place; its D has the given weights.
-  function of_curve(state, weights) result(place)
-    type(curve_state_t), intent(in) :: state
+  type(place_t) function of_curve(state, weights) result(place)
+    type(path_state_t), intent(in) :: state
     real(wp), intent(in) :: weights(2)
-    type(reported_t) :: place
 
     place%mesh = state%mesh
     place%s = state%x
@@ -231,7 +229,7 @@ contains
     fold = folds_of_cycle(known, turned, lowest)
     do i = 1, size(fold)
       call places%enter('energy_lost', 1, point_of_path(fold(i)))
-      call places%enter('energy_lost', 1, point_of_path(fold(i), .true.), -1.0_wp)
+      call places%enter('energy_lost', 1, point_of_path(fold(i), landing=.true.), -1.0_wp)
     end do
   end subroutine enter_energy
 

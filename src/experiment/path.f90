@@ -9,7 +9,7 @@ module path
   use known_path, only: known_path_t, interval_at
   use path_stepper, only: path_stepper_t
   use path_rows, only: row_t, row_of_point, row_at_h0, rows_between
-  use reported, only: reported_t, reported_state, add_reported, of_load
+  use reported_place, only: place_t, place_of_state, add_place, of_load
   use records, only: observer_t, record_t, extent_t, record_of, stable_yes, stable_no
   implicit none
   private
@@ -19,11 +19,11 @@ module path
   type :: path_t
     integer :: states = 0
     !> Folds in h0, and the number of unstable modes after each; extrema of the load.
-    type(reported_t), allocatable :: fold(:), extremum(:)
+    type(place_t), allocatable :: fold(:), extremum(:)
     integer, allocatable :: unstable_after(:)
     !> Largest tension, the pull-off at controlled load; the last state, if it is stable; the states
     !> whose profiles were asked for, in the order of the path.
-    type(reported_t), allocatable :: lowest, finish, profile(:)
+    type(place_t), allocatable :: lowest, finish, profile(:)
     !> The stable pieces on which it begins and ends; 0 where that is unstable.
     integer :: first_piece = 0, last_piece = 0
     real(wp) :: worst_residual = 0, worst_spacing = 0
@@ -80,7 +80,7 @@ contains
       call take(steps, row, observer, path)
     end do
     path%last_piece = piece_of(steps%known, last)
-    if (row%modes == 0 .and. row%converged) path%finish = reported_row(steps, row)
+    if (row%modes == 0 .and. row%converged) path%finish = place_of_row(steps, row)
     steps%cost%states = steps%cost%states + path%states
   end subroutine follow_path
 
@@ -127,17 +127,16 @@ contains
   end function piece_of
 
   !> A row as one that is reported.
-  function reported_row(steps, row) result(reported)
+  type(place_t) function place_of_row(steps, row) result(reported)
     type(path_stepper_t), intent(in) :: steps
     type(row_t), intent(in) :: row
-    type(reported_t) :: reported
 
-    reported = reported_state(row%mesh, row%state)
+    reported = place_of_state(row%mesh, row%state)
     if (row%point == 0) return
     associate (point => steps%known%path%point(row%point))
       if (point%fold .or. point%load_extremum) reported%point = row%point
     end associate
-  end function reported_row
+  end function place_of_row
 
   !> Gives a row to the observer and keeps what is reported of it.
   subroutine take(steps, row, observer, path)
@@ -145,7 +144,7 @@ contains
     type(row_t), intent(in) :: row
     class(observer_t), intent(inout) :: observer
     type(path_t), intent(inout) :: path
-    type(reported_t) :: reported
+    type(place_t) :: reported
     type(record_t) :: record
 
     associate (grid => steps%meshes%grid(row%mesh), state => row%state)
@@ -163,14 +162,14 @@ contains
       return
     end if
     if (row%for_curve) return
-    reported = reported_row(steps, row)
-    if (row%profile) call add_reported(path%profile, reported)
+    reported = place_of_row(steps, row)
+    if (row%profile) call add_place(path%profile, reported)
     if (lowers(path%lowest)) path%lowest = reported
     if (row%point == 0) return
     associate (point => steps%known%path%point(row%point))
-      if (point%load_extremum) call add_reported(path%extremum, reported)
+      if (point%load_extremum) call add_place(path%extremum, reported)
       if (.not. point%fold) return
-      call add_reported(path%fold, reported)
+      call add_place(path%fold, reported)
       path%unstable_after = [path%unstable_after, point%modes]
     end associate
 
@@ -179,7 +178,7 @@ contains
     !> Whether the row's tension is the largest so far. Between an extremum and a point that is
     !> none, such as where the path passes to another mesh, what meshes err by does not decide.
     logical function lowers(lowest)
-      type(reported_t), allocatable, intent(in) :: lowest
+      type(place_t), allocatable, intent(in) :: lowest
       real(wp) :: handicap
 
       lowers = .true.

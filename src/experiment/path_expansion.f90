@@ -9,7 +9,7 @@ module path_expansion
   use path_tangent, only: tangent_t, tangent_along, h0_alone => of_h0, load_alone => of_load
   use arc, only: arc_t
   use potential_energy, only: energy_of
-  use reported, only: read_of_states, of_h0, of_load, of_displacement, of_energy, of_edge
+  use reported_place, only: read_of_states, of_h0, of_load, of_displacement, of_energy, of_edge
   use finer_solver, only: finer_t
   implicit none
   private

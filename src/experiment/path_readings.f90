@@ -8,7 +8,7 @@ module path_readings
   use path_sensitivity, only: rate_t
   use driven_pieces, only: drive_t, through_spring
   use path_tangent, only: of_load
-  use curve_states, only: curve_state_t, states_of_points, states_where
+  use curve_states, only: path_state_t, states_of_points, states_where
   use device, only: driven_t, drive_bodies
   use path_stepper, only: path_stepper_t
   implicit none
@@ -19,14 +19,14 @@ module path_readings
   !> where no mode is unstable at fixed h0 and dF/dh0 < 0.
   type :: loaded_state_t
     real(wp) :: wanted = 0
-    type(curve_state_t) :: state
+    type(path_state_t) :: state
     logical :: stable = .false.
   end type loaded_state_t
 
   !> In the units of `dimensionless_problem`.
   type :: path_readings_t
     !> The points of the path.
-    type(curve_state_t), allocatable :: node(:)
+    type(path_state_t), allocatable :: node(:)
     !> A drive for each stiffness; and at prescribed h0, for the table.
     type(driven_t), allocatable :: device(:), prescribed
     type(loaded_state_t), allocatable :: loaded(:)
@@ -76,7 +76,7 @@ contains
     real(wp), intent(in) :: load(:)
     class(path_stepper_t), intent(inout) :: steps
     type(path_readings_t), intent(inout) :: readings
-    type(curve_state_t), allocatable :: states(:)
+    type(path_state_t), allocatable :: states(:)
     type(loaded_state_t) :: one
     integer :: i, k
     logical :: solved

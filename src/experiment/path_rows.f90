@@ -31,10 +31,9 @@ module path_rows
 contains
 
   !> The row of point i.
-  function row_of_point(steps, i) result(row)
+  type(row_t) function row_of_point(steps, i) result(row)
     type(path_stepper_t), intent(in) :: steps
     integer, intent(in) :: i
-    type(row_t) :: row
 
     row%point = i
     row%modes = steps%known%path%modes_at(i)
@@ -43,11 +42,10 @@ contains
   end function row_of_point
 
   !> The row at h0 between point i and the next.
-  function row_at_h0(steps, i, h0) result(row)
+  type(row_t) function row_at_h0(steps, i, h0) result(row)
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
     real(wp), intent(in) :: h0
-    type(row_t) :: row
 
     row%modes = steps%known%path%point(i)%modes
     call steps%state_at_h0(i, h0, row%mesh, row%state, row%converged)
@@ -88,12 +86,11 @@ contains
 
   !> The row at the coordinate s of the span after point i, as the path predicts it and, where that
   !> is not an equilibrium to the tolerance, corrected.
-  function row_for_curve(steps, i, span, s) result(row)
+  type(row_t) function row_for_curve(steps, i, span, s) result(row)
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
     type(path_span_t), intent(in) :: span
     real(wp), intent(in) :: s
-    type(row_t) :: row
 
     row%for_curve = .true.
     row%modes = steps%known%path%point(i)%modes

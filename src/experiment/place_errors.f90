@@ -18,7 +18,7 @@ module place_errors
   use traced_path, only: traced_path_t, no_mesh
   use path_stepper, only: path_stepper_t
   use tension_search, only: load_tolerance
-  use reported, only: reported_t, reported_state, of_h0, of_load, of_displacement, &
+  use reported_place, only: place_t, place_of_state, of_h0, of_load, of_displacement, &
     of_energy, of_radius, of_edge, nowhere, read_of_states
   use places, only: places_t
   use path_expansion, only: expansion_t, expansion_about
@@ -119,7 +119,7 @@ contains
 
   subroutine take_landing(landing, place)
     type(landing_t), intent(in) :: landing
-    type(reported_t), intent(inout) :: place
+    type(place_t), intent(inout) :: place
 
     if (landing%landed) call take(place, landing%after%mesh, landing%after%x, landing%after%state)
     place%judged = .not. landing%landed
@@ -127,13 +127,13 @@ contains
   end subroutine take_landing
 
   subroutine take(place, mesh, s, state)
-    type(reported_t), intent(inout) :: place
+    type(place_t), intent(inout) :: place
     integer, intent(in) :: mesh
     real(wp), intent(in) :: s
     type(state_t), intent(in) :: state
-    type(reported_t) :: here
+    type(place_t) :: here
 
-    here = reported_state(mesh, state)
+    here = place_of_state(mesh, state)
     place%mesh = mesh
     place%s = s
     place%state = state
@@ -146,7 +146,7 @@ contains
     type(finer_t), intent(inout) :: fine
     type(traced_path_t), intent(in) :: path
     real(wp), intent(in) :: wanted
-    type(reported_t), intent(inout) :: place
+    type(place_t), intent(inout) :: place
     type(expansion_t) :: near
     type(state_t) :: right
     real(wp) :: distance, left, moved(read_of_states)
@@ -197,8 +197,8 @@ contains
   subroutine judge_at_h0(own, fine, place)
     type(equations_t), intent(in) :: own
     type(finer_t), intent(inout) :: fine
-    type(reported_t), intent(inout) :: place
-    type(reported_t) :: there, beside
+    type(place_t), intent(inout) :: place
+    type(place_t) :: there, beside
     type(state_t) :: state
     type(control_t) :: control
     real(wp) :: left
@@ -212,7 +212,7 @@ contains
     control = h0_control(own%problem%shape, own%meshes, place%mesh, place%at(of_h0))
     call fine%find(control, state, place%known)
     if (.not. place%known) return
-    there = reported_state(place%mesh, state)
+    there = place_of_state(place%mesh, state)
     place%fine = there%at
     place%left = rounding*abs(place%at)
     if (place%with_profile) place%profile = profile_error(own, fine, place, state)
@@ -220,7 +220,7 @@ contains
     control%value = control%value + shift
     call fine%find(control, state, place%known)
     if (.not. place%known) return
-    beside = reported_state(place%mesh, state)
+    beside = place_of_state(place%mesh, state)
     place%left = place%left + left*abs(beside%at - there%at)
     place%left(of_h0) = 0
   end subroutine judge_at_h0
@@ -229,18 +229,19 @@ contains
   pure type(state_t) function guess_of(own, fine, place) result(state)
     type(equations_t), intent(in) :: own
     type(finer_t), intent(in) :: fine
-    type(reported_t), intent(in) :: place
+    type(place_t), intent(in) :: place
 
     state = regrid(own%problem%shape, place%state, own%meshes%grid(place%mesh), &
       fine%meshes%grid(place%mesh), place%state%scale)
   end function guess_of
 
   !> The largest difference of gaps, and of pressures over the largest of them, between a place and
-  !> the same on a finer mesh, on the axis and at its nodes; raised by the margin.
+  !> the same on a finer mesh, on the axis and at its nodes; raised by the margin. Gaps wider than
+  !> the law's length count in units of themselves: far out rounding is a part of the gap.
   pure real(wp) function profile_error(own, fine, place, right) result(largest)
     type(equations_t), intent(in) :: own
     type(finer_t), intent(in) :: fine
-    type(reported_t), intent(in) :: place
+    type(place_t), intent(in) :: place
     type(state_t), intent(in) :: right
     real(wp) :: x, gap, strongest
     integer :: j
@@ -253,7 +254,7 @@ contains
         x = state%scale*own%meshes%grid(place%mesh)%x(j)/right%scale
         if (x > finer%end) exit
         gap = gap_at(own%problem%shape, finer, right, x)
-        largest = max(largest, abs(gap - state%gap(j)), &
+        largest = max(largest, abs(gap - state%gap(j))/max(1.0_wp, gap), &
           maxval(abs(law%pressure([gap]) - state%pressure(j)))/strongest)
       end do
     end associate

@@ -9,8 +9,7 @@ module place_rates
   use variation, only: variation_t, along_path
   use state_sensitivity, only: place_on_path_t
   use place_sensitivity, only: local_t, find_local, local_undeformed, at_fixed, at_extremum
-  use reported, only: reported_t, drive_weights, of_h0, nowhere
-  use places, only: places_t
+  use reported_place, only: place_t, drive_weights, of_h0, nowhere
   use path_stepper, only: path_stepper_t
   use experiment_request, only: sensitivity_t
   use experiment_result, only: experiment_result_t
@@ -70,7 +69,7 @@ contains
     class(path_stepper_t), intent(inout) :: steps
     type(variation_t), intent(in) :: varied(:)
     real(wp), intent(in) :: wanted(:)
-    type(reported_t), intent(inout) :: place
+    type(place_t), intent(inout) :: place
     logical, intent(out) :: found
     type(frozen_jacobian_t) :: frozen
     type(place_on_path_t) :: at

@@ -1,12 +1,12 @@
-!> The table of places that numbers are reported of (`reported`). A number of the summary has a
-!> name, one or more elements, and for each of them one place, or several whose sum it is, such as
+!> The table of places that numbers are reported of (`reported_place`). A number of the summary has
+!> a name, one or more elements, and for each of them one place, or several whose sum it is, such as
 !> the energies before and after jumps.
 module places
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use reported, only: reported_t, point_of_path, values_of, units_of, rates_of, least, quantities, &
-    of_h0, of_load
+  use reported_place, only: place_t, point_of_path, values_of, units_of, rates_of, least, &
+    quantities, of_h0, of_load
   implicit none
   private
   public :: places_t, readings_t
@@ -22,7 +22,7 @@ module places
   end type entry_t
 
   type :: places_t
-    type(reported_t), allocatable :: place(:)
+    type(place_t), allocatable :: place(:)
     type(entry_t), allocatable :: entry(:)
   contains
     procedure :: keep
@@ -55,7 +55,7 @@ contains
   !> Finds a place in the table, or adds it, and before it the one that its jump began from.
   recursive subroutine keep(self, place, i)
     class(places_t), intent(inout) :: self
-    type(reported_t), intent(in) :: place
+    type(place_t), intent(in) :: place
     integer, intent(out) :: i
     integer :: after
 
@@ -71,7 +71,7 @@ contains
 
   !> Whether two places are one: a point of the path, the landing after one, or all numbers agree.
   pure logical function is_same(one, other)
-    type(reported_t), intent(in) :: one, other
+    type(place_t), intent(in) :: one, other
 
     is_same = one%point == other%point .and. (one%landing .eqv. other%landing) .and. &
       (one%with_profile .eqv. other%with_profile)
@@ -86,7 +86,7 @@ contains
     class(places_t), intent(inout) :: self
     character(len=*), intent(in) :: name
     integer, intent(in) :: element
-    type(reported_t), intent(in), optional :: place
+    type(place_t), intent(in), optional :: place
     real(wp), intent(in), optional :: factor
     type(entry_t) :: entry
 
@@ -119,7 +119,7 @@ contains
   subroutine enter_list(self, name, list)
     class(places_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    type(reported_t), intent(in) :: list(:)
+    type(place_t), intent(in) :: list(:)
     integer :: i
 
     do i = 1, size(list)
@@ -160,7 +160,7 @@ contains
   end function elements
 
   !> The place at which a number is read; one that no mesh has, if the number does not exist.
-  pure type(reported_t) function place_of(self, name) result(place)
+  pure type(place_t) function place_of(self, name) result(place)
     class(places_t), intent(in) :: self
     character(len=*), intent(in) :: name
 
@@ -207,12 +207,11 @@ contains
   end function largest_of
 
   !> The elements of a number, with errors and derivatives; none where it does not exist.
-  function read_numbers(self, problem, name, quantity) result(found)
+  type(readings_t) function read_numbers(self, problem, name, quantity) result(found)
     class(places_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
     character(len=*), intent(in) :: name
     integer, intent(in) :: quantity
-    type(readings_t) :: found
     real(wp), allocatable :: difference(:)
     real(wp), dimension(quantities) :: units, values, misses, leftovers
     real(wp) :: none

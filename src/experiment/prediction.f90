@@ -14,10 +14,9 @@ module prediction
 contains
 
   !> The state at h0 extrapolated from a position's past, node by node.
-  function extrapolated(position, h0) result(expected)
+  type(state_t) function extrapolated(position, h0) result(expected)
     type(branch_point_t), intent(in) :: position
     real(wp), intent(in) :: h0
-    type(state_t) :: expected
 
     expected = between(position%h0(:position%held), position%past(:position%held), h0)
     if (position%held == 1) expected%gap = expected%gap + (h0 - position%state%h0)
@@ -26,12 +25,11 @@ contains
 
   !> The same with the deformation extrapolated at equal distances over the contact radius, itself
   !> extrapolated: what is sharp at the edge moves with it. Without contact, node by node.
-  function moved_with_edge(problem, mesh, position, h0) result(expected)
+  type(state_t) function moved_with_edge(problem, mesh, position, h0) result(expected)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: mesh
     type(branch_point_t), intent(in) :: position
     real(wp), intent(in) :: h0
-    type(state_t) :: expected
     real(wp) :: weight(position%held), radius(position%held), c
     real(wp), allocatable :: deformation(:), height(:)
     integer :: i, k
@@ -60,10 +58,9 @@ contains
 
   !> The state expected at h0 on a branch that changes at the rate dH/dH0 and has a fold at a
   !> distance: it goes there as the square root of what is left of the way.
-  pure function towards_fold(state, rate, h0, distance) result(expected)
+  pure type(state_t) function towards_fold(state, rate, h0, distance) result(expected)
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: rate(:), h0, distance
-    type(state_t) :: expected
     real(wp) :: way
 
     way = min(abs(h0 - state%h0)/distance, 1.0_wp)

@@ -10,7 +10,7 @@ module rigid_bodies
   use discretisation, only: discretisation_t
   use contact_state, only: state_t, state_from
   use ending, only: touching, turn_not_reached
-  use reported, only: reported_t, add_reported, of_h0, of_load
+  use reported_place, only: place_t, add_place, of_h0, of_load
   use finer_solver, only: rounding
   use records, only: observer_t, record_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
@@ -85,13 +85,13 @@ contains
       end if
       load(i) = load_undeformed(problem, plan%h0(i))
       call show(problem, plan, i, load(i), observer)
-      if (plan%profile(i)) call add_reported(branch%profile, reported_at(problem, plan%h0(i)))
+      if (plan%profile(i)) call add_place(branch%profile, place_at(problem, plan%h0(i)))
       branch%states = i
     end do
     outcome%cost%states = outcome%cost%states + branch%states
     if (branch%states == 0) return
     associate (n => branch%states)
-      branch%finish = reported_at(problem, plan%h0(n))
+      branch%finish = place_at(problem, plan%h0(n))
       call find_largest_tension(problem, plan%h0(:n), load(:n), branch)
     end associate
   end subroutine run_branch
@@ -134,8 +134,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
     logical, intent(in) :: wanted
-    real(wp), allocatable :: r(:)
-    real(wp), allocatable :: gap(:)
+    real(wp), allocatable :: r(:), gap(:)
 
     allocate (r(0))
     if (.not. wanted) return
@@ -189,7 +188,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0(:), load(:)
     type(branch_t), intent(inout) :: branch
-    type(reported_t) :: found, of_rows
+    type(place_t) :: found, of_rows
     real(wp), allocatable :: gap(:)
     integer :: k, i
 
@@ -206,7 +205,7 @@ contains
 
   !> The lowest load about a state, between two values of h0 where it is higher, or one of which is
   !> the state itself: at a root of its derivative, or else at the end of the range.
-  pure type(reported_t) function lowest_about(problem, h0, before, after) result(found)
+  pure type(place_t) function lowest_about(problem, h0, before, after) result(found)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0, before, after
     type(root_search_t) :: search
@@ -216,7 +215,7 @@ contains
     low = min(before, after)
     high = max(before, after)
     slopes = [load_slope_undeformed(problem, low), load_slope_undeformed(problem, high)]
-    found = reported_at(problem, h0)
+    found = place_at(problem, h0)
     if (.not. (slopes(1) < 0 .and. slopes(2) > 0)) then
       ! A turn between neighbours that was not resolved.
       if (low < h0 .and. h0 < high) found%left(of_h0) = high - low
@@ -227,7 +226,7 @@ contains
       place = search%place()
       call search%note(place, load_slope_undeformed(problem, place))
     end do
-    found = reported_at(problem, search%root)
+    found = place_at(problem, search%root)
     slope = measured_slope(problem, search%root)
     shift = apart*(high - low)
     curvature = (load_slope_undeformed(problem, search%root + shift) - &
@@ -238,7 +237,7 @@ contains
 
   !> A state as one that is reported, with its error: that of the integral, and what the rounding of
   !> h0 makes of it.
-  pure type(reported_t) function reported_at(problem, h0) result(reported)
+  pure type(place_t) function place_at(problem, h0) result(reported)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
     type(measured_t) :: load
@@ -251,7 +250,7 @@ contains
       given_error(problem, h0)*abs(load_slope_undeformed(problem, h0))
     reported%profile = rounding
     reported%judged = .true.
-  end function reported_at
+  end function place_at
 
   !> What rounding leaves of an h0 that is given in metres.
   pure real(wp) function given_error(problem, h0)

@@ -3,7 +3,7 @@
 !> A step leaves one new state; the others that a position holds it had before, and only their
 !> numbers are packed.
 module state_records
-  use kinds, only: wp, long
+  use kinds, only: long
   use contact_state, only: state_t
   use equilibrium, only: cost_t
   use stepper, only: branch_point_t, step_result_t, memory
@@ -11,77 +11,59 @@ module state_records
   use byte_record, only: byte_record_t
   implicit none
   private
-  public :: put_cost, take_cost, put_state, take_state, put_position, take_position, put_event, &
-    take_event, put_frozen, take_frozen
+  public :: pass_cost, pass_state, pass_position, pass_event, pass_frozen
 
 contains
 
-  !> Packs the position that a step has led to; known: the number of the state that it began in.
-  subroutine put_position(record, known, position)
-    type(byte_record_t), intent(inout) :: record
-    integer, intent(in) :: known
-    type(branch_point_t), intent(in) :: position
-    integer :: k
-
-    call record%put(position%mesh)
-    call record%put(position%piece)
-    call record%put(position%held)
-    do k = 1, position%held
-      call record%put(position%h0(k))
-      call record%put(position%past_number(k))
-      if (position%past_number(k) > known) call put_state(record, position%past(k))
-    end do
-    call record%put(position%number)
-    if (position%number > known .and. past_with(position, position%number) == 0) &
-      call put_state(record, position%state)
-  end subroutine put_position
-
-  !> Unpacks what `put_position` packed; before: the position that the step began in.
-  subroutine take_position(record, before, position)
+  !> The position that a step has led to; before: the one that it began in, of which only the number
+  !> of the state is looked at where the record is written.
+  subroutine pass_position(record, before, position)
     type(byte_record_t), intent(inout) :: record
     type(branch_point_t), intent(in) :: before
-    type(branch_point_t), intent(out) :: position
+    type(branch_point_t), intent(inout) :: position
     integer :: k, place
 
-    call record%take(position%mesh)
-    call record%take(position%piece)
-    call record%take(position%held)
+    call record%pass(position%mesh)
+    call record%pass(position%piece)
+    call record%pass(position%held)
     position%held = min(max(position%held, 0), memory)
-    allocate (position%past(memory))
+    if (position%held > 0 .and. .not. allocated(position%past)) allocate (position%past(memory))
     do k = 1, position%held
-      call record%take(position%h0(k))
-      call record%take(position%past_number(k))
-      call take_known(position%past_number(k), position%past(k))
+      call record%pass(position%h0(k))
+      call record%pass(position%past_number(k))
+      call pass_unless_known(position%past_number(k), position%past(k))
     end do
-    call record%take(position%number)
+    call record%pass(position%number)
     place = past_with(position, position%number)
-    if (place > 0) then
+    if (place == 0) then
+      call pass_unless_known(position%number, position%state)
+    else if (record%reading) then
       position%state = position%past(place)
-    else
-      call take_known(position%number, position%state)
     end if
 
   contains
 
-    !> Takes a state from where it was before, or from the record.
-    subroutine take_known(number, state)
+    !> A state that is not found where the step began.
+    subroutine pass_unless_known(number, state)
       integer, intent(in) :: number
-      type(state_t), intent(out) :: state
+      type(state_t), intent(inout) :: state
       integer :: place
 
-      place = past_with(before, number)
       if (number > before%number) then
-        call take_state(record, state)
-      else if (place > 0) then
-        state = before%past(place)
-      else if (number == before%number) then
-        state = before%state
-      else
-        record%exhausted = .true.
+        call pass_state(record, state)
+      else if (record%reading) then
+        place = past_with(before, number)
+        if (place > 0) then
+          state = before%past(place)
+        else if (number == before%number) then
+          state = before%state
+        else
+          record%exhausted = .true.
+        end if
       end if
-    end subroutine take_known
+    end subroutine pass_unless_known
 
-  end subroutine take_position
+  end subroutine pass_position
 
   !> Which state of a position's past has a number; 0: none.
   pure integer function past_with(position, number) result(place)
@@ -91,138 +73,74 @@ contains
     place = findloc(position%past_number(:position%held), number, 1)
   end function past_with
 
-  !> Packs a state.
-  subroutine put_state(record, state)
+  subroutine pass_state(record, state)
     type(byte_record_t), intent(inout) :: record
-    type(state_t), intent(in) :: state
+    type(state_t), intent(inout) :: state
 
-    call record%put(state%gap)
-    call record%put(state%pressure)
-    call record%put(state%h0)
-    call record%put(state%scale)
-    call record%put(state%axis_gap)
-    call record%put(state%load)
-    call record%put(state%residual)
-    call record%put(state%iterations)
-  end subroutine put_state
+    call record%pass(state%gap)
+    call record%pass(state%pressure)
+    call record%pass(state%h0)
+    call record%pass(state%scale)
+    call record%pass(state%axis_gap)
+    call record%pass(state%load)
+    call record%pass(state%residual)
+    call record%pass(state%iterations)
+  end subroutine pass_state
 
-  !> Unpacks what `put_state` packed.
-  subroutine take_state(record, state)
+  !> What happened in a step.
+  subroutine pass_event(record, event)
     type(byte_record_t), intent(inout) :: record
-    type(state_t), intent(out) :: state
-
-    call record%take(state%gap)
-    call record%take(state%pressure)
-    call record%take(state%h0)
-    call record%take(state%scale)
-    call record%take(state%axis_gap)
-    call record%take(state%load)
-    call record%take(state%residual)
-    call record%take(state%iterations)
-  end subroutine take_state
-
-  !> Packs what happened in a step.
-  subroutine put_event(record, event)
-    type(byte_record_t), intent(inout) :: record
-    type(step_result_t), intent(in) :: event
-
-    call record%put(event%converged)
-    call record%put(event%jumped)
-    call record%put(event%jump_h0)
-    call record%put(event%jump_load)
-    call record%put(event%jump_uncertainty)
-    call record%put(event%ending%cause)
-    call record%put(event%ending%iterations)
-    call record%put(event%ending%residual)
-    call record%put(event%fold)
-    call record%put(allocated(event%lowest))
-    if (.not. allocated(event%lowest)) return
-    call record%put(event%lowest%load)
-    call record%put(event%lowest%h0)
-    call record%put(event%lowest%point)
-    call record%put(event%lowest%landing)
-  end subroutine put_event
-
-  !> Unpacks what `put_event` packed.
-  subroutine take_event(record, event)
-    type(byte_record_t), intent(inout) :: record
-    type(step_result_t), intent(out) :: event
+    type(step_result_t), intent(inout) :: event
     logical :: known
 
-    call record%take(event%converged)
-    call record%take(event%jumped)
-    call record%take(event%jump_h0)
-    call record%take(event%jump_load)
-    call record%take(event%jump_uncertainty)
-    call record%take(event%ending%cause)
-    call record%take(event%ending%iterations)
-    call record%take(event%ending%residual)
-    call record%take(event%fold)
-    call record%take(known)
+    call record%pass(event%converged)
+    call record%pass(event%jumped)
+    call record%pass(event%jump_h0)
+    call record%pass(event%jump_load)
+    call record%pass(event%jump_uncertainty)
+    call record%pass(event%ending%cause)
+    call record%pass(event%ending%iterations)
+    call record%pass(event%ending%residual)
+    call record%pass(event%fold)
+    known = allocated(event%lowest)
+    call record%pass(known)
     if (.not. known) return
-    allocate (event%lowest)
-    call record%take(event%lowest%load)
-    call record%take(event%lowest%h0)
-    call record%take(event%lowest%point)
-    call record%take(event%lowest%landing)
-  end subroutine take_event
+    if (record%reading) allocate (event%lowest)
+    call record%pass(event%lowest%load)
+    call record%pass(event%lowest%h0)
+    call record%pass(event%lowest%point)
+    call record%pass(event%lowest%landing)
+  end subroutine pass_event
 
-  !> Packs a frozen Jacobian as where it was made; known: the records before have that.
-  subroutine put_frozen(record, frozen, known)
+  !> A frozen Jacobian as where it was made, without the factors: frozen%factors%valid says whether
+  !> there are any. known: earlier records have where it was made.
+  subroutine pass_frozen(record, known, frozen)
     type(byte_record_t), intent(inout) :: record
-    type(frozen_jacobian_t), intent(in) :: frozen
-    logical, intent(in) :: known
-
-    call record%put(frozen%factors%valid)
-    call record%put(frozen%excess)
-    call record%put(frozen%control%kind)
-    call record%put(frozen%control%mesh)
-    call record%put(known .or. frozen%renewals == 0)
-    if (known .or. frozen%renewals == 0) return
-    call record%put([frozen%control%value, frozen%control%scale, frozen%state%h0, &
-      frozen%state%scale, frozen%state%gap])
-  end subroutine put_frozen
-
-  !> Unpacks what `put_frozen` packed, all but the factors: frozen%factors%valid says whether there
-  !> were any.
-  subroutine take_frozen(record, frozen)
-    type(byte_record_t), intent(inout) :: record
+    logical, intent(inout) :: known
     type(frozen_jacobian_t), intent(inout) :: frozen
-    real(wp), allocatable :: made_at(:)
-    logical :: known
 
-    call record%take(frozen%factors%valid)
-    call record%take(frozen%excess)
-    call record%take(frozen%control%kind)
-    call record%take(frozen%control%mesh)
-    call record%take(known)
+    call record%pass(frozen%factors%valid)
+    call record%pass(frozen%excess)
+    call record%pass(frozen%control%kind)
+    call record%pass(frozen%control%mesh)
+    call record%pass(known)
     if (known) return
-    call record%take(made_at)
-    ! A record that is too short is refused by whoever reads it.
-    if (size(made_at) < 4) return
-    frozen%control%value = made_at(1)
-    frozen%control%scale = made_at(2)
-    frozen%state%h0 = made_at(3)
-    frozen%state%scale = made_at(4)
-    frozen%state%gap = made_at(5:)
-  end subroutine take_frozen
+    call record%pass(frozen%control%value)
+    call record%pass(frozen%control%scale)
+    call record%pass(frozen%state%h0)
+    call record%pass(frozen%state%scale)
+    call record%pass(frozen%state%gap)
+  end subroutine pass_frozen
 
-  !> Packs what was spent: all its components are numbers of one word.
-  subroutine put_cost(record, cost)
+  !> What was spent: all its components are numbers of one word.
+  subroutine pass_cost(record, cost)
     type(byte_record_t), intent(inout) :: record
-    type(cost_t), intent(in) :: cost
-
-    call record%put_words(transfer(cost, [0_long], storage_size(cost)/storage_size(0_long)))
-  end subroutine put_cost
-
-  !> Unpacks what `put_cost` packed.
-  subroutine take_cost(record, cost)
-    type(byte_record_t), intent(inout) :: record
-    type(cost_t), intent(out) :: cost
+    type(cost_t), intent(inout) :: cost
     integer(long) :: words(storage_size(cost)/storage_size(0_long))
 
-    call record%take_words(words)
+    words = transfer(cost, words)
+    call record%pass(words)
     cost = transfer(words, cost)
-  end subroutine take_cost
+  end subroutine pass_cost
 
 end module state_records

@@ -6,7 +6,7 @@ module stepped_branch
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
   use tension_search, only: tension_search_t
-  use reported, only: reported_t, reported_state, point_of_path, add_reported, of_h0, of_load
+  use reported_place, only: place_t, place_of_state, point_of_path, add_place, of_h0, of_load
   use records, only: observer_t, record_t, extent_t, record_of, stable_yes, stable_unasked
   implicit none
   private
@@ -24,16 +24,16 @@ module stepped_branch
   !> What a branch showed, in the units of `dimensionless_problem`. Unallocated: there was none.
   type :: branch_t
     !> Largest tension (a negative load).
-    type(reported_t), allocatable :: lowest
+    type(place_t), allocatable :: lowest
     !> The first jump: h0 and the load just before it; and how well h0 is known where the path is
     !> not.
-    type(reported_t), allocatable :: jump
+    type(place_t), allocatable :: jump
     real(wp) :: jump_uncertainty = 0
     !> The last equilibrium; no state that did not converge counts as one.
-    type(reported_t), allocatable :: finish
+    type(place_t), allocatable :: finish
     !> States whose profile was asked for; where the path is not known, first and middle state,
     !> whose errors stand for those of all.
-    type(reported_t), allocatable :: profile(:), sample(:)
+    type(place_t), allocatable :: profile(:), sample(:)
     !> The stable pieces of the path on which it begins and ends; 0 where that is not known.
     integer :: first_piece = 0, last_piece = 0
     real(wp) :: worst_residual = 0, worst_spacing = 0
@@ -85,7 +85,7 @@ contains
       end if
       steps%cost%states = steps%cost%states + 1
       call note(branch, steps, position, event, plan%h0(i))
-      call search%note_jump(steps, event)
+      call search%note_jump(event)
       if (event%ending%early()) exit
       associate (state => position%state)
         record = record_of(plan%name, steps%problem, steps%grid(position), state, &
@@ -99,9 +99,9 @@ contains
         last%mesh = position%mesh
         branch%last_piece = position%piece
         if (plan%profile(i)) &
-          call add_reported(branch%profile, reported_state(last%mesh, last%state))
+          call add_place(branch%profile, place_of_state(last%mesh, last%state))
         if (position%piece == 0 .and. any(i == [1, (1 + size(plan%h0))/2])) &
-          call add_reported(branch%sample, reported_state(last%mesh, last%state))
+          call add_place(branch%sample, place_of_state(last%mesh, last%state))
       end if
       do k = 1, size(keep)
         if (place(k) == i) kept(k) = position
@@ -110,7 +110,7 @@ contains
         call search%note_state(steps, last_h0, plan%h0(i), previous, position, event)
       last_h0 = plan%h0(i)
     end do
-    if (allocated(last%state%gap)) branch%finish = reported_state(last%mesh, last%state)
+    if (allocated(last%state%gap)) branch%finish = place_of_state(last%mesh, last%state)
     call search%finish(steps, last_h0)
     if (allocated(branch%lowest) .or. .not. allocated(search%lowest)) return
     branch%lowest = search%lowest
@@ -131,7 +131,7 @@ contains
       branch%jump%at(of_load) = event%jump_load
       branch%jump_uncertainty = event%jump_uncertainty
     end if
-    if (allocated(event%lowest)) call lower(branch, steps, position, event)
+    if (allocated(event%lowest)) call lower(branch, position, event)
     branch%ending = event%ending
     if (event%ending%early()) return
     branch%states = branch%states + 1
@@ -145,9 +145,8 @@ contains
   end subroutine note
 
   !> Lets the largest tension of a step on a known path be the branch's if it is.
-  subroutine lower(branch, steps, position, event)
+  subroutine lower(branch, position, event)
     type(branch_t), intent(inout) :: branch
-    class(stepper_t), intent(in) :: steps
     type(branch_point_t), intent(in) :: position
     type(step_result_t), intent(in) :: event
 
@@ -157,9 +156,9 @@ contains
         if (lowest%load >= branch%lowest%at(of_load)) return
       end if
       if (lowest%point == 0) then
-        branch%lowest = reported_state(position%mesh, position%state)
+        branch%lowest = place_of_state(position%mesh, position%state)
       else
-        branch%lowest = point_of_path(lowest%point, lowest%landing)
+        branch%lowest = point_of_path(lowest%point, landing=lowest%landing)
         branch%lowest%at(of_load) = lowest%load
       end if
     end associate

@@ -2,12 +2,12 @@
 !> polynomials with their slopes miss.
 module table_places
   use kinds, only: wp
-  use curve_states, only: curve_state_t
+  use curve_states, only: path_state_t
   use driven_pieces, only: state_driven
-  use device, only: leg_t, nodes_on
+  use device, only: leg_t, states_on
   use path_stepper, only: path_stepper_t
   use path_readings, only: path_readings_t
-  use reported, only: reported_t, reported_state, of_load
+  use reported_place, only: place_t, place_of_state, of_load
   use traced_path, only: no_mesh
   use places, only: places_t
   implicit none
@@ -24,12 +24,13 @@ contains
     class(path_stepper_t), intent(inout) :: steps
     type(path_readings_t), intent(inout) :: readings
     type(places_t), intent(inout) :: places
-    type(curve_state_t), allocatable :: nodes(:)
+    type(path_state_t), allocatable :: nodes(:)
     integer :: i, k, row, last
 
     if (.not. allocated(readings%prescribed)) return
     do i = 1, size(readings%prescribed%leg)
-      nodes = nodes_on(readings%node, readings%prescribed%leg(i))
+      nodes = states_on(readings%node, readings%prescribed%leg(i))
+      nodes = nodes(2:size(nodes) - 1)
       if (size(nodes) < 2) cycle
       last = 0
       do k = 1, judged_rows
@@ -46,8 +47,8 @@ contains
     !> Holds a polynomial against the state in the middle between a row and the next.
     subroutine hold(leg, row, next)
       type(leg_t), intent(in) :: leg
-      type(curve_state_t), intent(in) :: row, next
-      type(curve_state_t) :: state
+      type(path_state_t), intent(in) :: row, next
+      type(path_state_t) :: state
 
       associate (driven => readings%prescribed, width => next%h0 - row%h0)
         if (.not. abs(width) > 0) return
@@ -62,14 +63,14 @@ contains
   end subroutine enter_table
 
   !> A point of the path as a place at its h0.
-  pure type(reported_t) function place_of(point) result(place)
-    type(curve_state_t), intent(in) :: point
+  pure type(place_t) function place_of(point) result(place)
+    type(path_state_t), intent(in) :: point
 
     if (point%mesh == no_mesh) then
       place%mesh = no_mesh
       place%at(:of_load) = [point%h0, point%load]
     else
-      place = reported_state(point%mesh, point%state)
+      place = place_of_state(point%mesh, point%state)
     end if
     place%s = point%x
   end function place_of

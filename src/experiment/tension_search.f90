@@ -4,7 +4,7 @@ module tension_search
   use kinds, only: wp
   use interpolation, only: interpolated_maximum
   use stepper, only: stepper_t, branch_point_t, step_result_t
-  use reported, only: reported_t, reported_state, point_of_path, of_h0, of_load
+  use reported_place, only: place_t, place_of_state, of_h0, of_load
   implicit none
   private
   public :: tension_search_t, load_tolerance
@@ -22,7 +22,7 @@ module tension_search
 
   type :: tension_search_t
     !> The largest tension so far; unallocated where nothing attracted.
-    type(reported_t), allocatable :: lowest
+    type(place_t), allocatable :: lowest
     type(stretch_t), private :: stretch, deferred
     integer, private :: ended = 0
   contains
@@ -52,33 +52,31 @@ module tension_search
 contains
 
   !> Lets a load at h0 be the largest tension if it is; position: the state that has it.
-  subroutine lower(self, steps, load, h0, position)
+  subroutine lower(self, load, h0, position)
     class(tension_search_t), intent(inout) :: self
-    class(stepper_t), intent(in) :: steps
     real(wp), intent(in) :: load, h0
     type(branch_point_t), intent(in), optional :: position
+    type(place_t) :: blank
 
     if (.not. load < 0) return
     if (allocated(self%lowest)) then
       if (load >= self%lowest%at(of_load)) return
     end if
     if (present(position)) then
-      self%lowest = reported_state(position%mesh, position%state)
+      self%lowest = place_of_state(position%mesh, position%state)
     else
-      ! No point of a path.
-      self%lowest = point_of_path(0)
+      self%lowest = blank
       self%lowest%at(of_h0) = h0
       self%lowest%at(of_load) = load
     end if
   end subroutine lower
 
   !> The last state before a jump may be the one of largest tension.
-  subroutine note_jump(self, steps, event)
+  subroutine note_jump(self, event)
     class(tension_search_t), intent(inout) :: self
-    class(stepper_t), intent(in) :: steps
     type(step_result_t), intent(in) :: event
 
-    if (event%jumped) call self%lower(steps, event%jump_load, event%jump_h0)
+    if (event%jumped) call self%lower(event%jump_load, event%jump_h0)
   end subroutine note_jump
 
   !> Takes the step from `previous` at last_h0 to `position` at h0.
@@ -135,7 +133,7 @@ contains
     self%stretch%open = .false.
     stretch = self%stretch
     if (stretch%lowest%state%load < 0) then
-      call self%lower(steps, stretch%lowest%state%load, stretch%lowest%state%h0, stretch%lowest)
+      call self%lower(stretch%lowest%state%load, stretch%lowest%state%h0, stretch%lowest)
     else if (.not. steps%problem%law%adhesion > 0) then
       return
     end if
@@ -201,7 +199,7 @@ contains
         if (next < best%state%h0) low = next
         if (next > best%state%h0) high = next
         if ((next - best%state%h0)*(stretch%after - stretch%before) > 0) &
-          call self%note_jump(steps, event)
+          call self%note_jump(event)
         cycle
       end if
       h0 = [h0, next]
@@ -211,7 +209,7 @@ contains
       if (size(h0) > 3 .and. abs(gained) <= load_tolerance*abs(best%state%load)) exit
       call keep_nearest(h0, load)
     end do
-    call self%lower(steps, best%state%load, best%state%h0, best)
+    call self%lower(best%state%load, best%state%h0, best)
   end subroutine refine
 
   !> Goes once more from stretch%before to stretch%after, or from the lowest state where a jump came
@@ -235,10 +233,10 @@ contains
     do i = 1, count
       call steps%step_to(start + (stretch%after - start)*i/count, position, event)
       if (.not. event%converged .or. event%ending%early()) exit
-      call self%note_jump(steps, event)
+      call self%note_jump(event)
       if (position%state%load < best%state%load) best = position
     end do
-    call self%lower(steps, best%state%load, best%state%h0, best)
+    call self%lower(best%state%load, best%state%h0, best)
   end subroutine search_jump_by_jump
 
   !> Drops values until the five nearest to the lowest load are left.

@@ -15,7 +15,7 @@ module timed_pass
   use drained_way, only: step_drained
   use journal, only: journal_t
   use timed_journal, only: keep, recall
-  use timed_record, only: timed_result_t, pass_t, accept, take_row, note, lose, most_steps, &
+  use timed_record, only: pass_t, accept, take_row, note, lose, most_steps, &
     of_end_h0, of_end_load, of_end_displacement, of_dissipation
   implicit none
   private

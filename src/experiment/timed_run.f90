@@ -20,7 +20,7 @@ module timed_run
   use time_stepper, only: time_stepper_t
   use material, only: new_material
   use solver_options, only: tightened
-  use drainage, only: drainage_t, farthest_pole
+  use drainage, only: farthest_pole
   use timed_pass, only: go_through
   use timed_record, only: timed_result_t, pass_t, most_steps, of_tension, of_end_load, &
     of_dissipation

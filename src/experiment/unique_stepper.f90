@@ -53,11 +53,10 @@ contains
   end subroutine step_to
 
   !> The state that those behind let expect at h0.
-  pure function guess(self, h0, position)
+  pure type(state_t) function guess(self, h0, position)
     class(unique_stepper_t), intent(in) :: self
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(in) :: position
-    type(state_t) :: guess
 
     guess = between(position%h0(:position%held), position%past(:position%held), h0)
   end function guess

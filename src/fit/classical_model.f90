@@ -12,8 +12,7 @@ module classical_model
   private
   public :: classical_model_t, theories
 
-  character(len=*), parameter :: theories(*) = [character(len=14) :: 'jkr', 'dmt', &
-    'maugis_dugdale']
+  character(len=*), parameter :: theories(*) = [character(len=14) :: 'jkr', 'dmt', 'maugis_dugdale']
 
   !> Panels of the branch in contact; relative step of the differences.
   integer, parameter :: panels = 200

@@ -269,8 +269,7 @@ contains
     fitted%freedom = size(residual) - n - residuals%curve%data%baseline_numbers()
     associate (data => residuals%curve%data)
       fitted%lack = lack_in(residual(:size(data%sample)), 3*data%way(data%sample) + &
-        data%side(data%sample), size(data%sample) - n - data%baseline_numbers(), &
-        data%noise)
+        data%side(data%sample), size(data%sample) - n - data%baseline_numbers(), data%noise)
     end associate
     do j = 1, n
       jacobian(:, j) = jacobian(:, j)*value_by_fitted(residuals%curve%unknown(j), fitted%value(j))
@@ -311,8 +310,7 @@ contains
     real(wp), parameter :: largest = 100
 
     value = self%value(i) + sign*self%deviation(i)
-    if (unknown%in_log) value = self%value(i)* &
-      exp(sign*min(self%fitted_deviation(i), largest))
+    if (unknown%in_log) value = self%value(i)* exp(sign*min(self%fitted_deviation(i), largest))
   end function end_of
 
 end module curve_fit

@@ -14,8 +14,8 @@ module far_samples
   !> less than this part of the whole.
   integer, parameter :: fewest_far = 12
   real(wp), parameter :: far_part = 1.0_wp/3, less = 0.6_wp
-  !> A spike is this many deviations, and this many times what the spring's own slope makes of the
-  !> distance between samples, away from its neighbours.
+  !> A spike is away from its neighbours by this many deviations, and this many times the change of
+  !> signal over a step of z at the spring's own slope.
   real(wp), parameter :: apart = 5, bent = 3
 
 contains
@@ -38,7 +38,7 @@ contains
     rough = rough_deviation(pack(measured%signal, measured%usable))
     measured%usable = measured%usable .and. .not. stand_apart(measured%signal, &
       merge(1, 2, measured%inward), measured%usable, apart*rough + &
-      bent*stiffness*typical_steps(measured))
+      bent*stiffness*steps_about(measured))
     do way = 1, 2
       associate (jump => find_jump(measured, rough, stiffness, way == 1))
         if (jump%before > 0) limit = max(limit, 0.5_wp*(measured%facing*jump%z + farthest))
@@ -71,19 +71,25 @@ contains
 
   end subroutine find_far
 
-  !> The typical step of z on the way of each sample.
-  pure function typical_steps(measured) result(step)
+  !> The step of z about each sample: the mean over its way or, where samples lie farther apart,
+  !> half the distance to the second on either side.
+  pure function steps_about(measured) result(step)
     type(measured_t), intent(in) :: measured
-    real(wp) :: step(size(measured%z)), on_way
-    integer :: way
+    real(wp) :: step(size(measured%z))
+    integer, allocatable :: mine(:)
+    integer :: way, k, n
 
     do way = 1, 2
-      associate (mine => measured%inward .eqv. way == 1)
-        on_way = (maxval(measured%z) - minval(measured%z))/max(1, count(mine))
-        where (mine) step = on_way
+      mine = pack([(k, k=1, size(step))], measured%inward .eqv. way == 1)
+      n = size(mine)
+      associate (z => measured%z(mine))
+        do k = 1, n
+          step(mine(k)) = max((maxval(measured%z) - minval(measured%z))/n, &
+            0.5_wp*maxval(abs(z(k) - z([max(1, k - 2), min(n, k + 2)]))))
+        end do
       end associate
     end do
-  end function typical_steps
+  end function steps_about
 
   !> The signal minus the straight line through the baseline of its way.
   pure function off_baseline(measured) result(left)

@@ -82,8 +82,7 @@ contains
     if (unknown%in_log .and. fitted%fitted_deviation(i) > vague) call add(lines, 'the data ' // &
       'say little of ' // unknown%name // ': it may be larger or smaller by a factor of ' // &
       rounded(exp(min(fitted%fitted_deviation(i), 100.0_wp))))
-    associate (low => fitted%end_of(i, unknown, -1.0_wp), &
-      high => fitted%end_of(i, unknown, 1.0_wp))
+    associate (low => fitted%end_of(i, unknown, -1.0_wp), high => fitted%end_of(i, unknown, 1.0_wp))
       if (allocated(unknown%lower)) then
         if (low <= unknown%lower) call add(lines, unknown%name // ': its 68 % interval ' // &
           'touches lower = ' // rounded(unknown%lower) // ', which decides and not the data')

@@ -258,8 +258,7 @@ contains
     deallocate (outcome%theory)
     allocate (outcome%theory(size(theories)))
     start = reshape([pack(curve%unknown%value, curve%unknown%role == of_model), &
-      pack(outcome%fitted%value, outcome%curve%unknown%role /= of_model)], &
-      [size(curve%unknown), 1])
+      pack(outcome%fitted%value, outcome%curve%unknown%role /= of_model)], [size(curve%unknown), 1])
     do i = 1, size(theories)
       model%theory = theories(i)
       outcome%theory(i)%theory = theories(i)

@@ -129,8 +129,7 @@ contains
   pure function baseline_under(self, signal) result(line)
     class(fit_samples_t), intent(in) :: self
     real(wp), intent(in) :: signal(:)
-    real(wp) :: line(size(signal))
-    real(wp) :: left(size(self%sample), 1), part(size(self%column, 2))
+    real(wp) :: line(size(signal)), left(size(self%sample), 1), part(size(self%column, 2))
     integer :: i
 
     left(:, 1) = signal(self%sample)

@@ -19,8 +19,7 @@ module force_branch
   !> derivatives by the unknowns at fixed t. turns: the piece ends at a turn of the position, not
   !> where the path ends.
   type :: branch_t
-    real(wp), allocatable :: h0(:, :), load(:, :)
-    real(wp), allocatable :: h0_rate(:, :, :), load_rate(:, :, :)
+    real(wp), allocatable :: h0(:, :), load(:, :), h0_rate(:, :, :), load_rate(:, :, :)
     logical :: turns_first = .false., turns_last = .false.
     !> 1/stiffness of the spring.
     real(wp) :: compliance = 0

@@ -141,8 +141,7 @@ contains
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
     integer, intent(in) :: way
-    real(wp) :: by(size(value))
-    real(wp) :: position, load
+    real(wp) :: by(size(value)), position, load
     real(wp), allocatable :: rate(:)
 
     by = 0

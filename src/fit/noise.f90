@@ -37,8 +37,7 @@ contains
   pure real(wp) function long_deviation(self) result(deviation)
     class(noise_t), intent(in) :: self
 
-    deviation = self%left(self%order)/ &
-      abs(1 - sum(self%weight(:self%order, max(1, self%order))))
+    deviation = self%left(self%order)/ abs(1 - sum(self%weight(:self%order, max(1, self%order))))
   end function long_deviation
 
   !> Uncorrelated noise.
@@ -52,10 +51,9 @@ contains
 
   !> The noise of a signal at equal steps, which is a straight line in z over each run. run(i):
   !> number of the run of sample i.
-  pure function noise_of(z, signal, run) result(noise)
+  pure type(noise_t) function noise_of(z, signal, run) result(noise)
     real(wp), intent(in) :: z(:), signal(:)
     integer, intent(in) :: run(:)
-    type(noise_t) :: noise
     real(wp) :: r(size(z)), covariance(0:longest)
     integer :: k, i, n
 

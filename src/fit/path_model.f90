@@ -82,8 +82,7 @@ contains
     class(path_model_t), intent(in) :: self
     real(wp), intent(in) :: value(:), stiffness, farthest, largest
 
-    is_known = allocated(self%value) .and. largest <= self%largest .and. &
-      farthest <= self%farthest
+    is_known = allocated(self%value) .and. largest <= self%largest .and. farthest <= self%farthest
     if (is_known) is_known = all(abs(value - self%value) <= 0) .and. &
       abs(stiffness - self%stiffness) <= 0
   end function is_known

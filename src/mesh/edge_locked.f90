@@ -207,7 +207,7 @@ contains
     richer = coarser%shape(mesh)%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
     if (.not. coarser%has_short_panels(mesh)) then
       self%shape(mesh) = self%shape_for(problem, mesh)
-      if (problem%law%of_paper .or. .not. sum(self%shape(mesh)%order) < sum(richer%order)) return
+      if (.not. sum(self%shape(mesh)%order) < sum(richer%order)) return
     end if
     self%shape(mesh) = richer
   end subroutine follow

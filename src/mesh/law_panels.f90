@@ -167,8 +167,8 @@ contains
       end if
     end function gap_of
 
-    !> What the load that is left out of a try is a part of: the adhesion, or before contact, where
-    !> waves have extrema of the load however small that is, the load of all of its pressure.
+    !> What the load that is left out of a try is a part of, but for 2 pi: the adhesion, or before
+    !> contact the load of all of its pressure, however small that is.
     real(wp) function load_of(j) result(load)
       integer, intent(in) :: j
       integer, parameter :: points = 64
@@ -176,39 +176,47 @@ contains
       integer :: i
 
       load = problem%law%adhesion
-      if (about /= about_axis .or. .not. problem%law%period > 0) return
-      z = sum(length)/points*[(i - 0.5_wp, i=1, points)]
-      offset = d*sinh(z)
-      load = min(load, &
-        sum(length)/points*sum(abs(problem%law%pressure(gap_of(j, offset)))*offset*d*cosh(z)))
+      if (present(seen)) then
+        load = seen%load(j)
+      else if (about == about_axis) then
+        z = sum(length)/points*[(i - 0.5_wp, i=1, points)]
+        offset = d*sinh(z)
+        load = min(load, &
+          sum(length)/points*sum(abs(problem%law%pressure(gap_of(j, offset)))*offset*d*cosh(z)))
+      end if
     end function load_of
 
   end subroutine fit_panels
 
   !> The part of load and gap that the nodes of a panel leave out. It goes with the square of the
   !> tail of the pressure, since nodes integrate polynomials of twice the degree; or with the tail
-  !> itself, where coefficients fall slowly: about kinks of the law or the shape. Panels for waves
-  !> are counted by the area that they are of; others, of which the front of a step may be
-  !> narrow and yet matter for the gap there, by that of all within them, as if that were one at
-  !> least. centre: radius of the mesh's; ends, r: of the panel and its nodes, where there are the
-  !> pressures; load: what it is a part of, but for 2 pi.
+  !> itself, where coefficients fall slowly: about kinks of the law. Pressures count by their area,
+  !> as far as the panel is long, and by that of all the load, which tells how much the gap feels
+  !> them, within the panel; under waves by the area of the panel. centre: radius of the mesh's;
+  !> ends, r: of the panel and its nodes, where there are the pressures; load: what it is a part of,
+  !> but for 2 pi.
   pure real(wp) function left_out(problem, local, centre, ends, r, pressure, load) result(left)
     type(problem_t), intent(in) :: problem
     type(local_nodes_t), intent(in) :: local
     real(wp), intent(in) :: centre, ends(2), r(:), pressure(:), load
-    real(wp) :: tail, most(1)
-    logical :: smooth
+    real(wp) :: most(1), area, weighted(size(pressure))
 
-    tail = local%tail(pressure)
-    smooth = .not. (problem%law%has_kink .or. problem%shape%smooth_from() > 0)
-    if (problem%law%period > 0) then
-      left = (ends(2) - ends(1))*(1 + ends(2))*tail/max(load, tiny(load))
-    else
-      most = max(1.0_wp, maxval(abs(pressure)))
-      if (problem%law%edge_gap > 0) most = abs(problem%law%pressure([problem%law%edge_gap]))
+    most = max(1.0_wp, maxval(abs(pressure)))
+    if (problem%law%edge_gap > 0) most = abs(problem%law%pressure([problem%law%edge_gap]))
+    area = min(1.0_wp, load/most(1))
+    if (problem%law%has_kink) then
       left = local%tail(pressure*(1 + (r - centre)**2))/most(1)
+      return
     end if
-    left = left*merge(min(1.0_wp, tail/max(maxval(abs(pressure)), tiny(1.0_wp))), 1.0_wp, smooth)
+    if (problem%law%period > 0) then
+      weighted = pressure*(ends(2) - ends(1))*(1 + ends(2))
+      left = local%tail(weighted)/max(load, tiny(load))
+    else
+      weighted = pressure*(min(area, ends(2)**2) + &
+        r*abs(r - centre)*(ends(2) - ends(1))/maxval(abs(ends - centre)))
+      left = local%tail(weighted)/max(most(1)*area, load, tiny(load))
+    end if
+    left = left*min(1.0_wp, local%tail(weighted)/max(maxval(abs(weighted)), tiny(1.0_wp)))
   end function left_out
 
   !> Gaps on the axis that bodies have before contact: down to that of most tension, or where a step
@@ -252,15 +260,14 @@ contains
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about
     real(wp), intent(in) :: h, offset(:), d
-    real(wp), dimension(size(offset)) :: gap, x, angle
+    real(wp), dimension(size(offset)) :: gap, beyond
 
     if (about == about_axis) then
       gap = h + problem%shape%height(offset)
     else
-      x = 1 + offset**2/(d + sqrt(d**2 + offset**2))
-      angle = acos(min(1/x, 1.0_wp))
-      gap = problem%law%edge_gap + problem%shape%hertz_gap(h, x) + &
-        2/pi*sqrt(4*pi*adhesion_strength(problem)*h)*angle
+      beyond = offset**2/(d + sqrt(d**2 + offset**2))
+      gap = problem%law%edge_gap + problem%shape%hertz_gap(h, beyond) + &
+        2/pi*sqrt(4*pi*adhesion_strength(problem)*h)*atan(sqrt(beyond*(2 + beyond)))
     end if
   end function gap_at
 

@@ -12,14 +12,15 @@ module mesh_digits
   !> No path is traced with fewer; no more can be told from rounding.
   real(wp), parameter :: fewest = 4.25_wp, most_digits = 13
   !> With fewer than these for each decade of sigma the folds are not those that the path has: they
-  !> come the nearer to one another the stronger adhesion is. Other laws than the paper's: on top of
-  !> the fewest. And as long as there is a contact at all these are enough to tell folds apart.
-  real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_others = 0.5_wp, enough_for_folds = 9
-  !> More or less than for a path of the Lennard-Jones law: bodies that do not jump; laws with
-  !> lengths of their own, and those that oscillate; profiles, which feel every error of the edge's
+  !> come the nearer to one another the stronger adhesion is. Laws that have a step, a kink or a
+  !> period: on top of the fewest. And as long as there is a contact at all these are enough to tell
+  !> folds apart.
+  real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_lengths = 0.5_wp, enough_for_folds = 9
+  !> More or less than for a path of the Lennard-Jones law: bodies that do not jump; laws that have
+  !> a step or a kink, and those that oscillate; profiles, which feel every error of the edge's
   !> place, the more the narrower the neck, for each decade of sigma; bodies with a kink, where the
   !> edge passes it.
-  real(wp), parameter :: without_jumps = -0.5_wp, for_lengths = 0.6_wp, for_waves = 0.5_wp, &
+  real(wp), parameter :: without_jumps = -0.5_wp, for_steps = 0.6_wp, for_waves = 1.1_wp, &
     for_profiles = 2, for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
   !> For each decade of how much wider contacts are than layers that yield unlike a half-space to
   !> waves of this many or fewer over the radius: at weak adhesion, and more for each decade of
@@ -40,19 +41,19 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
     logical, intent(in) :: profiles
-    real(wp) :: sigma, decades, least, left, away, wider, softer
+    real(wp) :: sigma, decades, least, left, lengths, away, wider, softer
 
     sigma = adhesion_strength(problem)
     decades = log10(1 + sigma)
     digits = of_load(-log10(accuracy))
-    least = max(fewest, for_folds*decades)
     ! Nothing is as sensitive as jumps are.
     if (sigma < onset) digits = digits + without_jumps
-    if (.not. problem%law%of_paper) then
-      digits = digits + for_lengths
-      if (problem%law%period > 0) digits = digits + for_waves
-      least = fewest + for_lengths + for_folds_of_others*decades
-    end if
+    lengths = 0
+    if (problem%law%step_width > 0 .or. problem%law%has_kink) lengths = for_steps
+    if (problem%law%period > 0) lengths = for_waves
+    digits = digits + lengths
+    least = max(fewest, for_folds*decades)
+    if (lengths > 0) least = fewest + lengths + for_folds_of_lengths*decades
     if (profiles) digits = digits + for_profiles + for_narrow_necks*decades
     if (problem%shape%smooth_from() > 0) digits = digits + for_kinks
     if (.not. problem%body%is_homogeneous()) then

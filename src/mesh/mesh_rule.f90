@@ -13,7 +13,7 @@ module mesh_rule
   use mapped_mesh, only: mapped_shape_t
   implicit none
   private
-  public :: approach_shape, contact_shape, is_narrow, rim_passed_at
+  public :: approach_shape, contact_shape, is_narrow, rim_passed_at, is_even
 
   !> d over the smallest feature: errors change little from half of it to twice.
   real(wp), parameter :: finer = 0.5_wp
@@ -31,13 +31,8 @@ module mesh_rule
   real(wp), parameter :: longest_film = 3
   !> No such pressure goes on beyond the law's range or so many of its lengths.
   real(wp), parameter :: farthest = 60
-  !> How many times the nodes laws have to which the rule was not fitted, where no pressure is
-  !> tried.
-  real(wp), parameter :: for_others = 1.3_wp
-  !> Short panels: their length in z, so many nodes, and more for each digit. The longest of laws to
-  !> which the rule was not fitted: what a polynomial lacks where the pressure changes shows on all
-  !> of its panel, and far out that counts as the area does, though the pressure is small there.
-  real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp, longest = 4
+  !> Short panels: their length in z, so many nodes, and more for each digit.
+  real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
   !> Widths of the cohesive zone that a flat face has at most for its rim to be passed on a mesh
   !> that stays where it is, and how far beyond the rim that goes (`rim_passed_at`).
   real(wp), parameter :: widths_to_pass = 10, beyond_rim = 1.3_wp
@@ -53,8 +48,9 @@ module mesh_rule
   !> More digits of kernels at most where what the half-space yields and what layers yield beside it
   !> are much more than both together.
   real(wp), parameter :: for_layers = 2
-  !> Digits that a shape with kinks allows.
-  real(wp), parameter :: digits_of_broken = 4
+  !> Digits more for pressures of foreseen gaps, which are only nearly those of the bodies; and
+  !> digits that a shape with kinks allows.
+  real(wp), parameter :: of_foreseen = 1.5_wp, digits_of_broken = 4
 
 contains
 
@@ -177,12 +173,10 @@ contains
     gap = bracket%middle()
   end function fading_gap
 
-  !> Adds sinh panels over z_length. One is enough for the paper's laws, which are powers of the gap
-  !> or one exponential, and bodies that are parabolas near the axis: the density was fitted to
-  !> these. Other laws have lengths of their own anywhere within their reach: they have several
-  !> panels, which are halved where such lengths are seen. Laws that oscillate or have a kink, and
-  !> other shapes, have short panels from the beginning. about, side, low, high, seen: see
-  !> `fit_panels`.
+  !> Adds sinh panels over z_length: one, which gets more nodes or is halved where the pressure
+  !> shows that it needs this, as under laws with lengths of their own. Laws that have a kink, and
+  !> shapes that are not parabolas near the axis, have short panels from the beginning. about, side,
+  !> low, high, seen: see `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -191,6 +185,7 @@ contains
     type(seen_gaps_t), intent(in), optional :: seen
     real(wp), allocatable :: lengths(:)
     integer, allocatable :: orders(:)
+    real(wp) :: digits_to_fit
     integer :: panels, fewest
     logical :: broken
 
@@ -205,19 +200,22 @@ contains
         if (about == about_axis .and. broken) lengths = ending_at_breaks(problem, shape%d, z_length)
       else
         lengths = [rung*ceiling(z_length/rung)]
-        panels = merge(1, ceiling(lengths(1)/longest), law%of_paper)
+        panels = 1
         if (problem%film_gap > 0) panels = ceiling(lengths(1)/longest_film)
         lengths = spread(lengths(1)/panels, 1, panels)
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
       end if
+      digits_to_fit = digits + merge(0.0_wp, of_foreseen, present(seen) .or. law%has_kink)
+      if (broken .or. problem%shape%smooth_from() > 0) &
+        digits_to_fit = min(digits_to_fit, digits_of_broken)
       ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known; and in
       ! contact under a law that marks gaps meshes wait for those that are seen.
-      if (law%edge_gap > 0 .and. .not. law%of_paper .and. (present(seen) .or. about == about_axis &
-        .or. .not. (side < 0 .or. is_narrow(problem)))) then
+      if (law%edge_gap > 0 .and. (present(seen) .or. about == about_axis .or. &
+        .not. (side < 0 .or. is_narrow(problem)))) then
         call fit_panels(problem, about, side, shape%d, low, high, density, fewest, &
-          merge(min(digits, digits_of_broken), digits, broken), lengths, orders, seen)
+          digits_to_fit, lengths, orders, seen)
       else
-        orders = nodes_on(lengths, merge(1.0_wp, for_others, law%of_paper)*density, fewest)
+        orders = nodes_on(lengths, density, fewest)
       end if
     end associate
     if (.not. allocated(shape%order)) allocate (shape%order(0), shape%z_length(0))
@@ -296,7 +294,7 @@ contains
       matters = radius > shape%ends
       if (.not. (matters .and. law%edge_gap > 0 .and. contact < shape%ends)) return
       gap = shape%height(shape%ends)
-      if (contact > 0) gap = shape%hertz_gap(contact, [shape%ends/contact])
+      if (contact > 0) gap = shape%hertz_gap(contact, [max(shape%ends/contact - 1, 0.0_wp)])
       pressure = abs(law%pressure([law%edge_gap, law%edge_gap + gap]))
       matters = pressure(2)*shape%ends**2 > negligible*10.0_wp**(-digits)*pressure(1)
     end associate

@@ -14,7 +14,7 @@ module seen_gaps
     !> (nodes, states), and their scales.
     type(discretisation_t), pointer, private :: grid => null()
     integer, private :: held = 0
-    real(wp), allocatable, private :: beside(:, :), scale(:)
+    real(wp), allocatable, private :: beside(:, :), scale(:), on(:)
     !> What is tried: a state, the radius at which it has what the mesh to be laid out is locked to,
     !> and the radius at which that is taken to be (lateral units).
     integer, allocatable, private :: state(:)
@@ -26,6 +26,7 @@ module seen_gaps
     procedure :: try
     procedure :: try_between
     procedure :: gap
+    procedure :: load
   end type seen_gaps_t
 
   !> Ratio of the radii tried: a step of the pressure moves by less than its width from one to the
@@ -41,19 +42,20 @@ contains
     integer, intent(in) :: states
 
     self%grid => grid
-    allocate (self%beside(grid%nodes, states), self%scale(states))
+    allocate (self%beside(grid%nodes, states), self%scale(states), self%on(states))
     allocate (self%state(0), self%from(0), self%radius(0))
   end subroutine begin_on
 
-  !> Adds a state: gaps and scale.
-  pure subroutine add(self, shape, gap, scale)
+  !> Adds a state: gaps, scale, and the load of which its errors are parts.
+  pure subroutine add(self, shape, gap, scale, load)
     class(seen_gaps_t), intent(inout) :: self
     class(shape_t), intent(in) :: shape
-    real(wp), intent(in) :: gap(:), scale
+    real(wp), intent(in) :: gap(:), scale, load
 
     self%held = self%held + 1
     self%beside(:, self%held) = gap - shape%height(scale*self%grid%x)
     self%scale(self%held) = scale
+    self%on(self%held) = load
   end subroutine add
 
   !> Adds the newest state once more, moved outwards or inwards: the gap that it has at the radius
@@ -89,10 +91,18 @@ contains
     real(wp) :: gap(size(offset))
     integer :: i
 
-    associate (r => max(self%from(j) + self%radius(j)*offset, 0.0_wp), k => self%state(j))
+    associate (r => abs(self%from(j) + self%radius(j)*offset), k => self%state(j))
       gap = shape%height(r) + [(self%grid%interpolate(self%beside(:, k), r(i)/self%scale(k)), &
         i=1, size(offset))]
     end associate
   end function gap
+
+  !> The load of a try's state.
+  pure real(wp) function load(self, j)
+    class(seen_gaps_t), intent(in) :: self
+    integer, intent(in) :: j
+
+    load = self%on(self%state(j))
+  end function load
 
 end module seen_gaps

@@ -86,10 +86,9 @@ contains
   end function energy_density
 
   !> With r = from/x.
-  pure function rule_beyond(problem, gap, from) result(rule)
+  pure type(rule_t) function rule_beyond(problem, gap, from) result(rule)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap, from
-    type(rule_t) :: rule
     real(wp) :: x(points), weight(points)
 
     call gauss_legendre(x, weight)

@@ -11,9 +11,8 @@ contains
   !> `young` [Pa] and `poisson` hold one value a body. The compliances add, so that (1-nu^2)/E of
   !> the identical bodies is the arithmetic mean of the two bodies' values; the usual composite
   !> modulus E* is half of this stiffness. A body may be stiffer than the other by any factor.
-  pure function composite_stiffness(young, poisson) result(stiffness)
+  pure real(wp) function composite_stiffness(young, poisson) result(stiffness)
     real(wp), intent(in) :: young(2), poisson(2)
-    real(wp) :: stiffness
 
     stiffness = 2/sum((1 - poisson)*(1 + poisson)/young)
   end function composite_stiffness

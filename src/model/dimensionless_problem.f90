@@ -43,12 +43,11 @@ module dimensionless_problem
 contains
 
   !> stiffness [Pa] as in `bodies`; it is not used for rigid bodies.
-  function new_problem(law, shape, stiffness, rigid) result(problem)
+  type(problem_t) function new_problem(law, shape, stiffness, rigid) result(problem)
     class(force_law_t), intent(in) :: law
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: stiffness
     logical, intent(in) :: rigid
-    type(problem_t) :: problem
 
     allocate (problem%law, source=law)
     allocate (problem%shape, source=shape)
@@ -60,8 +59,7 @@ contains
     problem%radius = shape%radius
     problem%stiffness = stiffness
     problem%rigid = rigid
-    if (.not. rigid) problem%coupling = &
-      law%pressure_unit/stiffness*sqrt(shape%radius/law%length)
+    if (.not. rigid) problem%coupling = law%pressure_unit/stiffness*sqrt(shape%radius/law%length)
   end function new_problem
 
   !> sigma (40): the coupling times the surface energy; 0 without adhesion.

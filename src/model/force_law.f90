@@ -46,9 +46,6 @@ module force_law
     real(wp), allocatable :: breaks(:)
     !> How many forces are evaluated at a gap.
     integer :: terms = 1
-    !> Whether the law is one of the paper's own, of which the summary says no more than its
-    !> parameters.
-    logical :: of_paper = .false.
     !> The summary's name for the coupling of law and bodies; sigma (40) if the law attracts. Blank:
     !> none.
     character(len=12) :: coupling_name = ''

@@ -151,7 +151,8 @@ contains
         term%shift = (origin - part%origin)/part%length
         term%weight = part%pressure_unit/unit
         law%smallest_gap = max(law%smallest_gap, (part%smallest_gap - term%shift)/term%stretch)
-        law%repulsion_length = min(law%repulsion_length, part%repulsion_length/term%stretch)
+        if (part%has_length) &
+          law%repulsion_length = min(law%repulsion_length, part%repulsion_length/term%stretch)
         law%tail_power = min(law%tail_power, part%tail_power)
         law%has_kink = law%has_kink .or. part%has_kink
         if (law%caveat == '') law%caveat = part%caveat
@@ -163,6 +164,7 @@ contains
       end associate
     end do
     call move_alloc(breaks, law%breaks)
+    if (.not. law%repulsion_length < huge(1.0_wp)) law%repulsion_length = 1
     ! Messages refer to the first term.
     law%group = law%term(1)%law%group
     law%strength_key = law%term(1)%law%strength_key

@@ -103,8 +103,7 @@ contains
   pure function values(self, gap) result(value)
     class(force_table_t), intent(in) :: self
     real(wp), intent(in) :: gap
-    real(wp) :: value(3)
-    real(wp) :: u, t, q(0:2), fall, du, ddu, z
+    real(wp) :: value(3), u, t, q(0:2), fall, du, ddu, z
     integer :: i, n
 
     if (gap < 1) then
@@ -127,8 +126,7 @@ contains
     i = piece_of(self%u, u)
     t = min(u, self%u(n)) - self%u(i)
     associate (c => self%cubic(:, i))
-      q = [c(1) + t*(c(2) + t*(c(3) + t*c(4))), c(2) + t*(2*c(3) + 3*t*c(4)), &
-        2*c(3) + 6*t*c(4)]
+      q = [c(1) + t*(c(2) + t*(c(3) + t*c(4))), c(2) + t*(2*c(3) + 3*t*c(4)), 2*c(3) + 6*t*c(4)]
     end associate
     if (u >= self%u(n)) q(1:) = 0
     fall = exp(-self%rate*u)

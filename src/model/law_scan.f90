@@ -79,9 +79,8 @@ contains
   end subroutine find_scales
 
   !> Finds the features outside the well of contact.
-  function surroundings_of(law) result(found)
+  type(surroundings_t) function surroundings_of(law) result(found)
     class(force_law_t), intent(in) :: law
-    type(surroundings_t) :: found
     real(wp), allocatable :: gap(:), pressure(:)
     logical, allocatable :: counts(:)
     real(wp) :: top, bottom, depth

@@ -17,8 +17,7 @@ contains
   pure function linear_values(surface, gap) result(value)
     type(surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: gap
-    real(wp) :: value(3)
-    real(wp) :: y(2), p(2), sense, x, d, ab, g, mixed, top, top_slope, bottom
+    real(wp) :: value(3), y(2), p(2), sense, x, d, ab, g, mixed, top, top_slope, bottom
 
     ! Changing the sign of one potential, and p into 1 - p, only changes the sign of the pressure.
     ! The form below loses no digits at small gaps where both p are small; they sum to 1 at most.

@@ -29,10 +29,9 @@ contains
 
   !> surface_energy [J/m^2], z0 [m]; exponents n > m > 1; part is 'full', 'repulsive' or
   !> 'attractive'. Scales in closed form; otherwise as `new_lennard_jones`.
-  pure function new_power_pair(surface_energy, z0, exponents, part) result(law)
+  pure type(power_pair_t) function new_power_pair(surface_energy, z0, exponents, part) result(law)
     real(wp), intent(in) :: surface_energy, z0, exponents(2)
     character(len=*), intent(in) :: part
-    type(power_pair_t) :: law
 
     law%n = exponents(1)
     law%m = exponents(2)

@@ -43,11 +43,10 @@ module shape
   end type shape_t
 
   abstract interface
-    elemental function profile_function(self, r) result(value)
+    elemental real(wp) function profile_function(self, r) result(value)
       import :: shape_t, wp
       class(shape_t), intent(in) :: self
       real(wp), intent(in) :: r
-      real(wp) :: value
     end function profile_function
   end interface
 
@@ -158,24 +157,24 @@ contains
     opening = ((self%indentation(a*(1 + part)) - self%indentation(a*(1 - part)))/(4*part*a))**2/a
   end function opening
 
-  !> The gap outside a contact of radius a without adhesion, at x >= 1 radii from the axis,
+  !> The gap outside a contact of radius a without adhesion, at a (1 + beyond) from the axis,
   !> 2/pi Int_a^r [q(t) - q(a)]/sqrt(r^2 - t^2) dt; both integrals by one rule, for estimates.
-  pure function hertz_gap(self, a, x) result(gap)
+  pure function hertz_gap(self, a, beyond) result(gap)
     class(shape_t), intent(in) :: self
-    real(wp), intent(in) :: a, x(:)
-    real(wp) :: gap(size(x))
+    real(wp), intent(in) :: a, beyond(:)
+    real(wp) :: gap(size(beyond))
     integer, parameter :: nodes = 12
-    real(wp) :: node(nodes), weight(nodes), sines(nodes), angle(size(x)), of_contact
+    real(wp) :: node(nodes), weight(nodes), sines(nodes), angle(size(beyond)), of_contact
     integer :: j, k
 
     call gauss_legendre(node, weight)
     sines = sin(0.5_wp*pi*node)
     of_contact = depth(a)
-    angle = acos(min(1/x, 1.0_wp))
+    angle = atan(sqrt(beyond*(2 + beyond)))
     gap = 0
     do k = 1, nodes
       gap = gap + 2/pi*angle*weight(k)* &
-        ([(depth(a*x(j)*cos(angle(j)*node(k))), j=1, size(x))] - of_contact)
+        ([(depth(a*(1 + beyond(j))*cos(angle(j)*node(k))), j=1, size(beyond))] - of_contact)
     end do
 
   contains

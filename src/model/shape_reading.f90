@@ -16,14 +16,13 @@ contains
   pure function keys_of_shape(kinds) result(rows)
     character(len=*), intent(in) :: kinds
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('shape', 'Shape of the undeformed gap f(r), so that bodies at h0 are h0 + f(r) ' // &
             'apart; without it r^2/(2R).'), &
       word_key('shape', 'kind', kinds, 'Kind of shape.', required=.true.), &
       real_key('shape', 'radius', 'm', 'Radius R of a parabola or sphere, of the end of a ' // &
-               'spheroid, of the rim of a punch; of a power B = 1/(2 R^(n-1)).', above=zero, &
+               'spheroid, of the rim of a punch; of a power B = 1/(2 R^(n-1)).', above=0.0_wp, &
                otherwise='that of &bodies')]
   end function keys_of_shape
 

@@ -32,9 +32,8 @@ module step_attraction
 contains
 
   !> The row of the key `smoothing`.
-  pure function smoothing_key(group) result(row)
+  pure type(key_spec) function smoothing_key(group) result(row)
     character(len=*), intent(in) :: group
-    type(key_spec) :: row
 
     row = real_key(group, 'smoothing', 'm', 'Length over which the attraction ends.', &
       above=0.0_wp, otherwise='0.02 of its range')

@@ -11,8 +11,7 @@ module case_rows
   use deck_numbers, only: words_of, number_of_word
   use deck_source, only: source_t, take_source
   use deck_store, only: deck_t
-  use data_table, only: cell_t, split, is_header, after_mark, uncommented, &
-    point_decimals, counted
+  use data_table, only: cell_t, split, is_header, after_mark, uncommented, point_decimals, counted
   implicit none
   private
   public :: case_rows_t

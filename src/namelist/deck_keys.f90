@@ -44,10 +44,9 @@ module deck_keys
 contains
 
   !> Row of a group.
-  pure function group(name, meaning, required, always, ignored) result(spec)
+  pure type(key_spec) function group(name, meaning, required, always, ignored) result(spec)
     character(len=*), intent(in) :: name, meaning
     logical, intent(in), optional :: required, always, ignored
-    type(key_spec) :: spec
 
     spec%group = name
     spec%meaning = meaning
@@ -98,27 +97,22 @@ contains
   end function list_key
 
   !> Row of a whole number between `low` and `high`.
-  pure function integer_key(group, key, meaning, low, high, default, otherwise, required) &
-    result(spec)
+  pure function integer_key(group, key, meaning, low, high, default, otherwise) result(spec)
     character(len=*), intent(in) :: group, key, meaning
     integer, intent(in) :: low, high
     character(len=*), intent(in), optional :: default, otherwise
-    logical, intent(in), optional :: required
     type(key_spec) :: spec
 
-    spec = key_row(group, key, integer_value, meaning, default, otherwise, required)
+    spec = key_row(group, key, integer_value, meaning, default, otherwise)
     spec%low = low
     spec%high = high
   end function integer_key
 
   !> Row of a logical key.
-  pure function logical_key(group, key, meaning, default, otherwise, required) result(spec)
-    character(len=*), intent(in) :: group, key, meaning
-    character(len=*), intent(in), optional :: default, otherwise
-    logical, intent(in), optional :: required
-    type(key_spec) :: spec
+  pure type(key_spec) function logical_key(group, key, meaning, default) result(spec)
+    character(len=*), intent(in) :: group, key, meaning, default
 
-    spec = key_row(group, key, logical_value, meaning, default, otherwise, required)
+    spec = key_row(group, key, logical_value, meaning, default)
   end function logical_key
 
   !> Row of a key that is one of the blank-separated words `choices`.
@@ -215,8 +209,7 @@ contains
       if (below) text = merge(' > ', ' >=', spec%low_open)
       if (below) text = trim(text) // ' ' // brief(spec%low)
       if (below .and. above) text = text // ' and'
-      if (above) text = text // trim(merge(' < ', ' <=', spec%high_open)) // ' ' // &
-        brief(spec%high)
+      if (above) text = text // trim(merge(' < ', ' <=', spec%high_open)) // ' ' // brief(spec%high)
     end if
     if (len_trim(spec%unit) > 0) then
       if (below .or. above) then

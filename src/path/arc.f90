@@ -136,12 +136,11 @@ contains
   end subroutine support
 
   !> The state that the arc lets expect at s; grid: its mesh.
-  pure function guess(self, shape, grid, s) result(expected)
+  pure type(state_t) function guess(self, shape, grid, s) result(expected)
     class(arc_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: s
-    type(state_t) :: expected
     integer :: nodes(most_hermite_nodes), n
 
     call self%support(s, nodes, n)
@@ -187,10 +186,9 @@ contains
   end subroutine guess_from
 
   !> The polynomial through states at the given values of some coordinate, evaluated at s.
-  pure function between(coordinate, states, s) result(expected)
+  pure type(state_t) function between(coordinate, states, s) result(expected)
     real(wp), intent(in) :: coordinate(:), s
     type(state_t), intent(in) :: states(:)
-    type(state_t) :: expected
     real(wp) :: weight(size(states)), h0, scale
     integer :: j
 

@@ -10,6 +10,7 @@ module continuation
   use solver, only: solver_t
   use edge_locked, only: approach
   use seen_gaps, only: seen_gaps_t
+  use contact_state, only: felt_load
   use regridding, only: regrid
   use path_coordinate, only: path_control, coordinate_of
   use path_tangent, only: tangent_t, tangent_along
@@ -237,7 +238,8 @@ contains
 
     associate (problem => equations%problem, meshes => equations%meshes, cost => equations%cost)
       call seen%begin_on(meshes%grid(from), 1)
-      call seen%add(problem%shape, state%gap, state%scale)
+      call seen%add(problem%shape, state%gap, state%scale, &
+        felt_load(problem, meshes%grid(from), state))
       call seen%try_between(radius_for(equations, from, to, state), meshes%reach(1, to), &
         beyond_passage*meshes%reach(2, to))
       call meshes%renew(to, meshes%shape_for(problem, to, seen))

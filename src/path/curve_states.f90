@@ -15,19 +15,19 @@ module curve_states
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   implicit none
   private
-  public :: curve_state_t, place_t, states_of_points, state_of, state_where, states_where, &
+  public :: path_state_t, path_place_t, states_of_points, state_of, state_where, states_where, &
     find_turns, equilibrium_at
 
   !> A place between point `interval` of a path and the next, at the path's coordinate x.
-  type :: place_t
+  type :: path_place_t
     integer :: interval = 0
     real(wp) :: x = 0
-  end type place_t
+  end type path_place_t
 
   !> A solved equilibrium at a place: h0, load, gap on the axis, energy in the units of
   !> `dimensionless_problem`, derivatives of h0 and load by x, modes unstable at fixed h0.
   !> radius: of the contact, lateral units; what rounding leaves of the energy.
-  type, extends(place_t) :: curve_state_t
+  type, extends(path_place_t) :: path_state_t
     real(wp) :: h0 = 0, load = 0, axis_gap = 0, radius = 0, energy = 0, uncertainty = 0
     real(wp) :: slopes(2) = 0, residual = 0
     integer :: modes = 0
@@ -37,7 +37,7 @@ module curve_states
     !> The equilibrium itself and its mesh; `no_mesh` has none.
     type(state_t) :: state
     integer :: mesh = no_mesh
-  end type curve_state_t
+  end type path_state_t
 
   !> Parts of an interval of undeformed bodies at whose ends the slope is looked at.
   integer, parameter :: looks = 8
@@ -49,12 +49,12 @@ contains
   function states_of_points(solver, path) result(states)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
-    type(curve_state_t), allocatable :: states(:)
+    type(path_state_t), allocatable :: states(:)
     integer :: i
 
     allocate (states(path%last))
     do i = 1, path%last
-      call state_of(solver, path, place_t(i, path%point(i)%coordinate), states(i))
+      call state_of(solver, path, path_place_t(i, path%point(i)%coordinate), states(i))
       states(i)%modes = path%modes_at(i)
       states(i)%again = .not. (path%point(i)%leads_on .or. i == path%last)
     end do
@@ -64,7 +64,7 @@ contains
   subroutine equilibrium_at(solver, path, place, state, tangent, converged)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
-    class(place_t), intent(in) :: place
+    class(path_place_t), intent(in) :: place
     type(state_t), intent(out) :: state
     type(tangent_t), intent(out) :: tangent
     logical, intent(out) :: converged
@@ -88,8 +88,8 @@ contains
   subroutine state_of(solver, path, place, found)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
-    type(place_t), intent(in) :: place
-    type(curve_state_t), intent(out) :: found
+    type(path_place_t), intent(in) :: place
+    type(path_state_t), intent(out) :: found
     type(state_t) :: state
     type(tangent_t) :: tangent
     logical :: converged
@@ -103,9 +103,9 @@ contains
   end subroutine state_of
 
   !> Bodies that do not deform, at a place.
-  pure type(curve_state_t) function undeformed_at(problem, place) result(state)
+  pure type(path_state_t) function undeformed_at(problem, place) result(state)
     type(problem_t), intent(in) :: problem
-    type(place_t), intent(in) :: place
+    type(path_place_t), intent(in) :: place
 
     state%interval = place%interval
     state%x = place%x
@@ -118,10 +118,10 @@ contains
   end function undeformed_at
 
   !> What is reported of a state that is on a mesh.
-  type(curve_state_t) function told(solver, path, place, state, tangent, converged) result(found)
+  type(path_state_t) function told(solver, path, place, state, tangent, converged) result(found)
     class(solver_t), intent(in) :: solver
     type(traced_path_t), intent(in) :: path
-    type(place_t), intent(in) :: place
+    type(path_place_t), intent(in) :: place
     type(state_t), intent(in) :: state
     type(tangent_t), intent(in) :: tangent
     logical, intent(in) :: converged
@@ -150,7 +150,7 @@ contains
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2), wanted, from, to
-    type(curve_state_t), intent(out) :: state
+    type(path_state_t), intent(out) :: state
     type(path_span_t) :: span
     type(found_t) :: found
     type(root_search_t) :: search
@@ -163,12 +163,12 @@ contains
         x = search%place()
         call search%note(x, beyond(x))
       end do
-      state = undeformed_at(solver%problem, place_t(i, search%root))
+      state = undeformed_at(solver%problem, path_place_t(i, search%root))
       return
     end if
     span = new_path_span(path, i)
     call find_place(solver, span%arc_t, [from, to], weights, found, done, wanted)
-    state = told(solver, path, place_t(i, found%coordinate), found%state, found%tangent, done)
+    state = told(solver, path, path_place_t(i, found%coordinate), found%state, found%tangent, done)
 
   contains
 
@@ -187,10 +187,10 @@ contains
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
     real(wp), intent(in) :: weights(2), wanted
-    type(curve_state_t), allocatable, intent(out) :: states(:)
+    type(path_state_t), allocatable, intent(out) :: states(:)
     logical, intent(out) :: solved
-    type(curve_state_t) :: found
-    type(curve_state_t), allocatable :: turns(:)
+    type(path_state_t) :: found
+    type(path_state_t), allocatable :: turns(:)
     real(wp), allocatable :: x(:), beyond(:)
     integer :: i, k
     logical :: all_turns
@@ -222,7 +222,7 @@ contains
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2)
-    type(curve_state_t), allocatable, intent(out) :: turns(:)
+    type(path_state_t), allocatable, intent(out) :: turns(:)
     logical, intent(out) :: solved
     type(path_span_t) :: span
     type(found_t), allocatable :: extrema(:)
@@ -245,7 +245,7 @@ contains
     deallocate (turns)
     allocate (turns(size(extrema)))
     do k = 1, size(extrema)
-      turns(k) = told(solver, path, place_t(i, extrema(k)%coordinate), extrema(k)%state, &
+      turns(k) = told(solver, path, path_place_t(i, extrema(k)%coordinate), extrema(k)%state, &
         extrema(k)%tangent, .true.)
     end do
   end subroutine find_turns
@@ -255,8 +255,8 @@ contains
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: i
     real(wp), intent(in) :: ends(2), weights(2)
-    type(curve_state_t), allocatable :: turns(:)
-    type(curve_state_t) :: turn
+    type(path_state_t), allocatable :: turns(:)
+    type(path_state_t) :: turn
     type(root_search_t) :: search
     real(wp) :: x(0:looks), at
     integer :: k
@@ -270,7 +270,7 @@ contains
         at = search%place()
         call search%note(at, slope(at))
       end do
-      turn = undeformed_at(problem, place_t(i, search%root))
+      turn = undeformed_at(problem, path_place_t(i, search%root))
       turns = [turns, turn]
     end do
 

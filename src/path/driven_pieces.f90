@@ -9,10 +9,9 @@ module driven_pieces
   use quadrature, only: gauss_legendre
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use interpolation, only: hermite_t
-  use contact_state, only: state_t
   use solver, only: solver_t
   use traced_path, only: traced_path_t
-  use curve_states, only: curve_state_t, place_t, state_of, state_where, find_turns
+  use curve_states, only: path_state_t, path_place_t, state_of, state_where, find_turns
   implicit none
   private
   public :: drive_t, driven_piece_t, jump_t, find_pieces, find_jump, piece_with, interval_with, &
@@ -30,7 +29,7 @@ module driven_pieces
   !> A stable piece, from afar inward; its ends are turning points of D, or the ends of what is
   !> known of the path.
   type :: driven_piece_t
-    type(curve_state_t) :: first, last
+    type(path_state_t) :: first, last
     logical :: first_turns = .false., last_turns = .false.
   end type driven_piece_t
 
@@ -38,7 +37,7 @@ module driven_pieces
   !> landed = .false.: nothing that is known of the path catches the bodies.
   type :: jump_t
     logical :: inward = .true., landed = .false.
-    type(curve_state_t) :: before, after
+    type(path_state_t) :: before, after
     !> The piece that it leads to; 0: there is none.
     integer :: piece = 0
     real(wp) :: energy = 0, uncertainty = 0
@@ -68,7 +67,7 @@ contains
   !> D at a state.
   elemental real(wp) function position(self, state)
     class(drive_t), intent(in) :: self
-    class(curve_state_t), intent(in) :: state
+    class(path_state_t), intent(in) :: state
 
     position = self%weights(1)*state%h0 + self%weights(2)*state%load
   end function position
@@ -77,7 +76,7 @@ contains
   !> stationary, and a jump loses the difference. Its derivative by D is minus the conjugate.
   elemental real(wp) function energy(self, state)
     class(drive_t), intent(in) :: self
-    class(curve_state_t), intent(in) :: state
+    class(path_state_t), intent(in) :: state
 
     if (self%weights(1) > 0) then
       energy = state%energy - 0.5_wp*self%weights(2)*state%load**2
@@ -91,7 +90,7 @@ contains
   pure real(wp) function work_between(self, path, from, to) result(work)
     class(drive_t), intent(in) :: self
     type(traced_path_t), intent(in) :: path
-    class(place_t), intent(in) :: from, to
+    class(path_place_t), intent(in) :: from, to
     type(hermite_t) :: force, driven
     real(wp) :: node(rule), weight(rule), ends(2), x
     integer :: i, k
@@ -115,7 +114,7 @@ contains
   pure function part_of(ends, i, from, to) result(part)
     real(wp), intent(in) :: ends(2)
     integer, intent(in) :: i
-    class(place_t), intent(in) :: from, to
+    class(path_place_t), intent(in) :: from, to
     real(wp) :: part(2)
 
     part = ends
@@ -132,10 +131,10 @@ contains
     type(driven_piece_t), allocatable, intent(out) :: pieces(:)
     logical, intent(out) :: whole
     type(driven_piece_t) :: piece
-    type(curve_state_t) :: state
-    type(curve_state_t), allocatable :: turns(:)
+    type(path_state_t) :: state
+    type(path_state_t), allocatable :: turns(:)
     type(hermite_t) :: curve
-    type(place_t) :: before
+    type(path_place_t) :: before
     real(wp), allocatable :: x(:)
     real(wp) :: ends(2)
     integer :: i, k
@@ -164,7 +163,7 @@ contains
         if (k > 1) then
           state = turns(k - 1)
         else
-          if (stable) before = place_t(i, ends(1))
+          if (stable) before = path_place_t(i, ends(1))
           call state_of(solver, path, before, state)
         end if
         if (stable) then
@@ -175,7 +174,7 @@ contains
         end if
         open = stable
       end do
-      before = place_t(i, ends(2))
+      before = path_place_t(i, ends(2))
     end do
     if (.not. open) return
     call state_of(solver, path, before, state)
@@ -241,7 +240,7 @@ contains
     type(drive_t), intent(in) :: drive
     type(driven_piece_t), intent(in) :: piece
     real(wp), intent(in) :: wanted
-    type(curve_state_t), intent(out) :: state
+    type(path_state_t), intent(out) :: state
     real(wp) :: ends(2)
     integer :: i
 

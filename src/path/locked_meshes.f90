@@ -12,12 +12,11 @@ module locked_meshes
 contains
 
   !> The control that prescribes h0 on a mesh.
-  pure function h0_control(shape, meshes, mesh, h0) result(control)
+  pure type(control_t) function h0_control(shape, meshes, mesh, h0) result(control)
     class(shape_t), intent(in) :: shape
     type(mesh_family_t), intent(in) :: meshes
     integer, intent(in) :: mesh
     real(wp), intent(in) :: h0
-    type(control_t) :: control
 
     control%value = h0
     control%mesh = mesh

@@ -5,14 +5,16 @@
 !> pressures, so that those on a mesh that is too coarse tell what a finer one needs.
 module mending
   use kinds, only: wp
+  use force_law, only: force_law_t
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use panel_map, only: algebraic_map
   use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
   use law_panels, only: left_out
+  use mesh_rule, only: is_even
   use edge_locked, only: mesh_family_t
   use seen_gaps, only: seen_gaps_t
-  use contact_state, only: state_t, gap_at
+  use contact_state, only: state_t, gap_at, felt_load
   use equilibrium, only: equations_t
   use continuation, only: continuation_t
   use traced_path, only: traced_path_t
@@ -20,8 +22,9 @@ module mending
   private
   public :: mender_t, new_mender, left_on_path, too_much
 
-  !> What may be left out, over the accuracy: at a fold the load feels 7 % of the tail at a kink,
-  !> and of smooth pressures a thousandth of the square of that, to some times it.
+  !> What may be left out, over the accuracy, where no mesh can be mended any more: at a fold the
+  !> load feels 7 % of the tail at a kink, and of smooth pressures a thousandth of the square of
+  !> that, to some times it.
   real(wp), parameter :: too_much = 30
 
   type :: mender_t
@@ -33,14 +36,12 @@ module mending
     integer, allocatable :: rounds(:)
     !> What each left out, the last time.
     real(wp), allocatable :: left(:)
-    !> Meshes that were laid out for gaps seen.
-    logical, allocatable :: waited(:)
   contains
     procedure :: note
     procedure :: mend
   end type mender_t
 
-  !> What is left out about kinks, of law or shape, counts so many times: extrema feel it most.
+  !> What is left out about kinks of the law counts so many times: extrema feel it most.
   real(wp), parameter :: of_kinks = 3
   !> How often a mesh is mended, and a panel halved at once.
   integer, parameter :: most_rounds = 6, most_halvings = 3
@@ -52,15 +53,16 @@ module mending
 
 contains
 
-  !> For a path that is to be traced on such meshes.
-  pure type(mender_t) function new_mender(accuracy, meshes) result(mender)
+  !> For a path that is to be traced on such meshes. Kinks and waves count in full, see `left_out`:
+  !> what is left out of them is felt but in part.
+  pure type(mender_t) function new_mender(accuracy, law, meshes) result(mender)
     real(wp), intent(in) :: accuracy
+    class(force_law_t), intent(in) :: law
     type(mesh_family_t), intent(in) :: meshes
 
-    mender%most = too_much*accuracy
+    mender%most = accuracy*merge(too_much, 1.0_wp, law%has_kink .or. law%period > 0)
     allocate (mender%rounds(size(meshes%grid)), source=0)
     allocate (mender%left(size(meshes%grid)), source=huge(1.0_wp))
-    mender%waited = meshes%waits
   end function new_mender
 
   !> Keeps the path before it comes to another mesh.
@@ -90,8 +92,7 @@ contains
     if (lost) mended = mended .and. left < helped*self%left(mesh)
     self%left(mesh) = left
     if (.not. mended) return
-    if (.not. (self%rounds(mesh) > 0 .or. self%waited(mesh) .or. lost) .and. &
-      equations%problem%law%edge_gap > 0) then
+    if (.not. (self%rounds(mesh) > 0 .or. lost) .and. equations%problem%law%edge_gap > 0) then
       shape = shape_for_seen(equations, path, mesh)
     else
       shape = with_short_panels(equations, path, mesh, self%most)
@@ -135,7 +136,7 @@ contains
         if (path%point(i)%mesh /= mesh) cycle
         k = k + 1
         associate (state => path%point(i)%state)
-          call seen%add(problem%shape, state%gap, state%scale)
+          call seen%add(problem%shape, state%gap, state%scale, felt_load(problem, grid, state))
           call seen%try(grid%centre*state%scale, state%scale)
           if (.not. grid%centre > 0) cycle
           if (k == 1) call seen%try_between(state%scale, reach(1), state%scale)
@@ -175,7 +176,7 @@ contains
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: mesh
     type(discretisation_t), intent(in) :: grid
-    real(wp) :: left(size(grid%panel))
+    real(wp) :: left(size(grid%panel)), gap(grid%nodes)
     integer :: i, j
 
     left = 0
@@ -184,37 +185,42 @@ contains
         associate (point => path%point(i))
           if (point%mesh /= mesh) cycle
           if (grid%nodes == own%nodes) then
-            left = max(left, left_of(problem, grid, point%state%gap, point%state%scale))
+            gap = point%state%gap
           else
-            left = max(left, left_of(problem, grid, &
-              [(gap_at(problem%shape, own, point%state, grid%x(j)), j=1, grid%nodes)], &
-              point%state%scale))
+            gap = [(gap_at(problem%shape, own, point%state, grid%x(j)), j=1, grid%nodes)]
           end if
+          left = max(left, left_of(problem, grid, gap, point%state%scale, &
+            felt_load(problem, own, point%state)))
         end associate
       end do
     end associate
   end function left_on_mesh
 
   !> The part of the load that nodes leave out of the pressure of gaps on each panel.
-  pure function left_of(problem, grid, gap, scale) result(left)
+  pure function left_of(problem, grid, gap, scale, load) result(left)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
-    real(wp), intent(in) :: gap(:), scale
-    real(wp) :: left(size(grid%panel)), pressure(size(gap)), load
+    real(wp), intent(in) :: gap(:), scale, load
+    real(wp) :: left(size(grid%panel)), pressure(size(gap))
+    logical :: smooth
     integer :: k
 
+    smooth = is_even(problem%shape) .and. .not. problem%shape%smooth_from() > 0
     pressure = problem%law%pressure(gap)
-    load = min(problem%law%adhesion, scale**2*sum(grid%weight*abs(pressure)))
     left = 0
     do k = 1, size(grid%panel)
       associate (panel => grid%panel(k), first => grid%first(k), &
         last => grid%first(k) + size(grid%local(k)%node) - 1)
-        if (panel%kind /= algebraic_map) left(k) = left_out(problem, grid%local(k), &
+        if (panel%kind == algebraic_map) cycle
+        ! What is in a contact of a shape with kinks, `mesh_rule` knows by itself.
+        if (panel%right <= 0 .and. .not. smooth) cycle
+        left(k) = left_out(problem, grid%local(k), &
           scale*grid%centre, scale*(grid%centre + [panel%left, panel%right]), &
-          spread(scale*grid%centre, 1, last - first + 1), pressure(first:last), load)
+          scale*merge(grid%centre, grid%x(first:last), problem%law%has_kink), &
+          pressure(first:last), load)
       end associate
     end do
-    if (problem%law%has_kink .or. problem%shape%smooth_from() > 0) left = of_kinks*left
+    if (problem%law%has_kink) left = of_kinks*left
   end function left_of
 
 end module mending

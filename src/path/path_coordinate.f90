@@ -14,11 +14,10 @@ module path_coordinate
 contains
 
   !> The control that prescribes the coordinate s on a mesh.
-  pure function path_control(problem, mesh, s) result(control)
+  pure type(control_t) function path_control(problem, mesh, s) result(control)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: mesh
     real(wp), intent(in) :: s
-    type(control_t) :: control
 
     control%mesh = mesh
     if (mesh == approach) then

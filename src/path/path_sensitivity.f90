@@ -7,7 +7,7 @@ module path_sensitivity
   use equilibrium, only: equations_t
   use frozen_jacobian, only: frozen_jacobian_t
   use traced_path, only: traced_path_t, no_mesh
-  use curve_states, only: curve_state_t
+  use curve_states, only: path_state_t
   use undeformed, only: load_undeformed
   use variation, only: variation_t
   use state_sensitivity, only: change_t, place_on_path_t, differentiate
@@ -81,7 +81,7 @@ contains
   !> Infinite where that value turns round along the path.
   pure type(rate_t) function held(problem, node, rate, weights)
     type(problem_t), intent(in) :: problem
-    type(curve_state_t), intent(in) :: node
+    type(path_state_t), intent(in) :: node
     type(rate_t), intent(in) :: rate
     real(wp), intent(in) :: weights(2)
     real(wp) :: slope(2), shift

@@ -38,10 +38,9 @@ module path_span
 contains
 
   !> The span from point i of a path to the next.
-  pure function new_path_span(path, i) result(span)
+  pure type(path_span_t) function new_path_span(path, i) result(span)
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
-    type(path_span_t) :: span
     real(wp) :: middle
 
     span%point = i

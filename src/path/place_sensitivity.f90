@@ -18,7 +18,7 @@ module place_sensitivity
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   use variation, only: variation_t
-  use reported, only: of_h0, of_load, of_displacement, of_energy, of_radius
+  use reported_place, only: of_h0, of_load, of_displacement, of_energy, of_radius
   use state_sensitivity, only: change_t, place_on_path_t, differentiate, move
   implicit none
   private
@@ -31,8 +31,7 @@ module place_sensitivity
   !> of the separations at the nodes and of h0 by s.
   type :: local_t
     real(wp) :: slope(quantities) = 0
-    real(wp), allocatable :: along(:)
-    real(wp), allocatable :: rate(:, :)
+    real(wp), allocatable :: along(:), rate(:, :)
   end type local_t
 
   !> Difference of positions, relative, over which the gap's slope is taken.
@@ -65,11 +64,10 @@ contains
   end subroutine find_local
 
   !> The same of bodies that do not deform, at the gap h0; their place is -log(h0) (`traced_path`).
-  function local_undeformed(problem, h0, varied) result(local)
+  type(local_t) function local_undeformed(problem, h0, varied) result(local)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
     type(variation_t), intent(in) :: varied(:)
-    type(local_t) :: local
     real(wp) :: gap
     integer :: i, k
 

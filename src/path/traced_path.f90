@@ -157,11 +157,10 @@ contains
   end subroutine add_to
 
   !> The arc of the points about s on a mesh.
-  pure function arc_about(self, mesh, s) result(arc)
+  pure type(arc_t) function arc_about(self, mesh, s) result(arc)
     class(traced_path_t), intent(in) :: self
     integer, intent(in) :: mesh
     real(wp), intent(in) :: s
-    type(arc_t) :: arc
     integer :: i
 
     do i = findloc(self%point(:self%held)%mesh, mesh, 1), self%held - 1

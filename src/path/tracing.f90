@@ -86,8 +86,8 @@ contains
     if (present(farthest)) call walker%follow_closely()
     call walker%begin_with(solver, start, approach, lost)
     if (lost) known%ending%cause = path_lost
-    guarded = present(accuracy) .and. .not. solver%problem%law%of_paper
-    if (guarded) mender = new_mender(accuracy, solver%meshes)
+    guarded = present(accuracy)
+    if (guarded) mender = new_mender(accuracy, solver%problem%law, solver%meshes)
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, solver, lost)
       steps = steps + 1

@@ -128,12 +128,11 @@ contains
   end subroutine summarise_approximations
 
   !> The state of a form at a gap on the axis (law's lengths).
-  pure function state_at(problem, form, gap, theory) result(state)
+  pure type(slow_state_t) function state_at(problem, form, gap, theory) result(state)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
     real(wp), intent(in) :: gap
     character(len=*), intent(in) :: theory
-    type(slow_state_t) :: state
     real(wp) :: delta
 
     delta = slow_displacement(problem, form, gap)
@@ -184,8 +183,7 @@ contains
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form, count
     real(wp), intent(in) :: high, low
-    real(wp) :: gap(count)
-    real(wp) :: at(0:samples), delta(0:samples), length(0:samples), wanted
+    real(wp) :: gap(count), at(0:samples), delta(0:samples), length(0:samples), wanted
     integer :: i, j
 
     ! The displacement varies most at the near end, over the law's own length.

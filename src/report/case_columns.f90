@@ -93,7 +93,7 @@ contains
 
     single = [pack([(i, i=1, size(rows))], rows%sweep == 'always'), &
       pack([(i, i=1, size(rows))], [(comes_with_group(rows(i)), i=1, size(rows))])]
-    if (.not. scene%law%of_paper) &
+    if (scene%law%terms > 1 .or. scene%law%group /= 'force') &
       single = [single, pack([(i, i=1, size(rows))], rows%sweep == '(forces)')]
 
   contains

@@ -9,8 +9,7 @@ module classical_rows
     detachment_radius
   use maugis, only: maugis_load, maugis_radius_at_displacement, maugis_radius_at_load, &
     maugis_lambda, maugis_pull_off
-  use transition_fits, only: transition_alpha, carpick_pull_off, carpick_radius_at_load, &
-    pietrement_pull_off, pietrement_radius_at_load, pietrement_load_at_displacement
+  use transition_fits, only: fit_t, carpick_fit, pietrement_fit
   use theory_names, only: theories, hertz, jkr, dmt, maugis_dugdale, carpick, pietrement_troyon
   use layered_body, only: layered_body_t
   use layered_contact, only: layered_contact_t, new_layered_contact
@@ -70,6 +69,7 @@ contains
   contains
 
     subroutine add_parabola()
+      type(fit_t) :: fit
       real(wp) :: load
 
       associate (r => problem%radius, y => problem%stiffness)
@@ -87,13 +87,16 @@ contains
             load = maugis_load(a, r, y, gamma, strength)
             call add(maugis_dugdale, load, a)
             ! Below the pull-off under a load Maugis' state is stable at its displacement alone.
-            if (a >= maugis_radius_at_load(load, r, y, gamma, strength)*(1 - small)) &
-              call add(carpick, load, carpick_radius_at_load(load, r, y, gamma, strength))
+            if (a >= maugis_radius_at_load(load, r, y, gamma, strength)*(1 - small)) then
+              fit = carpick_fit(r, y, gamma, strength)
+              call add(carpick, load, fit%radius_at_load(load))
+            end if
           end if
         end if
         if (.not. range%shown(pietrement_troyon)) return
-        load = pietrement_load_at_displacement(delta, r, y, gamma, strength)
-        call add(pietrement_troyon, load, pietrement_radius_at_load(load, r, y, gamma, strength))
+        fit = pietrement_fit(r, y, gamma, strength)
+        load = fit%load_at_displacement(delta)
+        call add(pietrement_troyon, load, fit%radius_at_load(load))
       end associate
     end subroutine add_parabola
 
@@ -143,10 +146,9 @@ contains
   end function is_layered
 
   !> The contacts of layered bodies down to an h0 [m].
-  function layered_contact_of(problem, h0) result(contact)
+  type(layered_contact_t) function layered_contact_of(problem, h0) result(contact)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
-    type(layered_contact_t) :: contact
 
     select type (body => problem%body)
     type is (layered_body_t)
@@ -204,21 +206,23 @@ contains
     type(range_t), intent(in) :: range
     real(wp), intent(in) :: gamma, strength
     type(summary_t), intent(inout) :: summary
-    real(wp), parameter :: no_load = 0
 
-    associate (r => problem%radius, y => problem%stiffness)
-      if (any(range%shown([carpick, pietrement_troyon]))) call summary%set('transition_alpha', &
-        transition_alpha(maugis_lambda(r, y, gamma, strength)))
-      if (range%shown(carpick)) then
-        call summary%set('carpick_pull_off', -carpick_pull_off(r, y, gamma, strength))
-        call summary%set('carpick_radius', carpick_radius_at_load(no_load, r, y, gamma, strength))
-      end if
-      if (range%shown(pietrement_troyon)) then
-        call summary%set('pietrement_troyon_pull_off', -pietrement_pull_off(r, y, gamma, strength))
-        call summary%set('pietrement_troyon_radius', &
-          pietrement_radius_at_load(no_load, r, y, gamma, strength))
-      end if
-    end associate
+    if (range%shown(carpick)) call tell('carpick', &
+      carpick_fit(problem%radius, problem%stiffness, gamma, strength))
+    if (range%shown(pietrement_troyon)) call tell('pietrement_troyon', &
+      pietrement_fit(problem%radius, problem%stiffness, gamma, strength))
+
+  contains
+
+    subroutine tell(name, fit)
+      character(len=*), intent(in) :: name
+      type(fit_t), intent(in) :: fit
+
+      call summary%set('transition_alpha', fit%alpha)
+      call summary%set(name//'_pull_off', -fit%pull_off)
+      call summary%set(name//'_radius', fit%radius_at_load(0.0_wp))
+    end subroutine tell
+
   end subroutine summarise_fits
 
 end module classical_rows

@@ -18,7 +18,6 @@ module derived_tables
   private
   public :: write_derived_tables, write_path_tables, write_sensitivities
 
-
 contains
 
   !> Writes those that the scene asks for.

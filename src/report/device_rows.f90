@@ -4,10 +4,10 @@ module device_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use curve_states, only: curve_state_t
+  use curve_states, only: path_state_t
   use driven_pieces, only: drive_t
-  use device, only: driven_t, leg_t, nodes_on
-  use reported, only: of_h0, of_load, of_energy, of_radius, of_position
+  use device, only: driven_t, leg_t, states_on
+  use reported_place, only: of_h0, of_load, of_energy, of_radius, of_position
   use places, only: places_t, readings_t
   use path_readings, only: path_readings_t
   use results, only: results_t
@@ -57,23 +57,20 @@ contains
     subroutine add_leg(driven, leg)
       type(driven_t), intent(in) :: driven
       type(leg_t), intent(in) :: leg
-      character(len=:), allocatable :: direction
-      type(curve_state_t), allocatable :: nodes(:)
+      type(path_state_t), allocatable :: states(:)
       integer :: j
 
-      direction = direction_of(leg%inward)
-      call add(driven, direction, leg%from, .true.)
-      nodes = nodes_on(readings%node, leg)
-      do j = 1, size(nodes)
-        call add(driven, direction, nodes(j), .true.)
+      states = states_on(readings%node, leg)
+      do j = 1, size(states)
+        call add(driven, direction_of(leg%inward), states(j), &
+          .not. (leg%jumps .and. j == size(states)))
       end do
-      call add(driven, direction, leg%to, .not. leg%jumps)
     end subroutine add_leg
 
     subroutine add(driven, direction, state, stable)
       type(driven_t), intent(in) :: driven
       character(len=*), intent(in) :: direction
-      type(curve_state_t), intent(in) :: state
+      type(path_state_t), intent(in) :: state
       logical, intent(in) :: stable
 
       call results%row(cells([driven%stiffness]) // ',' // direction, &
@@ -123,7 +120,7 @@ contains
   pure real(wp) function z_of(problem, drive, state) result(z)
     type(problem_t), intent(in) :: problem
     type(drive_t), intent(in) :: drive
-    type(curve_state_t), intent(in) :: state
+    type(path_state_t), intent(in) :: state
 
     z = ieee_value(z, ieee_quiet_nan)
     if (drive%weights(1) > 0) z = problem%law%separation_of(drive%position(state))

@@ -15,7 +15,6 @@ module fit_rows
   private
   public :: write_fit_rows, fit_text, fit_words
 
-
   !> More that a theory may leave, in chi squared, and still do as well.
   real(wp), parameter :: as_well = 4
   !> Standard deviations of a 95 % interval.

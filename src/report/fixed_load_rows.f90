@@ -3,7 +3,7 @@ module fixed_load_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use path_readings, only: path_readings_t, loaded_state_t
-  use reported, only: of_h0, of_displacement, of_radius
+  use reported_place, only: of_h0, of_displacement, of_radius
   use places, only: places_t, readings_t
   use tables, only: cells
   use results, only: results_t
@@ -11,7 +11,6 @@ module fixed_load_rows
   implicit none
   private
   public :: write_fixed_loads, summarise_fixed_loads
-
 
 contains
 
@@ -42,8 +41,7 @@ contains
     real(wp), intent(in) :: loads(:)
     type(loaded_state_t), intent(in) :: loaded(:)
     type(summary_t), intent(inout) :: summary
-    integer :: held(size(loads)), stable(size(loads))
-    integer :: i
+    integer :: held(size(loads)), stable(size(loads)), i
 
     do i = 1, size(loads)
       associate (same => abs(loaded%wanted - loads(i)/problem%load) <= 0)

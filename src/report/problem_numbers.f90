@@ -85,7 +85,7 @@ contains
     end select
     if (problem%law%rest_gap > 0) then
       call numbers%set('rest_gap', problem%law%separation_of(problem%law%rest_gap))
-      if (.not. problem%law%of_paper) call take_forces(problem, numbers)
+      call take_forces(problem, numbers)
     end if
   end function numbers_of
 

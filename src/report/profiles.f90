@@ -12,8 +12,6 @@ module profiles
   private
   public :: columns_of_profiles, write_profile
 
-
-
 contains
 
   !> The columns of the table.

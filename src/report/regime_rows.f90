@@ -11,9 +11,8 @@ module regime_rows
   use classical, only: hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
   use maugis, only: maugis_lambda, maugis_pull_off, maugis_radius_at_load, maugis_displacement
-  use transition_fits, only: carpick_pull_off, carpick_radius_at_load, pietrement_pull_off, &
-    pietrement_radius_at_load, pietrement_displacement_at_load
-  use reported, only: reported_t, units_of, of_h0, of_load, of_edge
+  use transition_fits, only: fit_t, carpick_fit, pietrement_fit
+  use reported_place, only: place_t, units_of, of_h0, of_load, of_edge
   use places, only: places_t
   use summary, only: summary_t
   implicit none
@@ -45,8 +44,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
-    type(measured_t) :: solved
-    type(measured_t) :: uncertain
+    type(measured_t) :: solved, uncertain
     type(layered_contact_t) :: layered
     real(wp), allocatable :: errors(:, :), spread(:, :)
     real(wp) :: load, load_error, gamma, strength
@@ -124,7 +122,7 @@ contains
     real(wp), intent(out) :: load, load_error
     type(measured_t), intent(out) :: solved, uncertain
     logical, intent(out) :: there
-    type(reported_t) :: lowest, finish
+    type(place_t) :: lowest, finish
 
     lowest = places%place_of('path_tension')
     finish = places%place_of('path_end')
@@ -143,6 +141,7 @@ contains
   type(measured_t) function of_theory(name, load, r, y, gamma, strength) result(says)
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: load, r, y, gamma, strength
+    type(fit_t) :: fit
 
     select case (name)
     case ('hertz')
@@ -163,14 +162,13 @@ contains
       if (says%radius > 0) &
         says%indentation = maugis_displacement(says%radius, r, y, gamma, strength)
     case ('carpick')
-      says%pull_off = carpick_pull_off(r, y, gamma, strength)
-      says%radius = carpick_radius_at_load(load, r, y, gamma, strength)
-      ! The formula says nothing of it.
-      says%indentation = ieee_value(1.0_wp, ieee_quiet_nan)
+      fit = carpick_fit(r, y, gamma, strength)
+      ! The formula says nothing of the displacement.
+      says = measured_t(fit%pull_off, fit%radius_at_load(load), &
+        ieee_value(1.0_wp, ieee_quiet_nan))
     case ('pietrement')
-      says%pull_off = pietrement_pull_off(r, y, gamma, strength)
-      says%radius = pietrement_radius_at_load(load, r, y, gamma, strength)
-      says%indentation = pietrement_displacement_at_load(load, r, y, gamma, strength)
+      fit = pietrement_fit(r, y, gamma, strength)
+      says = measured_t(fit%pull_off, fit%radius_at_load(load), fit%displacement_at_load(load))
     end select
   end function of_theory
 

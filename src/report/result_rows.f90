@@ -3,7 +3,7 @@
 !> and what is read there; with its error and derivatives it is in the summary then. A new place is
 !> entered in `outcome_places`. Other numbers are a row here and a `set` where they are known.
 module result_rows
-  use reported, only: of_h0, of_load, of_displacement, of_energy, of_position, of_tension, &
+  use reported_place, only: of_h0, of_load, of_displacement, of_energy, of_position, of_tension, &
     of_profile
   implicit none
   private
@@ -25,7 +25,7 @@ module result_rows
     character(len=14) :: sweep = never
     integer :: group = in_summary
     logical :: list = .false.
-    !> The place and the quantity (`reported`), for what is read at one.
+    !> The place and the quantity (`reported_place`), for what is read at one.
     character(len=20) :: place = ''
     integer :: quantity = 0
     !> What the entry with its error is called behind the key; empty without one.
@@ -193,7 +193,8 @@ module result_rows
     row_t('end_load', 'N', 'load of the last equilibrium', always, &
       place='end', quantity=of_load, error=judged), &
     row_t('profiles_error', '', &
-      'error of each profile: of gaps over the law''s length or of pressures over the largest', &
+      'error of each profile: of gaps over the law''s length, or over themselves where they ' // &
+      'are wider; or of pressures over the largest', &
       list=.true., place='profiles', quantity=of_profile), &
     row_t('jump_criterion_29_h0', 'm', &
       'h0 at which approaching bodies first violate (29)', approximations), &

@@ -5,18 +5,17 @@ module sensitivity_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use variation, only: variation_t
-  use reported, only: of_h0, of_displacement, of_radius
+  use reported_place, only: of_h0, of_displacement, of_radius
   use places, only: places_t, readings_t
   use path_sensitivity, only: rate_t, held
   use driven_pieces, only: through_spring
-  use path_readings, only: path_readings_t, loaded_state_t
+  use path_readings, only: path_readings_t
   use results, only: results_t
   use result_rows, only: rows
   use summary, only: summary_t
   implicit none
   private
   public :: write_sensitivity, write_curve_sensitivity
-
 
   !> Where z changes along the path by less than this part of its terms, or of the law's units, it
   !> turns round.

@@ -13,7 +13,7 @@ module stability_records
   use summary, only: summary_t
   use journal, only: journal_t, of_eigenvalue
   use byte_record, only: byte_record_t
-  use state_records, only: put_cost, take_cost
+  use state_records, only: pass_cost
   use stability, only: smallest_eigenvalue, local_criterion, axis_criterion, unknown
   implicit none
   private
@@ -106,18 +106,15 @@ contains
     logical :: known
 
     call self%journal%next_of(of_eigenvalue, record, known)
-    if (known) then
-      call record%take(eigenvalue)
-      call take_cost(record, self%cost)
-      if (record%exhausted) call self%journal%reject()
-      certain = .not. ieee_is_nan(eigenvalue)
-    else
+    if (.not. known) then
       call smallest_eigenvalue(problem, grid, state, eigenvalue, certain, self%cost)
-      call record%put(of_eigenvalue)
-      call record%put(eigenvalue)
-      call put_cost(record, self%cost)
-      call self%journal%append(record)
+      call record%pass(of_eigenvalue)
     end if
+    call record%pass(eigenvalue)
+    call pass_cost(record, self%cost)
+    certain = .not. ieee_is_nan(eigenvalue)
+    if (.not. known) call self%journal%append(record)
+    if (record%exhausted) call self%journal%reject()
   end subroutine find_eigenvalue
 
 end module stability_records

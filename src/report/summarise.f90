@@ -10,7 +10,7 @@ module summarise
   use stepped_branch, only: branch_t
   use path, only: path_t
   use path_readings, only: path_readings_t
-  use reported, only: reported_t, of_h0, of_load
+  use reported_place, only: place_t, of_h0, of_load
   use places, only: places_t, readings_t
   use outcome_quality, only: quality_t, quality_of
   use ending_text, only: text_of
@@ -32,11 +32,10 @@ module summarise
 contains
 
   !> The summary of a run: a line for each experiment and table.
-  function summary_of(scene, problem, outcome) result(summary)
+  type(summary_t) function summary_of(scene, problem, outcome) result(summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
     type(experiment_result_t), intent(in) :: outcome
-    type(summary_t) :: summary
     type(quality_t) :: quality
 
     call summary%set('title', scene%title)
@@ -135,7 +134,7 @@ contains
     !> Whether a jump is known to start from a fold.
     pure logical function exact(name)
       character(len=*), intent(in) :: name
-      type(reported_t) :: place
+      type(place_t) :: place
 
       place = outcome%places%place_of(name)
       exact = place%turns()

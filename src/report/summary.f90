@@ -60,10 +60,9 @@ contains
   end subroutine find
 
   !> The numbers that row i has, with what its errors and derivatives are, if any.
-  pure function numbers_of_row(self, i) result(found)
+  pure type(readings_t) function numbers_of_row(self, i) result(found)
     class(summary_t), intent(in) :: self
     integer, intent(in) :: i
-    type(readings_t) :: found
 
     allocate (found%value(0), found%rate(0, 0))
     if (.not. allocated(self%value)) return

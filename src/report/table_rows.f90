@@ -5,14 +5,13 @@ module table_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, surface_energy
   use maugis, only: maugis_units_t, maugis_units
-  use curve_states, only: curve_state_t
+  use curve_states, only: path_state_t
   use path_readings, only: path_readings_t
-  use device, only: nodes_on
+  use device, only: states_on
   use results, only: results_t
   implicit none
   private
   public :: write_contact_table
-
 
 contains
 
@@ -21,18 +20,16 @@ contains
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
     type(results_t), intent(inout) :: results
-    type(curve_state_t), allocatable :: nodes(:)
+    type(path_state_t), allocatable :: states(:)
     integer :: i, j
 
     associate (driven => readings%prescribed)
       do i = 1, size(driven%leg)
         associate (leg => driven%leg(i))
-          nodes = nodes_on(readings%node, leg)
-          call add(leg%inward, leg%from, .false.)
-          do j = 1, size(nodes)
-            call add(leg%inward, nodes(j), .false.)
+          states = states_on(readings%node, leg)
+          do j = 1, size(states)
+            call add(leg%inward, states(j), leg%jumps .and. j == size(states))
           end do
-          call add(leg%inward, leg%to, leg%jumps)
         end associate
       end do
     end associate
@@ -41,7 +38,7 @@ contains
 
     subroutine add(inward, state, at_jump)
       logical, intent(in) :: inward, at_jump
-      type(curve_state_t), intent(in) :: state
+      type(path_state_t), intent(in) :: state
       type(maugis_units_t) :: unit
       real(wp) :: si(4)
 

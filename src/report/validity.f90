@@ -7,7 +7,7 @@ module validity
   use layered_body, only: layered_body_t
   use layered_surface, only: layered_surface_t
   use records, only: extent_t
-  use reported, only: reported_t, of_h0, of_load
+  use reported_place, only: place_t, of_h0, of_load
   use places, only: places_t
   use summary, only: summary_t
   use quality_warnings, only: short_number
@@ -27,7 +27,7 @@ contains
     type(summary_t), intent(inout) :: summary
 
     if (problem%law%caveat /= '') call summary%warn(trim(problem%law%caveat))
-    if (problem%law%rest_gap > 0 .and. .not. problem%law%of_paper) then
+    if (problem%law%rest_gap > 0) then
       call take_table_error(problem, summary)
       if (.not. surface_energy(problem) > 0) &
         call summary%warn('contact is only metastable: the bodies have less energy apart, '// &
@@ -115,7 +115,7 @@ contains
     type(extent_t), intent(in) :: extent
     type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
-    type(reported_t) :: finish, lowest
+    type(place_t) :: finish, lowest
     real(wp) :: reach, deepest, force, strain
     integer :: i
 

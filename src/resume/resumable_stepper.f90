@@ -11,8 +11,7 @@ module resumable_stepper
   use stepper, only: keeping_stepper_t, branch_point_t, step_result_t
   use journal, only: of_step
   use byte_record, only: byte_record_t
-  use state_records, only: put_cost, take_cost, put_position, take_position, put_event, &
-    take_event, put_frozen, take_frozen
+  use state_records, only: pass_cost, pass_position, pass_event, pass_frozen
   use clock, only: seconds
   implicit none
   private
@@ -37,7 +36,6 @@ module resumable_stepper
     procedure, private :: keep
   end type resumable_stepper_t
 
-
 contains
 
   subroutine approach_to(self, h0, position, event)
@@ -45,13 +43,14 @@ contains
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(out) :: position
     type(step_result_t), intent(out) :: event
+    type(branch_point_t) :: before
     real(wp) :: began
 
     if (self%recall(h0, position, event)) return
     began = seconds()
     call self%catch_up()
     call self%steps%approach_to(h0, position, event)
-    call self%keep(h0, 0, position, event, began)
+    call self%keep(h0, before, position, event, began)
   end subroutine approach_to
 
   subroutine step_to(self, h0, position, event)
@@ -59,15 +58,15 @@ contains
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(out) :: event
+    type(branch_point_t) :: before
     real(wp) :: began
-    integer :: known
 
     if (self%recall(h0, position, event)) return
     began = seconds()
-    known = position%number
+    before%number = position%number
     call self%catch_up()
     call self%steps%step_to(h0, position, event)
-    call self%keep(h0, known, position, event, began)
+    call self%keep(h0, before, position, event, began)
   end subroutine step_to
 
   !> Takes the step from the position to h0 out of the journal. .false. where it has no more: then
@@ -81,17 +80,17 @@ contains
     type(byte_record_t) :: record
     type(cost_t) :: cost
     real(wp) :: kept_h0
-    logical :: fits
+    logical :: fits, made_before
 
     call self%journal%next_of(of_step, record, known)
     if (known) then
-      call record%take(kept_h0)
+      call record%pass(kept_h0)
       fits = abs(kept_h0 - h0) <= 0
       before = position
-      call take_position(record, before, position)
-      call take_event(record, event)
-      call take_frozen(record, self%steps%frozen)
-      call take_cost(record, cost)
+      call pass_position(record, before, position)
+      call pass_event(record, event)
+      call pass_frozen(record, made_before, self%steps%frozen)
+      call pass_cost(record, cost)
       self%earlier_seconds = cost%solve_seconds
       ! Times are this run's own.
       cost%kernel_seconds = self%steps%cost%kernel_seconds
@@ -126,27 +125,31 @@ contains
     self%known = self%steps%frozen%renewals
   end subroutine catch_up
 
-  !> Adds a step to the journal; it was begun at the time `began`, in the state with the number
-  !> `known`.
-  subroutine keep(self, h0, known, position, event, began)
+  !> Adds a step to the journal; it was begun at the time `began`, in the position `before`, of
+  !> which the number is enough.
+  subroutine keep(self, h0, before, position, event, began)
     class(resumable_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0, began
-    integer, intent(in) :: known
-    type(branch_point_t), intent(in) :: position
-    type(step_result_t), intent(in) :: event
+    type(branch_point_t), intent(in) :: before
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
     type(cost_t) :: cost
+    logical :: made_before
 
     call self%record%clear()
-    call self%record%put(of_step)
-    call self%record%put(h0)
-    call put_position(self%record, known, position)
-    call put_event(self%record, event)
-    call put_frozen(self%record, self%steps%frozen, self%known == self%steps%frozen%renewals)
-    self%known = self%steps%frozen%renewals
+    call self%record%pass(of_step)
+    call self%record%pass(h0)
+    call pass_position(self%record, before, position)
+    call pass_event(self%record, event)
+    associate (frozen => self%steps%frozen)
+      made_before = frozen%renewals == 0 .or. frozen%renewals == self%known
+      self%known = frozen%renewals
+      call pass_frozen(self%record, made_before, frozen)
+    end associate
     self%own_seconds = self%own_seconds + seconds() - began
     cost = self%steps%cost
     cost%solve_seconds = self%earlier_seconds + self%own_seconds
-    call put_cost(self%record, cost)
+    call pass_cost(self%record, cost)
     call self%journal%append(self%record)
   end subroutine keep
 

@@ -150,8 +150,7 @@ contains
     ! The groups of results, then the deck.
     finished = text(start + 1:) == resolved .and. &
       index(text(:start), nl // '  version = ''' // version // '''' // nl) > 0
-    converged = finished .and. &
-      index(text(:start), nl // '  converged = .true.' // nl) > 0
+    converged = finished .and. index(text(:start), nl // '  converged = .true.' // nl) > 0
   end subroutine find_finished
 
 end module run_identity

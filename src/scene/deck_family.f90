@@ -43,9 +43,8 @@ contains
   end subroutine new_deck_family
 
   !> The family with the other positive numbers of its deck behind its parameters.
-  function widened(family) result(wider)
+  type(deck_family_t) function widened(family) result(wider)
     type(deck_family_t), intent(in) :: family
-    type(deck_family_t) :: wider
     type(parameter_t) :: new
     type(failure_t), allocatable :: error
     character(len=:), allocatable :: names

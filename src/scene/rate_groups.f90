@@ -26,37 +26,36 @@ contains
   !> Their rows of the table.
   pure function rate_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
-    real(wp), parameter :: zero = 0
 
     specs = [ &
       group('drive', 'Bodies driven together and apart in time, at constant velocity.'), &
       real_key('drive', 'velocity', 'm/s', 'Velocity of h0 or, behind a spring, of its base.', &
-               above=zero, required=.true.), &
+               above=0.0_wp, required=.true.), &
       real_key('drive', 'z_start', 'm', 'Position at which the bodies are at rest and the ' // &
                'drive begins.', required=.true.), &
       real_key('drive', 'z_turn', 'm', 'Position at which it turns round, below z_start.', &
                required=.true.), &
       real_key('drive', 'z_end', 'm', 'Position at which it ends, above z_turn.', &
                otherwise='z_start'), &
-      real_key('drive', 'dwell', 's', 'Time that it waits at z_turn.', default='0', low=zero), &
+      real_key('drive', 'dwell', 's', 'Time that it waits at z_turn.', default='0', low=0.0_wp), &
       real_key('drive', 'stiffness', 'N/m', 'Stiffness of a spring between drive and bodies.', &
-               above=zero, otherwise='none: h0 itself is driven'), &
-      real_key('drive', 'time_step', 's', 'Length of the steps.', above=zero, &
+               above=0.0_wp, otherwise='none: h0 itself is driven'), &
+      real_key('drive', 'time_step', 's', 'Length of the steps.', above=0.0_wp, &
                otherwise='from accuracy, 1e-4 unless it is given'), &
       group('viscoelastic', 'Bodies that yield late; &bodies has the stiffness at once. ' // &
             'stiffness_relaxed, or compliance. Needs &drive.'), &
       real_key('viscoelastic', 'stiffness_relaxed', 'Pa', 'Stiffness of bodies at rest, that of ' &
-               // 'a standard linear solid, at most that at once.', above=zero), &
+               // 'a standard linear solid, at most that at once.', above=0.0_wp), &
       list_key('viscoelastic', 'compliance', '1/Pa', 'What each term adds to the compliance ' // &
-               '(1-nu^2)/E in the end.', most=most_terms, above=zero), &
+               '(1-nu^2)/E in the end.', most=most_terms, above=0.0_wp), &
       list_key('viscoelastic', 'retardation_time', 's', 'Time of each term, of creep under a ' // &
-               'constant load.', most=most_terms, above=zero, required=.true.), &
+               'constant load.', most=most_terms, above=0.0_wp, required=.true.), &
       group('fluid', 'A fluid between the bodies that resists where it has to drain. Needs ' // &
             '&drive.'), &
-      real_key('fluid', 'viscosity', 'Pa s', 'Viscosity of the fluid.', above=zero, &
+      real_key('fluid', 'viscosity', 'Pa s', 'Viscosity of the fluid.', above=0.0_wp, &
                required=.true.), &
       list_key('fluid', 'slip_length', 'm', 'Slip length of the fluid on the walls: one of ' // &
-               'both, or two.', most=2, low=zero, otherwise='none')]
+               'both, or two.', most=2, low=0.0_wp, otherwise='none')]
   end function rate_keys
 
   !> &drive, &viscoelastic and &fluid.

@@ -37,9 +37,8 @@ contains
   end subroutine take_model
 
   !> The problem that a scene poses.
-  function problem_of(scene) result(problem)
+  type(problem_t) function problem_of(scene) result(problem)
     type(scene_t), intent(in) :: scene
-    type(problem_t) :: problem
     type(layered_surface_t) :: surface(2)
     integer :: i
 

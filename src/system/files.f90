@@ -9,8 +9,7 @@ module files
   implicit none
   private
   public :: make_folder, sync_names, file_exists, free_disk, whole_path, own_path, read_file, &
-    read_standard_input, is_terminal, &
-    write_stderr
+    read_standard_input, is_terminal, write_stderr
 
   !> Numbers of the standard streams.
   integer(c_int), parameter :: standard_input = 0, standard_error = 2

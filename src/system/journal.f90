@@ -77,10 +77,12 @@ contains
     character(len=*), intent(in) :: path, owner
     type(failure_t), allocatable, intent(out) :: error
     type(byte_record_t) :: heading
+    character(len=:), allocatable :: text
 
     call start(self, path, as_output, error)
     if (allocated(error)) return
-    call heading%put(owner)
+    text = owner
+    call heading%pass(text)
     call self%append(heading)
     if (allocated(self%trouble)) error = self%trouble
   end subroutine begin
@@ -107,7 +109,7 @@ contains
       call self%begin(path, owner, error)
       return
     end if
-    call record%take(other)
+    call record%pass(other)
     if (other /= owner) then
       call self%close()
       return
@@ -195,7 +197,7 @@ contains
 
     call self%next(record, found)
     if (.not. found) return
-    call record%take(first)
+    call record%pass(first)
     if (first /= kind) call self%reject()
   end subroutine next_of
 
@@ -317,7 +319,7 @@ contains
     words(2) = 0
     if (.not. read_words(self%descriptor, words(frame + 1:))) return
     if (checksum(words) /= head(2)) return
-    call record%put_words(words(frame + 1:))
+    call record%fill(words(frame + 1:))
     self%earlier = transfer(head(3), self%earlier)
     whole = whole + size(words)*word
     found = .true.

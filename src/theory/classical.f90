@@ -21,25 +21,22 @@ module classical
 contains
 
   !> Hertz load [N] at a contact radius [m], (5).
-  elemental function hertz_load(contact_radius, radius, stiffness) result(load)
+  elemental real(wp) function hertz_load(contact_radius, radius, stiffness) result(load)
     real(wp), intent(in) :: contact_radius, radius, stiffness
-    real(wp) :: load
 
     load = 2*stiffness*contact_radius**3/(3*radius)
   end function hertz_load
 
   !> Hertz displacement [m] at a contact radius [m], (4).
-  elemental function hertz_displacement(contact_radius, radius) result(displacement)
+  elemental real(wp) function hertz_displacement(contact_radius, radius) result(displacement)
     real(wp), intent(in) :: contact_radius, radius
-    real(wp) :: displacement
 
     displacement = contact_radius**2/radius
   end function hertz_displacement
 
   !> Hertz contact radius [m] at a load [N], (5); NaN under tension.
-  elemental function hertz_radius_at_load(load, radius, stiffness) result(contact_radius)
+  elemental real(wp) function hertz_radius_at_load(load, radius, stiffness) result(contact_radius)
     real(wp), intent(in) :: load, radius, stiffness
-    real(wp) :: contact_radius
 
     contact_radius = cube_root(1.5_wp*radius*load/stiffness)
     if (load < 0) contact_radius = nan()
@@ -67,9 +64,8 @@ contains
   end function hertz_load_at_displacement
 
   !> Hertz pressure [Pa] at distance `r` [m] from the axis, (3).
-  elemental function hertz_pressure(r, contact_radius, radius, stiffness) result(pressure)
+  elemental real(wp) function hertz_pressure(r, contact_radius, radius, stiffness) result(pressure)
     real(wp), intent(in) :: r, contact_radius, radius, stiffness
-    real(wp) :: pressure
 
     pressure = 0
     if (r < contact_radius) then
@@ -166,17 +162,15 @@ contains
   end function jkr_load_at_displacement
 
   !> JKR load [N] at the pull-off under a fixed load, negative, (1).
-  elemental function jkr_pull_off(radius, surface_energy) result(load)
+  elemental real(wp) function jkr_pull_off(radius, surface_energy) result(load)
     real(wp), intent(in) :: radius, surface_energy
-    real(wp) :: load
 
     load = -1.5_wp*pi*surface_energy*radius
   end function jkr_pull_off
 
   !> JKR load [N] at the pull-off under a fixed displacement, negative, (12).
-  elemental function jkr_pull_off_fixed_displacement(radius, surface_energy) result(load)
+  elemental real(wp) function jkr_pull_off_fixed_displacement(radius, surface_energy) result(load)
     real(wp), intent(in) :: radius, surface_energy
-    real(wp) :: load
 
     load = 5*jkr_pull_off(radius, surface_energy)/9
   end function jkr_pull_off_fixed_displacement
@@ -205,8 +199,7 @@ contains
     if (r > contact_radius) then
       outside = sqrt((r - contact_radius)*(r + contact_radius))
       gap = hertz_gap(r, contact_radius, radius) &
-        + sqrt(4*pi*surface_energy*contact_radius/stiffness) &
-        *2/pi*atan2(outside, contact_radius)
+        + sqrt(4*pi*surface_energy*contact_radius/stiffness) *2/pi*atan2(outside, contact_radius)
     end if
   end function jkr_gap
 
@@ -241,23 +234,20 @@ contains
   end function dmt_load_at_displacement
 
   !> DMT load [N] at the pull-off, negative, (2).
-  elemental function dmt_pull_off(radius, surface_energy) result(load)
+  elemental real(wp) function dmt_pull_off(radius, surface_energy) result(load)
     real(wp), intent(in) :: radius, surface_energy
-    real(wp) :: load
 
     load = -2*pi*surface_energy*radius
   end function dmt_pull_off
 
   !> Real cube root of a number that is not negative; zero for one that is.
-  elemental function cube_root(x) result(root)
+  elemental real(wp) function cube_root(x) result(root)
     real(wp), intent(in) :: x
-    real(wp) :: root
 
     root = max(x, 0.0_wp)**(1.0_wp/3.0_wp)
   end function cube_root
 
-  elemental function nan()
-    real(wp) :: nan
+  elemental real(wp) function nan()
 
     nan = ieee_value(nan, ieee_quiet_nan)
   end function nan

@@ -49,11 +49,10 @@ contains
 
   !> Contacts up to a displacement, or to `widest`. A `work` of the law that is negative counts as
   !> none.
-  function new_layered_contact(problem, body, largest) result(contact)
+  type(layered_contact_t) function new_layered_contact(problem, body, largest) result(contact)
     type(problem_t), intent(in) :: problem
     type(layered_body_t), intent(in) :: body
     real(wp), intent(in) :: largest
-    type(layered_contact_t) :: contact
     real(wp) :: delta(2), force(2), a(0:degree), values(0:degree, 4)
     integer :: i
 

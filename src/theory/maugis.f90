@@ -27,9 +27,8 @@ contains
   !> Cohesive strength [Pa] that stands for the Lennard-Jones law (33): its largest tension,
   !> 16 gamma/(9 sqrt(3) z0) = 1.0264 gamma/z0, met at h = 3^(1/6) z0. With the same gamma this is
   !> the usual choice; lambda is then 1.157 times Tabor's parameter.
-  elemental function lennard_jones_strength(surface_energy, z0) result(strength)
+  elemental real(wp) function lennard_jones_strength(surface_energy, z0) result(strength)
     real(wp), intent(in) :: surface_energy, z0
-    real(wp) :: strength
 
     strength = 16*surface_energy/(9*sqrt(3.0_wp)*z0)
   end function lennard_jones_strength
@@ -132,9 +131,8 @@ contains
   end function maugis_units
 
   !> Maugis' unit of contact radius [m].
-  elemental function unit_length(radius, stiffness, surface_energy) result(unit)
+  elemental real(wp) function unit_length(radius, stiffness, surface_energy) result(unit)
     real(wp), intent(in) :: radius, stiffness, surface_energy
-    real(wp) :: unit
 
     unit = (1.5_wp*pi*surface_energy*radius**2/stiffness)**(1.0_wp/3.0_wp)
   end function unit_length

@@ -29,18 +29,16 @@ contains
   end function scaled_load
 
   !> D at given A and lambda.
-  elemental function scaled_displacement(a, lambda) result(displacement)
+  elemental real(wp) function scaled_displacement(a, lambda) result(displacement)
     real(wp), intent(in) :: a, lambda
-    real(wp) :: displacement
 
     displacement = a**2 - 4*lambda/3*a*zone_width(a, lambda)
   end function scaled_displacement
 
   !> P or D at given A and lambda.
-  elemental function scaled(quantity, a, lambda) result(value)
+  elemental real(wp) function scaled(quantity, a, lambda) result(value)
     integer, intent(in) :: quantity
     real(wp), intent(in) :: a, lambda
-    real(wp) :: value
 
     if (quantity == of_load) then
       value = scaled_load(a, lambda)
@@ -106,9 +104,8 @@ contains
   !> (lambda A^2/2) profile_term(t) + (4 lambda^2 A/3) tension_term(t) = 1.
   !> In logarithms the left side is a smooth curve whose slope stays between 1 and 3: one value
   !> brackets the root, and Newton's method comes home from anywhere.
-  elemental function zone_width(a, lambda) result(t)
+  elemental real(wp) function zone_width(a, lambda) result(t)
     real(wp), intent(in) :: a, lambda
-    real(wp) :: t
     integer, parameter :: max_steps = 100
     ! The step taken from here squares this error.
     real(wp), parameter :: close_enough = 1e-9_wp
@@ -147,33 +144,29 @@ contains
   end function radius_at_zone_width
 
   !> t + (m^2 - 2) atan(t): the part of the Hertz gap at c that the tension holds open.
-  elemental function profile_term(t) result(term)
+  elemental real(wp) function profile_term(t) result(term)
     real(wp), intent(in) :: t
-    real(wp) :: term
 
     term = tangent_excess(t) + t**2*atan(t)
   end function profile_term
 
   !> Derivative of `profile_term`.
-  elemental function profile_slope(t) result(slope)
+  elemental real(wp) function profile_slope(t) result(slope)
     real(wp), intent(in) :: t
-    real(wp) :: slope
 
     slope = 2*t*(t/(1 + t**2) + atan(t))
   end function profile_slope
 
   !> t atan(t) - m + 1, the part of the gap at c that the tension closes, without cancellation.
-  elemental function tension_term(t) result(term)
+  elemental real(wp) function tension_term(t) result(term)
     real(wp), intent(in) :: t
-    real(wp) :: term
 
     term = t*(atan(t) - t/(1 + sqrt(1 + t**2)))
   end function tension_term
 
   !> Derivative of `tension_term`.
-  elemental function tension_slope(t) result(slope)
+  elemental real(wp) function tension_slope(t) result(slope)
     real(wp), intent(in) :: t
-    real(wp) :: slope
 
     slope = atan(t) + t/(1 + t**2) - t/sqrt(1 + t**2)
   end function tension_slope

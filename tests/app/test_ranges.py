@@ -2,12 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import deck, exponential, lennard_jones, loading, runner
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("extremes"))
+from support.scenes import deck, exponential, lennard_jones, loading
 
 
 @pytest.mark.parametrize(

@@ -5,14 +5,9 @@ import re
 import numpy as np
 import pytest
 from conftest import ROOT
-from support.scenes import exponential, lennard_jones, loading, runner, several
+from support.scenes import exponential, lennard_jones, loading, several
 
 CYCLE = {"loading": loading(6, -2, 0.5), "unloading": {}}
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("extremes"))
 
 
 SCENES = {

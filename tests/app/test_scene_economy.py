@@ -3,17 +3,12 @@
 import math
 
 import pytest
-from support.scenes import deck, exponential, lennard_jones, loading, runner
+from support.scenes import deck, exponential, lennard_jones, loading
 
 COUNTERS = [
     "states", "iterations", "kernel_entries", "pressure_evaluations", "operator_products",
     "operator_columns", "factorisations", "rejected_steps"]
 PLAIN = {"loading": loading(8, -2, 0.25)}
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("economy"))
 
 
 def counts(result):

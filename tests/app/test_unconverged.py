@@ -1,14 +1,9 @@
 """Claims about what does not converge."""
 
 import pytest
-from support.scenes import exponential, lennard_jones, loading, runner
+from support.scenes import exponential, lennard_jones, loading
 
 CYCLE = {"loading": loading(6, -2, 0.5), "unloading": {}}
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("extremes"))
 
 
 STARVED = {

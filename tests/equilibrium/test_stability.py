@@ -7,18 +7,13 @@ with the program's; only the gaps are the program's, interpolated.
 import numpy as np
 import pytest
 from support.half_space import HalfSpace
-from support.scenes import exponential, lennard_jones, loading, runner
+from support.scenes import exponential, lennard_jones, loading
 
 import snapin as library
 
 EDGE = 3 ** (1 / 6)
 ORDER = 10
 FINE = {"accuracy": 1e-9}
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("stability"))
 
 
 def depth(sigma):

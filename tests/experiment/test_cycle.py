@@ -14,11 +14,6 @@ WEAK, STRONG = 0.87, 8.7
 STRONG_PULL_OFF = 1.01124487  # In units of JKR's.
 
 
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("cycle"))
-
-
 def fig1(**numerics):
     """The Lennard-Jones cycle of Fig. 1."""
     return deck(

@@ -4,15 +4,10 @@ import re
 
 import numpy as np
 import pytest
-from support.scenes import JKR, deck, exponential, lennard_jones, loading, runner
+from support.scenes import JKR, deck, exponential, lennard_jones, loading
 
 # sigma of attraction with a jump, and with much adhesion.
 WEAK, STRONG = 0.87, 8.7
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("cycle_grids"))
 
 
 def fig5(hamaker, **numerics):

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import lennard_jones, loading, runner, several
+from support.scenes import lennard_jones, loading, several
 
 # The first scene: the table that an independent splining of a path of accuracy 1e-8 gave. Position
 # of the drive [nm], load before and after [uN], of the jumps in and out, and energy lost [J].
@@ -19,11 +19,6 @@ FIRST_SCENE = """&bodies radius = 1.5e-2, stiffness = 1.0e10 /
 &force law = 'lennard_jones', hamaker = 1.0e-20, z0 = 0.5e-9 /
 &equilibrium_path h0_end = -2e-9 /
 """
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("device"))
 
 
 def springs(sigma, stiffness=None, h0_end=-2.0, accuracy=None, **groups):

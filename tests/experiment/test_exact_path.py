@@ -2,12 +2,7 @@
 with more digits where these help, and the better one is shown."""
 
 import pytest
-from support.scenes import deck, lennard_jones, of_numbers, runner, several
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("exact_path"))
+from support.scenes import deck, lennard_jones, of_numbers, several
 
 
 @pytest.mark.parametrize("sigma,accuracy", [(1.6607746, 1e-8), (1.6607746, 1e-7), (5.475, 1e-6)])

@@ -2,14 +2,9 @@
 
 import numpy as np
 import pytest
-from support.scenes import deck, lennard_jones, loading, runner, several
+from support.scenes import deck, lennard_jones, loading, several
 
 SIGMA = 0.87
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("loads"))
 
 
 def under(*loads, sigma=SIGMA, **groups):

@@ -7,12 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import JKR, deck, exponential, lennard_jones, loading, runner, several
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("hard"))
+from support.scenes import JKR, deck, exponential, lennard_jones, loading, several
 
 
 def check(result, may_warn=False):

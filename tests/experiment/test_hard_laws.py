@@ -8,15 +8,10 @@ inverse of sigma but for a factor near 1.
 import math
 
 import pytest
-from support.scenes import deck, runner, several
+from support.scenes import deck, several
 
 # Pull-off over pi R w of Maugis' theory (1992), from a solver of its own.
 MAUGIS = {0.3: 1.815556, 1.0: 1.600735, 2.0: 1.534603}
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("hard_laws"))
 
 
 def steps(sigma, h0_end=-3.0, accuracy=1e-6, stiffness=None, **law):

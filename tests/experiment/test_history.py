@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import deck, loading, read_table, runner
+from support.scenes import deck, loading, read_table
 
 # Fig. 10(a): sigma = 1.7. The neck is 589 nm wide; nodes lie from the axis to 15 um.
 NECK, R_MAX = 589e-9, 15e-6
@@ -10,11 +10,6 @@ TURNS = [0.0, -2e-9, -5e-9]
 RULE = {"method": "mixing", "mixing_limit": 0.2, "convergence": "displacement_change",
         "displacement_tolerance": 1e-13}
 SPACINGS = (0.1, 0.2, 0.5, 1.0, 4.0)
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("history"))
 
 
 def cycle(step=0.25e-9, **groups):

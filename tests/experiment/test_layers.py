@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from support.half_space import path_by_axis
-from support.scenes import deck, loading, runner
+from support.scenes import deck, loading
 
 AXIS = (*np.linspace(12, 3, 12), *np.linspace(2.8, 1.1, 18), *np.linspace(1.09, 0.98, 16))
 ENDS = (*np.arange(0, 3.6, 0.15), 3.8, 4.4, *np.geomspace(6, 150, 7))
@@ -43,36 +43,31 @@ def layered(layer, sigma=1.0, pieces=1, accuracy=1e-8, **groups):
 PATH = {"h0_end": -1.0}
 
 
-@pytest.fixture(scope="module")
-def solve(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("layers"))
-
-
 @pytest.mark.parametrize("scene", SCENES)
-def test_folds_and_states_are_those_of_independent_states(solve, scene):
+def test_folds_and_states_are_those_of_independent_states(run, scene):
     layer = SCENES[scene]
     (all_h0, loads), (h0, load) = path_by_axis("lennard_jones", 1.0, AXIS, ENDS, layer=layer)
-    found = solve(layered(layer, equilibrium_path={"h0_end": float(all_h0[-1])})).summary
+    found = run(layered(layer, equilibrium_path={"h0_end": float(all_h0[-1])})).summary
     assert found["end_load"] == pytest.approx(loads[-1], rel=1e-8)
     assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-8)
     assert [found["jump_in_load"], found["jump_out_load"]] == pytest.approx(load, rel=2e-8)
 
 
-def test_a_film_thirty_times_thinner_than_the_contact_has_independent_states(solve):
+def test_a_film_thirty_times_thinner_than_the_contact_has_independent_states(run):
     """The one that yields least beside what its half-space does: it cannot be compressed."""
     layer = (0.1, 0.0, 0.5, 0.0, 1.0)
     ((h0, load),) = path_by_axis("lennard_jones", 1.0, AXIS, ENDS, layer=layer, softness=())
-    run = solve(layered(layer, equilibrium_path={"h0_end": float(h0[-1])}))
+    run = run(layered(layer, equilibrium_path={"h0_end": float(h0[-1])}))
     assert run.summary["end_load"] == pytest.approx(load[-1], rel=1e-7)
 
 
 @pytest.mark.parametrize("sigma", [0.1, 25])
 @pytest.mark.parametrize("ratio, nu", [(0.0, 0.5), (0.0, 0.3), (0.2, 0.3), (5.0, 0.3)])
-def test_paths_over_coats_thirty_times_thinner_are_as_exact_as_asked_for(solve, sigma, ratio, nu):
+def test_paths_over_coats_thirty_times_thinner_are_as_exact_as_asked_for(run, sigma, ratio, nu):
     """Where what layers yield beside a half-space nearly cancels that."""
     layer = (0.03 * (9 * math.pi * sigma) ** (1 / 3), ratio, nu, nu, 1.0)
     path = {"h0_end": -1.6 if sigma < 1 else -6.0}
-    asked, finer = (solve(layered(layer, sigma, accuracy=accuracy, equilibrium_path=path)).summary
+    asked, finer = (run(layered(layer, sigma, accuracy=accuracy, equilibrium_path=path)).summary
                     for accuracy in (1e-6, 1e-9))
     assert asked["error_estimate"] < 1e-6
     for key in ("max_tension", "end_load"):
@@ -81,18 +76,18 @@ def test_paths_over_coats_thirty_times_thinner_are_as_exact_as_asked_for(solve, 
 
 
 @pytest.mark.parametrize("sigma", [1, 25])
-def test_errors_of_a_thin_coat_a_hundred_times_as_stiff_hold(solve, sigma):
+def test_errors_of_a_thin_coat_a_hundred_times_as_stiff_hold(run, sigma):
     layer = (0.03 * (9 * math.pi * sigma) ** (1 / 3), 100.0, 0.3, 0.3, 1.0)
-    asked, finer = (solve(layered(layer, sigma, accuracy=accuracy,
+    asked, finer = (run(layered(layer, sigma, accuracy=accuracy,
                                   equilibrium_path={"h0_end": -2.0})).summary
                     for accuracy in (1e-6, 1e-9))
     for key in ("max_tension", "jump_out_load", "end_load"):
         assert abs(asked[key] - finer[key]) < 3 * asked[f"{key}_error"] + 1e-8 * abs(finer[key])
 
 
-def test_a_cone_over_a_layer_has_the_load_that_is_asked_for(solve):
+def test_a_cone_over_a_layer_has_the_load_that_is_asked_for(run):
     """Its pressures fall so slowly far out that waves left out there were a part of the load."""
-    asked, finer = (solve(deck(
+    asked, finer = (run(deck(
         bodies={"young": 70e9, "poisson": 0.2}, layer={"thickness": 2e-5, "young": 3e6,
                                                        "poisson": 0.45},
         shape={"kind": "cone", "half_angle": 1.2}, numerics={"accuracy": accuracy},
@@ -103,11 +98,11 @@ def test_a_cone_over_a_layer_has_the_load_that_is_asked_for(solve):
 
 
 @pytest.mark.parametrize("pieces", [1, 3])
-def test_equal_moduli_are_a_half_space(solve, pieces):
-    plain = solve(deck(bodies={"radius": 1.0, "young": 0.91, "poisson": 0.3},
+def test_equal_moduli_are_a_half_space(run, pieces):
+    plain = run(deck(bodies={"radius": 1.0, "young": 0.91, "poisson": 0.3},
                         force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
                         equilibrium_path=PATH)).summary
-    same = solve(deck(bodies={"radius": 1.0, "young": 0.91, "poisson": 0.3},
+    same = run(deck(bodies={"radius": 1.0, "young": 0.91, "poisson": 0.3},
                        layer={"thickness": [1.0] * pieces, "young": [0.91] * pieces,
                               "poisson": [0.3] * pieces, "body": "both"},
                        force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
@@ -117,20 +112,20 @@ def test_equal_moduli_are_a_half_space(solve, pieces):
     assert same["top_modulus"] == pytest.approx(same["bottom_modulus"], rel=1e-14)
 
 
-def test_two_layers_of_one_material_are_one(solve):
-    one, two = (solve(layered(COAT, pieces=n, accuracy=1e-6, equilibrium_path=PATH)).summary
+def test_two_layers_of_one_material_are_one(run):
+    one, two = (run(layered(COAT, pieces=n, accuracy=1e-6, equilibrium_path=PATH)).summary
                 for n in (1, 2))
     for key in ("max_tension", "jump_in_h0", "jump_out_load", "end_load"):
         assert two[key] == pytest.approx(one[key], rel=1e-12)
 
 
-def test_a_thick_layer_is_its_half_space_and_a_thin_one_nothing(solve):
-    half = solve(deck(bodies={"radius": 1.0, "stiffness": 1.0},
+def test_a_thick_layer_is_its_half_space_and_a_thin_one_nothing(run):
+    half = run(deck(bodies={"radius": 1.0, "stiffness": 1.0},
                        force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
                        equilibrium_path=PATH)).summary
     apart = []
     for thickness in (300.0, 3000.0):
-        thick = solve(layered((thickness, *COAT[1:]), accuracy=1e-6,
+        thick = run(layered((thickness, *COAT[1:]), accuracy=1e-6,
                                equilibrium_path=PATH)).summary
         apart.append(abs(thick["max_tension"] / half["max_tension"] - 1))
     # The base moves as one under the load, which shifts h0 and not the pull-off; the rest falls as
@@ -138,8 +133,8 @@ def test_a_thick_layer_is_its_half_space_and_a_thin_one_nothing(solve):
     assert apart[0] < 1e-4 and apart[1] < 1e-6
 
 
-def test_a_cycle_and_a_spring_are_read_from_the_same_states(solve):
-    run = solve(layered(COAT, accuracy=1e-6, loading=loading(6, -1, 0.25), unloading={},
+def test_a_cycle_and_a_spring_are_read_from_the_same_states(run):
+    run = run(layered(COAT, accuracy=1e-6, loading=loading(6, -1, 0.25), unloading={},
                          equilibrium_path=PATH, device={"stiffness": [0.0, 5.0]},
                          fixed_load={"load": [-3.0]}, stability={}))
     found = run.summary
@@ -176,10 +171,10 @@ def coated(key=None, factor=1.0, **groups):
 
 
 @pytest.mark.parametrize("key", NUMBERS)
-def test_derivatives_are_differences_of_runs(solve, key):
+def test_derivatives_are_differences_of_runs(run, key):
     step, accurate = 2e-4, {"numerics": {"accuracy": 1e-9}}
-    near, far = (solve(coated(key, factor, **accurate)).summary for factor in (1 - step, 1 + step))
-    rates = solve(coated(sensitivity={"parameters": NUMBERS}, **accurate)).table("sensitivity.csv")
+    near, far = (run(coated(key, factor, **accurate)).summary for factor in (1 - step, 1 + step))
+    rates = run(coated(sensitivity={"parameters": NUMBERS}, **accurate)).table("sensitivity.csv")
     for quantity in ("max_tension", "max_tension_h0", "jump_in_h0", "jump_out_h0", "end_load"):
         row = (rates["parameter"] == key) & (rates["quantity"] == quantity)
         difference = (far[quantity] - near[quantity]) / (2 * step)
@@ -187,18 +182,18 @@ def test_derivatives_are_differences_of_runs(solve, key):
             difference, rel=1e-4, abs=1e-6)
 
 
-def test_cases_of_a_sweep_are_runs_of_their_own(solve):
+def test_cases_of_a_sweep_are_runs_of_their_own(run):
     thickness = [0.4, 1.6]
-    rows = solve(coated(sweep={"key": "layer.thickness(2)", "values": thickness})
+    rows = run(coated(sweep={"key": "layer.thickness(2)", "values": thickness})
                  ).table("sweep.csv")
     for i, value in enumerate(thickness):
-        alone = solve(coated("layer.thickness(2)", value / 1.5)).summary
+        alone = run(coated("layer.thickness(2)", value / 1.5)).summary
         for key in ("max_tension", "jump_out_h0", "top_modulus", "bottom_modulus"):
             assert rows[key][i] == pytest.approx(alone[key], rel=1e-7)
 
 
-def test_a_table_has_the_loads_of_a_cycle_and_their_slopes(solve):
-    run = solve(coated(table={}, loading=loading(6, -1, 0.25)))
+def test_a_table_has_the_loads_of_a_cycle_and_their_slopes(run):
+    run = run(coated(table={}, loading=loading(6, -1, 0.25)))
     table, cycle = run.table("table.csv").rows("approach"), run.table("curve.csv").rows("loading")
     apart = 0
     for h0, load in zip(cycle["h0"], cycle["load"]):
@@ -213,8 +208,8 @@ def test_a_table_has_the_loads_of_a_cycle_and_their_slopes(solve):
     assert 0 < apart < 1e-4 * run.summary["max_tension"]
 
 
-def test_deformations_of_both_surfaces_add_up(solve):
-    run = solve(layered(SOFT, accuracy=1e-6, equilibrium_path=PATH, profiles={"h0": -0.5}))
+def test_deformations_of_both_surfaces_add_up(run):
+    run = run(layered(SOFT, accuracy=1e-6, equilibrium_path=PATH, profiles={"h0": -0.5}))
     rows = run.table("profiles.csv")
     total = rows["deformation_1"] + rows["deformation_2"]
     assert total == pytest.approx(2 * rows["deformation"], rel=1e-9, abs=1e-10)
@@ -232,14 +227,14 @@ def warnings(run):
     return [found] if isinstance(found, str) else found
 
 
-def test_what_is_beyond_the_model_is_said(solve):
-    thin = solve(layered((0.5, *FILM[1:]), accuracy=1e-4, equilibrium_path=PATH))
+def test_what_is_beyond_the_model_is_said(run):
+    thin = run(layered((0.5, *FILM[1:]), accuracy=1e-4, equilibrium_path=PATH))
     assert any("thinner than the range of the force" in text for text in warnings(thin))
-    thick = solve(layered((50.0, *COAT[1:]), accuracy=1e-4, equilibrium_path=PATH))
+    thick = run(layered((50.0, *COAT[1:]), accuracy=1e-4, equilibrium_path=PATH))
     assert not any("layer" in text for text in warnings(thick))
     # A thousandth of the load's stress is small for the skin and not for what is below.
     skin = deck(bodies={"radius": 1e-4, "young": [1e5, 1e12], "poisson": [0.5, 0.3]},
                 layer={"thickness": 2e-6, "young": 1e9, "poisson": 0.3},
                 force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 1e-9},
                 equilibrium_path={"h0_end": -3e-6})
-    assert any("below the top layer is strained" in text for text in warnings(solve(skin)))
+    assert any("below the top layer is strained" in text for text in warnings(run(skin)))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import lennard_jones, runner, several
+from support.scenes import lennard_jones, several
 
 # Strength of adhesion, accuracy, stiffness over sigma, load over sigma.
 SCENES = [(0.02, 1e-4, 0.3, -1.0), (0.87, 1e-5, 3.0, 2.0), (8.7, 1e-6, 0.05, -3.0),
@@ -10,11 +10,6 @@ SCENES = [(0.02, 1e-4, 0.3, -1.0), (0.87, 1e-5, 3.0, 2.0), (8.7, 1e-6, 0.05, -3.
 KEYS = [*(f"device_jump_{way}_{what}" for way in ("in", "out")
           for what in ("z", "load", "load_after")), "device_energy_lost", "device_cycle_energy",
         "regime_load_number", "regime_error_jkr", "regime_error_hertz"]
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("reading_errors"))
 
 
 def scene(sigma, stiffness, load, accuracy):

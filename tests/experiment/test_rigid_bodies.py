@@ -7,7 +7,7 @@ import pytest
 import snapin
 from conftest import ROOT
 from support import derjaguin
-from support.scenes import deck, loading, runner, several
+from support.scenes import deck, loading, several
 
 WALL = {"van_der_waals": {"hamaker": 1e-20}, "born": {"z0": 0.3e-9}}
 TABLE = str(ROOT / "inputs" / "examples" / "tabulated.txt")
@@ -49,11 +49,6 @@ PAIRS = [(law, "parabola") for law in LAWS]
 PAIRS += [(law, TURN[i % len(TURN)]) for i, law in enumerate(LAWS)]
 PAIRS += [(law, body) for law in ("dugdale", "sharp sum") for body in TURN]
 STEPS = {"h0_start": 2.3e-8, "h0_end": 0.27e-9, "h0_step": 2.6e-9}
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("rigid"))
 
 
 def rigid(law, body, **groups):

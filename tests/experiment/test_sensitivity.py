@@ -7,18 +7,13 @@ import re
 import numpy as np
 import pytest
 import snapin as python
-from support.scenes import deck, lennard_jones, runner, several
+from support.scenes import deck, lennard_jones, several
 
 LAW = {"law": "lennard_jones", "hamaker": 1.0e-20, "z0": 0.5e-9}
 PARABOLA = {"radius": 1.5e-2, "stiffness": 1.0e10}
 READ = {
     "equilibrium_path": {"h0_end": -2e-9}, "device": {"stiffness": [1e6, 1e4]},
     "fixed_load": {"load": [-3e-5, 2e-5]}}
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("sensitivity"))
 
 
 def derivatives(found, kind="logarithmic"):

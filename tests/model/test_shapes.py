@@ -4,12 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import deck, runner
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("shapes"))
+from support.scenes import deck
 
 
 def scene(shape, sigma=1.0, **groups):

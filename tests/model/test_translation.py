@@ -17,11 +17,6 @@ BODIES = {"radius": 1.5e-2, "stiffness": 1e10}
 DECAY = 0.3e-9
 
 
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("translation"))
-
-
 def scene(group, surface_energy, outward):
     """Cycle and path of a law whose well is at 0.5 nm plus `outward` [m]."""
     return deck(

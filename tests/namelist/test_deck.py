@@ -4,7 +4,8 @@ All through `snapin --check`, which prints "DECK: ok" or the mistakes and comput
 """
 
 import pytest
-from support.decks import ACCEPTED, BODIES, FORCE, GOOD, LOADING, with_bodies, with_extra
+from support.decks import (
+    ACCEPTED, BODIES, FORCE, GOOD, LOADING, assert_refused, with_bodies, with_extra)
 
 
 @pytest.mark.parametrize("text", ACCEPTED.values(), ids=ACCEPTED.keys())
@@ -157,16 +158,7 @@ REFUSED = {
 
 @pytest.mark.parametrize("case", REFUSED.values(), ids=REFUSED.keys())
 def test_bad_deck_is_refused_by_line_group_and_key(check, case):
-    text, line, group, key, phrase = case
-    status, out, err = check(text)
-    assert status == 2
-    assert out == ""
-    first = err.splitlines()[0]
-    place = f"d.nml:{line}: " + (f"&{group}: " if group else "") + (f'key "{key}": ' if key else "")
-    assert first.startswith(place), err
-    if not group:
-        assert not first[len(place):].startswith("&"), err
-    assert phrase in err, err
+    assert_refused(check, *case)
 
 
 @pytest.mark.parametrize("text", ["", "\n\n", "! only a comment\n"])

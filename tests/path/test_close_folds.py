@@ -1,12 +1,7 @@
 """Claims about folds that a step could pass over, and about errors of paths."""
 
 import pytest
-from support.scenes import lennard_jones, runner
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("extremes"))
+from support.scenes import lennard_jones
 
 
 # --- Folds that a step passes over
@@ -16,10 +11,14 @@ def run(snapin, tmp_path_factory):
 def test_folds_however_close_are_found(run, sigma):
     result = run(lennard_jones(sigma, equilibrium_path={"h0_end": -2.0}))
     first, second = result.summary["folds_h0"]
-    # h0 at the folds parts as (sigma - 0.29108493)^(3/2).
-    assert second - first == pytest.approx(1.60 * (sigma - 0.29108493) ** 1.5, rel=0.2)
+    # h0 at the folds parts as (sigma - 0.29108493)^(3/2), and the energy lost goes with the square
+    # of that difference.
+    beyond = sigma - 0.29108493
+    assert second - first == pytest.approx(1.60 * beyond**1.5, rel=0.2)
     assert result.summary["folds_stable"] == [0, 1]
-    assert result.summary["energy_lost"] > 0
+    assert result.summary["energy_lost"] == pytest.approx(
+        2.57 * beyond**2, rel=0.2, abs=result.summary["energy_lost_uncertainty"])
+    assert result.summary["energy_lost_uncertainty"] < 1e-11
 
 
 @pytest.mark.parametrize("sigma", [0.1, 0.28, 0.29, 0.29108])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import JKR, exponential, lennard_jones, loading, runner, several
+from support.scenes import JKR, exponential, lennard_jones, loading, several
 
 # The reference table: an independent high-order solution. Loads in units of gamma R.
 TABLE = {
@@ -16,11 +16,6 @@ TABLE = {
 # The table is of two independent solutions that agree to within one unit of its last digit.
 EIGHT = {"rel": 1e-8}
 SEVEN = {"abs": 1.05e-7}
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("path"))
 
 
 def path(sigma, accuracy=None, part="full", **keys):

@@ -2,17 +2,12 @@
 
 import numpy as np
 import pytest
-from support.scenes import deck, lennard_jones, runner
+from support.scenes import deck, lennard_jones
 
 COLUMNS = ("h0", "load", "contact_radius", "displacement")
 SIGMAS = [1e-4, 0.0087, 0.3, 0.87, 8.7, 100.0, 1e4]
 # Half a per cent of the range of each column.
 ALLOWED = 0.005
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("rows"))
 
 
 def scene(sigma, **groups):

@@ -5,12 +5,7 @@ import math
 import numpy as np
 import pytest
 from support.drained import extrapolated
-from support.scenes import deck, lennard_jones, runner, several
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("fluid"))
+from support.scenes import deck, lennard_jones, several
 
 
 def scene(sigma, viscosity, *, velocity=1.0, start=15.0, turn=-1.0, accuracy=1e-3, slip=None,

@@ -3,17 +3,12 @@ which load and depth are known in closed form (Lee and Radok; Ting on the way ba
 
 import numpy as np
 import pytest
-from support.scenes import exponential, runner
+from support.scenes import exponential
 
 # Depth in decay lengths of the repulsion, and stiffness at rest over that at once.
 DEPTH, RELAXED = 1000.0, 0.25
 MODULUS = 0.5  # E* at once
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("rates"))
 
 
 def scene(accuracy=1e-3, **drive):

@@ -5,15 +5,10 @@ import math
 import numpy as np
 import pytest
 from support.creeping import cycle
-from support.scenes import JKR, deck, lennard_jones, runner
+from support.scenes import JKR, deck, lennard_jones
 
 # In units of z0, and of the time of retardation.
 FAST, SLOW = 1.0e5, 0.01
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("rates"))
 
 
 def scene(sigma, relaxed=None, *, velocity=1.0, start=15.0, turn=-1.0, accuracy=1e-4, creep=None,

@@ -3,12 +3,7 @@
 import math
 
 import pytest
-from support.scenes import JKR, deck, lennard_jones, runner, several
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("regime"))
+from support.scenes import JKR, deck, lennard_jones, several
 
 
 def regime(sigma, h0_end):

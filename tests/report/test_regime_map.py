@@ -5,18 +5,13 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import lennard_jones, runner, several
+from support.scenes import lennard_jones, several
 
 THEORIES = ("hertz", "jkr", "dmt", "maugis", "carpick", "pietrement")
 EDGE, REST = 3 ** (1 / 6), 1.0
 # Largest tension of the Lennard-Jones law over gamma/z0.
 STRENGTH = 16 / (9 * math.sqrt(3))
 SIGMAS = np.geomspace(1e-3, 1e3, 10)
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("map"))
 
 
 def root(function, low, high):

@@ -39,11 +39,6 @@ COST = """wall_seconds kernel_seconds solve_seconds nodes states iterations kern
 
 
 @pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("results"))
-
-
-@pytest.fixture(scope="module")
 def full(run):
     """A scene with every group that gives a file."""
     scene = lennard_jones(

@@ -4,18 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import exponential, lennard_jones, loading, runner, several
+from support.scenes import exponential, lennard_jones, loading, several
 
 JUMPS = ["jump_criterion_29", "jump_equation_37", "fold_closed_form", "fold_attractive_only"]
 OF_APPROXIMATIONS = [f"{name}_{what}" for name in JUMPS for what in ("h0", "load")]
 OF_APPROXIMATIONS.insert(4, "jump_equation_37_gap")
 END = ["end_h0", "end_displacement", "end_load"]
 TURNING = [-2.0, 2.5]
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("sweep_columns"))
 
 
 def adhesive(sigma=0.87, **groups):

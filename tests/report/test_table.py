@@ -2,12 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import lennard_jones, loading, runner
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("table"))
+from support.scenes import lennard_jones, loading
 
 
 def table_of(run, sigma, h0_end):

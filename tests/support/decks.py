@@ -115,3 +115,15 @@ def with_bodies(text):
 def with_extra(text):
     """A good deck and `text` from line 4 on."""
     return GOOD + text
+
+
+def assert_refused(check, text, line, group, key, phrase):
+    """The deck is refused, first of all for what is wrong with this key of a group in this line."""
+    status, out, err = check(text)
+    assert (status, out) == (2, "")
+    first = err.splitlines()[0]
+    place = f"d.nml:{line}: " + (f"&{group}: " if group else "") + (f'key "{key}": ' if key else "")
+    assert first.startswith(place), err
+    if not group:
+        assert not first[len(place):].startswith("&"), err
+    assert phrase in err, err

@@ -98,8 +98,7 @@ contains
     logical :: certain
 
     eigenvalue = 0
-    if (self%eigenvalues) &
-      call smallest_eigenvalue(problem, grid, state, eigenvalue, certain, cost)
+    if (self%eigenvalues) call smallest_eigenvalue(problem, grid, state, eigenvalue, certain, cost)
     print '(a, es25.16)', 'row,' // curve_row(record) // ',', eigenvalue
   end subroutine take
 

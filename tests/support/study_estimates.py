@@ -33,10 +33,18 @@ class Finding(NamedTuple):
     wrong: list
 
 
-def jobs(count, folder, *, low=1e-3, high=1e4, accuracies=ACCURACIES):
-    """Strengths evenly spaced in their logarithm."""
-    strengths = [float(f"{sigma:.6g}") for sigma in np.geomspace(low, high, count)]
-    return [Job(sigma, accuracies, folder / f"{sigma:g}") for sigma in strengths]
+def jobs(count, folder, *, strengths=None):
+    """Strengths from 0.001 to 10000, evenly spaced in their logarithm, or those given."""
+    if strengths is None:
+        strengths = np.geomspace(1e-3, 1e4, count)
+    return [Job(float(f"{sigma:.6g}"), ACCURACIES, folder / f"{sigma:g}") for sigma in strengths]
+
+
+def energy_jobs(count, folder):
+    """Strengths at which energy is lost, a third of them just above the cusp."""
+    dense = np.linspace(0.3, 0.6, count // 3)
+    wide = np.geomspace(0.65, 1e3, count - count // 3)
+    return jobs(count, folder, strengths=(*dense, *wide))
 
 
 def examine(job):

@@ -9,14 +9,9 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import deck, runner
+from support.scenes import deck
 
 STIFFNESS, E_STAR = 1.0, 0.5
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("convex"))
 
 
 def adhesive(shape, work, **groups):

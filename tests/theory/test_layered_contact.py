@@ -4,16 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import deck, runner
+from support.scenes import deck
 
 SIGMA = 25.0
 # Contact radius of JKR theory without load, by which thicknesses are measured.
 RADIUS = (9 * math.pi * SIGMA) ** (1 / 3)
-
-
-@pytest.fixture(scope="module")
-def solve(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("layered"))
 
 
 def theory(thickness, nu, base=None, sigma=SIGMA, h0_end=-20.0, count=40, **groups):
@@ -37,8 +32,8 @@ SPHERE = [(0.18507, 1.26977), (0.41721, 1.85712), (0.62011, 2.68406), (0.74794, 
 
 
 @pytest.mark.parametrize("chi, ratio", SPHERE)
-def test_a_sphere_on_an_incompressible_film(solve, chi, ratio):
-    found = solve(theory(1 / chi, 0.5, sigma=1.0, h0_end=-1.0)).summary
+def test_a_sphere_on_an_incompressible_film(run, chi, ratio):
+    found = run(theory(1 / chi, 0.5, sigma=1.0, h0_end=-1.0)).summary
     assert found["effective_modulus"] / found["top_modulus"] == pytest.approx(ratio, rel=2e-5)
 
 
@@ -50,9 +45,9 @@ STIFFER = {0.5: [1.2806, 1.6837, 2.2129, 2.8602, 3.6187, 6.003, 9.150],
 
 
 @pytest.mark.parametrize("nu", STIFFER)
-def test_a_flat_punch_on_a_film(solve, nu):
+def test_a_flat_punch_on_a_film(run, nu):
     """Bodies that do not adhere move on by a flat punch of the radius that they have."""
-    rows = solve(theory(1.0, nu, h0_end=-3.0, sigma=1.0, count=1000)).table("classical.csv")
+    rows = run(theory(1.0, nu, h0_end=-3.0, sigma=1.0, count=1000)).table("classical.csv")
     rows = rows.rows("hertz_layered")
     a = rows["contact_radius"]
     # Both are smooth in the radius, beside the power that they begin with.
@@ -73,16 +68,16 @@ PULL_OFF = [(3, 0.5, None, 1.51029), (1, 0.5, None, 1.65416), (0.5, 0.5, None, 1
 
 
 @pytest.mark.parametrize("part, nu, base, pull_off", PULL_OFF)
-def test_pull_off_of_jkr_theory(solve, part, nu, base, pull_off):
-    found = solve(theory(part * RADIUS, nu, base)).summary
+def test_pull_off_of_jkr_theory(run, part, nu, base, pull_off):
+    found = run(theory(part * RADIUS, nu, base)).summary
     assert found["jkr_pull_off"] / (math.pi * SIGMA) == pytest.approx(pull_off, abs=6e-6)
 
 
 @pytest.mark.parametrize("part", [3, 1, 0.5])
 @pytest.mark.parametrize("nu, base", [(0.5, None), (0.3, (5, 0.3)), (0.45, (0.2, 0.2))])
-def test_lennard_jones_forces_pull_as_much_over_jkr_as_on_a_half_space(solve, part, nu, base):
-    found = solve(theory(part * RADIUS, nu, base, equilibrium_path={"h0_end": -2.0})).summary
-    half = solve(deck(bodies={"radius": 1.0, "stiffness": 1.0}, force={
+def test_lennard_jones_forces_pull_as_much_over_jkr_as_on_a_half_space(run, part, nu, base):
+    found = run(theory(part * RADIUS, nu, base, equilibrium_path={"h0_end": -2.0})).summary
+    half = run(deck(bodies={"radius": 1.0, "stiffness": 1.0}, force={
         "law": "lennard_jones", "hamaker": 16 * math.pi * SIGMA, "z0": 1.0},
         equilibrium_path={"h0_end": -2.0})).summary
     plain = half["max_tension"] / half["jkr_pull_off"]
@@ -91,7 +86,7 @@ def test_lennard_jones_forces_pull_as_much_over_jkr_as_on_a_half_space(solve, pa
 
 
 @pytest.mark.parametrize("shape", [None, {"kind": "cone", "half_angle": 1.0}])
-def test_equal_moduli_are_hertz_and_jkr(solve, shape):
+def test_equal_moduli_are_hertz_and_jkr(run, shape):
     # The cone, of no radius, makes wide contacts in these units.
     scene = theory(100.0 if shape else 2.0, 0.3, base=(1.0, 0.3))
     plain = deck(bodies={"radius": 1.0, "stiffness": 1.0},
@@ -100,7 +95,7 @@ def test_equal_moduli_are_hertz_and_jkr(solve, shape):
     if shape:
         scene, plain = (text.replace("  radius = 1.0\n", "") + deck(shape=shape)
                         for text in (scene, plain))
-    layered, half = (solve(text).table("classical.csv") for text in (scene, plain))
+    layered, half = (run(text).table("classical.csv") for text in (scene, plain))
     for name in ("hertz", "jkr"):
         mine, other = layered.rows(f"{name}_layered"), half.rows(name)
         here = mine["h0"] > -20  # In the first rows Hertz's contact is smaller than is tabulated.
@@ -110,8 +105,8 @@ def test_equal_moduli_are_hertz_and_jkr(solve, shape):
             assert mine[column][here] == pytest.approx(expected[here], rel=1e-6, abs=1e-9)
 
 
-def test_a_film_has_the_modulus_of_its_base_below_a_large_sphere(solve):
+def test_a_film_has_the_modulus_of_its_base_below_a_large_sphere(run):
     base = (0.1, 0.2)
-    found = [solve(theory(t, 0.4, base, sigma=1.0, h0_end=-1.0)).summary for t in (0.03, 100.0)]
+    found = [run(theory(t, 0.4, base, sigma=1.0, h0_end=-1.0)).summary for t in (0.03, 100.0)]
     assert found[0]["effective_modulus"] == pytest.approx(found[0]["bottom_modulus"], rel=0.1)
     assert found[1]["effective_modulus"] == pytest.approx(found[1]["top_modulus"], rel=0.01)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 import snapin
-from support.scenes import exponential, lennard_jones, loading, runner
+from support.scenes import exponential, lennard_jones, loading
 
 # In units of z0 and E/(1-nu^2), with R = 1: gamma is sigma, Maugis' K is 2/3.
 K = 2 / 3
@@ -13,11 +13,6 @@ K = 2 / 3
 PEAK = 8 / 3 * (3**-0.5 - 3**-1.5)
 RANGE = {"h0_start": 8.0, "h0_end": -12.0, "count": 101}
 SIGMAS = [0.01, 0.2, 0.87, 8.7, 100.0]
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("maugis"))
 
 
 def unit_of(sigma):

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import snapin
-from support.scenes import lennard_jones, runner
+from support.scenes import lennard_jones
 
 FITS = ("carpick", "pietrement_troyon")
 BODIES = {"radius": 1.0, "stiffness": 1.5}
@@ -34,11 +34,6 @@ def pull_off(theory, lam):
 
 def alpha_of(lam):
     return (1 - math.exp(-lam / 0.924)) / 1.02
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("fits"))
 
 
 def test_the_material_has_the_lambda_that_it_is_asked_for():

@@ -3,9 +3,7 @@
 import math
 
 import pytest
-from support import (
-    study_cycles, study_energy, study_estimates, study_folds, study_laws, study_layers,
-)
+from support import study_cycles, study_estimates, study_folds, study_laws, study_layers
 from support.comparison import deviations
 from support.decks_in_units import Report
 from support.reference import Path
@@ -61,15 +59,7 @@ def test_a_hair_before_a_fold_nothing_has_jumped_and_a_hair_beyond_all_has(
     assert not wrong
 
 
-@pytest.mark.parametrize("sigma", [0.35, 0.45, 0.87, 30.0])
-def test_the_uncertainty_of_the_energy_lost_covers_its_error(tmp_path, sigma):
-    job = study_energy.Job(sigma, (1e-4, 1e-6), tmp_path)
-    for finding in study_energy.examine(job):
-        assert not finding.wrong
-        assert finding.ratio <= 1, finding
-
-
-@pytest.mark.parametrize("sigma", [0.01, 0.14251, 0.492388, 2.57191, 30.7029])
+@pytest.mark.parametrize("sigma", [0.01, 0.14251, 0.35, 0.45, 0.492388, 0.87, 2.57191, 30.7029])
 def test_each_number_is_as_good_as_its_estimate_says(tmp_path, sigma):
     job = study_estimates.Job(sigma, (1e-4, 1e-8), tmp_path)
     for finding in study_estimates.examine(job):
@@ -88,13 +78,21 @@ def test_estimates_hold_under_other_laws(tmp_path, number):
     assert not study_laws.is_bad(finding), finding
 
 
-# Of 1538 numbers of 210 scenes 12 are above their estimate, where two meshes agree by chance, and
-# all are within the accuracy asked for (docs/testing.md). These scenes have none of the 12.
+# One number in 130 of such scenes has an error above its estimate (docs/testing.md). These scenes
+# have none; the next test has the two that do.
 @pytest.mark.parametrize("number", [1, 2, 3, 9, 14])
 def test_estimates_hold_for_bodies_with_layers(tmp_path, number):
     [finding] = study_layers.examine(study_layers.jobs(number + 1, tmp_path)[number])
     assert finding.deviations
     assert not study_laws.is_bad(finding), finding
+
+
+@pytest.mark.parametrize("number", [0, 4])
+def test_an_error_above_its_estimate_is_within_the_accuracy(tmp_path, number):
+    [finding] = study_layers.examine(study_layers.jobs(number + 1, tmp_path)[number])
+    assert finding.deviations and not finding.wrong
+    for one in finding.deviations:
+        assert one.error <= finding.scene.accuracy * abs(one.value), one
 
 
 # --- The studies themselves

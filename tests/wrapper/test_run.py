@@ -10,7 +10,7 @@ import pytest
 import snapin
 from support.interrupted import frames, linked_id, owner
 from support.processes import answer
-from support.scenes import lennard_jones, loading, runner
+from support.scenes import lennard_jones, loading
 
 CYCLE = {
     "scene": {"title": "a 'cycle' & more"},
@@ -26,11 +26,6 @@ CYCLE = {
 }
 
 CURVE = lennard_jones(0.5, loading=loading(6, 2, 0.5))
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("run"))
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +164,6 @@ def test_nothing_is_left_on_the_disk(tmp_path, monkeypatch):
         snapin.run({"frog": True})
     assert list(tmp_path.iterdir()) == []
     assert set(os.listdir("/proc/self/fd")) == before
-
 
 
 def test_results_are_written_where_they_are_asked_for_and_read_again(tmp_path):

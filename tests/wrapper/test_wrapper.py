@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import snapin
 from support.extremes import tolerance_of
-from support.scenes import deck, exponential, lennard_jones, loading, runner, several
+from support.scenes import deck, exponential, lennard_jones, loading, several
 from support.wrapper_registry import UNIT, law_of
 
 # Fig. 1 of the paper.
@@ -21,11 +21,6 @@ DOWN = np.linspace(4e-9, -2e-9, 61)
 SAME = 1e-8
 
 COLUMNS = ("h0", "h_centre", "displacement", "load", "contact_radius")
-
-
-@pytest.fixture(scope="module")
-def run(snapin, tmp_path_factory):
-    return runner(snapin, tmp_path_factory.mktemp("wrapper"))
 
 
 def assert_same(result, table, columns=COLUMNS):

@@ -6,7 +6,7 @@ module empty_cases
   use c_library, only: c_pause
   use byte_record, only: byte_record_t
   use dispatch, only: foreman_t, worker_t
-  use sweep_case, only: case_t, put_case
+  use sweep_case, only: case_t, pass_case
   implicit none
   private
   public :: counter_t, sleeper_t
@@ -33,11 +33,13 @@ contains
     class(counter_t), intent(inout) :: self
     type(byte_record_t), intent(inout) :: batch
     logical, intent(out) :: found
+    real(wp), allocatable :: values(:)
 
     found = self%left > 0
     if (.not. found) return
-    call batch%put(self%left)
-    call batch%put([1.0_wp, 2.0_wp])
+    call batch%pass(self%left)
+    values = [1.0_wp, 2.0_wp]
+    call batch%pass(values)
     self%left = self%left - 1
   end subroutine put_next
 
@@ -46,7 +48,7 @@ contains
     type(byte_record_t), intent(inout) :: answers
     integer :: number
 
-    call answers%take(number)
+    call answers%pass(number)
     if (number <= self%left) error stop 'an answer to what was not asked'
   end subroutine take_answer
 
@@ -64,14 +66,14 @@ contains
     seconds = time() - seconds
     if (self%milliseconds < 0) seconds = -0.001_wp*cases*self%milliseconds
     do i = 1, cases
-      call batch%take(number)
-      call batch%take(values)
+      call batch%pass(number)
+      call batch%pass(values)
       if (allocated(self%case)) then
         self%case%number = number
         self%case%values = values
-        call put_case(self%case, answers)
+        call pass_case(answers, self%case)
       else
-        call answers%put(number)
+        call answers%pass(number)
       end if
     end do
   end subroutine work
@@ -101,8 +103,7 @@ program dispatcher
   implicit none
 
   !> A million cases at most; so many are handed out as are asked for.
-  character(len=*), parameter :: deck = &
-    '&bodies radius = 1e-6, stiffness = 1e10 / ' // &
+  character(len=*), parameter :: deck = '&bodies radius = 1e-6, stiffness = 1e10 / ' // &
     '&force law = ''lennard_jones'', hamaker = 1e-19, z0 = 3e-10 / ' // &
     '&equilibrium_path h0_end = -1e-9 / &sweep scale = ''log'', ' // &
     'key = ''bodies.stiffness'', ''force.hamaker'', from = 1e8, 1e-20, to = 1e11, 1e-19, count = '

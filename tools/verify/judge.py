@@ -6,7 +6,7 @@
     cycles      random cycles: jumps, tensions, ends, rows, whatever the steps
     cusp        the same where jumps begin to exist, sigma 0.28 to 0.45
     folds       states a hair before and beyond the folds
-    energy      the energy lost and its uncertainty
+    energy      the same as estimates at strengths where energy is lost, and close to the cusp
     laws        true error over estimated error under every law, the truth being the program's own
                 at a higher accuracy
     layers      the same for bodies with layers
@@ -25,7 +25,7 @@ os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
-from support import study_cycles, study_energy, study_estimates, study_folds  # noqa: E402
+from support import study_cycles, study_estimates, study_folds  # noqa: E402
 from support import study_laws, study_layers  # noqa: E402
 from support.decks_in_units import program_path  # noqa: E402
 from support.spread import spread  # noqa: E402
@@ -50,7 +50,7 @@ STUDIES = {
     "folds": (study_folds, study_folds.jobs, 10, lambda finding: finding.wrong),
     "laws": (study_laws, study_laws.jobs, 1000, study_laws.is_bad),
     "layers": (study_layers, study_layers.jobs, 200, study_layers.is_bad),
-    "energy": (study_energy, study_energy.jobs, 40, lambda f: f.wrong or f.ratio > 1),
+    "energy": (study_estimates, study_estimates.energy_jobs, 40, bad_estimate),
 }
 SEEDED = ("cycles", "cusp", "laws", "layers")
 

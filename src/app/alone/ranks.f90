@@ -1,5 +1,6 @@
 !> The crew of a build without MPI: one process. Its twin in `mpi/` says what each procedure is for.
 module ranks
+  use kinds, only: long
   use failure, only: failure_t, fail, bad_input
   use byte_record, only: byte_record_t
   use launch, only: started_together, own_rank
@@ -63,7 +64,7 @@ contains
     type(byte_record_t), intent(inout) :: record
     integer, intent(out) :: from
 
-    call record%clear()
+    call record%fill([integer(long) ::])
     from = self%rank
   end subroutine receive
 

@@ -107,8 +107,7 @@ contains
     call mpi_get_count(status, mpi_integer8, length)
     allocate (words(length))
     call mpi_recv(words, length, mpi_integer8, from, tag, mpi_comm_world, status)
-    call record%clear()
-    call record%put_words(words)
+    call record%fill(words)
   end subroutine receive
 
 end module ranks

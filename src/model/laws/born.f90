@@ -24,13 +24,12 @@ contains
   !> &born.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('born', 'Born repulsion, A/(6 pi z0^3) (z0/h)^n.'), &
-      real_key('born', 'hamaker', 'J', 'Hamaker constant A that sets its strength.', above=zero, &
+      real_key('born', 'hamaker', 'J', 'Hamaker constant A that sets its strength.', above=0.0_wp, &
                otherwise='as in &van_der_waals'), &
-      real_key('born', 'z0', 'm', 'Separation at which it balances the attraction.', above=zero, &
+      real_key('born', 'z0', 'm', 'Separation at which it balances the attraction.', above=0.0_wp, &
                required=.true.), &
       real_key('born', 'exponent', '', 'Exponent n.', above=1.0_wp, high=30.0_wp, default='9')]
   end function keys
@@ -70,7 +69,6 @@ contains
     this%length_key = 'z0'
     allocate (law, source=this)
   end subroutine read_law
-
 
   pure function pressure(self, gap) result(value)
     class(born_t), intent(in) :: self

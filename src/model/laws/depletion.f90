@@ -16,13 +16,12 @@ contains
   !> &depletion.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('depletion', 'Depletion attraction in a solution of particles.'), &
       real_key('depletion', 'osmotic_pressure', 'Pa', 'Osmotic pressure of the particles.', &
-               above=zero, required=.true.), &
-      real_key('depletion', 'diameter', 'm', 'Their diameter.', above=zero, required=.true.), &
+               above=0.0_wp, required=.true.), &
+      real_key('depletion', 'diameter', 'm', 'Their diameter.', above=0.0_wp, required=.true.), &
       smoothing_key('depletion')]
   end function keys
 

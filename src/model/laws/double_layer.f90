@@ -55,7 +55,6 @@ contains
   !> &double_layer.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('double_layer', 'Electric double layers in an electrolyte with ions of one valence. ' &
@@ -64,15 +63,15 @@ contains
                'one value: the same.', most=2, required=.true.), &
       list_key('double_layer', 'regulation', '', 'How the surfaces meet: 0 at constant ' // &
                'potential, 1 at constant charge, between them by regulation; one value: the ' // &
-               'same.', most=2, low=zero, high=1.0_wp, otherwise='1'), &
-      real_key('double_layer', 'salt', 'mol/m^3', 'Concentration of the salt.', above=zero, &
+               'same.', most=2, low=0.0_wp, high=1.0_wp, otherwise='1'), &
+      real_key('double_layer', 'salt', 'mol/m^3', 'Concentration of the salt.', above=0.0_wp, &
                otherwise='from debye_length'), &
       integer_key('double_layer', 'valence', 'Charge number of its ions.', 1, 6, default='1'), &
-      real_key('double_layer', 'debye_length', 'm', 'Debye length 1/kappa.', above=zero, &
+      real_key('double_layer', 'debye_length', 'm', 'Debye length 1/kappa.', above=0.0_wp, &
                otherwise='from salt'), &
       real_key('double_layer', 'permittivity', '', 'Relative permittivity of the liquid.', &
-               above=zero, default='78.4'), &
-      real_key('double_layer', 'temperature', 'K', 'Temperature.', above=zero, &
+               above=0.0_wp, default='78.4'), &
+      real_key('double_layer', 'temperature', 'K', 'Temperature.', above=0.0_wp, &
                default='298.15'), &
       word_key('double_layer', 'model', models, 'Small potentials; large gaps; or the whole ' // &
                'Poisson-Boltzmann equation.', default='nonlinear')]

@@ -15,12 +15,11 @@ contains
   !> &dugdale.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('dugdale', 'Constant attraction up to a separation; needs a repulsion beside it.'), &
-      real_key('dugdale', 'stress', 'Pa', 'The attraction.', above=zero, required=.true.), &
-      real_key('dugdale', 'range', 'm', 'Separation at which it ends.', above=zero, &
+      real_key('dugdale', 'stress', 'Pa', 'The attraction.', above=0.0_wp, required=.true.), &
+      real_key('dugdale', 'range', 'm', 'Separation at which it ends.', above=0.0_wp, &
                required=.true.), &
       smoothing_key('dugdale')]
   end function keys

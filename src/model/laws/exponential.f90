@@ -29,12 +29,11 @@ contains
   !> The keys that the law has in &force.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
-      real_key('force', 'p0', 'Pa', 'exponential: pressure at zero separation.', above=zero, &
+      real_key('force', 'p0', 'Pa', 'exponential: pressure at zero separation.', above=0.0_wp, &
                otherwise='none; exponential needs it'), &
-      real_key('force', 'decay_length', 'm', 'exponential: decay length.', above=zero, &
+      real_key('force', 'decay_length', 'm', 'exponential: decay length.', above=0.0_wp, &
                otherwise='none; exponential needs it')]
   end function keys
 
@@ -94,7 +93,6 @@ contains
       this = new_exponential(strengths(i)/merge(lengths(i), 1.0_wp, of_energy), lengths(i))
       this%sense = sense
       this%coupling_name = ''
-      this%of_paper = .false.
       this%group = group
       this%strength_key = key
       allocate (term, source=this)
@@ -103,12 +101,10 @@ contains
   end subroutine read_exponentials
 
   !> p0 [Pa], decay_length [m], both positive.
-  pure function new_exponential(p0, decay_length) result(law)
+  pure type(exponential_t) function new_exponential(p0, decay_length) result(law)
     real(wp), intent(in) :: p0, decay_length
-    type(exponential_t) :: law
 
     law%length = decay_length
-    law%of_paper = .true.
     law%pressure_unit = p0
     law%range = 45
     law%coupling_name = 'big_lambda'

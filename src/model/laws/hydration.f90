@@ -15,15 +15,14 @@ contains
   !> &hydration.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('hydration', 'Hydration repulsion. Either energy or pressure; lists are several ' // &
             'terms.'), &
-      list_key('hydration', 'energy', 'J/m^2', 'Energy W at h = 0.', most=8, above=zero), &
+      list_key('hydration', 'energy', 'J/m^2', 'Energy W at h = 0.', most=8, above=0.0_wp), &
       list_key('hydration', 'pressure', 'Pa', 'Pressure at h = 0, W over the decay length.', &
-               most=8, above=zero), &
-      list_key('hydration', 'decay_length', 'm', 'Decay length l.', most=8, above=zero, &
+               most=8, above=0.0_wp), &
+      list_key('hydration', 'decay_length', 'm', 'Decay length l.', most=8, above=0.0_wp, &
                required=.true.)]
   end function keys
 

@@ -15,14 +15,13 @@ contains
   !> &hydrophobic.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('hydrophobic', 'Hydrophobic attraction; lists are several terms. Needs a ' // &
             'repulsion beside it.'), &
       list_key('hydrophobic', 'energy', 'J/m^2', 'Energy W at h = 0, twice the interfacial ' // &
-               'energy times the hydrophobic fraction.', most=8, above=zero, required=.true.), &
-      list_key('hydrophobic', 'decay_length', 'm', 'Decay length l.', most=8, above=zero, &
+               'energy times the hydrophobic fraction.', most=8, above=0.0_wp, required=.true.), &
+      list_key('hydrophobic', 'decay_length', 'm', 'Decay length l.', most=8, above=0.0_wp, &
                required=.true.)]
   end function keys
 

@@ -27,15 +27,14 @@ contains
   !> The keys that the law has in &force.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
-      real_key('force', 'hamaker', 'J', 'lennard_jones: Hamaker constant.', above=zero, &
+      real_key('force', 'hamaker', 'J', 'lennard_jones: Hamaker constant.', above=0.0_wp, &
                otherwise='none; lennard_jones needs it'), &
-      real_key('force', 'z0', 'm', 'lennard_jones: separation of zero force.', above=zero, &
+      real_key('force', 'z0', 'm', 'lennard_jones: separation of zero force.', above=0.0_wp, &
                otherwise='none; lennard_jones needs it'), &
       real_key('force', 'surface_energy', 'J/m^2', 'lennard_jones: energy needed to separate ' // &
-               'unit area, in place of hamaker.', above=zero), &
+               'unit area, in place of hamaker.', above=0.0_wp), &
       list_key('force', 'exponents', '', 'lennard_jones: exponents n, m of the pressure: 9, 3 ' // &
                'half-spaces; 10, 4 half-space and sheet; 11, 5 sheets.', most=2, above=1.0_wp, &
                high=30.0_wp, otherwise='9, 3'), &
@@ -105,14 +104,12 @@ contains
   end subroutine read_law
 
   !> hamaker [J] and z0 [m] positive; part is 'full', 'repulsive' or 'attractive'.
-  pure function new_lennard_jones(hamaker, z0, part) result(law)
+  pure type(lennard_jones_t) function new_lennard_jones(hamaker, z0, part) result(law)
     real(wp), intent(in) :: hamaker, z0
     character(len=*), intent(in) :: part
-    type(lennard_jones_t) :: law
 
     law%length = z0
     law%has_z0 = .true.
-    law%of_paper = .true.
     law%pressure_unit = hamaker/(16*pi*z0**2)/z0
     law%range = 60
     law%tail_power = 3
@@ -147,8 +144,7 @@ contains
   pure function slope(self, gap) result(value)
     class(lennard_jones_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-    real(wp) :: cube(size(gap))
+    real(wp) :: value(size(gap)), cube(size(gap))
 
     cube = 1/gap**3
     value = 8*cube/gap*(self%attractive - 3*self%repulsive*cube*cube)
@@ -157,8 +153,7 @@ contains
   pure function energy(self, gap) result(value)
     class(lennard_jones_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-    real(wp) :: square(size(gap))
+    real(wp) :: value(size(gap)), square(size(gap))
 
     square = 1/gap**2
     value = square/3*(self%repulsive*square**3 - 4*self%attractive)

@@ -28,16 +28,15 @@ contains
   !> &morse.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('morse', 'Morse law: an exponential repulsion within an exponential attraction of ' // &
             'twice its range.'), &
       real_key('morse', 'surface_energy', 'J/m^2', 'Energy needed to separate unit area.', &
-               above=zero, required=.true.), &
+               above=0.0_wp, required=.true.), &
       real_key('morse', 'z0', 'm', 'Separation of zero force.', required=.true.), &
       real_key('morse', 'decay_length', 'm', 'Length over which the attraction falls by a ' // &
-               'factor of e.', above=zero, required=.true.)]
+               'factor of e.', above=0.0_wp, required=.true.)]
   end function keys
 
   !> The law, if the deck asks for it.

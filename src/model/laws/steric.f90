@@ -29,19 +29,18 @@ contains
   !> &steric.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('steric', 'Repulsion of polymer brushes.'), &
       word_key('steric', 'model', 'alexander_de_gennes milner_witten_cates', 'Profile of the ' &
                // 'brush: a step, whose force begins with a kink, or a parabola.', &
                default='alexander_de_gennes'), &
-      real_key('steric', 'brush_thickness', 'm', 'Thickness L of a brush.', above=zero, &
+      real_key('steric', 'brush_thickness', 'm', 'Thickness L of a brush.', above=0.0_wp, &
                required=.true.), &
-      real_key('steric', 'grafting_density', '1/m^2', 'Chains a unit area.', above=zero, &
+      real_key('steric', 'grafting_density', '1/m^2', 'Chains a unit area.', above=0.0_wp, &
                required=.true.), &
       integer_key('steric', 'sides', 'Surfaces that carry a brush.', 1, 2, default='2'), &
-      real_key('steric', 'temperature', 'K', 'Temperature.', above=zero, default='298.15')]
+      real_key('steric', 'temperature', 'K', 'Temperature.', above=0.0_wp, default='298.15')]
   end function keys
 
   !> The law, if the deck asks for it.
@@ -75,7 +74,6 @@ contains
     this%length_key = 'brush_thickness'
     allocate (law, source=this)
   end subroutine read_law
-
 
   pure function pressure(self, gap) result(value)
     class(steric_t), intent(in) :: self

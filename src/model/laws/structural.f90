@@ -27,7 +27,6 @@ contains
   !> &structural.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('structural', 'Oscillatory force of a structured liquid, ' // &
@@ -35,9 +34,9 @@ contains
       real_key('structural', 'amplitude', 'Pa', 'Pressure p0; negative turns it round.', &
                required=.true.), &
       real_key('structural', 'period', 'm', 'Period d, about the size of a molecule.', &
-               above=zero, required=.true.), &
+               above=0.0_wp, required=.true.), &
       real_key('structural', 'decay_length', 'm', 'Length over which the oscillation falls by ' &
-               // 'a factor of e.', above=zero, required=.true.), &
+               // 'a factor of e.', above=0.0_wp, required=.true.), &
       real_key('structural', 'phase', '', 'Phase [rad] at h = 0.', default='0')]
   end function keys
 
@@ -73,7 +72,6 @@ contains
     this%length_key = 'decay_length'
     allocate (law, source=this)
   end subroutine read_law
-
 
   !> exp(-gap), finite at any gap.
   elemental real(wp) function decay(gap)

@@ -34,7 +34,6 @@ contains
   !> &tabulated.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('tabulated', 'A law from a file. Either tail_exponent or tail_decay_length.'), &
@@ -48,7 +47,7 @@ contains
                'this power of the gap: 3 for van der Waals attraction.', above=1.0_wp, &
                high=30.0_wp, otherwise='none'), &
       real_key('tabulated', 'tail_decay_length', 'm', 'Beyond the last point the pressure falls ' &
-               // 'by a factor of e over this length.', above=zero, otherwise='none')]
+               // 'by a factor of e over this length.', above=0.0_wp, otherwise='none')]
   end function keys
 
   !> The law, if the deck asks for it.
@@ -70,8 +69,7 @@ contains
     call read_columns(deck, 'tabulated', 'file', columns, trouble)
     if (.not. allocated(trouble)) call put_in_order(columns, trouble)
     if (allocated(trouble)) then
-      call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, &
-        error)
+      call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, error)
       return
     end if
     call take_table(deck, columns, this, error)

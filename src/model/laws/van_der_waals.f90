@@ -29,15 +29,14 @@ contains
   !> &van_der_waals.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
 
     rows = [ &
       group('van_der_waals', 'Van der Waals attraction, retarded or not; needs a repulsion ' // &
             'such as &born beside it.'), &
-      real_key('van_der_waals', 'hamaker', 'J', 'Hamaker constant.', above=zero, &
+      real_key('van_der_waals', 'hamaker', 'J', 'Hamaker constant.', above=0.0_wp, &
                required=.true.), &
       real_key('van_der_waals', 'retardation_length', 'm', 'Wavelength beyond which the ' // &
-               'attraction is retarded, about 100 nm.', above=zero, otherwise='no retardation')]
+               'attraction is retarded, about 100 nm.', above=0.0_wp, otherwise='no retardation')]
   end function keys
 
   !> The law, if the deck asks for it. It has no length of its own.
@@ -69,7 +68,6 @@ contains
     this%length_key = 'hamaker'
     allocate (law, source=this)
   end subroutine read_law
-
 
   pure function pressure(self, gap) result(value)
     class(van_der_waals_t), intent(in) :: self

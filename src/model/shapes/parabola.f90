@@ -47,26 +47,23 @@ contains
   end subroutine read_shape
 
   !> radius: R [m].
-  pure function new_parabola(radius) result(shape)
+  pure type(parabola_t) function new_parabola(radius) result(shape)
     real(wp), intent(in) :: radius
-    type(parabola_t) :: shape
 
     shape%radius = radius
     shape%parabolic = .true.
   end function new_parabola
 
-  elemental function height(self, r) result(value)
+  elemental real(wp) function height(self, r) result(value)
     class(parabola_t), intent(in) :: self
     real(wp), intent(in) :: r
-    real(wp) :: value
 
     value = 0.5_wp*r**2
   end function height
 
-  elemental function slope(self, r) result(value)
+  elemental real(wp) function slope(self, r) result(value)
     class(parabola_t), intent(in) :: self
     real(wp), intent(in) :: r
-    real(wp) :: value
 
     value = r
   end function slope
@@ -122,12 +119,13 @@ contains
     opening = a
   end function opening
 
-  pure function hertz_gap(self, a, x) result(gap)
+  pure function hertz_gap(self, a, beyond) result(gap)
     class(parabola_t), intent(in) :: self
-    real(wp), intent(in) :: a, x(:)
-    real(wp) :: gap(size(x))
+    real(wp), intent(in) :: a, beyond(:)
+    real(wp), dimension(size(beyond)) :: gap, tangent
 
-    gap = a**2/pi*(sqrt(max(x**2 - 1, 0.0_wp)) + (x**2 - 2)*acos(min(1/x, 1.0_wp)))
+    tangent = sqrt(beyond*(2 + beyond))
+    gap = a**2/pi*(tangent + (tangent**2 - 1)*atan(tangent))
   end function hertz_gap
 
 end module parabola

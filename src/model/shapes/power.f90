@@ -91,10 +91,9 @@ contains
     allocate (shape, source=this)
   end subroutine take_power
 
-  elemental function height(self, r) result(value)
+  elemental real(wp) function height(self, r) result(value)
     class(power_t), intent(in) :: self
     real(wp), intent(in) :: r
-    real(wp) :: value
 
     if (self%whole > 0) then
       value = 0.5_wp*r**self%whole
@@ -103,10 +102,9 @@ contains
     end if
   end function height
 
-  elemental function slope(self, r) result(value)
+  elemental real(wp) function slope(self, r) result(value)
     class(power_t), intent(in) :: self
     real(wp), intent(in) :: r
-    real(wp) :: value
 
     if (self%whole > 0) then
       value = 0.5_wp*self%whole*r**(self%whole - 1)

@@ -95,8 +95,7 @@ contains
     real(wp), intent(in) :: length
     type(profile_t), intent(inout) :: this
     type(failure_t), allocatable, intent(inout) :: error
-    real(wp) :: mirrored(0:3, size(columns%first) - 1)
-    real(wp) :: unit, last
+    real(wp) :: mirrored(0:3, size(columns%first) - 1), unit, last
     integer :: n, i
 
     n = size(columns%first)
@@ -160,10 +159,9 @@ contains
     end do
   end function piece
 
-  elemental function height(self, r) result(value)
+  elemental real(wp) function height(self, r) result(value)
     class(profile_t), intent(in) :: self
     real(wp), intent(in) :: r
-    real(wp) :: value
     integer :: i
 
     i = self%piece(r)
@@ -172,10 +170,9 @@ contains
     end associate
   end function height
 
-  elemental function slope(self, r) result(value)
+  elemental real(wp) function slope(self, r) result(value)
     class(profile_t), intent(in) :: self
     real(wp), intent(in) :: r
-    real(wp) :: value
     integer :: i
 
     i = self%piece(r)

@@ -49,18 +49,16 @@ contains
     allocate (shape, source=this)
   end subroutine read_shape
 
-  elemental function height(self, r) result(value)
+  elemental real(wp) function height(self, r) result(value)
     class(rounded_punch_t), intent(in) :: self
     real(wp), intent(in) :: r
-    real(wp) :: value
 
     value = 0.5_wp*self%slope(r)**2
   end function height
 
-  elemental function slope(self, r) result(value)
+  elemental real(wp) function slope(self, r) result(value)
     class(rounded_punch_t), intent(in) :: self
     real(wp), intent(in) :: r
-    real(wp) :: value
 
     value = max(r - self%flat, 0.0_wp)
   end function slope

@@ -2,14 +2,14 @@
 !> defines it: D = drive(1) h0 + drive(2) load turns there along the path, or has a value. Its
 !> value, its error and its derivatives are questions asked of the same place: by whoever finds it,
 !> by `place_errors` and by `place_rates`.
-module reported
+module reported_place
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
   implicit none
   private
-  public :: reported_t, reported_state, point_of_path, add_reported, drive_weights, values_of, &
+  public :: place_t, place_of_state, point_of_path, add_place, drive_weights, values_of, &
     units_of, rates_of
   public :: of_h0, of_load, of_displacement, of_energy, of_radius, of_edge, of_position, &
     of_tension, of_profile
@@ -26,7 +26,7 @@ module reported
   integer, parameter :: nowhere = -1
 
   !> A place, in the units of `dimensionless_problem`.
-  type :: reported_t
+  type :: place_t
     !> The point of the traced path that it is (0: none), or over which the jump leads that lands
     !> here.
     integer :: point = 0
@@ -61,7 +61,7 @@ module reported
     procedure :: leftovers
     procedure :: errors
     procedure :: relative_error
-  end type reported_t
+  end type place_t
 
   !> An error that says that nothing is known.
   real(wp), parameter :: most = 1.0e6_wp
@@ -72,10 +72,9 @@ module reported
 contains
 
   !> A state as a place at its h0.
-  pure function reported_state(mesh, state) result(place)
+  pure type(place_t) function place_of_state(mesh, state) result(place)
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state
-    type(reported_t) :: place
 
     place%mesh = mesh
     place%state = state
@@ -83,44 +82,43 @@ contains
     place%at(of_load) = state%load
     place%at(of_displacement) = state%axis_gap - state%h0
     place%at(of_edge) = state%scale
-  end function reported_state
+  end function place_of_state
 
-  !> A point of the traced path as a place, or the state where a jump over it lands.
-  pure function point_of_path(point, landing) result(place)
+  !> The place of a point of the traced path; landing: of the state where the jump from it lands.
+  pure type(place_t) function point_of_path(point, landing) result(place)
     integer, intent(in) :: point
     logical, intent(in), optional :: landing
-    type(reported_t) :: place
 
     place%point = point
     if (present(landing)) place%landing = landing
   end function point_of_path
 
   !> Adds to a list. An argument may be a function's result: compiler note 1.
-  subroutine add_reported(list, place)
-    type(reported_t), allocatable, intent(inout) :: list(:)
-    type(reported_t), intent(in) :: place
+  subroutine add_place(list, place)
+    type(place_t), allocatable, intent(inout) :: list(:)
+    type(place_t), intent(in) :: place
 
     if (.not. allocated(list)) allocate (list(0))
     list = [list, place]
-  end subroutine add_reported
+  end subroutine add_place
 
   !> Whether the place has an equilibrium on a mesh.
   pure logical function has_state(self)
-    class(reported_t), intent(in) :: self
+    class(place_t), intent(in) :: self
 
     has_state = allocated(self%state%gap)
   end function has_state
 
   !> Whether something turns here.
   pure logical function turns(self)
-    class(reported_t), intent(in) :: self
+    class(place_t), intent(in) :: self
 
     turns = any(abs(self%turn_of) > 0)
   end function turns
 
   !> All quantities, of values read at the place.
   pure function measures(self, value) result(all)
-    class(reported_t), intent(in) :: self
+    class(place_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
     real(wp) :: all(quantities)
 
@@ -138,7 +136,7 @@ contains
 
   !> What solving has left of all quantities, rounding included.
   pure function leftovers(self) result(all)
-    class(reported_t), intent(in) :: self
+    class(place_t), intent(in) :: self
     real(wp) :: all(quantities)
 
     all(:read_of_states) = self%left
@@ -149,7 +147,7 @@ contains
 
   !> The errors of all quantities; as large as themselves where the finer mesh has no such place.
   pure function errors(self) result(all)
-    class(reported_t), intent(in) :: self
+    class(place_t), intent(in) :: self
     real(wp) :: all(quantities)
 
     associate (own => self%measures(self%at))
@@ -161,7 +159,7 @@ contains
 
   !> The largest error of what is reported of a place, relative; 0 if it was not judged.
   pure real(wp) function relative_error(self) result(largest)
-    class(reported_t), intent(in) :: self
+    class(place_t), intent(in) :: self
     real(wp) :: part(quantities)
 
     largest = 0
@@ -182,7 +180,7 @@ contains
   !> All quantities of a place [SI]; under a dead load a drive has no position.
   pure function values_of(problem, place) result(values)
     type(problem_t), intent(in) :: problem
-    type(reported_t), intent(in) :: place
+    type(place_t), intent(in) :: place
     real(wp) :: values(quantities)
 
     values = place%measures(place%at)
@@ -219,7 +217,7 @@ contains
   !> Derivatives of a quantity of a place by each parameter [SI].
   pure function rates_of(problem, place, quantity) result(rate)
     type(problem_t), intent(in) :: problem
-    type(reported_t), intent(in) :: place
+    type(place_t), intent(in) :: place
     integer, intent(in) :: quantity
     real(wp) :: rate(size(place%rate, 2))
 
@@ -241,4 +239,4 @@ contains
     end associate
   end function rates_of
 
-end module reported
+end module reported_place
