@@ -205,7 +205,8 @@ contains
         lengths = spread(lengths(1)/panels, 1, panels)
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
       end if
-      digits_to_fit = digits + merge(0.0_wp, of_foreseen, present(seen) .or. law%has_kink)
+      digits_to_fit = digits + merge(0.0_wp, of_foreseen, law%has_kink)
+      if (present(seen)) digits_to_fit = -log10(seen%most)
       if (broken .or. problem%shape%smooth_from() > 0) &
         digits_to_fit = min(digits_to_fit, digits_of_broken)
       ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known; and in

@@ -15,6 +15,8 @@ module seen_gaps
     type(discretisation_t), pointer, private :: grid => null()
     integer, private :: held = 0
     real(wp), allocatable, private :: beside(:, :), scale(:), on(:)
+    !> The part of the load that panels for these gaps may leave out (`law_panels`).
+    real(wp) :: most = 0
     !> What is tried: a state, the radius at which it has what the mesh to be laid out is locked to,
     !> and the radius at which that is taken to be (lateral units).
     integer, allocatable, private :: state(:)
@@ -35,13 +37,15 @@ module seen_gaps
 
 contains
 
-  !> Begins with none of so many states on a mesh, which must outlive this.
-  subroutine begin_on(self, grid, states)
+  !> Begins with none of so many states on a mesh, which must outlive this. most: see the type.
+  subroutine begin_on(self, grid, states, most)
     class(seen_gaps_t), intent(out) :: self
     type(discretisation_t), intent(in), target :: grid
     integer, intent(in) :: states
+    real(wp), intent(in) :: most
 
     self%grid => grid
+    self%most = most
     allocate (self%beside(grid%nodes, states), self%scale(states), self%on(states))
     allocate (self%state(0), self%from(0), self%radius(0))
   end subroutine begin_on

@@ -237,7 +237,7 @@ contains
     type(seen_gaps_t) :: seen
 
     associate (problem => equations%problem, meshes => equations%meshes, cost => equations%cost)
-      call seen%begin_on(meshes%grid(from), 1)
+      call seen%begin_on(meshes%grid(from), 1, 10.0_wp**(-meshes%digits))
       call seen%add(problem%shape, state%gap, state%scale, &
         felt_load(problem, meshes%grid(from), state))
       call seen%try_between(radius_for(equations, from, to, state), meshes%reach(1, to), &

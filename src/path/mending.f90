@@ -43,6 +43,9 @@ module mending
 
   !> What is left out about kinks of the law counts so many times: extrema feel it most.
   real(wp), parameter :: of_kinks = 3
+  !> What the panels of a new mesh may leave out, over what is left out at most: the path goes a
+  !> little elsewhere on it.
+  real(wp), parameter :: most_of_fit = 0.3_wp
   !> How often a mesh is mended, and a panel halved at once.
   integer, parameter :: most_rounds = 6, most_halvings = 3
   !> With so many times the nodes no panel is halved any more until the path has come again: what a
@@ -93,7 +96,7 @@ contains
     self%left(mesh) = left
     if (.not. mended) return
     if (.not. (self%rounds(mesh) > 0 .or. lost) .and. equations%problem%law%edge_gap > 0) then
-      shape = shape_for_seen(equations, path, mesh)
+      shape = shape_for_seen(equations, path, mesh, self%most)
     else
       shape = with_short_panels(equations, path, mesh, self%most)
     end if
@@ -119,10 +122,11 @@ contains
 
   !> What a mesh is to be like for the gaps of all states of the path on it; and for those that may
   !> be over the rest of the radii that it serves: another time the path may come to it elsewhere.
-  function shape_for_seen(equations, path, mesh) result(shape)
+  function shape_for_seen(equations, path, mesh, most) result(shape)
     type(equations_t), intent(in), target :: equations
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: mesh
+    real(wp), intent(in) :: most
     type(mapped_shape_t) :: shape
     type(seen_gaps_t) :: seen
     integer :: i, k, states
@@ -130,7 +134,7 @@ contains
     associate (problem => equations%problem, meshes => equations%meshes, &
       grid => equations%meshes%grid(mesh), reach => equations%meshes%reach(:, mesh))
       states = count(path%point(:path%held)%mesh == mesh)
-      call seen%begin_on(grid, states)
+      call seen%begin_on(grid, states, most_of_fit*most)
       k = 0
       do i = 1, path%held
         if (path%point(i)%mesh /= mesh) cycle
