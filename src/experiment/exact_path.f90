@@ -1,47 +1,37 @@
 !> The path as exactly as a deck asks for. Where two extrema have just appeared, a small error of
-!> the mesh moves them far. No rule for meshes can know this beforehand: the path is traced again.
+!> the mesh moves them far. No rule for meshes can know this beforehand: the extrema are judged on
+!> finer meshes, and where one is not exact enough, the finer mesh becomes that of the path.
 module exact_path
   use kinds, only: wp
   use clock, only: seconds
   use listener, only: listener_t
   use mesh_digits, only: most_digits
   use mesh_store, only: mesh_store_t
-  use edge_locked, only: mesh_family_t, new_mesh_family
   use known_path, only: known_path_t
+  use traced_path, only: traced_path_t
   use mending, only: too_much
   use path_stepper, only: path_stepper_t
   use experiment_request, only: request_t
   use path_demand, only: farthest_wanted
   use places, only: places_t
   use reported_place, only: point_of_path
-  use finer_solver, only: finer_t
+  use finer_solver, only: finer_t, more_digits
   use place_errors, only: judge_places
   implicit none
   private
   public :: trace_exactly
 
-  !> How often a path is traced, and the digits more of each time: those of the meshes, and of the
-  !> accuracy down to which panels are halved.
-  integer, parameter :: most_rounds = 3
-  real(wp), parameter :: further_digits = 1
-  !> A digit more makes errors of a mesh some ten times smaller. Where no more than this is gained
-  !> they come from something else, such as rounding, and a further one is in vain.
+  !> How often extrema are judged.
+  integer, parameter :: most_rounds = 4
+  !> A finer mesh makes errors some ten times smaller. Where no more than this is gained they come
+  !> from something else, such as rounding, and a further one is in vain.
   real(wp), parameter :: helped = 0.3_wp
-
-  !> A path that was traced, its meshes, what judges it, its extrema and the largest error of them.
-  type :: tracing_t
-    type(mesh_family_t) :: meshes
-    type(known_path_t) :: known
-    type(finer_t) :: fine
-    type(places_t) :: places
-    real(wp) :: worst = 0
-  end type tracing_t
 
 contains
 
-  !> Traces the path on steps%meshes; where it is shown and its folds and extrema
-  !> are not as exact as asked for, again on meshes of more digits, if these can help. The better
-  !> path stays, and what is found along it can be judged. h0: law's lengths; store: of meshes.
+  !> Traces the path on steps%meshes; where it is shown and its folds and extrema are not as exact
+  !> as asked for, again over their meshes, if finer ones can help. h0: law's lengths; fine: judges
+  !> what is found along the path; places: its extrema; store: of meshes.
   subroutine trace_exactly(request, steps, h0_high, h0_low, listener, fine, places, store)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout), target :: steps
@@ -50,64 +40,47 @@ contains
     type(finer_t), intent(out) :: fine
     type(places_t), intent(out) :: places
     type(mesh_store_t), intent(inout), target, optional :: store
-    type(tracing_t) :: before
-    type(known_path_t) :: nothing
-    type(finer_t) :: blank
-    real(wp), allocatable :: farthest
-    real(wp) :: worst, began
-    integer :: round, i, kept
+    real(wp), allocatable :: farthest, errors(:)
+    logical, allocatable :: poor(:), renewed(:)
+    real(wp) :: before, began
+    integer :: round, mesh, i
 
     if (request%reads_path()) farthest = farthest_wanted(request, steps%problem)
     associate (accuracy => request%numerics%accuracy, cost => steps%cost)
+      call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, accuracy)
+      call fine%lay_out(steps, h0_high, h0_low, store)
+      if (.not. allocated(request%path)) return
+      renewed = spread(.false., 1, size(steps%meshes%grid))
+      before = huge(before)
       do round = 1, most_rounds
-        call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, &
-          accuracy*10.0_wp**(-further_digits*(round - 1)))
         began = seconds()
-        fine = blank
-        places = places_t()
-        call fine%lay_out(steps, h0_high, h0_low, store)
-        worst = 0
-        if (allocated(request%path)) then
-          do i = 1, steps%known%path%held
-            associate (point => steps%known%path%point(i))
-              if (point%fold .or. point%load_extremum) &
-                call places%keep(point_of_path(i), kept)
-            end associate
-          end do
-          call judge_places(fine, steps, places, .true.)
-          if (allocated(places%place)) worst = maxval([0.0_wp, (places%place(i)%relative_error(), &
-            i=1, size(places%place))])
-        end if
+        call keep_extrema(steps%known%path, renewed, places)
+        call judge_places(fine, steps, places, .true.)
         cost%estimate_seconds = cost%estimate_seconds + seconds() - began
-        if (round > 1 .and. (is_lost(steps%known) .or. .not. worst < before%worst)) then
-          call go_back(before, steps, fine, places)
-          return
-        end if
-        if (.not. worst > accuracy .or. round == most_rounds) return
-        if (round > 1 .and. worst > helped*before%worst) return
-        if (steps%known%left_out > too_much*accuracy .or. .not. digits_help(steps)) return
-        before%meshes = steps%meshes
-        before%known = steps%known
-        before%fine = fine
-        before%places = places
-        before%worst = worst
-        steps%meshes = new_mesh_family(steps%problem, h0_high, h0_low, &
-          before%meshes%digits + further_digits, store=store)
-        cost%kernel_entries = cost%kernel_entries + sum(steps%meshes%grid%kernel_entries())
-        steps%known = nothing
+        if (.not. allocated(places%place)) return
+        errors = [(places%place(i)%relative_error(), i=1, size(places%place))]
+        if (.not. maxval(errors) > accuracy .or. maxval(errors) > helped*before) return
+        if (round == most_rounds .or. .not. finer_helps(steps, accuracy)) return
+        before = maxval(errors)
+        poor = [(any(places%place%mesh == mesh .and. errors > accuracy), mesh=1, size(renewed))]
+        call steps%know_path_on(fine%meshes, poor, renewed)
+        do mesh = 1, size(renewed)
+          if (renewed(mesh)) call fine%refine(mesh, steps%meshes)
+        end do
       end do
     end associate
   end subroutine trace_exactly
 
-  !> Whether a path may become more exact by more digits. One that was lost need not come as far
-  !> again; about a kink of the law errors go up and down with the nodes; and rounding has its
-  !> digits, too.
-  pure logical function digits_help(steps)
+  !> Whether a path may become more exact on finer meshes. One that was lost need not come as far
+  !> again; meshes that leave out too much are not mended by more nodes; about a kink of the law
+  !> errors go up and down with the nodes; and rounding has its digits, too.
+  pure logical function finer_helps(steps, accuracy)
     class(path_stepper_t), intent(in) :: steps
+    real(wp), intent(in) :: accuracy
 
-    digits_help = .not. (is_lost(steps%known) .or. steps%problem%law%has_kink .or. &
-      steps%meshes%digits + further_digits > most_digits)
-  end function digits_help
+    finer_helps = .not. (is_lost(steps%known) .or. steps%known%left_out > too_much*accuracy .or. &
+      steps%problem%law%has_kink .or. steps%meshes%digits + more_digits > most_digits)
+  end function finer_helps
 
   !> Whether a path does not come to its end; of bodies that nothing keeps apart that is their fall.
   pure logical function is_lost(known)
@@ -116,17 +89,30 @@ contains
     is_lost = known%ending%early() .and. .not. known%fallen
   end function is_lost
 
-  !> Makes the path traced before that of the steps again.
-  subroutine go_back(before, steps, fine, places)
-    type(tracing_t), intent(in) :: before
-    class(path_stepper_t), intent(inout) :: steps
-    type(finer_t), intent(inout) :: fine
+  !> Makes the extrema of a path the places of a table. Those that it has keep their errors, but for
+  !> those on meshes that were renewed.
+  subroutine keep_extrema(path, renewed, places)
+    type(traced_path_t), intent(in) :: path
+    logical, intent(in) :: renewed(:)
     type(places_t), intent(inout) :: places
+    type(places_t) :: extrema
+    integer :: i, j, kept
 
-    steps%meshes = before%meshes
-    steps%known = before%known
-    fine = before%fine
-    places = before%places
-  end subroutine go_back
+    do i = 1, path%held
+      associate (point => path%point(i))
+        if (.not. (point%fold .or. point%load_extremum)) cycle
+        call extrema%keep(point_of_path(i), kept)
+        if (renewed(point%mesh) .or. .not. allocated(places%place)) cycle
+        do j = 1, size(places%place)
+          associate (known => places%place(j))
+            if (known%mesh /= point%mesh .or. abs(known%s - point%coordinate) > 0) cycle
+            extrema%place(kept) = known
+            extrema%place(kept)%point = i
+          end associate
+        end do
+      end associate
+    end do
+    places = extrema
+  end subroutine keep_extrema
 
 end module exact_path

@@ -3,14 +3,14 @@
 module finer_solver
   use kinds, only: wp
   use mesh_store, only: mesh_store_t
-  use edge_locked, only: new_mesh_family
+  use edge_locked, only: mesh_family_t, new_mesh_family
   use contact_state, only: state_t, far_gap
   use equilibrium, only: control_t
   use solver, only: solver_t
   use numerics_choice, only: choice_t, fixed_mesh, companion
   implicit none
   private
-  public :: finer_t, rounding, worst_residual, what_residual_leaves
+  public :: finer_t, more_digits, rounding, worst_residual, what_residual_leaves
 
   !> Solves on finer meshes, which get their kernels when they are needed. Differences count
   !> `margin` times. store: of meshes, if there is one.
@@ -20,6 +20,7 @@ module finer_solver
   contains
     procedure :: lay_out
     procedure :: lay_out_fixed
+    procedure :: refine
     procedure :: prepare
     procedure :: find
     procedure, private :: take_over
@@ -83,6 +84,17 @@ contains
       self%meshes%grid(1)%nodes > steps%meshes%grid(1)%nodes)
     self%cost%kernel_entries = self%cost%kernel_entries + self%meshes%grid(1)%kernel_entries()
   end subroutine lay_out_fixed
+
+  !> Makes one mesh anew, finer than that of a family that was made anew.
+  subroutine refine(self, mesh, coarser)
+    class(finer_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+    type(mesh_family_t), intent(in) :: coarser
+
+    call self%meshes%refine(self%problem, mesh, coarser)
+    call self%operator%forget()
+    call self%frozen%forget()
+  end subroutine refine
 
   !> Takes over the problem of `steps`.
   subroutine take_over(self, steps)

@@ -15,7 +15,11 @@ module path_stepper
   use traced_path, only: traced_path_t
   use path_span, only: path_span_t, new_path_span
   use path_prediction, only: missed_t, expect
-  use known_path, only: known_path_t, landing_t, trace_pieces, interval_at, lowest_point
+  use tracing, only: trace, trace_again
+  use mending, only: left_on_path
+  use edge_locked, only: mesh_family_t
+  use discretisation, only: discretisation_t
+  use known_path, only: known_path_t, landing_t, know_pieces, interval_at, lowest_point
   use stepper, only: branch_point_t, step_result_t, extreme_t, remember
   implicit none
   private
@@ -31,6 +35,7 @@ module path_stepper
     procedure :: approach_to
     procedure :: step_to
     procedure :: know_path
+    procedure :: know_path_on
     procedure :: state_at_h0
     procedure, private :: step_over
     procedure, private :: solve_on_piece
@@ -60,8 +65,9 @@ contains
 
     call self%begin_afar(h0_high, position, event)
     if (.not. event%ending%early()) then
-      call trace_pieces(self%solver_t, position%state, h0_low, into_contact, listener, &
-        self%known, farthest, accuracy)
+      call trace(self%solver_t, position%state, h0_low, into_contact, listener, self%known, &
+        farthest, accuracy)
+      call know_pieces(self%solver_t, self%known)
     else
       self%known%ending = event%ending
       allocate (self%known%piece(0))
@@ -69,6 +75,34 @@ contains
     call self%frozen%forget()
     self%span%point = 0
   end subroutine know_path
+
+  !> Takes some meshes of other families in the place of its own, and traces the path there again;
+  !> taken: those on which that did not fail.
+  subroutine know_path_on(self, others, wanted, taken)
+    class(path_stepper_t), intent(inout) :: self
+    type(mesh_family_t), intent(in) :: others
+    logical, intent(in) :: wanted(:)
+    logical, allocatable, intent(out) :: taken(:)
+    type(mesh_family_t) :: own
+    logical :: lost
+    integer :: mesh
+
+    taken = wanted
+    do mesh = 1, size(wanted)
+      if (.not. wanted(mesh)) cycle
+      own = self%meshes
+      call self%meshes%take_over(mesh, others)
+      call self%operator%forget()
+      call trace_again(self%solver_t, own%grid(mesh), mesh, self%known%path, lost)
+      if (lost) call self%meshes%take_over(mesh, own)
+      taken(mesh) = .not. lost
+    end do
+    call self%operator%forget()
+    call self%frozen%forget()
+    call know_pieces(self%solver_t, self%known)
+    self%known%left_out = left_on_path(self%equations_t, self%known%path)
+    self%span%point = 0
+  end subroutine know_path_on
 
   subroutine approach_to(self, h0, position, event)
     class(path_stepper_t), intent(inout) :: self

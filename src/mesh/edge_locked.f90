@@ -60,6 +60,8 @@ module edge_locked
     procedure :: has_short_panels
     procedure :: locked_gap
     procedure :: renew
+    procedure :: take_over
+    procedure :: refine
     procedure :: shape_for
     procedure :: complete
   end type mesh_family_t
@@ -192,6 +194,27 @@ contains
     self%grid(mesh) = new_mapped_mesh(shape, elastic=.true.)
     self%waits(mesh) = .false.
   end subroutine renew
+
+  !> Takes a mesh of another family in the place of its own.
+  subroutine take_over(self, mesh, other)
+    class(mesh_family_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+    type(mesh_family_t), intent(in) :: other
+
+    self%shape(mesh) = other%shape(mesh)
+    self%grid(mesh) = other%grid(mesh)
+  end subroutine take_over
+
+  !> Makes a mesh, without its kernel, finer than that of a coarser family.
+  subroutine refine(self, problem, mesh, coarser)
+    class(mesh_family_t), intent(inout) :: self
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: mesh
+    type(mesh_family_t), intent(in) :: coarser
+
+    call follow(self, coarser, mesh, problem)
+    call make_mesh(self%shape(mesh), .false., self%grid(mesh))
+  end subroutine refine
 
   !> Lets a mesh, not made yet, be what a coarser one is with more nodes: where that has short
   !> panels or halves and, under laws that nodes were tried for, where laid out anew it has fewer

@@ -44,7 +44,7 @@ module continuation
       slope_error = slope_error
   contains
     procedure :: follow_closely
-    procedure :: begin_with
+    procedure :: take
     procedure :: forget
     procedure :: advance
     procedure :: has_come_to_next
@@ -64,8 +64,8 @@ contains
     self%slope_error = 0
   end subroutine follow_closely
 
-  !> Begins with an equilibrium on a mesh. lost: it has no tangent.
-  subroutine begin_with(self, solver, state, mesh, lost)
+  !> Takes an equilibrium on a mesh for its newest state. lost: it has no tangent.
+  subroutine take(self, solver, state, mesh, lost)
     class(continuation_t), intent(inout) :: self
     class(solver_t), intent(inout) :: solver
     type(state_t), intent(in) :: state
@@ -73,8 +73,9 @@ contains
     logical, intent(out) :: lost
 
     self%mesh = mesh
+    if (self%held == memory) call self%drop_first()
     call add_with_tangent(solver, self%slope_error, state, self%arc_t, lost)
-  end subroutine begin_with
+  end subroutine take
 
   !> Forgets its states and how long steps were.
   pure subroutine forget(self)

@@ -3,15 +3,14 @@
 !> land when it leaves one over a fold.
 module known_path
   use kinds, only: wp
-  use listener, only: listener_t
   use contact_state, only: state_t
   use solver, only: solver_t
   use path_tangent, only: of_h0
   use driven_pieces, only: drive_t, driven_piece_t, jump_t, find_pieces, find_jump, interval_with
-  use tracing, only: tracing_t, trace
+  use tracing, only: tracing_t
   implicit none
   private
-  public :: known_path_t, landing_t, trace_pieces, interval_at, lowest_point, landing_over, &
+  public :: known_path_t, landing_t, know_pieces, interval_at, lowest_point, landing_over, &
     folds_of_cycle
 
   !> A jump at prescribed h0: the fold that it starts from, a point of the path (0: there is no
@@ -29,29 +28,24 @@ module known_path
 
 contains
 
-  !> Traces the path (`trace`) and finds its pieces.
-  subroutine trace_pieces(solver, start, h0_low, into_contact, listener, known, farthest, accuracy)
+  !> Finds the pieces of a path that was traced, and where jumps from them land.
+  subroutine know_pieces(solver, known)
     class(solver_t), intent(inout) :: solver
-    type(state_t), intent(in) :: start
-    real(wp), intent(in) :: h0_low
-    logical, intent(in) :: into_contact
-    class(listener_t), intent(inout) :: listener
     type(known_path_t), intent(inout) :: known
-    real(wp), intent(in), optional :: farthest, accuracy
     logical :: whole
     integer :: k
 
-    call trace(solver, start, h0_low, into_contact, listener, known, farthest, accuracy)
     call find_pieces(solver, known%path, drive_t(of_h0), known%piece, whole)
     ! What is behind the last stable piece was traced only to find its end.
     if (size(known%piece) > 0) &
       known%path%last = known%piece(size(known%piece))%last%interval + 1
+    if (allocated(known%inward)) deallocate (known%inward, known%outward)
     allocate (known%inward(size(known%piece)), known%outward(size(known%piece)))
     do k = 1, size(known%piece)
       call land(solver, known, k, .true., known%inward(k))
       call land(solver, known, k, .false., known%outward(k))
     end do
-  end subroutine trace_pieces
+  end subroutine know_pieces
 
   !> The point of a piece after which h0 lies, on a mesh.
   pure integer function interval_at(known, piece, h0) result(i)

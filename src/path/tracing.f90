@@ -1,31 +1,26 @@
 !> Traces the equilibrium path: a tracer goes on step by step, from mesh to mesh, and what it passes
 !> becomes points of the path.
-!>
-!> A fold is an extremum of h0 along the path. Whether stability is lost or gained there follows
-!> from the sense of turning in the plane of h0 and load (Maddocks, Arch. Rational Mech. Anal. 99,
-!> 1987): with primes for derivatives along the path, an eigenvalue of the operator passes zero
-!> upward where h0'' F' > 0. Far apart there are none below zero. Alternating signs would not do:
-!> of the two folds that follow the jump into contact at large sigma, the first makes a second mode
-!> unstable.
 module tracing
   use kinds, only: wp
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t, state_from
+  use discretisation, only: discretisation_t
+  use regridding, only: regrid
   use equilibrium, only: equations_t
   use solver, only: solver_t
   use edge_locked, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
   use locked_meshes, only: h0_control
-  use path_tangent, only: of_h0, of_load
-  use path_search, only: found_t, find_extrema
+  use path_coordinate, only: path_control
   use continuation, only: continuation_t
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
-  use traced_path, only: traced_path_t, path_point_t
+  use traced_path, only: traced_path_t
+  use path_growth, only: append, add_extrema
   use mending, only: mender_t, new_mender, left_on_path
   implicit none
   private
-  public :: tracing_t, trace
+  public :: tracing_t, trace, trace_again
 
   !> What was traced: how it ends, and whether in the fall of bodies that nothing keeps apart; the
   !> largest part of the load that nodes leave out of its pressures, but of a fall.
@@ -50,8 +45,6 @@ module tracing
   !> to no gap at all. What is left of the gap at the first fold when it is followed no farther,
   !> and if there is no fold, how many of the law's lengths.
   real(wp), parameter :: collapse = 0.3_wp
-  !> A load over the law's adhesion below which it is none: its extrema are of no consequence.
-  real(wp), parameter :: no_load = 1.0e-16_wp
 
 contains
 
@@ -84,7 +77,7 @@ contains
     finished = .false.
     steps = 0
     if (present(farthest)) call walker%follow_closely()
-    call walker%begin_with(solver, start, approach, lost)
+    call walker%take(solver, start, approach, lost)
     if (lost) known%ending%cause = path_lost
     guarded = present(accuracy)
     if (guarded) mender = new_mender(accuracy, solver%problem%law, solver%meshes)
@@ -161,7 +154,7 @@ contains
       call solver%correct(h0_control(problem%shape, solver%meshes, approach, start%h0), state, done)
     end associate
     lost = .not. done
-    if (done) call walker%begin_with(solver, state, approach, lost)
+    if (done) call walker%take(solver, state, approach, lost)
   end subroutine go_back
 
   !> Whether the contact is much larger than any that is expected: on a mesh that is too coarse
@@ -199,60 +192,22 @@ contains
     class(solver_t), intent(inout) :: solver
     logical, intent(out) :: lost
 
-    if (path%held == 0) call append(path, walker)
+    if (path%held == 0) call append(path, walker%arc_t)
     call walker%advance(solver, lost)
-    if (.not. lost) call append(path, walker)
+    if (.not. lost) call append(path, walker%arc_t)
   end subroutine extend
 
-  !> Lets the tracer pass to the next mesh if it has come there, and puts the extrema that have been
-  !> passed before the newest point. lost: a solve failed.
+  !> Lets the tracer pass to the next mesh if it has come there, and adds the extrema that have been
+  !> passed. lost: a solve failed.
   subroutine pass_on(path, walker, solver, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
     class(solver_t), intent(inout) :: solver
     logical, intent(out) :: lost
-    type(found_t), allocatable :: extrema(:)
-    logical :: folds
-    integer :: pass, n, k
 
     call change_mesh(path, walker, solver, lost)
-    do pass = 1, 2
-      folds = pass == 1
-      if (lost) return
-      n = walker%held
-      if (.not. folds .and. .not. any(abs(walker%state(max(1, n - 1):n)%load) > &
-        no_load*solver%problem%law%adhesion)) cycle
-      if (n < 2) return
-      call find_extrema(solver, walker%arc_t, walker%coordinate(n - 1:n), &
-        merge(of_h0, of_load, folds), extrema, lost)
-      do k = 1, size(extrema)
-        call put(path, walker, folds, extrema(k))
-      end do
-    end do
+    if (.not. lost) call add_extrema(path, walker%arc_t, solver, lost)
   end subroutine pass_on
-
-  !> Makes a state of the tracer's, the newest but for `before`, the last point.
-  subroutine append(path, walker, before)
-    type(traced_path_t), intent(inout) :: path
-    type(continuation_t), intent(in) :: walker
-    integer, intent(in), optional :: before
-    type(path_point_t) :: point
-    integer :: k
-
-    k = walker%held
-    if (present(before)) k = k - before
-    if (path%held > 0) then
-      associate (last => path%point(path%held))
-        last%leads_on = last%mesh == walker%mesh
-        point%modes = last%modes
-      end associate
-    end if
-    point%state = walker%state(k)
-    point%tangent = walker%tangent(k)
-    point%mesh = walker%mesh
-    point%coordinate = walker%coordinate(k)
-    call path%insert(path%held + 1, point)
-  end subroutine append
 
   !> Lets the tracer change its mesh. The last two points, which it takes along, are there again on
   !> the next mesh, and between these the path goes on.
@@ -267,42 +222,61 @@ contains
     call walker%change_mesh(solver, lost)
     if (lost .or. walker%mesh == mesh) return
     path%point(path%held - 1)%leads_on = .false.
-    call append(path, walker, 1)
-    call append(path, walker)
+    call append(path, walker%arc_t, 1)
+    call append(path, walker%arc_t)
   end subroutine change_mesh
 
-  !> Puts an extremum, of h0 (a fold) or of the load, among the last points, by its coordinate on
-  !> the walker's mesh.
-  subroutine put(path, walker, fold, found)
+  !> Traces a path again over one of its meshes, at the same coordinates, from the states that it has
+  !> there. before: what that mesh was then. lost: a solve failed, or other folds were found than
+  !> lead to the next mesh; the path is as it was.
+  subroutine trace_again(solver, before, mesh, path, lost)
+    class(solver_t), intent(inout) :: solver
+    type(discretisation_t), intent(in) :: before
+    integer, intent(in) :: mesh
     type(traced_path_t), intent(inout) :: path
-    type(continuation_t), intent(in) :: walker
-    logical, intent(in) :: fold
-    type(found_t), intent(in) :: found
-    type(path_point_t) :: point
-    integer :: place, change
+    logical, intent(out) :: lost
+    type(traced_path_t) :: anew
+    type(continuation_t) :: walker
+    type(state_t) :: state
+    real(wp) :: tolerance
+    logical :: led_on, done
+    integer :: i, last
 
-    place = path%held
-    do while (place > 1)
-      associate (before => path%point(place - 1))
-        if (before%mesh /= walker%mesh .or. .not. before%coordinate > found%coordinate) exit
+    tolerance = solver%options%tolerance
+    solver%options%tolerance = min(tolerance, path_tolerance)
+    call walker%follow_closely()
+    anew = path
+    anew%held = findloc(path%point(:path%held)%mesh, mesh, 1) - 1
+    last = findloc(path%point(:path%held)%mesh, mesh, 1, back=.true.)
+    led_on = .false.
+    lost = .false.
+    do i = anew%held + 1, last
+      associate (point => path%point(i), grid => solver%meshes%grid(mesh))
+        if (point%fold .or. point%load_extremum) cycle
+        state = regrid(solver%problem%shape, point%state, before, grid, point%state%scale)
+        call solver%frozen%forget()
+        call solver%correct(path_control(solver%problem, mesh, point%coordinate), state, done)
+        lost = .not. done
+        if (done) call walker%take(solver, state, mesh, lost)
+        if (lost) exit
+        call append(anew, walker%arc_t)
+        if (led_on) then
+          call add_extrema(anew, walker%arc_t, solver, lost)
+          if (lost) exit
+        else if (anew%held > 1) then
+          anew%point(anew%held - 1)%leads_on = .false.
+        end if
+        led_on = point%leads_on
       end associate
-      place = place - 1
     end do
-    ! Before the first point of all nothing is known.
-    if (place < 2) return
-    point%state = found%state
-    point%tangent = found%tangent
-    point%mesh = walker%mesh
-    point%coordinate = found%coordinate
-    point%leads_on = .true.
-    point%fold = fold
-    point%load_extremum = .not. fold
-    point%modes = path%point(place - 1)%modes
-    call path%insert(place, point)
-    if (.not. fold) return
-    ! At a maximum of h0 its second derivative is negative.
-    change = merge(-1, 1, -found%sense*found%tangent%load > 0)
-    path%point(place:path%held)%modes = path%point(place:path%held)%modes + change
-  end subroutine put
+    solver%options%tolerance = tolerance
+    lost = lost .or. anew%point(anew%held)%modes /= path%point(last)%modes
+    if (lost) return
+    do i = last + 1, path%held
+      call anew%insert(anew%held + 1, path%point(i))
+    end do
+    anew%last = anew%held
+    path = anew
+  end subroutine trace_again
 
 end module tracing

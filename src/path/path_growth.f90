@@ -1,0 +1,110 @@
+!> How a traced path grows: states of an arc become its points, and the extrema that they pass are
+!> put between them.
+!>
+!> A fold is an extremum of h0 along the path. Whether stability is lost or gained there follows
+!> from the sense of turning in the plane of h0 and load (Maddocks, Arch. Rational Mech. Anal. 99,
+!> 1987): with primes for derivatives along the path, an eigenvalue of the operator passes zero
+!> upward where h0'' F' > 0. Far apart there are none below zero. Alternating signs would not do:
+!> of the two folds that follow the jump into contact at large sigma, the first makes a second mode
+!> unstable.
+module path_growth
+  use kinds, only: wp
+  use solver, only: solver_t
+  use arc, only: arc_t
+  use path_tangent, only: of_h0, of_load
+  use path_search, only: found_t, find_extrema
+  use traced_path, only: traced_path_t, path_point_t
+  implicit none
+  private
+  public :: append, add_extrema
+
+  !> A load over the law's adhesion below which it is none: its extrema are of no consequence.
+  real(wp), parameter :: no_load = 1.0e-16_wp
+
+contains
+
+  !> Makes a state of an arc, the newest but for `before`, the last point.
+  subroutine append(path, arc, before)
+    type(traced_path_t), intent(inout) :: path
+    type(arc_t), intent(in) :: arc
+    integer, intent(in), optional :: before
+    type(path_point_t) :: point
+    integer :: k
+
+    k = arc%held
+    if (present(before)) k = k - before
+    if (path%held > 0) then
+      associate (last => path%point(path%held))
+        last%leads_on = last%mesh == arc%mesh
+        point%modes = last%modes
+      end associate
+    end if
+    point%state = arc%state(k)
+    point%tangent = arc%tangent(k)
+    point%mesh = arc%mesh
+    point%coordinate = arc%coordinate(k)
+    call path%insert(path%held + 1, point)
+  end subroutine append
+
+  !> Puts the extrema between the last two states of an arc among the last points. lost: a solve
+  !> failed.
+  subroutine add_extrema(path, arc, solver, lost)
+    type(traced_path_t), intent(inout) :: path
+    type(arc_t), intent(in) :: arc
+    class(solver_t), intent(inout) :: solver
+    logical, intent(out) :: lost
+    type(found_t), allocatable :: extrema(:)
+    logical :: folds
+    integer :: pass, n, k
+
+    lost = .false.
+    do pass = 1, 2
+      folds = pass == 1
+      if (lost) return
+      n = arc%held
+      if (.not. folds .and. .not. any(abs(arc%state(max(1, n - 1):n)%load) > &
+        no_load*solver%problem%law%adhesion)) cycle
+      if (n < 2) return
+      call find_extrema(solver, arc, arc%coordinate(n - 1:n), &
+        merge(of_h0, of_load, folds), extrema, lost)
+      do k = 1, size(extrema)
+        call put(path, arc, folds, extrema(k))
+      end do
+    end do
+  end subroutine add_extrema
+
+  !> Puts an extremum, of h0 (a fold) or of the load, among the last points, by its coordinate on
+  !> the arc's mesh.
+  subroutine put(path, arc, fold, found)
+    type(traced_path_t), intent(inout) :: path
+    type(arc_t), intent(in) :: arc
+    logical, intent(in) :: fold
+    type(found_t), intent(in) :: found
+    type(path_point_t) :: point
+    integer :: place, change
+
+    place = path%held
+    do while (place > 1)
+      associate (before => path%point(place - 1))
+        if (before%mesh /= arc%mesh .or. .not. before%coordinate > found%coordinate) exit
+      end associate
+      place = place - 1
+    end do
+    ! Before the first point of all nothing is known.
+    if (place < 2) return
+    point%state = found%state
+    point%tangent = found%tangent
+    point%mesh = arc%mesh
+    point%coordinate = found%coordinate
+    point%leads_on = .true.
+    point%fold = fold
+    point%load_extremum = .not. fold
+    point%modes = path%point(place - 1)%modes
+    call path%insert(place, point)
+    if (.not. fold) return
+    ! At a maximum of h0 its second derivative is negative.
+    change = merge(-1, 1, -found%sense*found%tangent%load > 0)
+    path%point(place:path%held)%modes = path%point(place:path%held)%modes + change
+  end subroutine put
+
+end module path_growth
