@@ -213,8 +213,11 @@ def test_the_edge_of_a_contact_passes_the_rim_of_a_punch(run):
             assert abs(value - right) <= error + doubt
 
 
-def test_a_mesh_that_is_mended_does_not_have_the_path_traced_again(run):
-    """Waves are foreseen badly before contact; in contact meshes are laid out by what is seen."""
+def test_a_mesh_that_is_mended_does_not_have_the_whole_path_traced_again(run):
+    """Waves are foreseen badly before contact; in contact meshes are laid out by what is seen.
+
+    Only the approach, a third of the states, is traced three times: on the mesh foreseen, on that
+    for what was seen, and on the finer one for the extrema that miss."""
     result = run(deck(
         bodies={"radius": 5e-6, "young": 3e9, "poisson": 0.35},
         van_der_waals={"hamaker": 6.5e-20}, born={"z0": 0.25e-9},
@@ -222,4 +225,4 @@ def test_a_mesh_that_is_mended_does_not_have_the_path_traced_again(run):
         equilibrium_path={"h0_end": -4e-9}, numerics={"accuracy": 1e-6},
     ))
     check(result)
-    assert result.cost["factorisations"] < 1.7 * result.cost["states"]
+    assert result.cost["factorisations"] < 2.2 * result.cost["states"]
