@@ -1,6 +1,7 @@
 !> The path as exactly as a deck asks for. Where two extrema have just appeared, a small error of
-!> the mesh moves them far. No rule for meshes can know this beforehand: the extrema are judged on
-!> finer meshes, and where one is not exact enough, the finer mesh becomes that of the path.
+!> the mesh moves them far. No rule for meshes can know this beforehand: the extrema and the end are
+!> judged on finer meshes, and where one is not exact enough, the finer mesh becomes that of the
+!> path.
 module exact_path
   use kinds, only: wp
   use clock, only: seconds
@@ -13,15 +14,16 @@ module exact_path
   use path_stepper, only: path_stepper_t
   use experiment_request, only: request_t
   use path_demand, only: farthest_wanted
+  use path, only: find_finish
   use places, only: places_t
-  use reported_place, only: point_of_path
+  use reported_place, only: place_t, point_of_path
   use finer_solver, only: finer_t, more_digits
   use place_errors, only: judge_places
   implicit none
   private
   public :: trace_exactly
 
-  !> How often extrema are judged.
+  !> How often places are judged.
   integer, parameter :: most_rounds = 4
   !> A finer mesh makes errors some ten times smaller. Where no more than this is gained they come
   !> from something else, such as rounding, and a further one is in vain.
@@ -29,9 +31,9 @@ module exact_path
 
 contains
 
-  !> Traces the path on steps%meshes; where it is shown and its folds and extrema are not as exact
-  !> as asked for, again over their meshes, if finer ones can help. h0: law's lengths; fine: judges
-  !> what is found along the path; places: its extrema; store: of meshes.
+  !> Traces the path on steps%meshes; where it is shown and its folds and extrema, or its end, are
+  !> not as exact as asked for, again over their meshes, if finer ones can help. h0: law's lengths;
+  !> fine: judges what is found along the path; places: those judged; store: of meshes.
   subroutine trace_exactly(request, steps, h0_high, h0_low, listener, fine, places, store)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout), target :: steps
@@ -42,8 +44,10 @@ contains
     type(mesh_store_t), intent(inout), target, optional :: store
     real(wp), allocatable :: farthest, errors(:)
     logical, allocatable :: poor(:), renewed(:)
+    type(place_t) :: finish
     real(wp) :: before, began
-    integer :: round, mesh, i
+    integer :: round, mesh, i, kept
+    logical :: found
 
     if (request%reads_path()) farthest = farthest_wanted(request, steps%problem)
     associate (accuracy => request%numerics%accuracy, cost => steps%cost)
@@ -55,6 +59,8 @@ contains
       do round = 1, most_rounds
         began = seconds()
         call keep_extrema(steps%known%path, renewed, places)
+        call find_finish(steps, steps%problem%law%gap_of(request%path%h0_end), finish, found)
+        if (found) call places%keep(finish, kept)
         call judge_places(fine, steps, places, .true.)
         cost%estimate_seconds = cost%estimate_seconds + seconds() - began
         if (.not. allocated(places%place)) return

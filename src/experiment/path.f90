@@ -13,7 +13,7 @@ module path
   use records, only: observer_t, record_t, extent_t, record_of, stable_yes, stable_no
   implicit none
   private
-  public :: path_t, follow_path
+  public :: path_t, follow_path, find_finish
 
   !> In the units of `dimensionless_problem`, in the order from afar inward.
   type :: path_t
@@ -115,6 +115,22 @@ contains
       return
     end do
   end subroutine find_end
+
+  !> The innermost stable equilibrium at h0_end as a place; found: the path has it.
+  subroutine find_finish(steps, h0_end, finish, found)
+    class(path_stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: h0_end
+    type(place_t), intent(out) :: finish
+    logical, intent(out) :: found
+    type(row_t) :: row
+    integer :: last
+
+    call find_end(steps%known, h0_end, last, found)
+    if (.not. found) return
+    row = row_at_h0(steps, last, h0_end)
+    found = row%converged
+    if (found) finish = place_of_row(steps, row)
+  end subroutine find_finish
 
   !> The stable piece on which the path goes on from point i; 0 where it is unstable.
   pure integer function piece_of(known, i) result(k)

@@ -22,13 +22,10 @@ module mesh_digits
   !> edge passes it.
   real(wp), parameter :: without_jumps = -0.5_wp, for_steps = 0.6_wp, for_waves = 1.1_wp, &
     for_profiles = 2, for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
-  !> For each decade of how much wider contacts are than layers that yield unlike a half-space to
-  !> waves of this many or fewer over the radius: at weak adhesion, and more for each decade of
-  !> sigma.
-  real(wp), parameter :: for_layers = 0.4_wp, for_necks_in_layers = 1.2_wp, waves_in_layer = 32
-  !> The same for each decade of what such a contact yields less than on a half-space. Where it
-  !> yields more: for each decade of that, times the square of those by which the contact is wider.
-  real(wp), parameter :: for_unlike = 0.1_wp, for_necks_in_unlike = 0.1_wp, for_softer = 0.3_wp
+  !> For each decade of what a contact yields more than on a half-space, times the square of the
+  !> decades by which it is wider than layers that yield unlike a half-space to waves of this many or
+  !> fewer over the radius.
+  real(wp), parameter :: for_softer = 0.3_wp, waves_in_layer = 32
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; what is more
   !> there, the factor in sigma up to which that is felt, and the part of it, logarithmically, in
   !> which the two folds are so near each other that coarse meshes lose them.
@@ -59,9 +56,7 @@ contains
     if (.not. problem%body%is_homogeneous()) then
       wider = log10(hypot(1.0_wp, widest*maxval(problem%body%wave_range())/waves_in_layer))
       softer = log10(coupling_over(problem, widest)/problem%coupling)
-      digits = digits + (for_layers + for_necks_in_layers*decades)*wider + &
-        (for_unlike + for_necks_in_unlike*decades)*max(0.0_wp, -softer) + &
-        for_softer*wider**2*max(0.0_wp, softer)
+      digits = digits + for_softer*wider**2*max(0.0_wp, softer)
     end if
     away = abs(log(max(sigma, tiny(1.0_wp))/onset))/log(about_onset)
     digits = digits + at_onset*max(0.0_wp, min(1.0_wp, 1.5_wp*(1 - away)))

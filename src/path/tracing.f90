@@ -226,9 +226,9 @@ contains
     call append(path, walker%arc_t)
   end subroutine change_mesh
 
-  !> Traces a path again over one of its meshes, at the same coordinates, from the states that it has
-  !> there. before: what that mesh was then. lost: a solve failed, or other folds were found than
-  !> lead to the next mesh; the path is as it was.
+  !> Traces a path again over one of its meshes, at the same coordinates, from the states that it
+  !> has there. before: what that mesh was then. lost: a solve failed, or the folds that were found
+  !> do not lead to the stability of the next mesh; the path is as it was.
   subroutine trace_again(solver, before, mesh, path, lost)
     class(solver_t), intent(inout) :: solver
     type(discretisation_t), intent(in) :: before
