@@ -23,8 +23,8 @@ module mesh_digits
   real(wp), parameter :: without_jumps = -0.5_wp, for_steps = 0.6_wp, for_waves = 1.1_wp, &
     for_profiles = 2, for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
   !> For each decade of what a contact yields more than on a half-space, times the square of the
-  !> decades by which it is wider than layers that yield unlike a half-space to waves of this many or
-  !> fewer over the radius.
+  !> decades by which it is wider than layers that yield unlike a half-space to waves of this many
+  !> or fewer over the radius.
   real(wp), parameter :: for_softer = 0.3_wp, waves_in_layer = 32
   !> sigma at which jumps begin under the Lennard-Jones law, about that of others; what is more
   !> there, the factor in sigma up to which that is felt, and the part of it, logarithmically, in
