@@ -12,7 +12,7 @@ import numpy as np
 
 from .arguments import DeckError, SnapinError, reals, shown
 
-_BAD_INPUT, _NO_ROOM = 1, 4
+_BAD_INPUT, _NO_ROOM = 1, 3
 # f2py counts bytes in C ints; a deck may have far fewer, which the program says.
 _MOST_BYTES = 2**30
 
