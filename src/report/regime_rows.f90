@@ -183,7 +183,7 @@ contains
 
     theory = merge(jkr, hertz, name == 'jkr_layered')
     if (theory == jkr) says%pull_off = contact%pull_off()*problem%load
-    a = contact%radius_at_load(theory, load/problem%load)
+    a = contact%radius_at(theory, load=load/problem%load)
     says%radius = a*problem%lateral
     says%indentation = a
     if (.not. ieee_is_nan(a)) says%indentation = contact%displacement(theory, a)*problem%length
