@@ -65,7 +65,7 @@ contains
 
     if (.not. abs(decades) <= most_decades) call deck%mistake(group, key, &
       'these values of &bodies and &'//group//' make '//what//' of 1e'// &
-      brief(real(nint(decades), wp))//unit//'; allowed: from 1e-100 to 1e100', error)
+      brief(nint(decades))//unit//'; allowed: from 1e-100 to 1e100', error)
   end subroutine check_decades
 
 end module law_reading

@@ -4,7 +4,7 @@ module tabulated
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key, text_key, word_key
-  use data_table, only: columns_t, read_columns
+  use data_table, only: data_table_t, read_columns
   use force_law, only: force_law_t
   use force_table, only: force_table_t, new_force_table, largest_step
   use law_reading, only: check_decades
@@ -57,7 +57,7 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     type(tabulated_t) :: this
     type(failure_t), allocatable :: trouble
-    type(columns_t) :: columns
+    type(data_table_t) :: table
 
     if (.not. deck%has_group('tabulated')) return
     if (deck%is_set('tabulated', 'tail_exponent') .eqv. &
@@ -66,49 +66,49 @@ contains
         'tail_decay_length, one of the two: how the force goes on beyond the table', error)
       return
     end if
-    call read_columns(deck, 'tabulated', 'file', columns, trouble)
-    if (.not. allocated(trouble)) call put_in_order(columns, trouble)
+    call read_columns(deck, 'tabulated', 'file', table, trouble)
+    if (.not. allocated(trouble)) call put_in_order(table, trouble)
     if (allocated(trouble)) then
       call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, error)
       return
     end if
-    call take_table(deck, columns, this, error)
+    call take_table(deck, table, this, error)
     if (.not. allocated(error)) allocate (law, source=this)
   end subroutine read_law
 
   !> Gaps that ascend; fails where they do neither that nor descend, are not positive, or too few.
-  subroutine put_in_order(columns, error)
-    type(columns_t), intent(inout) :: columns
+  subroutine put_in_order(table, error)
+    type(data_table_t), intent(inout) :: table
     type(failure_t), allocatable, intent(inout) :: error
-    integer :: n, i
+    integer :: i
 
-    n = size(columns%first)
-    if (n < fewest) then
-      call columns%source%complain(len(columns%source%text) + 1, '', '', &
-        'fewer than 8 points', error)
-      return
-    end if
-    do i = 1, n
-      if (.not. columns%first(i) > 0) then
-        call columns%source%complain(columns%place(i), '', '', 'a gap that is not positive', error)
+    associate (gap => table%value(:, 1), n => size(table%place))
+      if (n < fewest) then
+        call table%source%complain(len(table%source%text) + 1, '', '', &
+          'fewer than 8 points', error)
         return
       end if
-      if (i == 1) cycle
-      if ((columns%first(i) - columns%first(i - 1))*(columns%first(2) - columns%first(1)) > 0) cycle
-      call columns%source%complain(columns%place(i), '', '', &
-        'gaps neither increase all the way nor decrease', error)
-      return
-    end do
-    if (columns%first(1) < columns%first(n)) return
-    columns%first = columns%first(n:1:-1)
-    columns%second = columns%second(n:1:-1)
-    columns%place = columns%place(n:1:-1)
+      do i = 1, n
+        if (.not. gap(i) > 0) then
+          call table%source%complain(table%place(i), '', '', 'a gap that is not positive', error)
+          return
+        end if
+        if (i == 1) cycle
+        if ((gap(i) - gap(i - 1))*(gap(2) - gap(1)) > 0) cycle
+        call table%source%complain(table%place(i), '', '', &
+          'gaps neither increase all the way nor decrease', error)
+        return
+      end do
+      if (gap(1) < gap(n)) return
+    end associate
+    table%value = table%value(size(table%place):1:-1, :)
+    table%place = table%place(size(table%place):1:-1)
   end subroutine put_in_order
 
   !> The law of a table in order, in units of its first gap and its largest number.
-  subroutine take_table(deck, columns, this, error)
+  subroutine take_table(deck, table, this, error)
     type(deck_t), intent(in) :: deck
-    type(columns_t), intent(inout) :: columns
+    type(data_table_t), intent(inout) :: table
     type(tabulated_t), intent(inout) :: this
     type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: quantity, interpolation
@@ -116,17 +116,17 @@ contains
     real(wp) :: exponent, decay_length
     integer :: n, i
 
-    n = size(columns%first)
+    n = size(table%place)
     exponent = 2
     decay_length = 0
     call deck%get('tabulated', 'quantity', quantity)
     call deck%get('tabulated', 'interpolation', interpolation)
     call deck%get('tabulated', 'tail_exponent', exponent)
     call deck%get('tabulated', 'tail_decay_length', decay_length)
-    this%length = columns%first(1)
-    g = columns%first/this%length
-    this%pressure_unit = maxval(abs(columns%second))
-    value = columns%second/max(this%pressure_unit, tiny(1.0_wp))
+    this%length = table%value(1, 1)
+    g = table%value(:, 1)/this%length
+    this%pressure_unit = maxval(abs(table%value(:, 2)))
+    value = table%value(:, 2)/max(this%pressure_unit, tiny(1.0_wp))
     if (quantity == 'energy') this%pressure_unit = this%pressure_unit/this%length
     call check_decades(deck, 'tabulated', 'file', &
       log10(max(this%pressure_unit, tiny(1.0_wp))), 'a pressure', ' Pa', error)

@@ -5,7 +5,7 @@ module profile
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, text_key
-  use data_table, only: columns_t, read_columns
+  use data_table, only: data_table_t, read_columns
   use cubic, only: spline
   use law_reading, only: check_decades
   use shape, only: shape_t
@@ -47,14 +47,14 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     type(failure_t), allocatable :: trouble
     type(profile_t) :: this
-    type(columns_t) :: columns
+    type(data_table_t) :: table
 
     call require(deck, 'profile', 'file', error)
     call refuse_radius(deck, 'the profile has its own', error)
     if (allocated(error)) return
-    call read_columns(deck, 'shape', 'file', columns, trouble)
-    if (.not. allocated(trouble)) call check_points(columns, trouble)
-    if (.not. allocated(trouble)) call take_points(columns, length, this, trouble)
+    call read_columns(deck, 'shape', 'file', table, trouble)
+    if (.not. allocated(trouble)) call check_points(table, trouble)
+    if (.not. allocated(trouble)) call take_points(table, length, this, trouble)
     if (allocated(trouble)) then
       call deck%mistake('shape', 'file', 'the profile cannot be used: ' // trouble%message, error)
       return
@@ -64,25 +64,25 @@ contains
   end subroutine read_shape
 
   !> Fails where positions do not start at 0 and grow, or where heights do not grow with them.
-  subroutine check_points(columns, error)
-    type(columns_t), intent(inout) :: columns
+  subroutine check_points(table, error)
+    type(data_table_t), intent(inout) :: table
     type(failure_t), allocatable, intent(inout) :: error
     integer :: i
 
-    associate (r => columns%first, f => columns%second, n => size(columns%first))
+    associate (r => table%value(:, 1), f => table%value(:, 2), n => size(table%place))
       if (n < fewest) then
-        call columns%source%complain(len(columns%source%text) + 1, '', '', &
+        call table%source%complain(len(table%source%text) + 1, '', '', &
           'fewer than 5 points', error)
         return
       end if
       if (abs(r(1)) > 0) then
-        call columns%source%complain(columns%place(1), '', '', &
+        call table%source%complain(table%place(1), '', '', &
           'the first position is not 0, the axis', error)
         return
       end if
       do i = 2, n
         if (r(i) > r(i - 1) .and. f(i) > f(i - 1)) cycle
-        call columns%source%complain(columns%place(i), '', '', &
+        call table%source%complain(table%place(i), '', '', &
           'position and height do not both grow from the line before', error)
         return
       end do
@@ -90,30 +90,30 @@ contains
   end subroutine check_points
 
   !> The shape through the points, in its own units; fails where it is not convex.
-  subroutine take_points(columns, length, this, error)
-    type(columns_t), intent(inout) :: columns
+  subroutine take_points(table, length, this, error)
+    type(data_table_t), intent(inout) :: table
     real(wp), intent(in) :: length
     type(profile_t), intent(inout) :: this
     type(failure_t), allocatable, intent(inout) :: error
-    real(wp) :: mirrored(0:3, size(columns%first) - 1), unit, last
+    real(wp) :: mirrored(0:3, size(table%place) - 1), unit, last
     integer :: n, i
 
-    n = size(columns%first)
-    last = columns%first(n)
-    this%at = columns%first/last
+    n = size(table%place)
+    last = table%value(n, 1)
+    this%at = table%value(:, 1)/last
     ! The spline is flat at its right end: that of the mirrored profile is.
-    mirrored = spline(-this%at(n:1:-1), (columns%second(n:1:-1) - columns%second(1))/length)
+    mirrored = spline(-this%at(n:1:-1), (table%value(n:1:-1, 2) - table%value(1, 2))/length)
     allocate (this%taylor(0:3, n))
     do i = 1, n - 1
       this%taylor(:, n - i) = expanded_at_end(mirrored(:, i), this%at(n + 1 - i) - this%at(n - i))
     end do
-    this%taylor(:, n) = [(columns%second(n) - columns%second(1))/length, &
+    this%taylor(:, n) = [(table%value(n, 2) - table%value(1, 2))/length, &
       -mirrored(1, 1), mirrored(2, 1), 0.0_wp]
     associate (curvature => this%taylor(2, :))
       do i = 1, n
         if (curvature(i) >= -straight*maxval(curvature) .and. &
           (i == 1 .or. this%taylor(1, i) > 0)) cycle
-        call columns%source%complain(columns%place(i), '', '', 'the profile is not convex ' // &
+        call table%source%complain(table%place(i), '', '', 'the profile is not convex ' // &
           'here; contacts of more than one edge are not computed', error)
         return
       end do
