@@ -144,8 +144,8 @@ contains
     place = 2*log(a/self%first)/log(self%last/self%first) - 1
   end function place
 
-  !> Contact radius of the stable state at a displacement or at a load, of which one is given; NaN if
-  !> there is none within the span.
+  !> Contact radius of the stable state at a displacement or at a load, of which one is given; NaN
+  !> if there is none within the span.
   pure real(wp) function radius_at(self, theory, displacement, load) result(a)
     class(layered_contact_t), intent(in) :: self
     integer, intent(in) :: theory
