@@ -1,4 +1,4 @@
-!> &equilibrium_path, and what is read from the states of the path or of a cycle: &device,
+!> &equilibrium_path, and the groups that show states of the path or of a cycle: &device,
 !> &fixed_load, &table, &regime, &profiles, &stability.
 module path_groups
   use kinds, only: wp
@@ -66,7 +66,7 @@ contains
       'eigenvalue; needs &loading or &equilibrium_path.')]
   end function stability_keys
 
-  !> &equilibrium_path.
+  !> Reads &equilibrium_path.
   subroutine take_path(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -87,7 +87,7 @@ contains
     end associate
   end subroutine take_path
 
-  !> &device, &fixed_load and &table.
+  !> Reads &device, &fixed_load and &table.
   subroutine take_readings(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -114,7 +114,7 @@ contains
     end associate
   end subroutine take_readings
 
-  !> &regime.
+  !> Reads &regime.
   subroutine take_regime(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -126,7 +126,7 @@ contains
     call check_path(scene, 'regime', error)
   end subroutine take_regime
 
-  !> &profiles: every h0 must be passed on the way.
+  !> Reads &profiles; each h0 must be within the range of the loading or of the path.
   subroutine take_profiles(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -144,8 +144,8 @@ contains
 
   contains
 
-    !> Whether the loading or the path passes this h0. A path that chooses its own start may start
-    !> as high as need be.
+    !> Whether the loading or the path passes this h0. A path without a given start may start at any
+    !> h0.
     pure logical function reached(h0)
       real(wp), intent(in) :: h0
 
@@ -159,7 +159,7 @@ contains
 
   end subroutine take_profiles
 
-  !> &stability.
+  !> Reads &stability.
   subroutine take_stability(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -167,7 +167,7 @@ contains
     scene%stability = has_states(scene, 'stability', error)
   end subroutine take_stability
 
-  !> Whether the deck has a group that shows states; complains where there are none to show.
+  !> Whether the deck has a group that shows states; refuses the group if there are no states.
   logical function has_states(scene, group, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: group
@@ -178,7 +178,7 @@ contains
       call scene%deck%mistake(group, '', 'needs &loading or &equilibrium_path', error)
   end function has_states
 
-  !> Complains where a group that is read from the path has none, or one without jumps.
+  !> Refuses a group that needs the path if there is no path, or one without jumps.
   subroutine check_path(scene, group, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: group
@@ -191,7 +191,7 @@ contains
     end if
   end subroutine check_path
 
-  !> Complains where a position [m] is not `word`, above or below, that of another key.
+  !> Refuses a position [m] that is not `word`, above or below, that of another key.
   subroutine check_order(deck, group, key, position, word, other, limit, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: group, key, word, other

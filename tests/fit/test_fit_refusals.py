@@ -91,9 +91,9 @@ BAD_DECKS = {
     "no volts": ({"fit": {"parameters": [POINT, "measurement.sensitivity"]}},
                  "the signal is a force"),
     "not to be fitted": ({"fit": {"parameters": [POINT, "measurement.file"]}}, "cannot be fitted"),
-    "bounds": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-21]}}, "one for each"),
-    "below": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-18, -1.0]}}, "is below it"),
-    "above": ({"fit": {"parameters": [STRENGTH, POINT], "upper": [1e-20, 1.0]}}, "is above it"),
+    "bounds": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-21]}}, "one value for each"),
+    "below": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-18, -1.0]}}, "is below this bound"),
+    "above": ({"fit": {"parameters": [STRENGTH, POINT], "upper": [1e-20, 1.0]}}, "is above this bound"),
     "rigid": ({"bodies": {"radius": 1.0, "rigid": True}}, "needs elastic bodies"),
     "sweep": ({"sweep": {"key": STRENGTH, "values": [1e-19]}}, "not together with &sweep"),
 }
