@@ -5,7 +5,7 @@ module interpolation
   use root_finding, only: bracket_t
   implicit none
   private
-  public :: polynomial_weights, polynomial_slope, interpolated_maximum
+  public :: polynomial_weights, polynomial_slope, interpolated_maximum, interval_of
   public :: hermite_t, hermite_through, hermite_weights, most_hermite_nodes, find_nodes_about
 
   integer, parameter :: most_hermite_nodes = 4
@@ -36,6 +36,23 @@ contains
       end do
     end do
   end function polynomial_weights
+
+  !> The last index i of the ascending x with x(i) <= at, by bisection; 1 if there is none.
+  pure integer function interval_of(x, at) result(low)
+    real(wp), intent(in) :: x(:), at
+    integer :: high, middle
+
+    low = 1
+    high = size(x) + 1
+    do while (high - low > 1)
+      middle = (low + high)/2
+      if (x(middle) <= at) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
+  end function interval_of
 
   !> The polynomial through (at, value) at x.
   pure real(wp) function polynomial_value(at, value, x)
