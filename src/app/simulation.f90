@@ -116,7 +116,7 @@ contains
     converged = .false.
     call mend(destination%folder, mended, error)
     if (allocated(error)) return
-    if (mended) call destination%say('put results in place that an interrupted run had completed')
+    if (mended) call destination%say('installed the results that an interrupted run had completed')
     if (file_exists(journal_of(destination%folder))) return
     if (.not. resume) return
     call find_finished(destination%folder, scene%deck%resolved(), finished, converged)
@@ -124,7 +124,7 @@ contains
       call destination%say('complete since an earlier run; nothing to do')
       if (.not. converged) call destination%say('its summary says what failed')
     else
-      call destination%say('no interrupted run to go on with; starting from the beginning')
+      call destination%say('no interrupted run to continue; starting from the beginning')
     end if
   end subroutine take_up_earlier
 

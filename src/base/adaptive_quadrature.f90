@@ -1,5 +1,5 @@
 !> The integral of a function of one variable, to rounding. The caller evaluates the function:
-!> while the integral `is_open`, `places` says where, and `note` takes the values.
+!> while the integral `is_open`, `places` gives the abscissas, and `note` takes the values.
 !>
 !> Each piece is integrated by the Gauss-Kronrod rule with 15 nodes. A piece on which the Gauss rule
 !> with 7 of these nodes differs is halved, so that steps, kinks and poles cost pieces but no
@@ -54,8 +54,8 @@ module adaptive_quadrature
 
 contains
 
-  !> An integral over pieces with these ends. known: another part of the same whole, whose magnitude
-  !> counts in what is negligible.
+  !> An integral over pieces with these ends. known: another part of the same whole; errors are
+  !> negligible relative to the magnitude of both parts.
   pure type(integral_t) function new_integral(left, right, known) result(integral)
     real(wp), intent(in) :: left(:), right(:)
     type(integral_t), intent(in), optional :: known

@@ -1,10 +1,10 @@
-!> The listener that long work tells its progress.
+!> The receiver of messages about the progress of long work.
 module listener
   implicit none
   private
   public :: listener_t
 
-  !> Ignores what it hears; extensions show it.
+  !> Ignores the messages; extensions show them.
   type :: listener_t
   contains
     procedure :: hear

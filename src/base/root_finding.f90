@@ -1,5 +1,5 @@
 !> Searches for roots and maxima of a function of one variable. The caller evaluates the function:
-!> a search says where, and takes the value.
+!> a search gives the abscissa, and takes the value.
 module root_finding
   use kinds, only: wp
   implicit none
@@ -53,8 +53,8 @@ contains
     middle = 0.5_wp*(self%low + self%high)
   end function middle
 
-  !> Whether another halving tells more: there is a number between the ends, and there were not too
-  !> many halvings.
+  !> Whether the interval can be halved again: a number lies between the ends, and the limit of
+  !> halvings is not reached.
   elemental logical function is_open(self)
     class(bracket_t), intent(in) :: self
 

@@ -175,8 +175,8 @@ contains
   end subroutine find_candidates
 
   !> The contact points between two ends with the lowest sums of squares, and these sums. role: the
-  !> index of the contact point among the unknowns. The model is not solved again when only the
-  !> contact point changes, so many are tried.
+  !> index of the contact point among the unknowns. Many points are tried, since the model is not
+  !> solved again when only the contact point changes.
   subroutine lowest_points(residuals, value, role, ends, points, costs)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:), ends(2)

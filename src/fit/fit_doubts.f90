@@ -60,7 +60,7 @@ contains
       rounded(abs(held(i)%asked)) // ' standard deviations)' // not_described)
   end subroutine doubt_held
 
-  !> Says what was compared with noise: samples or means over neighbours.
+  !> The quantity that was compared with the noise, in words: samples or means over neighbours.
   function what_is_left(lack) result(words)
     type(lack_t), intent(in) :: lack
     character(len=:), allocatable :: words

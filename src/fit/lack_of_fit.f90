@@ -59,8 +59,8 @@ contains
       end do
       if (width == 1) blocks = max(1, freedom)
       if (width > 1 .and. blocks < fewest_blocks) return
-      ! The ratio of the variance of all samples to that of their steps has the variance 1/n, half
-      ! that of the former alone (von Neumann, 1941), as if n were twice as large.
+      ! The ratio of the variance of all samples to that of their steps has the variance 1/n (von
+      ! Neumann, 1941), half that of the variance of all samples, as if n were twice as large.
       excess = normal_of(total, blocks, noise%known_by)
       if (width == 1 .and. noise%of_steps) excess = normal_of(2*total, 2*blocks, huge(1.0_wp))
       if (excess > worst%excess) worst = lack_t(width, excess, sqrt(total/blocks))

@@ -6,7 +6,7 @@ module least_squares
   private
   public :: residuals_t, minimise
 
-  !> Residuals to be minimised; an extension holds what they depend on.
+  !> Residuals to be minimised; an extension has the data for them.
   type, abstract :: residuals_t
   contains
     !> The residuals at x; found = .false.: there are none.

@@ -18,7 +18,7 @@ module measured_curve
     real(wp) :: facing = 1
     !> Samples far from contact, which show the baseline, once they are known.
     logical, allocatable :: far(:)
-    !> Samples that count: neither outliers nor skipped by the deck.
+    !> Samples in use: neither outliers nor skipped by the deck.
     logical, allocatable :: usable(:), skipped(:)
   contains
     procedure :: outlier
@@ -26,8 +26,8 @@ module measured_curve
 
   !> Smallest number of samples of a way.
   integer, parameter :: fewest = 20
-  !> Turns over the number of samples: above `rough` a column is noise, below `even` it goes there
-  !> and back. The longest travel of a base [m].
+  !> Turns over the number of samples: above `rough` a column is noise, below `even` it goes to and
+  !> fro. The longest travel of a base [m].
   real(wp), parameter :: rough = 0.2_wp, even = 0.02_wp, longest = 1.0e-3_wp
   !> The part of a way's samples at either end within which a turn does not count, and over which
   !> the ends are averaged.

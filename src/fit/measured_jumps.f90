@@ -1,8 +1,8 @@
 !> Jumps of a measured curve between branches. The force falls in a jump inward and rises in a jump
 !> outward, over less travel of the base than the spring alone would need.
 !>
-!> Before a model is known, the mean of some samples before a place is compared with that of as many
-!> after it: of few samples if the difference stands out of the noise, otherwise of more.
+!> Before a model is known, the mean of some samples before a place is compared with the mean of as
+!> many after it: of few samples if the difference exceeds the noise, otherwise of more.
 !>
 !> Once both branches are known, each place between two samples has a likelihood: that the samples
 !> before it lie on one branch and those after it on the other. Samples taken during the jump lie on
@@ -21,7 +21,7 @@ module measured_jumps
     real(wp) :: z = 0, uncertainty = 0, change = 0
   end type measured_jump_t
 
-  !> Smallest change over what the spring makes of it; smallest remaining change over the noise;
+  !> Smallest change over the change due to the spring; smallest remaining change over the noise;
   !> largest number of steps of a jump that an amplifier has smoothed.
   real(wp), parameter :: steep = 3, seen = 8
   integer, parameter :: most_steps = 6

@@ -114,8 +114,8 @@ contains
   end function tabor_parameter
 
   !> A gap beyond which bodies hardly deform: twice the gap at which parabolas jump into contact
-  !> under an r^-3 attraction, (37). For any shape and attractive law, bodies there yield by about a
-  !> tenth of what makes them jump. The gap is outside a step of the law.
+  !> under an r^-3 attraction, (37). For any shape and attractive law, the deformation there is
+  !> about a tenth of that at the jump. The gap is outside a step of the law.
   pure real(wp) function calm_gap(problem) result(gap)
     type(problem_t), intent(in) :: problem
     !> Distance from a step, in its widths, at which erfc(x) is below rounding.
@@ -129,10 +129,11 @@ contains
       problem%law%adhesion)**(2.0_wp/7))
   end function calm_gap
 
-  !> The largest gap at which bodies yield by more than the fraction `left` of what makes them jump
-  !> into contact; 0 if there is none. Over the zone of interaction, sqrt(gap) wide for a parabola,
-  !> the law's slope makes bodies yield by coupling*slope*width of their gap, times a constant. The
-  !> constant makes the result one at (37), the gap of the jump under an r^-3 attraction.
+  !> The largest gap at which bodies deform by more than the fraction `left` of the deformation at
+  !> the jump into contact; 0 if there is none. Over the zone of interaction, sqrt(gap) wide for a
+  !> parabola, the law's slope deforms bodies by coupling*slope*width of their gap, times a
+  !> constant. The constant makes the result one at (37), the gap of the jump under an r^-3
+  !> attraction.
   pure real(wp) function yielding_gap(problem, left) result(gap)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: left

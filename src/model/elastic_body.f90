@@ -9,8 +9,8 @@
 !> with the kernel of a half-space (15), whose compliance is in the coupling.
 !>
 !> A homogeneous body has no remainder. Its kernel scales with all lengths, so that one matrix
-!> serves all contact radii; for other bodies a matrix is made for each radius (`elastic_operator`).
-!> No other module of the equations depends on the kind of body.
+!> is valid for all contact radii; for other bodies a matrix is made for each radius
+!> (`elastic_operator`). No other module of the equations depends on the kind of body.
 module elastic_body
   use kinds, only: wp
   implicit none

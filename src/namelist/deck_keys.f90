@@ -24,7 +24,7 @@ module deck_keys
     character(len=8) :: unit = ''
     !> The value of a key that the deck does not give; blank if there is none.
     character(len=32) :: default = ''
-    !> What a blank default stands for, in words ("as in &loading"); shown, never read.
+    !> Meaning of a blank default in words ("as in &loading"); shown, never read.
     character(len=48) :: otherwise = ''
     character(len=240) :: meaning = ''
     !> Blank-separated words that a `word_value` may be.

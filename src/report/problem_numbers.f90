@@ -77,7 +77,7 @@ contains
     end if
     select type (body => problem%body)
     type is (layered_body_t)
-      ! Short waves see the modulus of the top layer, long waves that of the base.
+      ! The top layer has the modulus for short waves, the base that for long waves.
       call numbers%set('top_modulus', 0.5_wp*problem%stiffness)
       if (body%bottom > 0) &
         call numbers%set('bottom_modulus', 0.5_wp*problem%stiffness/body%bottom)

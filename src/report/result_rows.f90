@@ -203,9 +203,9 @@ module result_rows
       'h0 of the jump by (37), for the attraction alone', approximations), &
     row_t('jump_equation_37_load', 'N', 'load at this h0', approximations), &
     row_t('jump_equation_37_gap', 'm', 'separation on the axis by (37)', approximations), &
-    row_t('fold_closed_form_h0', 'm', 'h0 at which (35a) turns round', approximations), &
+    row_t('fold_closed_form_h0', 'm', 'h0 of the fold of (35a)', approximations), &
     row_t('fold_closed_form_load', 'N', 'load at this h0', approximations), &
-    row_t('fold_attractive_only_h0', 'm', 'h0 at which (35b) turns round', approximations), &
+    row_t('fold_attractive_only_h0', 'm', 'h0 of the fold of (35b)', approximations), &
     row_t('fold_attractive_only_load', 'N', 'load at this h0', approximations), &
     row_t('range_over_radius', '', &
       'range of the force over the radius of the bodies, small in the model', always), &
@@ -227,7 +227,7 @@ module result_rows
     row_t('blas', '', 'library of linear algebra'), &
     row_t('build_options', '', 'options of the compiler'), &
     row_t('warnings', '', 'all warnings of the run', list=.true.), &
-    row_t('notes', '', 'further information that is no warning', list=.true.), &
+    row_t('notes', '', 'further information', list=.true.), &
     row_t('wall_seconds', 's', 'elapsed time, interrupted runs included', group=in_cost), &
     row_t('kernel_seconds', 's', 'time for matrices of the elastic kernel', group=in_cost), &
     row_t('solve_seconds', 's', 'time for equilibria', group=in_cost), &

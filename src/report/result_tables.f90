@@ -107,7 +107,7 @@ module result_tables
     'h0 [m] separation that undeformed bodies would have on the axis', &
     'load [N] negative: tension', &
     'h0_derivative [] by the parameter at this z, for a dead load at this load; SI units', &
-    'load_derivative [] the same for the load; both are NaN where z turns round', &
+    'load_derivative [] the same for the load; both are NaN where z turns', &
     '= fit.csv | with &fit | One row for each sample of the measured curve.', &
     'direction [] approach or retreat', &
     'z [m] position of the base, as measured', &

@@ -18,7 +18,7 @@ module sensitivity_rows
   private
   public :: write_sensitivity, write_curve_sensitivity
 
-  !> z turns round if it changes along the path by less than this part of its terms, or of the law's
+  !> z turns where it changes along the path by less than this part of its terms, or of the law's
   !> units.
   real(wp), parameter :: turning = 1.0e-8_wp
 

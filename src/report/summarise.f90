@@ -162,8 +162,8 @@ contains
     type(summary_t), intent(inout) :: summary
 
     if (path%ending%early()) call summary%fail_with('path: '//trim(text_of(path%ending)))
-    if (path%fallen) call summary%warn('path: nothing keeps the bodies apart under this law: '// &
-      'the path ends in their fall onto each other, and there is no state in contact')
+    if (path%fallen) call summary%warn('path: the bodies fall onto each other ' // &
+      'under this law; the path ends there and has no state in contact')
     if (ends_before_contact(problem, path)) call summary%note('path: it ends at h0 = ' // &
       rounded(problem%law%separation_of(path%finish%at(of_h0))) // ' m, before contact, ' // &
       'with the largest tension in its last row; lower h0_end')

@@ -1,6 +1,6 @@
-!> A quasi-static experiment whose steps are kept in a journal. Steps that an interrupted run has
-!> left there are taken from it instead of being solved; the caller cannot tell the difference.
-!> After them the solver continues as if it had never stopped.
+!> A quasi-static experiment whose steps are kept in a journal. The
+!> steps of an interrupted run are read from the journal instead of being solved, with the same
+!> results. After them the solver continues as if there had been no interruption.
 module resumable_stepper
   use kinds, only: wp
   use discretisation, only: discretisation_t

@@ -110,7 +110,7 @@ contains
     i = i + length + 1
   end subroutine next_line
 
-  !> The library of the linear algebra; OpenBLAS also tells its kind of processor, on which last
+  !> The library of the linear algebra; for OpenBLAS with the kind of processor, on which last
   !> digits depend.
   function blas_in_use() result(text)
     character(len=:), allocatable :: text
@@ -121,7 +121,7 @@ contains
     if (text == '') text = blas
   end function blas_in_use
 
-  !> A number that tells programs of the same version apart: the first digits of the linker's
+  !> A number that distinguishes programs of the same version: the first digits of the linker's
   !> checksum of the program, which `readelf -n` shows. The same sources give the same number.
   function build_number() result(text)
     character(len=:), allocatable :: text

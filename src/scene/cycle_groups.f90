@@ -23,8 +23,8 @@ contains
     specs = [ &
       group('loading', 'Approach in steps of h0, the separation that undeformed bodies would ' // &
             'have at the centre.'), &
-      real_key('loading', 'h0_start', 'm', 'Where the approach starts.', required=.true.), &
-      real_key('loading', 'h0_end', 'm', 'Where it ends, below h0_start.', required=.true.), &
+      real_key('loading', 'h0_start', 'm', 'First h0.', required=.true.), &
+      real_key('loading', 'h0_end', 'm', 'Last h0, below h0_start.', required=.true.), &
       real_key('loading', 'h0_step', 'm', 'Step, positive.', above=0.0_wp, required=.true.), &
       !
       group('unloading', 'Retreat in steps of h0, one cycle for each turning point; needs ' // &

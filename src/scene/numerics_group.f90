@@ -25,8 +25,9 @@ contains
                   otherwise='from accuracy'), &
       real_key('numerics', 'r_max', 'm', 'Radius at which the grid ends.', above=0.0_wp, &
                otherwise='from accuracy'), &
-      word_key('numerics', 'convergence', 'residual displacement_change', 'What must be small ' // &
-               'at convergence: the residual, or the change from one iteration to the next.', &
+      word_key('numerics', 'convergence', 'residual displacement_change', 'Quantity that must ' // &
+               'be small at convergence: the residual, or the change from one iteration to ' // &
+               'the next.', &
                default='residual'), &
       real_key('numerics', 'displacement_tolerance', 'm', 'Largest change at convergence, ' // &
                'for convergence = ''displacement_change''.', default='1e-13', &

@@ -22,17 +22,17 @@ contains
     specs = [ &
       group('equilibrium_path', 'The whole path of equilibria, stable and unstable, with ' // &
             'exact folds.'), &
-      real_key('equilibrium_path', 'h0_start', 'm', 'Where the path starts, above h0_end.', &
+      real_key('equilibrium_path', 'h0_start', 'm', 'First h0, above h0_end.', &
                otherwise='chosen by the program'), &
-      real_key('equilibrium_path', 'h0_end', 'm', 'Where it ends; needed without &loading.', &
+      real_key('equilibrium_path', 'h0_end', 'm', 'Last h0; needed without &loading.', &
                otherwise='h0_end of &loading'), &
       group('device', 'Bodies driven through a spring, in and out, from the path; needs ' // &
             '&equilibrium_path.'), &
       list_key('device', 'stiffness', 'N/m', 'Stiffness of each spring; 0: a dead load.', &
                most=100, low=0.0_wp, otherwise='h0 is prescribed'), &
-      real_key('device', 'z_start', 'm', 'Position of the drive from which it starts.', &
+      real_key('device', 'z_start', 'm', 'First position of the drive.', &
                otherwise='where the path starts'), &
-      real_key('device', 'z_end', 'm', 'Position at which it turns round.', &
+      real_key('device', 'z_end', 'm', 'Position at which the drive turns.', &
                otherwise='where the path ends'), &
       group('fixed_load', 'All equilibria under given loads, stable or not; needs ' // &
             '&equilibrium_path.'), &
@@ -55,7 +55,7 @@ contains
     specs = [ &
       group('profiles', 'Separation, deformation, pressure and energy against r; needs &loading ' &
             // 'or &equilibrium_path.'), &
-      list_key('profiles', 'h0', 'm', 'The h0 at which they are written.', most=1000, &
+      list_key('profiles', 'h0', 'm', 'The h0 of the profiles.', most=1000, &
                required=.true.)]
   end function profiles_keys
 

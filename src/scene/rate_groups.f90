@@ -33,9 +33,9 @@ contains
                above=0.0_wp, required=.true.), &
       real_key('drive', 'z_start', 'm', 'Position at which the bodies are at rest and the ' // &
                'drive begins.', required=.true.), &
-      real_key('drive', 'z_turn', 'm', 'Position at which it turns round, below z_start.', &
+      real_key('drive', 'z_turn', 'm', 'Position at which the drive turns, below z_start.', &
                required=.true.), &
-      real_key('drive', 'z_end', 'm', 'Position at which it ends, above z_turn.', &
+      real_key('drive', 'z_end', 'm', 'Position at which the drive ends, above z_turn.', &
                otherwise='z_start'), &
       real_key('drive', 'dwell', 's', 'Waiting time at z_turn.', default='0', low=0.0_wp), &
       real_key('drive', 'stiffness', 'N/m', 'Stiffness of a spring between drive and bodies.', &

@@ -288,7 +288,7 @@ contains
     integer(c_int) :: status
 
     if (.not. self%is_open()) return
-    ! A failure loses only what was not synchronised.
+    ! A failure loses only the records that were not synchronised.
     status = c_close(self%descriptor)
     self%descriptor = -1
   end subroutine let_go

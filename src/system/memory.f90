@@ -1,4 +1,4 @@
-!> The available memory, as far as the system tells it.
+!> The available memory, if the system reports it.
 module memory
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp
@@ -7,7 +7,7 @@ module memory
   private
   public :: available_memory
 
-  !> Smallest number that stands for no limit [bytes].
+  !> Smallest number that means no limit [bytes].
   real(wp), parameter :: no_limit = 1.0e18_wp
 
 contains

@@ -72,7 +72,7 @@ def test_the_program_is_known_by_what_was_linked(sweep):
 def test_resume_without_anything_to_resume_begins_at_the_beginning_and_says_so(sweep):
     done = sweep.run("fresh", "--resume")
     assert done.returncode == 0
-    assert "no interrupted run to go on with" in done.stderr
+    assert "no interrupted run to continue" in done.stderr
     assert sweep.files("fresh") == sweep.whole
 
 

@@ -29,12 +29,12 @@ contains
       group('born', 'Born repulsion, A/(6 pi z0^3) (z0/h)^n.'), &
       real_key('born', 'hamaker', 'J', 'Hamaker constant A for the strength.', above=0.0_wp, &
                otherwise='as in &van_der_waals'), &
-      real_key('born', 'z0', 'm', 'Separation at which it balances the attraction.', above=0.0_wp, &
-               required=.true.), &
+      real_key('born', 'z0', 'm', 'Separation at which the repulsion balances the attraction.', &
+               above=0.0_wp, required=.true.), &
       real_key('born', 'exponent', '', 'Exponent n.', above=1.0_wp, high=30.0_wp, default='9')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

@@ -77,7 +77,7 @@ contains
                'whole Poisson-Boltzmann equation.', default='nonlinear')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

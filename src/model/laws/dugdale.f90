@@ -20,12 +20,12 @@ contains
     rows = [ &
       group('dugdale', 'Constant attraction up to a separation; needs a repulsion beside it.'), &
       real_key('dugdale', 'stress', 'Pa', 'Attraction.', above=0.0_wp, required=.true.), &
-      real_key('dugdale', 'range', 'm', 'Separation at which it ends.', above=0.0_wp, &
+      real_key('dugdale', 'range', 'm', 'Separation at which the attraction ends.', above=0.0_wp, &
                required=.true.), &
       smoothing_key('dugdale')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

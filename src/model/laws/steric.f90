@@ -43,7 +43,7 @@ contains
       real_key('steric', 'temperature', 'K', 'Temperature.', above=0.0_wp, default='298.15')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

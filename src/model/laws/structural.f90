@@ -40,7 +40,7 @@ contains
       real_key('structural', 'phase', '', 'Phase [rad] at h = 0.', default='0')]
   end function keys
 
-  !> The law, if the deck asks for it. A negative amplitude is a positive one with another phase.
+  !> The law, if the deck has its group. A negative amplitude is a positive one with another phase.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

@@ -50,7 +50,7 @@ contains
                // 'by a factor of e over this length.', above=0.0_wp, otherwise='none')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

@@ -39,7 +39,7 @@ contains
                'attraction is retarded, about 100 nm.', above=0.0_wp, otherwise='no retardation')]
   end function keys
 
-  !> The law, if the deck asks for it. It has no characteristic length.
+  !> The law, if the deck has its group. It has no characteristic length.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
