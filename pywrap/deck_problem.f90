@@ -1,4 +1,4 @@
-!> The problem of a deck, for the flat modules. Beside them and not in one, since f2py does not
+!> The problem of a deck, for the flat modules. It is a module of its own, since f2py does not
 !> understand the type.
 module deck_problem
   use dimensionless_problem, only: problem_t
@@ -11,7 +11,7 @@ module deck_problem
 
 contains
 
-  !> The problem that the text of a deck poses; stat and message where the deck is wrong.
+  !> The problem of a deck's text; stat and message report a wrong deck.
   subroutine pose(deck, problem, stat, message)
     character(len=*), intent(in) :: deck
     type(problem_t), intent(out) :: problem

@@ -1,14 +1,14 @@
-!> Decks as f2py can see them: what a key of results is, and the force law of a deck.
+!> Decks for f2py: the kind of a key of results, and the force law of a deck.
 !>
-!> For all flat modules: scalars, arrays of explicit shape with their sizes last, and for every
-!> procedure that may refuse its arguments `stat` (0, or the kind of `failure`) and `message`. No
-!> derived types, no optional arguments, no decisions: those live in the library, and the checks of
-!> shape and value in the Python package above. Kinds are those of C, which f2py knows; the length
-!> of `message` must be a literal for the same reason. A deck is its text.
+!> All flat modules have only scalars, arrays of explicit shape with their sizes last, and for each
+!> procedure that may refuse its arguments `stat` (0, or the kind of `failure`) and `message`; no
+!> derived types, no optional arguments. Decisions are left to the library, and checks of shape and
+!> value to the Python package. Kinds are those of C, which f2py knows; the length of `message` must
+!> be a literal for the same reason. A deck is its text.
 !>
-!> Nothing is kept from call to call. f2py holds Python's global lock, so that calls do not overlap;
+!> Nothing is kept between calls. f2py holds Python's global lock, so that calls do not overlap;
 !> they must not (no `threadsafe`), since gfortran keeps lengths of intermediate strings in static
-!> variables where text is put together.
+!> variables (compiler note 4).
 module flat_deck
   use iso_c_binding, only: c_double, c_int
   implicit none
@@ -17,7 +17,7 @@ module flat_deck
 
 contains
 
-  !> Whether a key of &summary or &cost is a list, though it may hold one value: 0 or 1.
+  !> Whether a key of &summary or &cost is a list, even with one value: 0 or 1.
   subroutine is_list(key, list)
     use result_rows, only: rows
     character(len=*), intent(in) :: key
@@ -26,7 +26,7 @@ contains
 
     list = 0
     do row = 1, size(rows)
-      ! The entry of a number, or that of its errors.
+      ! The entry of a number, or of its error.
       if (rows(row)%list .and. (rows(row)%key == key .or. &
         trim(rows(row)%key) // rows(row)%error == key)) list = 1
     end do
@@ -34,10 +34,10 @@ contains
 
   !> The force law of a deck: pressure [Pa], its derivative by the separation [Pa/m] and its
   !> integral from there to infinity [J/m^2], at separations `gap` [m]. numbers: units of gap [m]
-  !> and pressure [Pa], separation that is gap 0 [m], surface energy [J/m^2], separations of maximum
-  !> tension, of zero pressure and of vanishing repulsion [m]; NaN where there is none.
+  !> and pressure [Pa], separation at gap 0 [m], surface energy [J/m^2], separations of largest
+  !> tension, of zero pressure and of vanishing repulsion [m]; NaN if there is none.
   subroutine law_values(deck, gap, pressure, slope, energy, numbers, stat, message, n)
-    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+    use kinds, only: nan
     use deck_problem, only: pose
     use dimensionless_problem, only: problem_t, surface_energy
     character(len=*), intent(in) :: deck
@@ -60,13 +60,14 @@ contains
       energy = law%pressure_unit*law%length*law%energy(law%gap_of(gap))
       numbers = [law%length, law%pressure_unit, law%origin, surface_energy(problem), &
         law%separation_of([law%edge_gap, law%rest_gap, law%range])]
-      if (.not. law%edge_gap > 0) numbers(5) = ieee_value(numbers(5), ieee_quiet_nan)
-      if (.not. law%rest_gap > 0) numbers(6) = ieee_value(numbers(6), ieee_quiet_nan)
+      if (.not. law%edge_gap > 0) numbers(5) = nan
+      if (.not. law%rest_gap > 0) numbers(6) = nan
     end associate
   end subroutine law_values
 
-  !> Lets the calling thread compute alone from now on: in a process that was forked after the
-  !> OpenMP run-time had started threads they are gone, and it would wait for them for ever.
+  !> Makes the calling thread compute alone from now on. In a process that was forked after the
+  !> OpenMP run-time had started threads, these threads no longer exist, and the process would wait
+  !> for them for ever.
   subroutine use_one_thread()
     !$ use omp_lib, only: omp_set_num_threads
 

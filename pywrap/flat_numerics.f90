@@ -1,10 +1,10 @@
-!> The numerics as f2py can see them: linear algebra, kernel, quadrature, product integration,
+!> The numerics for f2py: linear algebra, kernel, quadrature, product integration,
 !> turns of a curve, meshes and one state of equilibrium. Conventions as in `flat_deck`.
 !>
 !> A mesh is described by its kind, its centre, lengths and orders: 'panels' has lengths from the
 !> centre to the ends of panels, and orders(1) nodes on each; 'uniform' ends at the last length and
 !> has orders(1) nodes in all; 'mapped' has sinh panels of these lengths in z, one of them inside a
-!> centre that is not the axis, with their orders and then that of the tail, and
+!> centre that is not the axis, with their orders and the order of the tail, and
 !> map = [d, decay, digits] (`mapped_mesh`). `nodes` is the number of nodes in all.
 module flat_numerics
   use iso_c_binding, only: c_double, c_int
@@ -16,7 +16,7 @@ module flat_numerics
 
 contains
 
-  !> x = a^{-1} b by LU factors; regular = 0 where there are none.
+  !> x = a^{-1} b by LU factors; regular = 0 if there are none.
   subroutine linear_solution(a, b, x, regular, n)
     use linear_algebra, only: factorisation_t, factorise, solve
     integer(c_int), intent(in) :: n
@@ -44,7 +44,7 @@ contains
     log_coefficient = kernel_log_coefficient(total, distance)
   end subroutine kernel_values
 
-  !> Gauss-Legendre nodes on [0, 1], their weights, those against ln(s), and the barycentric ones.
+  !> Gauss-Legendre nodes on [0, 1], their weights, weights against ln(s), and barycentric weights.
   subroutine gauss_rule(x, weight, log_weight, barycentric, n)
     use quadrature, only: gauss_legendre, logarithm_weights, barycentric_weights
     integer(c_int), intent(in) :: n
@@ -55,8 +55,8 @@ contains
     barycentric = barycentric_weights(x)
   end subroutine gauss_rule
 
-  !> Whether a curve with these values and slopes at rising places may turn between one of them and
-  !> the next: 1 if so.
+  !> Whether a curve with these values and slopes at ascending abscissas may turn between one
+  !> abscissa and the next: 0 or 1.
   subroutine turning_intervals(x, value, slope, turns, n)
     use path_search, only: may_turn
     use interpolation, only: hermite_through
@@ -116,7 +116,7 @@ contains
   end subroutine mesh_matrix
 
   !> Values at positions `at` of the function with the given values at the nodes: within a mesh that
-  !> ends, anywhere on one with a tail if the function is bounded.
+  !> ends, anywhere on a mesh with a tail if the function is bounded.
   subroutine mesh_interpolation(kind, centre, lengths, orders, map, values, at, found, nodes, n, &
     l, m)
     use discretisation, only: discretisation_t
@@ -137,7 +137,7 @@ contains
   !> `dimensionless_problem`, on a mesh enlarged `scale` times, from the gaps `start`.
   !> stop_on_change: 0 or 1. numbers: gap on the axis, load, residual. counts: converged (0 or 1),
   !> operator products, factorisations, rejected steps. A state that did not converge is not a
-  !> failure; its residual says how far it is from equilibrium.
+  !> failure; its residual is its distance from equilibrium.
   subroutine equilibrium_state(deck, coupling, kind, centre, lengths, orders, map, scale, h0, &
     start, method, tolerance, most_iterations, depth, patience, mixing_limit, stop_on_change, &
     displacement_tolerance, gap, pressure, numbers, counts, stat, message, nodes, l, m)
@@ -181,7 +181,7 @@ contains
       int(this%cost%factorisations), int(this%cost%rejected_steps)], c_int)
   end subroutine equilibrium_state
 
-  !> The mesh of this description.
+  !> The mesh with this description.
   function mesh_of(kind, centre, lengths, orders, map, elastic) result(mesh)
     use discretisation, only: discretisation_t
     use mapped_mesh, only: mapped_shape_t, new_mapped_mesh

@@ -1,4 +1,4 @@
-!> Closed forms as f2py can see them: the classical theories, and slowly varying deformation.
+!> Closed forms for f2py: the classical theories, and slowly varying deformation.
 !> Conventions as in `flat_deck`.
 module flat_theory
   use iso_c_binding, only: c_double, c_int
@@ -8,12 +8,12 @@ module flat_theory
 
 contains
 
-  !> A quantity of a theory at values x, SI, NaN where there is no state. `quantity`: the contact
-  !> 'radius at load', 'radius at displacement' or 'radius at edge_ratio', x being these; 'load' and
+  !> A quantity of a theory at values x, SI, NaN if there is no state. `quantity`: the contact
+  !> 'radius at load', 'radius at displacement' or 'radius at edge_ratio' for x; 'load' and
   !> 'displacement' at contact radii x; 'pressure' and 'gap' at distances x from the axis for the
   !> contact radius `a`; 'load at displacement' on the branch that is stable at fixed displacement;
-  !> 'pull_off at load' and 'pull_off at displacement', whatever x. What a theory does not use has
-  !> no meaning.
+  !> 'pull_off at load' and 'pull_off at displacement' for any x. Arguments that a theory does not
+  !> use are ignored.
   subroutine classical_values(theory, quantity, x, a, radius, stiffness, surface_energy, strength, &
     y, stat, n)
     use classical, only: dmt_load, dmt_load_at_displacement, dmt_pull_off, dmt_radius_at_load, &
@@ -78,8 +78,8 @@ contains
     end associate
   end subroutine classical_values
 
-  !> Maugis' parameter, the strength [Pa] that stands for a Lennard-Jones law of length `z0` [m],
-  !> and c/a at contact radii `a` [m], all for that strength.
+  !> The strength [Pa] equal to the largest tension of a Lennard-Jones law of length `z0` [m], and
+  !> for this strength Maugis' parameter, and c/a at contact radii `a` [m].
   subroutine maugis_numbers(a, radius, stiffness, surface_energy, z0, strength, lambda, &
     edge_ratio, n)
     use maugis, only: lennard_jones_strength, maugis_lambda, maugis_edge_ratio
@@ -121,7 +121,7 @@ contains
     if (form == 'attraction_only') which = attraction_only
     if (which == 0 .or. .not. has_form(problem, which)) then
       stat = bad_input
-      message = 'form: this law has none "'//trim(form)//'"'
+      message = 'form: this law has no "'//trim(form)//'"'
       return
     end if
     associate (at => problem%law%gap_of(gap))

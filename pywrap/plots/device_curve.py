@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from snapin.results import ResultsError, read_summary, read_table
 
 _COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
-# Up to as many springs have a panel each in a row.
+# Largest number of panels in a row.
 _A_ROW = 3
 
 
@@ -44,9 +44,9 @@ def draw_device_curve(folder):
 
 
 def _draw_spring(panel, stiffness, colour, curve, jumps, load, load_unit):
-    """Draw the ways in and out behind one spring, and the path that the drive jumps over."""
+    """Draw approach and retreat behind one spring, and the path that the jumps leave out."""
     own = curve["stiffness"] == stiffness
-    # Under a dead load there is no position: the load is what is driven.
+    # A dead load has no position: the load is driven.
     x = "h0" if stiffness == 0 else "z"
     driven = own & (curve["direction"] != "path")
     length, length_unit = scale(curve[x][driven], "m")
@@ -73,7 +73,7 @@ def _draw_spring(panel, stiffness, colour, curve, jumps, load, load_unit):
               dashes=(0, (1, 1)), scale=13, zorder=6)
     low, high = curve[x][driven].min() / length, curve[x][driven].max() / length
     forces = curve["load"][driven] / load
-    # What matters are the jumps: not how far the spring is driven on.
+    # Show the jumps, not all of the drive beyond them.
     if here.any():
         places = np.concatenate([jumps[x][here], jumps[after][here]]) / length
         places = places[np.isfinite(places)]

@@ -1,4 +1,4 @@
-"""What the figures made from a folder of results have in common."""
+"""Procedures that all figures share."""
 
 import argparse
 import pathlib
@@ -7,21 +7,21 @@ import sys
 import numpy as np
 from snapin.results import ResultsError
 
-# Okabe and Ito's colours, which stay apart for the colour-blind.
+# Okabe and Ito's colours, which colour-blind readers can distinguish.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
 
 _PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"),
              (1e6, "M"), (1e9, "G"))
 
-# Cosine of the largest turn between two steps that is drawn as a bend and not as a corner.
+# Cosine of the largest angle between two steps that is drawn as a bend; a larger one is a corner.
 _GENTLE = 0.5
-# A cubic whose slopes at its ends are within this multiple of that of its chord does not swing.
+# A cubic with slopes at its ends up to this multiple of the slope of its chord is monotonic.
 _STEEPEST = 3
 
 
 def title_of(folder, summary):
-    """Return the deck's title, or the folder's name, and what is wrong with the results."""
+    """Return the deck's title, or the folder's name, with marks of results that are not good."""
     title = summary.get("title") or pathlib.Path(folder).resolve().name
     if not summary.get("converged", True):
         title += " [not converged]"
@@ -31,11 +31,10 @@ def title_of(folder, summary):
 
 
 def smooth(points):
-    """Return a curve through `points` (n, 2), in order, with more of them where it bends gently.
+    """Return a curve through `points` (n, 2), in order, with more points in gentle bends.
 
-    A cubic over the length of the polygon, its tangents those of parabolas through three
-    neighbours. Where the polygon turns sharply it stays as it is: there the states, not the
-    drawing, are coarse.
+    The curve is a cubic over the length of the polygon, with the tangents of parabolas through
+    three neighbours. Sharp corners of the polygon stay, since there the states are too few.
     """
     points = np.asarray(points, float)
     points = points[np.append(True, np.diff(points, axis=0).any(axis=1))]
@@ -49,7 +48,7 @@ def smooth(points):
     slope = np.diff(points, axis=0) / along[:, None]
     weight = (along[1:] / (along[1:] + along[:-1]))[:, None]
     inner = weight * slope[:-1] + (1 - weight) * slope[1:]
-    # Between steps of very different lengths a parabola swings beyond its points.
+    # Between steps of very different lengths a parabola overshoots its points.
     least = np.minimum(abs(slope[:-1]), abs(slope[1:]))
     bound = np.where(slope[:-1] * slope[1:] > 0, _STEEPEST * least, np.inf)
     inner = np.clip(inner, -bound, bound)
@@ -77,14 +76,14 @@ def scale(values, unit):
     largest = values[np.isfinite(values)].max(initial=0.0)
     factor, prefix = 1.0, ""
     if largest > 0:
-        # Half a unit, such as 0.8 nm, still reads better than 800 pm.
+        # 0.8 nm is easier to read than 800 pm.
         below = [pair for pair in _PREFIXES if pair[0] <= 2 * largest]
         factor, prefix = below[-1] if below else _PREFIXES[0]
     return factor, prefix + unit
 
 
 def dress(axes, x_name, y_name):
-    """Give a panel its names, a line at zero, and no more frame than it needs."""
+    """Give a panel the names of its axes, a line at zero, and a frame on two sides."""
     axes.set_xlabel(x_name)
     axes.set_ylabel(y_name)
     axes.axhline(0, color=GREY, linewidth=0.6, zorder=0)
@@ -92,14 +91,14 @@ def dress(axes, x_name, y_name):
 
 
 def arrow(panel, tail, head, color, linewidth=1.2, style="-|>", dashes="-", scale=12, zorder=8):
-    """Draw an arrow between two points of the data, a jump for instance."""
+    """Draw an arrow between two points of the data, such as a jump."""
     return panel.annotate("", head, tail, annotation_clip=False, zorder=zorder, arrowprops={
         "arrowstyle": style, "color": color, "linewidth": linewidth, "linestyle": dashes,
         "shrinkA": 0, "shrinkB": 0, "mutation_scale": scale})
 
 
 def states_of(rows):
-    """Return the rows of profiles state by state; each begins on the axis."""
+    """Return the rows of each state of profiles; a state begins on the axis."""
     starts = np.flatnonzero(rows["r"] == 0)
     ends = np.append(starts[1:], rows["r"].size)
     return [{x: values[i:j] for x, values in rows.items()} for i, j in zip(starts, ends)]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A measured force curve with the model that was fitted to it, and what is left.
+"""A measured force curve with the fitted model, and the residuals.
 
     .venv/bin/python pywrap/plots/fit.py results/fit
 """
@@ -13,11 +13,11 @@ from matplotlib.figure import Figure
 from snapin.results import read_summary, read_table
 
 _WAYS = {"approach": SKY, "retreat": BLUE}
-# Of the travel, how much farther than the last sample with a force the picture goes.
+# Margin of the picture beyond the last sample with a force, over the extent of these samples.
 _BEYOND = 0.15
-# Of the largest residual that counts, where outliers that leave more are drawn.
+# Outliers with larger residuals are drawn at this multiple of the largest residual in use.
 _EDGE = 1.1
-# What stands out of the residuals by this many times their median is force.
+# A signal above this many times the median residual is a force.
 _STANDS_OUT = 10
 
 
@@ -65,7 +65,7 @@ def draw_fit(folder, whole=False):
 
 
 def _unit_of(folder):
-    """Return the unit of the signal, by the deck that the summary repeats."""
+    """Return the unit of the signal, from the deck in the summary."""
     measurement = f90nml.read(pathlib.Path(folder) / "summary.nml")["measurement"]
     units, columns = (np.atleast_1d(measurement.get(key, [])) for key in ("units", "columns"))
     if len(units) > 1:
@@ -75,7 +75,7 @@ def _unit_of(folder):
 
 
 def _show_contact(panel, z, table, force):
-    """Leave out most of the baseline."""
+    """Show the samples with a force, and little of the baseline."""
     level = _STANDS_OUT * np.median(np.abs(table["residual"]))
     stands = z[np.abs(force) > level]
     if stands.size == 0:
@@ -85,6 +85,6 @@ def _show_contact(panel, z, table, force):
 
 
 if __name__ == "__main__":
-    run(draw_fit, "fit.png", "Draw a measured force curve and what was fitted to it.",
+    run(draw_fit, "fit.png", "Draw a measured force curve and the fitted model.",
         lambda parser: parser.add_argument("--whole", action="store_true",
                                            help="show all of the baseline"))

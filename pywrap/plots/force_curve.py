@@ -13,7 +13,7 @@ from drawing import (
 from matplotlib.figure import Figure
 from snapin.results import ResultsError, read_summary, read_table
 
-# Unloadings often lie on each other and on the loading: the later, the thinner.
+# Unloadings often coincide with each other and with the loading: later curves are thinner.
 _LOADING = {"color": BLUE, "linewidth": 1.5, "zorder": 5}
 _UNLOADING = (ORANGE, SKY, PURPLE, GREEN, VERMILION)
 _WIDEST, _THINNEST = 5.0, 2.2
@@ -25,11 +25,11 @@ _THEORIES = {
     "maugis_dugdale": (
         "Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}),
 }
-# What a curve may be drawn against.
+# The abscissas.
 NAMES = {"displacement": "displacement $h(0) - h_0$", "h0": "$h_0$"}
-# In the theories bodies touch at no separation, here at the gap at rest, from which theirs count.
+# In the theories bodies touch at separation 0, in the program at the gap at rest.
 _OF_THEORIES = "$h_0$; of theories $h_0$ + gap at rest"
-# In points: a piece of curve shorter than this gets no arrow for its direction.
+# A piece of curve shorter than this [points] gets no arrow for its direction.
 _LONG_ENOUGH = 45
 _MOST_COLUMNS = 6
 
@@ -46,7 +46,7 @@ def draw_force_curve(folder):
     handles, labels = panels["displacement"].get_legend_handles_labels()
     columns = -(-len(labels) // -(-len(labels) // _MOST_COLUMNS))
     figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False)
-    # Arrows are placed by distances on the page, known once everything else is.
+    # Arrows are placed by distances on the page, which are known after all else is drawn.
     figure.draw_without_rendering()
     for x, panel in panels.items():
         results.draw_arrows(panel, x)
@@ -54,7 +54,7 @@ def draw_force_curve(folder):
 
 
 class Curve:
-    """The curve in a folder of results, in short units, to be drawn against one of NAMES."""
+    """The curve in a folder of results, in short units, drawn against one of NAMES."""
 
     def __init__(self, folder):
         self.summary, self.table = read_summary(folder), read_table(folder, "curve.csv")
@@ -73,7 +73,7 @@ class Curve:
                          for name in dict.fromkeys(self.table["branch"])]
 
     def draw(self, panel, x):
-        """Draw everything but the arrows."""
+        """Draw the curve without arrows."""
         length, load = self.lengths[0], self.loads[0]
         name = _OF_THEORIES if x == "h0" and self.theories else NAMES[x]
         dress(panel, f"{name} [{self.lengths[1]}]", f"load [{self.loads[1]}]")
@@ -84,7 +84,7 @@ class Curve:
         _frame(panel, self.table, self.theories, x, length, load)
 
     def draw_arrows(self, panel, x):
-        """Draw jumps and directions, once the panel has its final size."""
+        """Draw the arrows of jumps and directions; the panel must have its final size."""
         for branch in self.branches:
             branch.draw_arrows(panel, x, self.lengths[0], self.loads[0])
 
@@ -110,12 +110,12 @@ class _Branch:
             return summary.get("jump_in_h0", np.nan), summary.get("jump_in_load", np.nan)
         all_h0 = np.atleast_1d(summary.get("unload_jump_out_h0", np.nan))
         h0 = all_h0[self.number - 1] if self.number <= all_h0.size else np.nan
-        # The summary has one load; every unloading that parts from the same fold has it.
+        # The summary has one load, which holds for all unloadings that jump from the same fold.
         same = abs(h0 - summary.get("jump_out_h0", np.nan)) <= 1e-6 * abs(h0)
         return h0, summary.get("jump_out_load", np.nan) if same else np.nan
 
     def _split(self, jump_h0, jump_load):
-        """Part the rows where the branch jumps, and carry both pieces to the jump itself."""
+        """Split the rows at the jump of the branch, and extend both pieces to the jump."""
         h0 = self.rows["h0"]
         last = np.flatnonzero((h0 - jump_h0) * np.sign(h0[-1] - h0[0]) < 0)
         if not np.isfinite(jump_h0) or last.size in (0, h0.size):
@@ -144,7 +144,7 @@ class _Branch:
     def _draw_path(self, panel, x, length, load):
         labelled = set()
         start = 0
-        # A stretch runs to the first row of the next, a fold, so that nothing is left open.
+        # A piece includes the first row of the next, a fold, so that the pieces join.
         for stable, group in itertools.groupby(self.rows["stable"] != 0):
             finish = start + len(list(group))
             label = "path, stable" if stable else "path, unstable"
@@ -163,7 +163,7 @@ class _Branch:
         for start, finish in self.jumps:
             _arrow(panel, *((end[x][0] / length, end["load"][0] / load)
                             for end in (start, finish)), color, linewidth=1.0)
-        # Loading and unloading often coincide, and then their arrows should not.
+        # Arrows of loading and unloading are apart, since the curves often coincide.
         if self.number:
             fractions = (0.4 + 0.1 * min(self.number, 4), 0.4)
         else:
@@ -189,8 +189,8 @@ def _joined(first, second):
 def _end_at_fold(piece, h0, load):
     """Return the state before a jump.
 
-    At a fold displacement and load both go with the root of the distance to it, so that one is a
-    smooth function of the other.
+    At a fold displacement and load both vary as the square root of the distance in h0, so that
+    the displacement is a smooth function of the load.
     """
     steps = np.diff(np.append(piece["load"][-3:], load))
     displacement = piece["displacement"][-1]
@@ -203,7 +203,7 @@ def _end_at_fold(piece, h0, load):
 
 
 def _start_at(piece, h0):
-    """Return the state after a jump, from the three states that follow if these are smooth."""
+    """Return the state after a jump, extrapolated from the next three states if they are smooth."""
     first = {x: values[:1] for x, values in piece.items()}
     if piece["h0"].size < 3:
         return first
@@ -228,7 +228,7 @@ def _draw_theories(panel, theories, x, length, load):
 
 
 def _frame(panel, curve, theories, x, length, load):
-    """Show the whole curve, and the theories no further than beside it."""
+    """Show the whole curve, and the theories only in its range."""
     low, high = curve[x].min() / length, curve[x].max() / length
     margin = 0.05 * (high - low) or 1.0
     panel.set_xlim(low - margin, high + margin)
@@ -250,7 +250,7 @@ def _stretch(panel, x, y, fraction):
 
 
 def _arrow(panel, tail, head, color, linewidth):
-    """Draw an arrow; without width only its head, somewhat larger."""
+    """Draw an arrow; linewidth 0: only its head, somewhat larger."""
     length, width = (0.5, 0.28) if linewidth else (0.6, 0.36)
     style = f"-|>,head_length={length},head_width={width}"
     arrow(panel, tail, head, color, linewidth or 0.1, style,

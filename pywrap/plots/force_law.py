@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The forces of a deck: pressure and energy against separation, and what the program found there.
+"""The forces of a deck: pressure and energy against separation, with extrema.
 
     .venv/bin/python pywrap/plots/force_law.py inputs/examples/hydration.nml
 
-The picture goes into results/<name of the deck>, as the results of the deck do.
+The picture goes into results/<name of the deck>, with the results of the deck.
 """
 
 import argparse
@@ -18,17 +18,18 @@ from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, dr
 from matplotlib.figure import Figure
 
 SAMPLES = 1500
-# Times what is shown: nothing is drawn beyond; part of the largest tension: no barrier below.
+# Values above this multiple of the largest shown are left out; pressures of a barrier are at least
+# this part of the largest tension.
 _BEYOND, _SEEN = 5, 1e-4
-# Part of the largest energy that an outer well has at least; ratio of separations from which their
-# axis is logarithmic.
+# The energy of an outer well is at least this part of the largest energy; with a larger ratio of
+# separations their axis is logarithmic.
 _DEEP, _WIDE = 1e-6, 30
 _NAMES = {"van_der_waals": "van der Waals", "born": "Born", "force": "Lennard-Jones",
           "dugdale": "Dugdale"}
 _COLOURS = (VERMILION, SKY, GREY, BLACK)
 _DASHES = ((5, 2), (2, 1.5), (5, 1.5, 1, 1.5), (1, 1.5))
 UNITS = {"pressure": "Pa", "energy": "J/m²"}
-# Groups of a deck that are no forces.
+# Groups of a deck that are not forces.
 OTHERS = {
     "scene", "bodies", "shape", "loading", "unloading", "equilibrium_path", "profiles", "classical",
     "approximations", "stability", "sweep", "numerics", "summary", "cost", "device", "fixed_load",
@@ -46,16 +47,16 @@ def forces_of(file):
 
 
 def title_of(file):
-    """Return the title that a deck's file has, or the file's name."""
+    """Return the title in a deck's file, or the file's name."""
     return f90nml.read(file).get("scene", {}).get("title") or pathlib.Path(file).stem
 
 
 def parts_of(groups):
-    """Return the forces of a deck one by one, by names for a legend, if there are several."""
+    """Return each force of a deck by its name in the legend; none if there is only one force."""
     if len(groups) == 1:
         return {}
     if "born" in groups:
-        # Without its own constant that of the attraction holds.
+        # Without its own constant, the repulsion has that of the attraction.
         attraction = groups.get("van_der_waals", {})
         groups = {**groups, "born": {"hamaker": attraction.get("hamaker"), **groups["born"]}}
     return {_NAMES.get(name, name.replace("_", " ")): {name: keys}
@@ -70,7 +71,7 @@ def styled(parts):
 
 
 def draw_force_law(deck, title=""):
-    """Return a figure of the law that the groups `deck` make, and of its parts."""
+    """Return a figure of the law of the groups `deck`, and of its parts."""
     law = Law(deck)
     figure = Figure(figsize=(9, 4.2), layout="constrained")
     for panel, quantity in zip(figure.subplots(1, 2), UNITS, strict=True):
@@ -83,7 +84,7 @@ def draw_force_law(deck, title=""):
 
 
 class Law:
-    """The law that the groups of a deck make, where there is something to see of it."""
+    """The law of the groups of a deck, at the separations where it matters."""
 
     def __init__(self, deck):
         numbers = snapin.law_numbers(deck)
@@ -93,8 +94,8 @@ class Law:
         self.lengths = scale(self.gap, "m")
 
     def draw(self, panel, quantity, others=()):
-        """Draw pressure or energy with its marks, and `others`: a label, a line style, and the
-        groups of a law each. Marks have the labels of the panel's legend."""
+        """Draw pressure or energy with its marks, and `others`, each with a label, a line style
+        and the groups of a law. Marks have the labels of the panel's legend."""
         values = getattr(self.values, quantity)
         sizes = [abs(getattr(mark, quantity)) for mark in self.marks]
         deepest = abs(values.min()) or abs(values).max()
@@ -126,7 +127,7 @@ def _separations(deck, numbers):
     far = numbers.origin + numbers.length * np.geomspace(1, 1e4, 400)
     left = np.flatnonzero(abs(snapin.force_law(deck, far).pressure) > 3e-3 * unit)
     end = far[left[-1]] if left.size else far[0]
-    # A well far out is shown, with as much again outside it.
+    # An outer well is shown, with as large a range outside it.
     energy = snapin.force_law(deck, far).energy
     wells = np.flatnonzero((energy[1:-1] < energy[:-2]) & (energy[1:-1] <= energy[2:])
                            & (far[1:-1] > end))
@@ -146,7 +147,7 @@ class _Mark:
 
 
 def _marks(deck, numbers, gap, values):
-    """Return what the scan found: rest, edge, and outside them the barrier and the outer well."""
+    """Return the marks: rest, largest tension, and outside them the barrier and the outer well."""
     marks = [
         _Mark(name, colour, at, deck)
         for name, colour, at in (("rest", BLACK, numbers.rest_gap),
@@ -172,7 +173,7 @@ def _marks(deck, numbers, gap, values):
 
 
 def results_of(deck):
-    """Return the folder that ./run writes the results of a deck's file into."""
+    """Return the folder of the results that ./run writes for a deck's file."""
     return pathlib.Path("results") / deck.stem
 
 

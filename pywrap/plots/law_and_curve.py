@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A deck's force law beside the force curve that comes of it; the deck is run.
+"""A deck's force law beside the force curve; the deck is run.
 
     .venv/bin/python pywrap/plots/law_and_curve.py inputs/examples/hydration.nml -o hydration.png
 """
@@ -16,7 +16,7 @@ from force_curve import Curve
 from force_law import Law, forces_of, parts_of, results_of, styled
 from matplotlib.figure import Figure
 
-# Loads that are shown, as parts of the largest tension.
+# Largest and smallest load shown, over the largest tension.
 _HIGHEST, _FAINT = 2.0, 0.02
 
 
@@ -24,7 +24,7 @@ def draw_law_and_curve(deck, results, terms=None, quantity="pressure"):
     """Return a figure of the law of a deck's file and the curve in the folder `results`.
 
     quantity: pressure or energy of the law; terms: label -> groups of a law that is drawn beside
-    that of the deck; without it the deck's own terms, if there are several.
+    the deck's law; default: the deck's own terms, if there are several.
     """
     groups = forces_of(deck)
     if terms is None:
@@ -37,7 +37,7 @@ def draw_law_and_curve(deck, results, terms=None, quantity="pressure"):
     curve.theories = None
     load, stable = curve.table["load"], curve.table["stable"] != 0
     if stable.all() and len(curve.branches) > 1:
-        # The path has nothing more to say, and fewer points.
+        # The path shows nothing more, and has fewer points.
         curve.branches = [branch for branch in curve.branches if branch.name != "path"]
     if load.min() < 0:
         curve.loads = scale([_HIGHEST * load.min()], "N")
@@ -51,7 +51,7 @@ def draw_law_and_curve(deck, results, terms=None, quantity="pressure"):
 
 
 def _look_at_contact(panel, curve):
-    """Show what adhesion does: not how the curve goes on under high loads, or where it is level."""
+    """Show the range of adhesion, without high loads and the level part of the curve."""
     h0, load = curve.table["h0"] / curve.lengths[0], curve.table["load"] / curve.loads[0]
     deepest = abs(load.min())
     if load.min() < 0:

@@ -6,9 +6,9 @@
     .venv/bin/python pywrap/plots/map.py results/map --over big_lambda jkr_pull_off
 
 Without `--over` the axes are the keys of the sweep. Any column of sweep.csv may be an axis, the
-value, or what the value is divided by (`--per`). Over one key there is a curve for every value of
-the others. `--where KEY=VALUE` leaves the cases nearest to a value of a key. Cases that failed are
-crosses; those that have no such value are dots.
+value, or the divisor of the value (`--per`). Over one key there is a curve for every value of the
+other keys. `--where KEY=VALUE` keeps the cases nearest to a value of a key. Failed cases are
+crosses; cases without the value are dots.
 """
 
 import itertools
@@ -25,18 +25,18 @@ from matplotlib.tri import Triangulation
 from snapin.results import ResultsError, read_summary, read_table
 
 _COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
-# Values whose largest is more than so many times the smallest are shown as logarithms.
+# Values with a larger ratio of the largest to the smallest are shown on a logarithmic scale.
 _DECADES = 30.0
-# More values of a second column than this are a map and not curves; so many curves have names.
+# With more values of the second column a map is drawn, not curves; as many curves have labels.
 _MOST_CURVES = 7
-# Twice the area of a triangle that has none, of a picture's.
+# A triangle with less than this, twice its area over that of the picture, is flat.
 _FLAT = 1e-12
 
 
 def draw_map(folder, value="max_tension", per=None, over=None, where=()):
     """Return a figure of the column `value` of the sweep in `folder`, over one or two others."""
     columns = read_table(folder, "sweep.csv")
-    # Words cannot be an axis.
+    # Keys with words come last, since words cannot be an axis.
     keys = sorted((name for name in columns if "." in name),
                   key=lambda name: _has_words(columns[name]))
     over = list(over or keys[:2])
@@ -45,7 +45,7 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
             raise ResultsError(f"{folder}/sweep.csv has no column {name!r}; it has "
                                + ", ".join(columns))
         if _has_words(columns[name]) and over[1:] != [name]:
-            raise ResultsError(f"{name} has words, which cannot be drawn")
+            raise ResultsError(f"{name} has words and cannot be drawn")
     if len(over) > 2:
         raise ResultsError("--over takes one or two columns")
     columns = _chosen(columns, keys, where)
@@ -87,11 +87,11 @@ def _has_words(column):
 
 
 def _chosen(columns, keys, where):
-    """Return the columns with the cases that are nearest to what each "KEY=VALUE" says."""
+    """Return the columns with the cases nearest to the value of each "KEY=VALUE"."""
     for condition in where:
         key, _, wanted = condition.partition("=")
         if key not in keys:
-            raise ResultsError(f"{condition!r} is no KEY=VALUE; keys are {', '.join(keys)}")
+            raise ResultsError(f"{condition!r} is not KEY=VALUE; keys are {', '.join(keys)}")
         of_key = columns[key]
         if _has_words(of_key):
             chosen = of_key == wanted
@@ -108,12 +108,12 @@ def _chosen(columns, keys, where):
 
 
 def _draw_colours(figure, axes, places, keys, values, good, failed, label):
-    """Draw values over two columns: triangles, contours, marks where there is none."""
+    """Draw values over two columns: colours, contours, and marks of cases without a value."""
     x, y = (_as_drawn(place, axis) for place, axis in zip(places, (axes.xaxis, axes.yaxis)))
     there = np.isfinite(x) & np.isfinite(y)
     x, y = (np.where(there, of, of[there].mean()) for of in (x, y))
     triangles = _triangles(x / (np.ptp(x) or 1.0), y / (np.ptp(y) or 1.0), there, keys)
-    # Nothing is drawn between cases of which one has no value or place.
+    # A triangle with a corner without value or place is left out.
     mesh = Triangulation(x, y, triangles, mask=~(good & there)[triangles].all(axis=1))
     good, failed, nothing = good & there, failed & there, there & ~good & ~failed
     low, high = values[good].min(), values[good].max()
@@ -131,8 +131,8 @@ def _draw_colours(figure, axes, places, keys, values, good, failed, label):
 
 
 def _triangles(x, y, there, keys):
-    """Return the corners of triangles between neighbours: in a sweep of all combinations of two
-    keys cases with values next to each other, else those next to each other on the picture."""
+    """Return the corners of triangles between neighbours: cases with neighbouring values, in a
+    sweep of all combinations of two keys, or else cases that are neighbours in the picture."""
     sizes = [len(np.unique(key)) for key in keys]
     if len(keys) == 2 and sizes[0] * sizes[1] == len(x) == len(set(zip(*keys))):
         at = np.lexsort(keys[::-1]).reshape(sizes)
@@ -151,8 +151,8 @@ def _triangles(x, y, there, keys):
 
 
 def _as_drawn(place, axis):
-    """Return a column as it is drawn: the logarithm of one over decades, of which negative values
-    are left out, with powers of ten at the axis."""
+    """Return a column as it is drawn: the logarithm if the column spans decades, with powers of
+    ten at the axis and without negative values."""
     positive = place[place > 0]
     if 2 * len(positive) < len(place) or not _wide(positive):
         return place
@@ -162,8 +162,8 @@ def _as_drawn(place, axis):
 
 
 def _draw_curves(axes, x, values, good, others, *, joined):
-    """Draw values over one column, one curve for each combination of values of the others; where
-    they are not joined only the cases."""
+    """Draw values over one column, one curve for each combination of values of the others; if not
+    `joined`, only the cases."""
     of_each = sorted(set(zip(*others))) or [()]
     few = len(of_each) <= _MOST_CURVES
     named = np.unique(np.linspace(0, len(of_each) - 1, _MOST_CURVES).astype(int))
@@ -185,7 +185,7 @@ def _draw_curves(axes, x, values, good, others, *, joined):
 
 
 def _wide(values):
-    """Return whether values are positive and reach over decades."""
+    """Return whether values are positive and span decades."""
     values = values[np.isfinite(values)]
     return len(values) > 0 and values.min() > 0 and values.max() > _DECADES * values.min()
 
@@ -211,7 +211,7 @@ def _options(parser):
     parser.add_argument("--per", help="column by which the value is divided")
     parser.add_argument("--over", nargs="+", help="one or two columns; default: the swept keys")
     parser.add_argument("--where", nargs="+", default=(), metavar="KEY=VALUE",
-                        help="only the cases nearest to this value of a key")
+                        help="draw only the cases nearest to this value of a key")
 
 
 if __name__ == "__main__":

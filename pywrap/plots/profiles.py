@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Separation and pressure against r, one line an h0, from a folder of results.
+"""Separation and pressure against r, one line for each h0, from a folder of results.
 
     .venv/bin/python pywrap/plots/profiles.py results/first
 """
@@ -12,14 +12,14 @@ from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from snapin.results import ResultsError, read_summary, read_table
 
-# Beyond the last place with this share of the largest pressure there is nothing to see.
+# The profiles are shown up to the last place with this share of the largest pressure.
 _FAINT = 0.02
-# So many lines can be told apart one by one on the colour bar.
+# Up to this number of lines the colour bar names each.
 _FEW = 12
 
 
 def draw_profiles(folder, branch=None):
-    """Return a figure of the profiles of one branch in `folder`; by default of the first."""
+    """Return a figure of the profiles of one branch in `folder`; default: loading, or the first."""
     summary, table = read_summary(folder), read_table(folder, "profiles.csv")
     names = list(dict.fromkeys(table["branch"]))
     if not names:
@@ -42,7 +42,7 @@ def draw_profiles(folder, branch=None):
     h0 = np.array([state["h0"][0] for state in states])
     lengths = scale(h0, "m")
     values = np.unique(h0 / lengths[0])
-    # Viridis without its palest end, which vanishes on white.
+    # Viridis without its palest colours, which are hard to see on white.
     colors = ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0, 0.9, 256)))
     span = max(values[-1] - values[0], 1e-9 * abs(values[0]), 1e-12)
     norm = Normalize(values[0], values[0] + span)
@@ -54,7 +54,7 @@ def draw_profiles(folder, branch=None):
             (panels[1], "pressure", "pressure $p$", pressures)):
         dress(panel, f"$r$ [{radii[1]}]", f"{name} [{unit}]")
         for state in states:
-            # One point more, so that lines end at the frame.
+            # One more point, so that lines end at the frame.
             n = np.count_nonzero(state["seen"]) + 1
             key = (_key(state["h0"][0]), _key(state["separation"][0]))
             panel.plot(state["r"][:n] / radii[0], state[y][:n] / factor, linewidth=1.4,
@@ -94,7 +94,7 @@ def _unstable(folder, branch):
 
 def _add_options(parser):
     parser.add_argument("--branch", help="branch to draw, as in profiles.csv; default: loading, "
-                        "or the first there is")
+                        "or the first branch")
 
 
 if __name__ == "__main__":

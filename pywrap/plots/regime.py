@@ -18,7 +18,7 @@ _RIGID, _SHARE, _DMT, _JKR = 0.05, 0.05, 0.1, 5.0
 _OF_TABOR = 1.157
 _NAMES = {"Hertz": (0.6, 2e4), "JKR": (22, 1), "Maugis\N{EN DASH}Dugdale": (0.7, 0.08),
           "DMT": (0.045, 1), "rigid": (4e-3, 1)}
-# Ends of the axes, unless the scene is farther out.
+# Ends of the axes, unless the scene is outside them.
 _LAMBDA, _LOAD = (1e-3, 1e2), (1e-2, 1e5)
 
 
@@ -27,7 +27,7 @@ def draw_regime(folder):
     summary = read_summary(folder)
     if "regime_recommended" not in summary:
         if (pathlib.Path(folder) / "sweep.csv").is_file():
-            raise ResultsError(f"{folder} is of a &sweep: sweep.csv has the columns regime_...")
+            raise ResultsError(f"{folder} has results of a &sweep: see regime_... in sweep.csv")
         raise ResultsError(f"{folder}/summary.nml has no regime; the deck needs &regime")
     x, load = summary["regime_maugis_lambda"], summary["regime_load_number"]
     wide = np.array([min(_LAMBDA[0], x / 3), max(_LAMBDA[1], 3 * x)])
@@ -46,7 +46,7 @@ def draw_regime(folder):
     axes.plot(at, _rigid_load(at / _OF_TABOR), **line)
     for text, place in _NAMES.items():
         axes.annotate(text, place, color=GREY, ha="center", va="center", fontsize=11)
-    # Where the load is a tension the scene lies below the map.
+    # A scene with a tension lies below the map.
     shown = max(load, high[0] * 1.2)
     axes.plot(x, shown, marker="o" if load > high[0] else "v", color=VERMILION, markersize=9)
     axes.annotate(_advice(summary), (x, shown), (0, 12), textcoords="offset points", ha="center",
@@ -56,26 +56,26 @@ def draw_regime(folder):
 
 
 def _advice(summary):
-    """Return the theory that the program recommends, in words."""
+    """Return the name of the theory that the program recommends."""
     name = summary["regime_recommended"]
     names = {"none": "no theory", "maugis": "Maugis", "hertz": "Hertz"}
     return "here " + names.get(name, name.upper())
 
 
 def _hertz_load(share, jkr):
-    """Return the load number at which adhesion is this share of the load that presses."""
+    """Return the load number at which adhesion is this share of the compressive load."""
     if not jkr:
         return 2 / share - 2
-    # Of the F + s that presses, s = 3 + sqrt(6 F + 9) is adhesion; with F = s (1/share - 1) that is
-    # s = 6/share.
+    # The compressive load is F + s with the adhesion s = 3 + sqrt(6 F + 9); F = s (1/share - 1)
+    # gives s = 6/share.
     return 6 / share * (1 / share - 1)
 
 
 def _rigid_load(tabor):
-    """Return the load number that deforms bodies by the limit for rigid ones; NaN for none.
+    """Return the load number that deforms bodies by the limit of rigid bodies, or NaN.
 
-    Hertz theory under load and adhesion, F + 2 pi w R: over the length of the law it deforms by
-    1.7707 mu (load number + 2)^(2/3).
+    In Hertz theory under load and adhesion, F + 2 pi w R, the deformation over the length of the
+    law is 1.7707 mu (load number + 2)^(2/3).
     """
     load = (_RIGID / (1.7707 * tabor)) ** 1.5 - 2
     return np.where(load > 0, load, np.nan)

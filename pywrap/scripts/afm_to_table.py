@@ -4,8 +4,8 @@ text for &measurement: position of the base, force, and segment.
 
     .venv/bin/python pywrap/scripts/afm_to_table.py CURVE [--number 0] > curve.csv
 
-The file is read by afmformats, which the project does not need otherwise: pip install afmformats.
-The spring constant of the file stands in the table's head.
+It reads the file with afmformats, which only this script needs: pip install afmformats. The head of
+the table has the spring constant of the file.
 """
 
 import argparse

@@ -1,8 +1,8 @@
 """snapin from Python: a deck in, arrays and dictionaries out, SI units, errors as exceptions.
 
-`run` computes whatever a deck can ask for; `force_curve` and `equilibrium_path` write the deck
-themselves. The rest is the pieces, for looking at by hand and for tests. Each module here wraps one
-part of the library; this file gathers the names that users call.
+`run` computes any deck; `force_curve` and `equilibrium_path` write the deck themselves. The other
+functions are the pieces of a calculation, for a closer look and for tests. Each module here wraps
+one part of the library; this file has the names that users call.
 """
 
 import os
@@ -20,7 +20,7 @@ from .numerics import (
     panel_weights, turning_intervals, uniform_mesh)
 from .results import Result, read_results
 
-# Where there is no fork there is nothing to register.
+# Systems without fork need no registration.
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_snapin.flat_deck.use_one_thread)
 

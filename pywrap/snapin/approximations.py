@@ -14,7 +14,7 @@ from .experiment import run
 from .numerics import law_numbers
 
 _FORMS = ("quadrature", "closed_form", "attraction_only")
-# How &approximations calls what jumps, in the order of `JumpEstimates`.
+# The names of jumps in &approximations, in the order of `JumpEstimates`.
 _JUMPS = ("jump_criterion_29", "jump_equation_37", "fold_attractive_only", "fold_closed_form")
 
 
@@ -28,7 +28,7 @@ class SlowDeformation(NamedTuple):
 
 
 class JumpState(NamedTuple):
-    """The state from which approaching bodies jump, SI; `gap` is that on the axis."""
+    """The state from which approaching bodies jump, SI; `gap` is the gap on the axis."""
 
     gap: float
     h0: float

@@ -1,8 +1,8 @@
-"""Checks on what goes into the Fortran library, and on what it says about it.
+"""Checks of the arguments of the Fortran library, and its exceptions.
 
-f2py passes on whatever it can convert, so that kind, shape, sign and size are looked at here; every
-exception begins with the argument's name. What passes is what a contiguous float64 copy of it would
-be; nothing is ever written to.
+f2py converts arguments without checks, so that kind, shape, sign and size are checked here; every
+exception begins with the argument's name. An argument is accepted if a contiguous float64 copy has
+the same values; no argument is changed.
 """
 
 import operator
@@ -14,21 +14,21 @@ import numpy as np
 
 
 class SnapinError(RuntimeError):
-    """The library was asked for something sensible and could not do it."""
+    """A valid calculation failed."""
 
 
 class DeckError(SnapinError, ValueError):
-    """A deck is wrong; the message has line, group and key of every mistake."""
+    """A deck is wrong; the message has line, group and key of all mistakes."""
 
 
 class SnapinWarning(UserWarning):
-    """A result is not all that was asked for: something did not converge, or is not resolved."""
+    """A state did not converge, or a result is not resolved."""
 
 
 # Sizes go to Fortran as C ints.
 _MOST_VALUES = 2**27
-# Limits of a physical quantity in SI units: within them no product that the formulas form leaves
-# the range of float64, where NaN would pass for "no such state".
+# Limits of a physical quantity in SI units: within them no product in the formulas leaves the range
+# of float64, which would give a NaN that means "no such state".
 _LEAST, _MOST = 1e-50, 1e50
 
 
@@ -36,7 +36,7 @@ def shown(value):
     """Return a short text for a message."""
     try:
         return reprlib.repr(value)
-    # A repr of others may fail in any way; that of an int does beyond 4300 digits.
+    # The repr of an unknown class may fail in any way, that of an int beyond 4300 digits.
     except Exception:
         return f"this {type(value).__name__}"
 
@@ -56,7 +56,7 @@ def reals(name, values, most=np.inf):
     if np.ma.is_masked(given):
         raise ValueError(f"{name}: values are masked")
     given = np.asarray(given)
-    # An empty list is of no kind, and NumPy calls it float.
+    # NumPy makes an empty list an array of floats.
     if given.dtype.kind not in "fiu" and not (given.dtype.kind == "O" and _all_real(given)):
         raise TypeError(refusal)
     try:
@@ -74,7 +74,7 @@ def reals(name, values, most=np.inf):
 
 
 def _all_real(objects):
-    """Whether these objects are real numbers, bools not counting."""
+    """Return whether these objects are real numbers other than bools."""
     return all(
         isinstance(one, (Real, Decimal)) and not isinstance(one, (bool, np.bool_))
         for one in objects.flat
@@ -82,7 +82,7 @@ def _all_real(objects):
 
 
 def _exact(given, array):
-    """Whether whole numbers came through the conversion; those below 2**53 do."""
+    """Return whether the conversion kept whole numbers, as it does below 2**53."""
     large = abs(array) >= 2.0**53
     return all(
         int(one) == int(number)
@@ -92,7 +92,7 @@ def _exact(given, array):
 
 
 def vector(name, values, *, most=_MOST):
-    """Return `values` as a one-dimensional, contiguous array of finite float64; a number is one."""
+    """Return `values`, also a single number, as a one-dimensional array of finite float64."""
     array = reals(name, values, most)
     if array.ndim > 1:
         raise ValueError(f"{name}: one dimension is needed, not shape {array.shape}")
@@ -100,7 +100,7 @@ def vector(name, values, *, most=_MOST):
 
 
 def positive_vector(name, values):
-    """Return `values` as `vector` does, refusing any that is not above zero."""
+    """Return `values` as `vector` does; all must be above zero."""
     array = vector(name, values)
     if not (array >= _LEAST).all():
         raise ValueError(f"{name}: all values must be positive, and at least {_LEAST:g}")
@@ -150,7 +150,7 @@ def not_negative(name, value):
 
 
 def count(name, value, least, most=2**31 - 1):
-    """Return `value` as an int within the limits; a float is none."""
+    """Return `value` as an int within the limits; floats are refused."""
     try:
         if isinstance(value, (bool, np.bool_)) or np.ndim(value) > 0:
             raise TypeError
@@ -173,7 +173,7 @@ def one_of(name, value, choices):
 
 
 def instance(name, value, kind, origin):
-    """Return `value` if it is of this class; `origin` says where one comes from."""
+    """Return `value` if it is of this class; `origin` names the functions that make one."""
     if not isinstance(value, kind):
         raise TypeError(f"{name}: must come from {origin}, not {shown(value)}")
     return value
@@ -183,10 +183,11 @@ def instance(name, value, kind, origin):
 
 
 def room_for(name, needed):
-    """Refuse what needs more memory [bytes] than there is: the library could only end Python."""
+    """Raise MemoryError if a calculation needs more memory [bytes] than there is; without memory
+    the library would end Python."""
     text = f"{name}: {needed / 1e9:.3g} GB of memory are needed"
     try:
-        # Takes address space alone, and fails where that is limited.
+        # Takes only address space, and fails if that is limited.
         np.empty(needed, dtype=np.uint8)
     except MemoryError:
         raise MemoryError(f"{text}, more than this process may have") from None
@@ -196,7 +197,7 @@ def room_for(name, needed):
 
 
 def _free_memory():
-    """Return the memory [bytes] that the system can give; infinite where it does not say."""
+    """Return the available memory [bytes]; infinite if it is not known."""
     try:
         with open("/proc/meminfo", encoding="ascii") as table:
             rows = dict(line.split(":", 1) for line in table)

@@ -1,11 +1,10 @@
-"""Hertz, JKR, DMT and Maugis-Dugdale, and what was fitted to the last: src/theory/classical.f90,
-maugis.f90 and transition_fits.f90.
+"""Hertz, JKR, DMT and Maugis-Dugdale theory, and formulas fitted to the last: classical.f90,
+maugis.f90 and transition_fits.f90 in src/theory.
 
-`theory` is "hertz", "jkr", "dmt" or "maugis"; radii under a load and pull-off also of "carpick" and
-"pietrement_troyon". `radius` is R [m], `stiffness` E/(1-nu^2) of two
-identical bodies [Pa], `surface_energy` gamma [J/m^2], `strength` the cohesive tension of
-Maugis-Dugdale [Pa]; those a theory does not use need not be given. NaN marks values for which
-the theory has no equilibrium.
+`theory` is "hertz", "jkr", "dmt" or "maugis"; radii at a load and pull-off also "carpick" and
+"pietrement_troyon". `radius` is R [m], `stiffness` E/(1-nu^2) of two identical bodies [Pa],
+`surface_energy` gamma [J/m^2], `strength` the cohesive tension of Maugis-Dugdale [Pa]; a theory
+needs only those that it uses. NaN marks values without an equilibrium.
 """
 
 import _snapin
@@ -28,7 +27,7 @@ _CONTROLS = ("load", "displacement", "edge_ratio")
 
 
 def _material(theory, radius, stiffness, surface_energy, strength=0.0):
-    """Return radius, stiffness, surface energy, strength; 0 may be what `theory` does not use."""
+    """Return radius, stiffness, surface energy, strength; those not in use may be 0."""
     one_of("theory", theory, _NEEDS)
     needed = {"surface_energy": surface_energy, "strength": strength}
     checked = [
@@ -39,7 +38,7 @@ def _material(theory, radius, stiffness, surface_energy, strength=0.0):
 
 
 def _values(theory, quantity, x, material, a=0.0):
-    """Return a quantity of a theory at values `x`, `a` being a contact radius."""
+    """Return a quantity of a theory at values `x`; `a` is a contact radius."""
     values, stat = _flat.classical_values(theory, quantity, x, a, *material)
     if stat:
         raise ValueError(f"theory: {theory!r} has no {quantity.replace('_', ' ')}")
@@ -49,9 +48,8 @@ def _values(theory, quantity, x, material, a=0.0):
 def contact_radius(theory, control, values, *, radius, stiffness, surface_energy=0.0, strength=0.0):
     """Return the contact radii at given values of `control`.
 
-    `control` is "load" [N] or "displacement" [m], on the branch that is stable under it; for
-    Maugis-Dugdale it is "edge_ratio", the outer radius of the cohesive zone over the contact
-    radius.
+    `control` is "load" [N] or "displacement" [m], on the branch that is stable at fixed control, or
+    for Maugis-Dugdale "edge_ratio", the outer radius of the cohesive zone over the contact radius.
     """
     material = _material(theory, radius, stiffness, surface_energy, strength)
     one_of("control", control, _CONTROLS)
@@ -85,7 +83,7 @@ def load_at_displacement(theory, displacement, *, radius, stiffness, surface_ene
 
 
 def pull_off(theory, *, radius, stiffness, surface_energy=0.0, strength=0.0, control="load"):
-    """Return the load [N], negative, at which the bodies part at a fixed `control`."""
+    """Return the load [N], negative, at which the bodies separate at a fixed `control`."""
     material = _material(theory, radius, stiffness, surface_energy, strength)
     one_of("control", control, _CONTROLS)
     return float(_values(theory, f"pull_off at {control}", np.zeros(1), material)[0])

@@ -1,7 +1,7 @@
-"""Decks: the text of one from a dictionary of groups, and one from whatever a caller has.
+"""Decks: their text from a dictionary of groups, a text or a file.
 
-Which groups and keys there are, and what they may be, is known to the program alone: a mistake is a
-`DeckError` with its message.
+Only the program knows the groups and keys and their ranges: a mistake is a `DeckError` with the
+program's message.
 """
 
 import os
@@ -12,8 +12,8 @@ import numpy as np
 
 from .arguments import DeckError, SnapinError, reals, shown
 
-_BAD_INPUT, _NO_ROOM = 1, 4
-# f2py counts bytes in C ints; a deck may have far fewer, which the program says.
+_BAD_INPUT, _NO_ROOM = 1, 3
+# f2py counts bytes in C ints; the program's own limit for decks is far lower.
 _MOST_BYTES = 2**30
 
 
@@ -33,10 +33,10 @@ def deck_of(deck):
 
 
 def deck_text(groups):
-    """Return the text of a deck, one key a line.
+    """Return the text of a deck, one key on each line.
 
-    `groups` maps names of groups to dictionaries of their keys. True is a group without any; None
-    is left out, as a group and as the value of a key.
+    `groups` maps names of groups to dictionaries of their keys. True is a group without keys; a
+    group or key whose value is None is left out.
     """
     if not isinstance(groups, Mapping):
         raise TypeError(f"deck: a dictionary of groups is needed, not {shown(groups)}")
@@ -57,14 +57,14 @@ def _group_text(group, keys):
 
 
 def _name(word):
-    """Return the name of a group or a key, which cannot be anything that ends it."""
+    """Return the name of a group or a key, if it is valid."""
     if not isinstance(word, str) or not re.fullmatch(r"[A-Za-z]\w*", word, re.ASCII):
         raise ValueError(f"deck: a name of a group or key is needed, not {shown(word)}")
     return word
 
 
 def _value_text(name, value):
-    """Return a value as a namelist has it; numbers to all digits."""
+    """Return a value in namelist form; numbers with all digits."""
     if isinstance(value, (bool, np.bool_)):
         return ".true." if value else ".false."
     if isinstance(value, str):
@@ -85,14 +85,14 @@ def _quoted(name, text):
 
 
 def accept_deck(stat, message):
-    """Raise what the library reported of a deck; `stat` is 0 or a kind of src/base/failure.f90."""
+    """Raise the error that the library reported; `stat` is 0 or a kind of src/base/failure.f90."""
     if stat:
         text = message.decode(errors="replace").rstrip()
         kinds = {_BAD_INPUT: DeckError, _NO_ROOM: MemoryError}
         raise kinds.get(stat, SnapinError)(text)
 
 
-# --- The groups that a few arguments stand for
+# --- Groups from a few arguments
 
 
 def force(law, **keys):
@@ -111,13 +111,13 @@ def exponential(**keys):
 
 
 def scene(law, radius, stiffness, rigid, **groups):
-    """Return the groups of a deck: a law's, the two bodies, and others."""
+    """Return the groups of a deck: the two bodies, those of a law, and others."""
     if not isinstance(law, Mapping):
         raise TypeError(f"law: a dictionary of groups is needed, not {shown(law)}")
     return {"bodies": {"radius": radius, "stiffness": stiffness, "rigid": rigid}, **law, **groups}
 
 
 def problem_deck(law, radius=1.0, stiffness=None, rigid=True):
-    """Return the text of a deck whose law and bodies are meant alone, nothing being computed."""
+    """Return the text of a deck with law and bodies, for a problem without an experiment."""
     nothing = {"h0_start": 1e-50, "h0_end": 0.0}
     return deck_text(scene(law, radius, stiffness, rigid, classical=nothing)).encode()

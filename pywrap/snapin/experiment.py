@@ -1,7 +1,7 @@
-"""Runs of whole decks, as the program does them, and the two that need no more than arguments.
+"""Runs of whole decks, and two experiments that are described by arguments.
 
-A run is a run of the program: its results come through a pipe, so that nothing is on the disk that
-is not asked for, other threads go on meanwhile, and an interrupt ends it.
+A run starts the program. Its results come through a pipe, so that nothing is written to the disk
+unless asked for, other threads continue meanwhile, and an interrupt ends the run.
 """
 
 import os
@@ -22,27 +22,26 @@ from .arguments import DeckError, SnapinError, SnapinWarning, vector
 from .deck import deck_of, scene
 from .results import Result, read_results, result_of
 
-# The exit status of a wrong deck, what begins the message of a run that lacks room, and what says
-# that there is nothing to do.
+# The exit status of a wrong deck, the beginning of the message of a run without enough memory or
+# disk space, and the message of a finished run.
 _WRONG_DECK = 2
 _NO_ROOM = "not computed: "
 _FINISHED = "complete since an earlier run"
-# By how much of a step the steps of h0 may differ: what the program takes for a whole step.
+# Largest difference of the steps of h0 over a step, which is the program's tolerance.
 _EQUAL = 1e-6
 
 
 def run(deck, out=None, *, resume=False, quiet=True):
-    """Run a deck as the program does, and return its `Result`.
+    """Run a deck and return its `Result`.
 
     `deck` is a dictionary of groups, such as {"bodies": {"radius": 1.5e-2, "rigid": True}, ...},
     the text of a deck, or the path of one. Nothing is left on the disk unless `out` names a folder
-    for the results; there `resume` goes on with what an interrupted run has left. Without `quiet`
-    progress and messages go to standard error.
+    for the results; there `resume` continues an interrupted run. Without `quiet` progress and
+    messages go to standard error.
 
-    A wrong deck is a `DeckError`, results that could not be written a `SnapinError`, and so is a
-    calculation that found nothing; one that lacks the memory is a `MemoryError`. What the program
-    warns of, states that did not converge among it, is a `SnapinWarning`; what was computed is in
-    the result.
+    A wrong deck raises `DeckError`; results that could not be written, or a calculation without
+    results, `SnapinError`; a lack of memory `MemoryError`. Warnings of the program, also of states
+    that did not converge, are given as `SnapinWarning`; the result has the states found.
     """
     return _run(deck, out, resume, quiet)
 
@@ -53,10 +52,10 @@ def _run(deck, out=None, resume=False, quiet=True):
     if b"\0" in text:
         raise DeckError(f"{name}: a NUL byte: a deck is plain text")
     if out is None and resume:
-        raise ValueError("resume: there is nothing to go on with unless out names its folder")
+        raise ValueError("resume: out must name the folder of the interrupted run")
     place = ("--out", "-") if out is None else ("--into", os.fspath(pathlib.Path(out)))
     if b"\0" in os.fsencode(place[1]):
-        raise ValueError("out: the name of a folder has no NUL")
+        raise ValueError("out: the name of a folder cannot have a NUL")
     options = (["--quiet"] if quiet else []) + (["--resume"] if resume else [])
     before = _stamp(out)
     status, streamed, said = _carry_out([*options, *place, "--name", name, "-"], text, quiet)
@@ -66,7 +65,7 @@ def _run(deck, out=None, resume=False, quiet=True):
             _complain(status, said)
         result = result_of(files, "the program's results")
     else:
-        # Results of an earlier run are this one's where it had nothing to do.
+        # If there was nothing to do, the results of the earlier run are those of this one.
         if status and not (resume and _FINISHED in said) and _stamp(out) == before:
             _complain(status, said)
         result = read_results(out)
@@ -75,7 +74,7 @@ def _run(deck, out=None, resume=False, quiet=True):
 
 
 def _stamp(folder):
-    """Return what differs once the summary in a folder is another one; None without any."""
+    """Return a stamp of the summary in a folder, which changes with it; None without a summary."""
     try:
         found = os.stat(os.path.join(folder or "", "summary.nml"))
     except OSError:
@@ -84,7 +83,7 @@ def _stamp(folder):
 
 
 def _carry_out(arguments, text, quiet):
-    """Return the program's exit status, standard output and what it said, shown if not quiet."""
+    """Return the program's exit status, standard output and messages, shown if not quiet."""
     with subprocess.Popen(
             [_program(), *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE) as program:
@@ -99,7 +98,7 @@ def _carry_out(arguments, text, quiet):
 
 
 def _shown(program, text):
-    """Return the same of a program whose standard error is shown as it comes."""
+    """Return the same, and show standard error at once."""
     said = []
 
     def show():
@@ -118,8 +117,8 @@ def _shown(program, text):
 
 
 def _program():
-    """Return the path of the program that this package was built with, or else of any."""
-    # In a build folder, and where pip puts commands.
+    """Return the path of the program built with this package, or else of one on PATH."""
+    # In a build folder, and in pip's folder of commands.
     places = pathlib.Path(_snapin.__file__).parent.parent, sysconfig.get_path("scripts")
     beside = [str(path) for path in (pathlib.Path(place, "snapin") for place in places)
               if path.is_file()]
@@ -142,7 +141,7 @@ def _files_in(streamed):
 
 
 def _complain(status, said):
-    """Raise what the program said of a run without results."""
+    """Raise the program's message about a run without results."""
     if status == _WRONG_DECK:
         raise DeckError(said)
     if status < 0:
@@ -154,12 +153,12 @@ def _complain(status, said):
 
 
 def _tell(result):
-    """Warn of what the program warns of; raise it where nothing was computed."""
+    """Give the program's warnings; raise them if the result has no states."""
     said = result.summary.get("warnings", [])
     if not result.converged and said and not any(table.size for table in result.tables.values()):
         raise SnapinError("; ".join(said))
     for warning in said:
-        # Of who called the function that calls this through `_run`.
+        # The warning names the caller of the function that called `_run`.
         warnings.warn(warning, SnapinWarning, stacklevel=4)
 
 
@@ -167,7 +166,7 @@ def _tell(result):
 
 
 class Point(NamedTuple):
-    """Where the bodies jump, or the path folds: h0 [m] and the load [N] just before."""
+    """A jump, or a fold of the path: h0 [m] and the load [N] just before."""
 
     h0: float
     load: float
@@ -179,9 +178,9 @@ class ForceCurve(NamedTuple):
     `h_centre` is the gap on the axis, `displacement` h_centre - h0, `load` negative under tension,
     `contact_radius` where the gap is 1.1 times that of zero force, `residual` the largest error of
     the equations in lengths of the force law. `jumps` are in the order of the experiment.
-    `max_tension` is positive, NaN if there was no tension; the largest between the h0 too.
-    `error_estimate` is the relative error of loads and displacements. `converged` says that every
-    state was found. `result` has all that the run reports.
+    `max_tension` is positive, also between the given h0, and NaN if there was no tension.
+    `error_estimate` is the relative error of loads and displacements, `converged` whether all
+    states were found. `result` has all that the run reports.
     """
 
     h0: np.ndarray
@@ -201,8 +200,8 @@ class ForceCurve(NamedTuple):
 class EquilibriumPath(NamedTuple):
     """The path from far apart to the end, SI; arrays have one value for each state on it.
 
-    As in `ForceCurve`; `stable` (bool) is stability at controlled h0, and `folds` are all points
-    at which h0 turns round: the first is the jump in, the last, if more than one, the jump out.
+    Fields are as in `ForceCurve`; `stable` (bool) is stability at controlled h0, and `folds` are
+    all points at which h0 turns: the first is the jump in; the last of several is the jump out.
     """
 
     h0: np.ndarray
@@ -223,8 +222,8 @@ class EquilibriumPath(NamedTuple):
 def force_curve(h0, *, radius, stiffness=None, law, rigid=False, **numerics):
     """Return the `ForceCurve` through the separations `h0` [m], in the order of the experiment.
 
-    They fall in equal steps, as a &loading does; then they may rise in equal steps, as an
-    &unloading does, from the last of them or from one step above. Other experiments are for `run`.
+    They fall in equal steps, as in &loading; then they may rise in equal steps, as in &unloading,
+    from the last of them or from one step above. For other experiments use `run`.
 
     `radius`, `stiffness` and `rigid` are keys of &bodies, `law` the groups of a force law such as
     `lennard_jones` returns, and `numerics` keys of &numerics: accuracy, method, grid and so on.
@@ -243,8 +242,8 @@ def equilibrium_path(
         h0_end, *, radius, stiffness=None, law, rigid=False, h0_start=None, **numerics):
     """Return the `EquilibriumPath` to the contact at `h0_end` [m].
 
-    It holds the unstable states too, which no experiment at controlled h0 shows. It begins where
-    the bodies hardly deform, or farther apart at `h0_start` [m]. The other arguments are as in
+    It has also the unstable states, which no experiment at controlled h0 shows. It begins where
+    the bodies hardly deform, or at a larger `h0_start` [m]. The other arguments are as in
     `force_curve`.
     """
     ends = {"h0_start": h0_start, "h0_end": h0_end}
@@ -256,7 +255,8 @@ def equilibrium_path(
 
 
 def _schedule(h0):
-    """Return the groups &loading and &unloading for these h0, and whether the least is repeated."""
+    """Return the groups &loading and &unloading for these h0, and whether the smallest is there
+    twice."""
     if h0.size < 2:
         raise ValueError(f"h0: at least 2 values are needed, not {h0.size}")
     least = int(np.argmin(h0))
@@ -272,7 +272,7 @@ def _schedule(h0):
 
 
 def _step(steps):
-    """Return the step that all of these are."""
+    """Return the step if all steps are equal."""
     if steps.size == 0 or not (abs(steps - steps.mean()) <= _EQUAL * steps.mean()).all():
         raise ValueError(
             "h0: must fall in equal steps, and may then rise in equal steps; "

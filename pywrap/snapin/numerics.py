@@ -31,7 +31,7 @@ _flat = _snapin.flat_numerics
 METHODS = ("mixing", "anderson", "newton")
 
 _LARGEST_ORDER = 64
-# What only mapped meshes have; users get none of these.
+# The map of meshes without one; mapped meshes are not for users.
 _UNMAPPED = (0.0, 0.0, 0.0)
 # As in src/scene/scene_keys.f90.
 _MOST_NODES = 20000
@@ -39,8 +39,8 @@ _MOST_DEPTH = 1000
 
 
 def bytes_for(nodes):
-    """Return the memory that a calculation on so many nodes takes: at most three matrices and, of
-    an accelerated iteration, some vectors."""
+    """Return the memory [bytes] of a calculation on so many nodes: at most three matrices, and some
+    vectors of an accelerated iteration."""
     return 8 * (3 * nodes**2 + 100 * nodes)
 
 
@@ -75,14 +75,14 @@ class GaussRule(NamedTuple):
 
 
 def gauss_rule(points):
-    """Return the Gauss-Legendre rule of so many points (src/base/quadrature.f90)."""
+    """Return the Gauss-Legendre rule with `points` points (src/base/quadrature.f90)."""
     return GaussRule(*_flat.gauss_rule(count("points", points, 1, _LARGEST_ORDER)))
 
 
 def turning_intervals(x, value, slope):
     """Return for each interval of a curve whether it may turn there (src/path/path_search.f90).
 
-    `x` rises; `value` and `slope` are the curve's at `x`.
+    `x` must ascend; `value` and `slope` are those of the curve at `x`.
     """
     x = ascending("x", x, 2)
     value, slope = as_long_as("value", value, x.size), as_long_as("slope", slope, x.size)
@@ -114,7 +114,7 @@ def panel_weights(node, target, left, right, *, centre=0.0):
 
 
 class LawValues(NamedTuple):
-    """Pressure [Pa], its derivative by the gap [Pa/m], its integral from there on [J/m^2]."""
+    """Pressure [Pa], its derivative by the gap [Pa/m], its integral to infinity [J/m^2]."""
 
     pressure: np.ndarray
     slope: np.ndarray
@@ -122,9 +122,9 @@ class LawValues(NamedTuple):
 
 
 class LawNumbers(NamedTuple):
-    """SI: the law's own units and the separation that is gap 0 in them; surface energy;
-    separations of most tension and of zero pressure, NaN where there is none, and that beyond which
-    nothing is left of the repulsion."""
+    """SI: the law's own units and the separation at its gap 0; surface energy; separations of
+    largest tension and of zero pressure, NaN if there is none, and the separation beyond which the
+    repulsion vanishes."""
 
     length: float
     pressure_unit: float
@@ -146,7 +146,7 @@ def force_law(law, gap):
 
 
 def law_numbers(law):
-    """Return the `LawNumbers` that characterise a law, as in `force_law`."""
+    """Return the `LawNumbers` of a law, as in `force_law`."""
     *_, numbers, stat, message = _snapin.flat_deck.law_values(problem_deck(law), np.empty(0))
     accept_deck(stat, message)
     return LawNumbers(*map(float, numbers))
@@ -184,7 +184,7 @@ class Mesh:
 
     def __post_init__(self):
         panels = one_of("kind", self.kind, ("uniform", "panels")) == "panels"
-        # A copy that nobody can change, as a mesh keeps what its nodes were made from.
+        # A read-only copy, since the mesh is made again from it.
         ends = ascending("ends", self.ends, 2).copy()
         ends.flags.writeable = False
         centre = not_negative("centre", self.centre)
@@ -211,13 +211,13 @@ class Mesh:
         return self.kind, self.centre, self.ends, [self.order], _UNMAPPED
 
     def matrix(self):
-        """Return the `KernelMatrix`; computed anew at every call."""
+        """Return the `KernelMatrix`, computed anew at each call."""
         room_for("mesh", bytes_for(self.x.size))
         rows = _flat.mesh_matrix(*self._description, self.x.size)
         return KernelMatrix(rows[0], rows[1], rows[2:])
 
     def interpolate(self, values, at):
-        """Return at positions `at` on the mesh the function with the given nodal values."""
+        """Return the function with the given nodal values at positions `at` on the mesh."""
         values = as_long_as("values", values, self.x.size)
         at = vector("at", at)
         if (at < self.centre + self.ends[0]).any() or (at > self.centre + self.ends[-1]).any():
@@ -242,10 +242,10 @@ def panel_mesh(ends, order, *, centre=0.0):
 
 
 class State(NamedTuple):
-    """A state of the bodies, dimensionless, and what it cost.
+    """A state of the bodies, dimensionless, and its cost.
 
-    `converged` says that the stopping rule was met; `residual` is the largest error in the
-    equations of equilibrium either way.
+    `converged`: whether the stopping rule was met; `residual`: the largest error in the equations
+    of equilibrium.
     """
 
     gap: np.ndarray
@@ -277,12 +277,12 @@ def equilibrium(
 ):
     """Return the state at a prescribed h0, iterated from the gaps `start`.
 
-    `law` is as in `force_law`, in its own units here. `coupling` is sigma (40) for Lennard-Jones,
-    Lambda (39) at h0 = 0 for the exponential law; 0 is rigid bodies. The mesh is enlarged `scale`
-    times. Without `start` the iteration begins from the undeformed gaps, none below that of zero
-    force. `depth` and `patience` are Anderson's, `mixing_limit` is mixing's, and so is
-    `displacement_tolerance`: with it mixing stops as the paper does, on a small change of the gap
-    on the axis.
+    `law` is as in `force_law`, here in its own units. `coupling` is sigma (40) for Lennard-Jones,
+    Lambda (39) at h0 = 0 for the exponential law, and 0 for rigid bodies. The mesh is enlarged
+    `scale` times. Without `start` the iteration begins with the undeformed gaps, none below the gap
+    of zero force. `depth` and `patience` are for Anderson, `mixing_limit` for mixing, and so is
+    `displacement_tolerance`: with it mixing stops as in the paper, on a small change of the gap on
+    the axis.
     """
     deck = problem_deck(law)
     method = one_of("method", method, METHODS)

@@ -1,4 +1,4 @@
-"""Results of a run, read from its folder: the one reader of what the program writes."""
+"""The reader of the results of a run."""
 
 import pathlib
 import re
@@ -9,24 +9,23 @@ import numpy as np
 from .arguments import SnapinError
 
 _TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter", "failure")
-# A text in quotes, doubled within, or another value.
+# A text in quotes, with quotes inside doubled, or another value.
 _WORD = re.compile(r"'((?:[^']|'')*)'|([^,\s]+)")
 _TRUTHS = {".true.": True, ".false.": False}
 
 
 class ResultsError(SnapinError):
-    """A file of results is missing or is not what it should be; the message says which."""
+    """A file of results is missing or wrong; the message says which."""
 
 
 class Result:
-    """What a run has found, SI.
+    """The results of a run, SI.
 
-    Each table is an attribute, a structured array: `curve`, `profiles`, `approximations`,
-    `classical`, `sweep`, whatever the deck asked for. `summary` and `cost` are dictionaries of the
-    groups of summary.nml; lists of numbers in them are arrays. `converged` says that every
-    state was found.
-    `fitted` has the groups of fit.nml by name, each a dictionary whose values are arrays; of a deck
-    without &fit it is empty.
+    Each table that the deck asked for is an attribute, a structured array: `curve`, `profiles`,
+    `approximations`, `classical`, `sweep` and so on. `summary` and `cost` are dictionaries of the
+    groups of summary.nml; lists of numbers in them are arrays. `converged`: whether all states were
+    found. `fitted` has the groups of fit.nml by name, each a dictionary of arrays; it is empty for
+    a deck without &fit.
     """
 
     def __init__(self, tables, summary, cost, fitted=None):
@@ -35,7 +34,7 @@ class Result:
 
     @property
     def converged(self):
-        """Whether every state was found."""
+        """Return whether all states were found."""
         return self.summary["converged"]
 
     def __getattr__(self, name):
@@ -52,7 +51,7 @@ class Result:
 
 
 def read_results(folder):
-    """Return the `Result` in a folder that the program has written."""
+    """Return the `Result` in a folder written by the program."""
     _path_of(folder, "summary.nml")
     files = {
         path.name: path.read_text(encoding="utf-8")
@@ -63,7 +62,7 @@ def read_results(folder):
 
 
 def result_of(files, place):
-    """Return the `Result` in texts of files by name; `place` is theirs in messages."""
+    """Return the `Result` in texts of files by name; `place` names them in messages."""
     groups = _summary_groups(files["summary.nml"], f"{place}/summary.nml")
     tables = {
         name.removesuffix(".csv"): _structured(_columns(text, f"{place}/{name}"))
@@ -74,7 +73,7 @@ def result_of(files, place):
 
 
 def _fitted(text):
-    """Return the groups of fit.nml, the correlations as matrices; none where there is no fit."""
+    """Return the groups of fit.nml, with correlations as matrices; none without a fit."""
     groups = {
         name: {key: _as_list(values) for key, values in group.items() if key != "title"}
         for name, group in _namelist(text).items()
@@ -85,7 +84,7 @@ def _fitted(text):
 
 
 def _structured(columns):
-    """Return columns as one structured array."""
+    """Return the columns as a structured array."""
     kinds = [(name, column.dtype) for name, column in columns.items()]
     table = np.empty(len(next(iter(columns.values()))), kinds)
     for name, column in columns.items():
@@ -101,7 +100,7 @@ def _as_list(values):
 def _namelist(text):
     """Return the groups of a namelist that the program has written: lists of values by key.
 
-    Each key begins a line, and what does not fit on it goes on in deeper ones.
+    Each key begins a line; its further lines have a deeper indentation.
     """
     groups, group, values = {}, {}, []
     for line in text.splitlines():
@@ -155,7 +154,7 @@ def _columns(text, place):
 
 
 def _has_text(column, cells):
-    """Return whether a column has text: always, or as a key of a sweep that holds words."""
+    """Return whether a column has text: one of `_TEXT_COLUMNS`, or a swept key with words."""
     return column in _TEXT_COLUMNS or ("." in column and any(cell[:1].isalpha() for cell in cells))
 
 
@@ -166,8 +165,8 @@ def read_summary(folder):
 
 
 def _summary_groups(text, place):
-    """Return &summary and &cost: lists as such, also of one value, and the others' values."""
-    # The deck follows.
+    """Return &summary and &cost; a list stays a list, also with one value."""
+    # The deck follows these groups.
     results, found, _ = text.partition("\n&cost\n")
     if not found:
         raise ResultsError(f"{place}: no group &summary and &cost")
@@ -199,7 +198,7 @@ def _hint(path):
     if path.with_name(path.name + ".partial").is_file():
         return ": the run has not finished"
     if path.with_name("sweep.csv").is_file():
-        return ": a &sweep keeps one row a case in sweep.csv, and no curves"
+        return ": a &sweep writes one row for each case in sweep.csv, and no curves"
     if path.name == "sweep.csv":
         return ": the deck has no &sweep"
     if path.name == "profiles.csv":

@@ -11,12 +11,12 @@ module command_line
     character(len=:), allocatable :: name
   end type file_t
 
-  !> What the command line asks for.
+  !> The content of the command line.
   type :: options_t
-    !> Folder in which each deck gets a folder of its own, or '-' for standard output; folder that
-    !> the results of the only deck go into themselves.
+    !> Folder in which each deck gets a folder of its own, or '-' for standard output; folder for
+    !> the results of a single deck.
     character(len=:), allocatable :: out, into
-    !> What the deck on standard input is called in messages.
+    !> The name of the deck on standard input in messages.
     character(len=:), allocatable :: name
     logical :: check = .false., resume = .false., quiet = .false.
     logical :: keys = .false., results = .false., version = .false., help = .false.
@@ -31,8 +31,8 @@ module command_line
 
 contains
 
-  !> Reads the arguments of this run. Fails on unknown options, where no deck is named though the
-  !> options need one, and on two decks whose results would share a folder.
+  !> Reads the arguments of this run. Fails on unknown options, if a deck is missing, and on two
+  !> decks whose results would have the same folder.
   subroutine read_command_line(options, error)
     type(options_t), intent(out) :: options
     type(failure_t), allocatable, intent(out) :: error
@@ -101,7 +101,7 @@ contains
 
   contains
 
-    !> The argument after the present one.
+    !> Takes the next argument.
     subroutine take_folder(option, folder)
       character(len=*), intent(in) :: option
       character(len=:), allocatable, intent(inout) :: folder
@@ -134,7 +134,7 @@ contains
   end subroutine check_stems
 
   !> The file name of `path` without folders and without its last extension. A name like `...nml`
-  !> stays whole: its stem would be a folder above the results.
+  !> stays whole, since its stem would be a folder above the results.
   pure function stem_of(path) result(stem)
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: stem
@@ -145,7 +145,7 @@ contains
     if (verify(stem(:dot), '.') > 0) stem = stem(:dot - 1)
   end function stem_of
 
-  !> Argument `i` in full length.
+  !> The whole argument `i`.
   function argument_at(i) result(argument)
     integer, intent(in) :: i
     character(len=:), allocatable :: argument
@@ -164,7 +164,7 @@ contains
     write (unit, '(2a)', iostat=status) 'usage: ', usage
   end subroutine write_usage
 
-  !> Prints what the program does, its options and a deck to start from.
+  !> Prints a description of the program, its options and a deck to start from.
   subroutine write_help(unit)
     integer, intent(in) :: unit
     integer :: status, i
@@ -176,12 +176,12 @@ contains
       '  --out DIR   write to DIR/<name of the deck>/ instead (-o); to standard output if DIR', &
       '              is -: each piece of a file after a line with its name and its bytes', &
       '  --into DIR  write the results of one deck into DIR itself', &
-      '  --name NAME what the deck on standard input is called', &
+      '  --name NAME name of the deck on standard input', &
       '  --check     validate the decks, compute nothing', &
-      '  --resume    go on where an interrupted run stopped; leave finished results as they are', &
+      '  --resume    continue an interrupted run; leave finished results as they are', &
       '  --quiet     no progress on the terminal (-q)', &
-      '  --keys      print every group and key a deck may hold: unit, default, meaning; or those', &
-      '              that are named, as GROUP or GROUP.KEY', &
+      '  --keys      print all groups and keys of decks, with unit, default and meaning, or only', &
+      '              those named, as GROUP or GROUP.KEY', &
       '  --results   print every file, column and entry of results: unit, meaning', &
       '  --version   print version, compiler and libraries', &
       '  --help      print this (-h)', &

@@ -1,5 +1,5 @@
-!> Work for many processes, handed out by one: cases in batches, of which each is to take some
-!> `batch_seconds`, so that messages are few whatever a case takes.
+!> Distributes the cases of a sweep over processes, in batches that take about `batch_seconds` each,
+!> so that there are few messages, however short a case is.
 module dispatch
   use kinds, only: wp
   use byte_record, only: byte_record_t
@@ -8,21 +8,21 @@ module dispatch
   private
   public :: foreman_t, worker_t, hand_out, work_through, dismiss
 
-  !> Has the cases, and takes what comes of them.
+  !> Provides cases and takes their answers.
   type, abstract :: foreman_t
   contains
     procedure(put_case), deferred :: put_next
     procedure(take_case), deferred :: take_answer
   end type foreman_t
 
-  !> Does a batch of cases.
+  !> Computes a batch of cases.
   type, abstract :: worker_t
   contains
     procedure(work), deferred :: work
   end type worker_t
 
   abstract interface
-    !> Adds the next case to a batch. Not found: there are no more.
+    !> Adds the next case to a batch. found = .false. if there are no more.
     subroutine put_case(self, batch, found)
       import :: foreman_t, byte_record_t
       class(foreman_t), intent(inout) :: self
@@ -30,15 +30,15 @@ module dispatch
       logical, intent(out) :: found
     end subroutine put_case
 
-    !> Takes what came of one case.
+    !> Takes the answer of one case.
     subroutine take_case(self, answers)
       import :: foreman_t, byte_record_t
       class(foreman_t), intent(inout) :: self
       type(byte_record_t), intent(inout) :: answers
     end subroutine take_case
 
-    !> Takes `cases` cases of the given job from a batch and puts what comes of each into `answers`.
-    !> seconds: how long that took.
+    !> Takes `cases` cases of the given job from a batch and adds the answer of each to `answers`.
+    !> seconds: the time that this took.
     subroutine work(self, job, cases, batch, answers, seconds)
       import :: worker_t, byte_record_t, wp
       class(worker_t), intent(inout) :: self
@@ -48,16 +48,16 @@ module dispatch
     end subroutine work
   end interface
 
-  !> Seconds of work in a message, and the cases that it has at most.
+  !> Seconds of work in a message, and its largest number of cases.
   real(wp), parameter :: batch_seconds = 0.05_wp
   integer, parameter :: most_cases = 10000
-  !> Stands for a job where there is none any more.
+  !> The job number that ends a worker.
   integer, parameter :: no_job = 0
 
 contains
 
-  !> Has the workers of a crew do all cases of a job, which has a number above 0. threads: the cases
-  !> that one of them does at a time. messages: how many were sent.
+  !> Has the workers of a crew compute all cases of a job, which has a number above 0. threads: the
+  !> number of cases that a worker computes at once. messages: the number of messages sent.
   subroutine hand_out(crew, job, foreman, threads, messages)
     type(crew_t), intent(in) :: crew
     integer, intent(in) :: job, threads
@@ -81,7 +81,7 @@ contains
       do i = 1, cases
         call foreman%take_answer(answers)
       end do
-      ! Not from one short batch to a very long one: cases differ.
+      ! At most twice as many cases as in the last batch, since cases differ.
       goal(from) = max(threads, min(2*goal(from), most_cases, &
         nint(min(batch_seconds*cases/max(seconds, 1.0e-9_wp), real(most_cases, wp)))))
       call give(from)
@@ -90,7 +90,7 @@ contains
 
   contains
 
-    !> Gives a worker what it is to do next, if anything is left.
+    !> Sends the next batch to a worker, if there are cases left.
     subroutine give(to)
       integer, intent(in) :: to
       type(byte_record_t) :: batch, message
@@ -112,7 +112,7 @@ contains
 
   end subroutine hand_out
 
-  !> Does what is handed out until there is nothing more.
+  !> Computes batches until there are no more.
   subroutine work_through(crew, worker)
     type(crew_t), intent(in) :: crew
     class(worker_t), intent(inout) :: worker
@@ -135,7 +135,7 @@ contains
     end do
   end subroutine work_through
 
-  !> Tells the workers of a crew that there is nothing more to do.
+  !> Tells the workers of a crew that there is no more work.
   subroutine dismiss(crew)
     type(crew_t), intent(in) :: crew
     type(byte_record_t) :: message

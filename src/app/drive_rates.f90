@@ -1,5 +1,5 @@
-!> Derivatives of what a drive in time has shown, by numbers of its deck: of whole runs with each
-!> number a little smaller and a little larger, since there is no path that tells them.
+!> Derivatives of the results of a drive in time by numbers of its deck, from whole runs with each
+!> number slightly smaller and slightly larger, since no path gives these derivatives.
 module drive_rates
   use kinds, only: wp
   use failure, only: failure_t
@@ -18,13 +18,13 @@ module drive_rates
   private
   public :: rate_drive
 
-  !> The largest change of a number over itself. Differences lack about its square, and have the
-  !> errors of the runs over it: its cube is the accuracy.
+  !> The largest relative change of a number. The error of a difference is about the square of the
+  !> change, plus the errors of the runs over the change; both agree if its cube is the accuracy.
   real(wp), parameter :: largest = 0.05_wp
 
 contains
 
-  !> Gives the numbers of a drive their derivatives by each parameter of &sensitivity.
+  !> Sets the derivatives of the numbers of a drive by each parameter of &sensitivity.
   subroutine rate_drive(scene, keeper, listener, timed)
     type(scene_t), intent(in) :: scene
     class(keeping_stepper_t), intent(inout) :: keeper
@@ -56,7 +56,7 @@ contains
     timed%rate = rate
   end subroutine rate_drive
 
-  !> What a run of the scene with another value of a number finds.
+  !> The numbers that a run with another value of the number `name` finds.
   subroutine run_with(scene, name, value, keeper, side, found)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name

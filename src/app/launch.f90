@@ -1,11 +1,11 @@
-!> How the program was started.
+!> Whether other processes were started together with this one.
 module launch
   implicit none
   private
   public :: started_together, own_rank
 
-  !> What holds the number of processes that were started together, and which of them this is: by
-  !> OpenMPI, by MPICH and its relatives, by Slurm's srun.
+  !> Environment variables with the number of processes that were started together, and the number
+  !> of this process: of OpenMPI, of MPICH and its relatives, of Slurm's srun.
   character(len=*), parameter :: sizes(*) = [character(len=20) :: 'OMPI_COMM_WORLD_SIZE', &
     'PMI_SIZE', 'SLURM_STEP_NUM_TASKS']
   character(len=*), parameter :: numbers(*) = [character(len=20) :: 'OMPI_COMM_WORLD_RANK', &
@@ -13,17 +13,17 @@ module launch
 
 contains
 
-  !> How many processes mpirun or srun has started as one job; 1: this one alone.
+  !> Number of processes that mpirun or srun has started as one job; 1 for a single process.
   integer function started_together()
     started_together = first_set(sizes, 1)
   end function started_together
 
-  !> Which of them this is, from 0.
+  !> Number of this process, from 0.
   integer function own_rank()
     own_rank = first_set(numbers, 0)
   end function own_rank
 
-  !> The first number that the environment has; `otherwise` where it has none.
+  !> The first number among these environment variables; `otherwise` if there is none.
   integer function first_set(names, otherwise) result(number)
     character(len=*), intent(in) :: names(:)
     integer, intent(in) :: otherwise

@@ -1,12 +1,12 @@
-!> The command that draws a sweep.
+!> The command line that draws a sweep.
 module map_command
   use files, only: file_exists, own_path, whole_path
   implicit none
   private
   public :: drawing_of
 
-  !> Python and the script: in a checkout, of which the program is in a build, and where it is
-  !> installed.
+  !> Python and the script: in a checkout, with the program in a build folder, and in an
+  !> installation.
   character(len=*), parameter :: pythons(2) = [character(len=16) :: '.venv/bin/python', &
     'bin/python3']
   character(len=*), parameter :: scripts(2) = [character(len=25) :: 'pywrap/plots/map.py', &
@@ -14,7 +14,7 @@ module map_command
 
 contains
 
-  !> What draws the sweep in a folder of results; empty where the script is not there.
+  !> The command that draws the sweep in a folder of results; empty if there is no script.
   function drawing_of(folder) result(command)
     character(len=*), intent(in) :: folder
     character(len=:), allocatable :: command, program, top, python

@@ -1,5 +1,5 @@
-!> What is known of a run before it begins: the memory that its matrices take and the room that its
-!> files take on the disk. Where there is less, it is not begun. Time is told while it runs.
+!> Checks before a run whether there is memory for its matrices and disk space for its files. A run
+!> without enough of either is not begun.
 module preflight
   use kinds, only: wp
   use failure, only: failure_t, fail, no_room
@@ -21,21 +21,21 @@ module preflight
   private
   public :: check_room, large_results
 
-  !> What a run with matrices needs beside them [bytes].
+  !> Memory of a run with matrices apart from these [bytes].
   real(wp), parameter :: other_bytes = 1.0e7_wp
-  !> Matrices of a verified eigenvalue.
+  !> Number of matrices for a verified eigenvalue.
   real(wp), parameter :: eigenvalue_matrices = 5
-  !> Cells of a row of the curve, of a profile, of a table of theories and of a sweep; bytes of a
-  !> step that is kept so that an interrupted run can go on.
+  !> Number of cells in a row of the curve, of a profile, of a table of theories and of a sweep;
+  !> bytes of a step in the journal.
   integer, parameter :: of_curve = 10, of_profile = 7, of_theory = 5, of_case = 60, kept = 900
-  !> Nodes of a mesh, roughly.
+  !> Approximate number of nodes of a mesh.
   real(wp), parameter :: of_mesh = 200
-  !> Results that are announced, and for which there has to be room before they are begun [bytes].
+  !> Size of results above which they are announced, and the free disk space is checked [bytes].
   real(wp), parameter :: large = 1.0e8_wp
 
 contains
 
-  !> Fails where a run, whose results go into a folder, has not the room that it needs.
+  !> Fails if memory, or the disk with the folder of the results, does not suffice for a run.
   subroutine check_room(scene, folder, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: folder
@@ -47,7 +47,7 @@ contains
     copies = 1
     call count_matrices(scene, bytes, nodes)
     if (allocated(scene%sweep)) then
-      ! A sweep may be over what the mesh depends on: its last case stands for that.
+      ! The sweep may change the mesh; the last case is taken as an example.
       call swept_scene(scene, scene%sweep%names, scene%sweep%last(), last, error)
       if (.not. allocated(error)) then
         call count_matrices(last, more, most)
@@ -61,9 +61,8 @@ contains
     end if
     available = available_memory(blas_buffers(nodes, copies))
     if (bytes > available) then
-      call fail(error, no_room, 'not computed: matrices for '//brief(real(nodes, wp))// &
-        ' nodes need '//gigabytes(bytes)//' of memory, and '//gigabytes(available)// &
-        ' are available')
+      call fail(error, no_room, 'not computed: matrices for '//brief(nodes)//' nodes need '// &
+        gigabytes(bytes)//' of memory, and '//gigabytes(available)//' are available')
       return
     end if
     bytes = disk_bytes(scene)
@@ -73,7 +72,7 @@ contains
       gigabytes(bytes)//' on the disk, and '//gigabytes(available)//' are free')
   end subroutine check_room
 
-  !> What to say of results that take much of a disk; empty of others.
+  !> The announcement of large results; empty for others.
   function large_results(scene) result(text)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: text
@@ -83,7 +82,7 @@ contains
       gigabytes(disk_bytes(scene))//' on the disk while it runs'
   end function large_results
 
-  !> Bytes of the matrices that are held at once, and nodes of the largest mesh.
+  !> Bytes of the matrices that exist at the same time, and number of nodes of the largest mesh.
   subroutine count_matrices(scene, bytes, nodes)
     type(scene_t), intent(in) :: scene
     real(wp), intent(out) :: bytes
@@ -104,15 +103,15 @@ contains
     if (allocated(scene%path) .or. .not. chosen%is_fixed()) then
       meshes = new_mesh_family(problem, high, low, chosen%digits, shape_only=.true.)
       nodes = maxval(meshes%grid%nodes)
-      ! Kernels, one factorisation and another for a fold, and about half as much again on the finer
-      ! meshes of the error estimate, which are held beside them.
+      ! Kernels, one factorisation and another for a fold, and about half as much again for the
+      ! finer meshes of the error estimate, which exist at the same time.
       entries = 2.6_wp*sum(real(meshes%grid%nodes, wp)**2) + 3.6_wp*real(nodes, wp)**2
       if (scene%has_eigenvalues()) entries = entries + eigenvalue_matrices*real(nodes, wp)**2
     end if
     if (chosen%is_fixed()) then
       nodes = max(nodes, chosen%nodes)
       other = companion(chosen)
-      ! The kernel, the factors in use, and those with which a jump is followed.
+      ! The kernel, the factors in use, and those for following a jump.
       matrices = merge(1, 3, chosen%options%mixing)
       if (scene%has_eigenvalues()) matrices = matrices + eigenvalue_matrices
       entries = max(entries, matrices*real(chosen%nodes, wp)**2 + 2*real(other%nodes, wp)**2)
@@ -120,7 +119,8 @@ contains
     bytes = other_bytes + 8*entries
   end subroutine count_matrices
 
-  !> Bytes that the files of a run have at most, but for rows of a path, which nobody knows before.
+  !> Largest size of the files of a run [bytes], without rows of a path, whose number is not known
+  !> before.
   pure real(wp) function disk_bytes(scene) result(bytes)
     type(scene_t), intent(in) :: scene
 
@@ -147,7 +147,7 @@ contains
 
   end function disk_bytes
 
-  !> Bytes for a message.
+  !> A number of bytes for a message.
   function gigabytes(bytes) result(text)
     real(wp), intent(in) :: bytes
     character(len=:), allocatable :: text

@@ -1,4 +1,4 @@
-!> One deck from scene to results: the effects that the scene calls for, and no others.
+!> One deck from scene to results. Effects that the scene does not have cost nothing.
 module simulation
   use kinds, only: wp, long
   use failure, only: failure_t
@@ -40,7 +40,7 @@ module simulation
   private
   public :: run_scene
 
-  !> Where a run's results go, and what it says on standard error.
+  !> The folder of a run's results, and whether it writes messages to standard error.
   type :: destination_t
     character(len=:), allocatable :: folder
     logical :: quiet = .false.
@@ -50,12 +50,12 @@ module simulation
 
 contains
 
-  !> Computes a scene and writes its results into the folder `out_dir`, where nothing changes if
-  !> there is not the room that it needs. converged: false where a
-  !> calculation failed; what was computed is kept and the summary says what failed. error: there
-  !> are no results, or they could not be written. resume: what an interrupted run has left in the
-  !> folder is continued, and finished results are left as they are. crew: who computes a sweep, to
-  !> whom the scene is known by its number `job`.
+  !> Computes a scene and writes its results into the folder `out_dir`. If memory or disk space does
+  !> not suffice, the folder is not changed. converged: .false. if a calculation failed; the results
+  !> are kept and the summary says what failed. error: there are no results, or they could not be
+  !> written. resume: an interrupted run in the folder is continued, and finished results are left
+  !> as they are. crew: the processes that compute a sweep, for which `job` is the number of the
+  !> scene.
   subroutine run_scene(scene, out_dir, quiet, resume, crew, job, converged, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: out_dir
@@ -101,8 +101,9 @@ contains
     converged = summary%is_true('converged')
   end subroutine run_scene
 
-  !> Puts in place what an earlier run had completed; with `resume` a finished run is found, and
-  !> then there is nothing to do. converged: whether that one was.
+  !> Completes an interrupted replacement of results. With `resume` and a finished run in the
+  !> folder, finished = .true., and there is nothing to compute; converged is that of the finished
+  !> run.
   subroutine take_up_earlier(scene, destination, resume, finished, converged, error)
     type(scene_t), intent(in) :: scene
     type(destination_t), intent(in) :: destination
@@ -115,19 +116,19 @@ contains
     converged = .false.
     call mend(destination%folder, mended, error)
     if (allocated(error)) return
-    if (mended) call destination%say('put results in place that an interrupted run had completed')
+    if (mended) call destination%say('installed the results that an interrupted run had completed')
     if (file_exists(journal_of(destination%folder))) return
     if (.not. resume) return
     call find_finished(destination%folder, scene%deck%resolved(), finished, converged)
     if (finished) then
       call destination%say('complete since an earlier run; nothing to do')
-      if (.not. converged) call destination%say('its summary says what failed then')
+      if (.not. converged) call destination%say('its summary says what failed')
     else
-      call destination%say('no interrupted run to go on with; starting from the beginning')
+      call destination%say('no interrupted run to continue; starting from the beginning')
     end if
   end subroutine take_up_earlier
 
-  !> Takes the folder for this run and begins its tables.
+  !> Locks the folder for this run and begins its tables.
   subroutine open_folder(scene, problem, folder, destination, resume, results, error)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -140,7 +141,7 @@ contains
 
     left_over = file_exists(journal_of(folder))
     call results%open(folder, scene, version, problem, &
-      ! Each case of a sweep has one thread, however many there are.
+      ! Each case of a sweep has one thread, so that the number of threads does not matter.
       identity_of(scene%deck%resolved(), merge(0, thread_count(), allocated(scene%sweep))), &
       resume, error)
     if (allocated(error)) return
@@ -148,14 +149,14 @@ contains
     if (.not. results%lock%is_held()) call destination%say('warning: folders cannot be locked '// &
       'here; let no other run write into this one')
     if (left_over .and. resume) then
-      call destination%say('going on with what was interrupted after '// &
+      call destination%say('continuing a run that was interrupted after '// &
         duration(results%journal%earlier))
     else if (left_over) then
-      call destination%say('starting over; --resume would have continued what was interrupted')
+      call destination%say('starting over; --resume would have continued the interrupted run')
     end if
   end subroutine open_folder
 
-  !> Runs the experiments or the sweep, whose records go into the results.
+  !> Runs the experiments or the sweep; their records go into the results.
   subroutine compute(scene, problem, destination, crew, job, results, summary, cost)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -174,12 +175,12 @@ contains
     if (large_results(scene) /= '') call destination%say(large_results(scene))
     if (allocated(scene%sweep)) then
       call results%progress%start(scene%sweep%cases(), name, destination%quiet)
-      if (crew%workers > 0) call destination%say('processes that compute: '// &
-        brief(real(crew%workers, wp)))
+      if (crew%workers > 0) &
+        call destination%say('processes that compute: '//brief(crew%workers))
       call run_sweep(scene, crew, job, results, failed, cost)
       summary = summary_of(scene, problem, outcome)
-      if (failed > 0) call summary%fail_with(brief(real(failed, wp))//' of '// &
-        brief(real(scene%sweep%cases(), wp))// &
+      if (failed > 0) call summary%fail_with(brief(failed)//' of '// &
+        brief(scene%sweep%cases())// &
         ' cases failed: their rows in sweep.csv say converged = 0, and why')
     else
       call results%progress%start(states_planned(scene), name, destination%quiet)
@@ -187,8 +188,8 @@ contains
     end if
   end subroutine compute
 
-  !> Runs the experiments; each state goes into the results, with its eigenvalue where the scene
-  !> asks for that, and each step into the journal.
+  !> Runs the experiments. Each state goes into the results, with its eigenvalue if the scene asks
+  !> for it, and each step into the journal.
   subroutine run_observed(scene, problem, results, summary, cost)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -219,7 +220,7 @@ contains
     cost%factorisations = cost%factorisations + recorder%cost%factorisations
   end subroutine run_observed
 
-  !> The fit of &fit, its files, and what it says; where there is none the summary says why.
+  !> Makes the fit of &fit, its files and messages; without a fit the summary says why.
   subroutine fit_measured(scene, problem, destination, results, summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -255,7 +256,7 @@ contains
     end do
   end subroutine fit_measured
 
-  !> What made the numbers.
+  !> Adds version, compiler, libraries and threads to the summary.
   subroutine describe_program(summary)
     type(summary_t), intent(inout) :: summary
 
@@ -266,7 +267,7 @@ contains
     call summary%set('threads', int(thread_count(), long))
   end subroutine describe_program
 
-  !> Says what was found: warnings, the numerics, and a line of results.
+  !> Writes warnings, the numerics, and a line of results to standard error.
   subroutine tell(scene, destination, summary, cost)
     type(scene_t), intent(in) :: scene
     type(destination_t), intent(in) :: destination
@@ -304,11 +305,11 @@ contains
       summary%number('max_tension_h0'), ' m'
     call destination%say(trim(found)//trim(tension))
     if (allocated(scene%sweep)) then
-      write (found, '(i0, a)') scene%sweep%cases(), ' cases, '
       command = drawing_of(destination%folder)
       if (command /= '') command = '; to draw it: '//command
-      call destination%say(trim(found)//' '//rounded(scene%sweep%cases()/max(took, 1e-3_wp))// &
-        ' a second: '//destination%folder//'/sweep.csv'//command)
+      call destination%say(brief(scene%sweep%cases())//' cases, '// &
+        rounded(scene%sweep%cases()/max(took, 1e-3_wp))//' a second: '//destination%folder// &
+        '/sweep.csv'//command)
     end if
 
   contains
@@ -322,7 +323,7 @@ contains
 
   end subroutine tell
 
-  !> A line to standard error.
+  !> Writes a line to standard error.
   subroutine say(self, text)
     class(destination_t), intent(in) :: self
     character(len=*), intent(in) :: text

@@ -62,7 +62,7 @@ program snapin
 
 contains
 
-  !> Prints the keys of the groups that are named, or these keys, or all; returns the exit status.
+  !> Prints the keys of the named groups, or the named keys, or all; returns the exit status.
   integer function show_keys() result(status)
     type(key_spec), allocatable :: specs(:)
     character(len=:), allocatable :: name
@@ -84,8 +84,8 @@ contains
     if (status == 0) call write_keys(pack(specs, shown), output_unit)
   end function show_keys
 
-  !> Validates all decks, then computes them one by one; returns the exit status. Every deck is
-  !> read before anything is written, so that a wrong one leaves nothing behind.
+  !> Validates all decks, then computes them one by one; returns the exit status. All decks are read
+  !> before anything is written, so that a wrong deck leaves no results behind.
   integer function run_decks() result(status)
     type(scene_t), allocatable :: scenes(:)
     type(failure_t), allocatable :: trouble
@@ -126,7 +126,7 @@ contains
           options%decks(i)%name // ': ' // large_results(scenes(i)))
       end if
     end do
-    ! A deck that one process cannot read stops all.
+    ! A deck that one process cannot read stops all processes.
     first = crew%first_of(status /= 0)
     if (first > 0 .and. first == crew%rank) call print_line(error_unit, said)
     if (first >= 0) status = 2
@@ -146,8 +146,8 @@ contains
     call dismiss(crew)
   end function run_decks
 
-  !> Prints without minding whether anyone reads: a full disk behind a redirection must not end the
-  !> program with a runtime error.
+  !> Prints a line and ignores failures: a full disk behind a redirection must not end the program
+  !> with a runtime error.
   subroutine print_line(unit, text)
     integer, intent(in) :: unit
     character(len=*), intent(in) :: text

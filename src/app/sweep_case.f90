@@ -1,4 +1,4 @@
-!> One case of a sweep: computed, and as a record.
+!> One case of a sweep: its computation, and its record.
 module sweep_case
   use kinds, only: wp
   use text, only: first_line
@@ -22,24 +22,24 @@ module sweep_case
   private
   public :: case_t, pass_case, run_case
 
-  !> Characters of what is said of a case that failed.
+  !> Largest number of characters of the reason of a failure.
   integer, parameter :: failure_width = 160
 
-  !> What is kept of one case until its row is written.
+  !> One case, kept until its row is written.
   type :: case_t
-    !> Its number; 0: none.
+    !> Number of the case; 0: none.
     integer :: number = 0
-    !> Of the sweep's keys.
+    !> Values of the sweep's keys.
     real(wp), allocatable :: values(:)
     logical :: converged = .false.
-    !> See `numbers_of`.
+    !> Its numbers, as `numbers_of`.
     real(wp), allocatable :: numbers(:)
-    !> Why it failed; not of deferred length: compiler note 4.
+    !> Why it failed. The length is not deferred: compiler note 4.
     character(len=failure_width) :: failure = ''
     type(cost_t) :: cost
   end type case_t
 
-  !> Says what a case is at, beside the others; takes no records.
+  !> Shows the present activity of a case; ignores records.
   type, extends(silent_observer_t) :: case_observer_t
     integer :: case = 0
     type(progress_t), pointer :: progress => null()
@@ -49,8 +49,8 @@ module sweep_case
 
 contains
 
-  !> Computes a case of the scene's sweep, which has its number and values, on meshes that the cases
-  !> share.
+  !> Computes the case with the given number and values of the scene's sweep, on meshes that the
+  !> cases share.
   subroutine run_case(scene, progress, store, case)
     type(scene_t), intent(in) :: scene
     type(progress_t), intent(in), target :: progress
@@ -66,7 +66,7 @@ contains
     observer%case = case%number
     observer%progress => progress
     case%failure = ''
-    ! What makes strings is done by one thread at a time: compiler note 4.
+    ! Only one thread at a time makes strings: compiler note 4.
     !$omp critical (one_at_a_time)
     call swept_scene(scene, scene%sweep%names, case%values, variant, error)
     !$omp end critical (one_at_a_time)
@@ -89,7 +89,7 @@ contains
     case%cost = outcome%cost
   end subroutine run_case
 
-  !> Into a variable, since threads share strings that are put together: compiler note 4.
+  !> Writes into a variable, since threads share the strings of expressions: compiler note 4.
   subroutine hear(self, what)
     class(case_observer_t), intent(inout) :: self
     character(len=*), intent(in) :: what
@@ -99,7 +99,7 @@ contains
     call self%progress%detail(label)
   end subroutine hear
 
-  !> A case in a record.
+  !> Passes a case to or from a record.
   subroutine pass_case(record, case)
     type(byte_record_t), intent(inout) :: record
     type(case_t), intent(inout) :: case

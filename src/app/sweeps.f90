@@ -1,5 +1,5 @@
-!> The cases of a sweep, spread over the cores, or over the processes of a crew: each is one row,
-!> its keys' values and its numbers.
+!> The cases of a sweep, distributed over the cores, or over the processes of a crew. Each case is
+!> one row: the values of its keys, and its numbers.
 module sweeps
   use kinds, only: wp
   use failure, only: failure_t, fail, file_trouble
@@ -21,14 +21,14 @@ module sweeps
   private
   public :: run_sweep, work_on_sweeps
 
-  !> The cases still to come, after the last that was handed out, and those that have ended before
-  !> others whose rows come first; how many rows are written, how many cases failed, and what all
-  !> took. A case is in `waiting` at its number, all numbers modulo the size.
+  !> The cases of a sweep: number of cases handed out, cases that wait for the rows before theirs,
+  !> number of rows written and of cases failed, and total cost. `waiting` has a case at its number
+  !> modulo the array's size.
   type, extends(foreman_t) :: queue_t
     type(scene_t), pointer :: scene => null()
     type(results_t), pointer :: results => null()
     character(len=column_width), allocatable :: columns(:)
-    !> Where cases are those of a file.
+    !> The file of the cases, if the sweep has one.
     type(case_rows_t) :: rows
     type(case_t), allocatable :: waiting(:)
     integer :: handed_out = 0, written = 0, failed = 0
@@ -42,11 +42,11 @@ module sweeps
     procedure :: has
   end type queue_t
 
-  !> Computes cases of the sweeps of several scenes, of which a job's number is the index.
+  !> Computes cases of the sweeps of several scenes; the number of a job is the index of its scene.
   type, extends(worker_t) :: sweep_worker_t
     type(scene_t), pointer :: scenes(:) => null()
     integer :: job = 0
-    !> Of the present job.
+    !> The meshes of the present job.
     type(mesh_store_t), allocatable :: store
   contains
     procedure :: work
@@ -54,11 +54,11 @@ module sweeps
 
 contains
 
-  !> Computes every case of scene%sweep and hands its row to `results`, in the order of the cases;
-  !> the workers of a crew do it where there are any, for whom this is job number `job`. Cases that
-  !> results%journal has are complete, whatever their order; the others join them as they end. A
-  !> case that fails is a row that says why. Once results cannot be written no case begins.
-  !> failed: how many; cost: of all together.
+  !> Computes all cases of scene%sweep and gives their rows to `results`, in the order of the cases.
+  !> The workers of the crew compute them if there are any; `job` is the number of the scene for
+  !> them. Cases in results%journal are complete, in any order; further cases are appended when they
+  !> end. The row of a failed case says why it failed. After an error of writing no case begins.
+  !> failed: number of failed cases; cost: total cost.
   subroutine run_sweep(scene, crew, job, results, failed, cost)
     type(scene_t), intent(in), target :: scene
     type(crew_t), intent(in) :: crew
@@ -80,7 +80,7 @@ contains
     else if (crew%workers > 0) then
       call hand_out(crew, job, queue, thread_count())
     else
-      ! Each case has a thread of its own: its kernels and its linear algebra use no more.
+      ! Each case has one thread, also for its kernels and its linear algebra.
       !$omp parallel
       call complete_cases(queue, store)
       !$omp end parallel
@@ -89,7 +89,7 @@ contains
     cost = queue%cost
   end subroutine run_sweep
 
-  !> Computes cases, as long as there are any, beside other threads that do the same.
+  !> Computes cases until there are no more; several threads do this at once.
   subroutine complete_cases(queue, store)
     type(queue_t), intent(inout) :: queue
     type(mesh_store_t), intent(inout) :: store
@@ -108,7 +108,7 @@ contains
     end do
   end subroutine complete_cases
 
-  !> Computes what a crew's first process hands out of the sweeps of `scenes`.
+  !> Computes the batches that a crew's first process hands out from the sweeps of `scenes`.
   subroutine work_on_sweeps(crew, scenes)
     type(crew_t), intent(in) :: crew
     type(scene_t), intent(in), target :: scenes(:)
@@ -119,7 +119,7 @@ contains
     call work_through(crew, worker)
   end subroutine work_on_sweeps
 
-  !> A batch, on all threads.
+  !> Computes a batch on all threads.
   subroutine work(self, job, cases, batch, answers, seconds)
     class(sweep_worker_t), intent(inout) :: self
     integer, intent(in) :: job, cases
@@ -149,8 +149,8 @@ contains
     end do
   end subroutine work
 
-  !> The next case that is not complete; not found: there is none, or results cannot be written, or
-  !> a file is no longer what it was when the deck was read.
+  !> The next case that is not complete. found = .false. if there is none, if results cannot be
+  !> written, or if the file has changed since the deck was read.
   subroutine next(self, case, found)
     class(queue_t), intent(inout) :: self
     type(case_t), intent(inout) :: case
@@ -166,7 +166,7 @@ contains
         if (allocated(sweep%file)) then
           call self%rows%next(case%values, found, error)
           if (.not. (found .or. allocated(error))) call fail(error, file_trouble, &
-            sweep%file%path // ' has become shorter since it was read first')
+            sweep%file%path // ' is shorter than when it was first read')
         else
           case%values = sweep%values(case%number)
         end if
@@ -201,7 +201,7 @@ contains
     call self%enter(case)
   end subroutine take_answer
 
-  !> Takes a case that has been computed.
+  !> Takes a case that has been computed, and appends it to the journal.
   subroutine enter(self, case)
     class(queue_t), intent(inout) :: self
     type(case_t), intent(inout) :: case
@@ -213,7 +213,7 @@ contains
     call self%results%progress%step('case', failed=.not. case%converged)
   end subroutine enter
 
-  !> Takes the cases that an interrupted run has completed.
+  !> Takes the completed cases of an interrupted run.
   subroutine recall_cases(queue)
     type(queue_t), intent(inout) :: queue
     type(byte_record_t) :: record
@@ -229,7 +229,7 @@ contains
     end do
   end subroutine recall_cases
 
-  !> Whether a case has ended, in this run or the one before.
+  !> Whether a case has ended, in this run or in the interrupted one.
   pure logical function has(self, number)
     class(queue_t), intent(in) :: self
     integer, intent(in) :: number
@@ -239,7 +239,7 @@ contains
       has = self%waiting(mod(number, size(self%waiting)))%number == number
   end function has
 
-  !> Adds a case that has ended, and writes the rows whose turn it is.
+  !> Adds a case that has ended, and writes all rows that are next.
   subroutine add(self, case)
     class(queue_t), intent(inout) :: self
     type(case_t), intent(in) :: case
@@ -261,7 +261,7 @@ contains
     end do
   end subroutine add
 
-  !> Lets a case wait that comes so many after the last one written.
+  !> Makes room for a case that is `ahead` cases after the last one written.
   subroutine make_room(waiting, ahead)
     type(case_t), allocatable, intent(inout) :: waiting(:)
     integer, intent(in) :: ahead
@@ -280,7 +280,7 @@ contains
     call move_alloc(larger, waiting)
   end subroutine make_room
 
-  !> What two cases took together.
+  !> The total cost of two cases.
   pure type(cost_t) function sum_of(a, b) result(total)
     type(cost_t), intent(in) :: a, b
 

@@ -1,9 +1,9 @@
-!> The integral of a function of one variable, as exact as rounding allows. It says where it wants
-!> values next and is told what was found there; evaluating the function is the caller's.
+!> The integral of a function of one variable, to rounding. The caller evaluates the function:
+!> while the integral `is_open`, `places` gives the abscissas, and `note` takes the values.
 !>
-!> Each piece is integrated by the rule of Gauss and Kronrod with 15 nodes. Where the 7 nodes of
-!> Gauss among them say something else, the piece is halved: steps, kinks and poles cost pieces and
-!> no digits. The estimate of the error is that of QUADPACK (Piessens and others, 1983).
+!> Each piece is integrated by the Gauss-Kronrod rule with 15 nodes. A piece on which the Gauss rule
+!> with 7 of these nodes differs is halved, so that steps, kinks and poles cost pieces but no
+!> digits. The error estimate is that of QUADPACK (Piessens and others, 1983).
 module adaptive_quadrature
   use kinds, only: wp
   implicit none
@@ -13,12 +13,12 @@ module adaptive_quadrature
   integer, parameter :: rule_nodes = 15
 
   type :: integral_t
-    !> What is known so far: the integral, and its error.
+    !> The integral over the finished pieces, and its estimated error.
     real(wp) :: value = 0, error = 0
-    !> Integral of the function's magnitude over the pieces that were looked at.
+    !> Integral of the function's magnitude over the pieces evaluated so far.
     real(wp), private :: magnitude = 0
-    !> Both ends of each piece, and what of the magnitude was counted before it was cut from a
-    !> longer one; how many there are, and which is the next.
+    !> Columns: both ends of a piece, and its share of the magnitude of the longer piece that it was
+    !> cut from; number of pieces, and index of the next one.
     real(wp), allocatable, private :: piece(:, :)
     integer, private :: pieces = 0, next = 1
   contains
@@ -28,8 +28,8 @@ module adaptive_quadrature
     procedure, private :: cut
   end type integral_t
 
-  !> Nodes above 0 of the rule on [-1, 1], every second one of Gauss; weights of Kronrod and Gauss,
-  !> with those of the node 0 last.
+  !> Positive nodes of the rule on [-1, 1], of which every second one is a Gauss node; weights of
+  !> Kronrod and of Gauss, those of the node 0 last.
   real(wp), parameter :: node(7) = [ &
     0.991455371120812639206854697526329_wp, 0.949107912342758524526189684047851_wp, &
     0.864864423359769072789712788640926_wp, 0.741531185599394439863864773280788_wp, &
@@ -47,14 +47,15 @@ module adaptive_quadrature
   real(wp), parameter :: nodes(rule_nodes) = [-node, 0.0_wp, node(7:1:-1)], &
     weights(rule_nodes) = [kronrod, kronrod(7:1:-1)], gauss_weights(7) = [gauss, gauss(3:1:-1)]
 
-  !> Errors of pieces that count for nothing, as a part of the whole magnitude; what rounding leaves
-  !> of a piece; and pieces after which the error stays what it is.
+  !> Error of a negligible piece as a part of the whole magnitude; rounding error of a piece as a
+  !> part of its magnitude; and the number of pieces at which halving ends.
   real(wp), parameter :: negligible = 1.0e-15_wp, rounding = 50*epsilon(1.0_wp)
   integer, parameter :: most_pieces = 20000
 
 contains
 
-  !> An integral over pieces with these ends. known: another one that it is part of a whole with.
+  !> An integral over pieces with these ends. known: another part of the same whole; errors are
+  !> negligible relative to the magnitude of both parts.
   pure type(integral_t) function new_integral(left, right, known) result(integral)
     real(wp), intent(in) :: left(:), right(:)
     type(integral_t), intent(in), optional :: known
@@ -87,14 +88,14 @@ contains
     end do
   end function in_order
 
-  !> Whether more values are wanted.
+  !> Whether the integral needs more values.
   elemental logical function is_open(self)
     class(integral_t), intent(in) :: self
 
     is_open = self%next <= self%pieces
   end function is_open
 
-  !> Where they are wanted, in ascending order.
+  !> Where it needs them, in ascending order.
   pure function places(self) result(x)
     class(integral_t), intent(in) :: self
     real(wp) :: x(rule_nodes)
@@ -104,7 +105,7 @@ contains
     end associate
   end function places
 
-  !> Takes the values at those places.
+  !> Takes the values at `places`.
   pure subroutine note(self, values)
     class(integral_t), intent(inout) :: self
     real(wp), intent(in) :: values(rule_nodes)
@@ -127,8 +128,8 @@ contains
     self%next = self%next + 1
   end subroutine note
 
-  !> Puts the halves of the piece in hand behind the others, each with what is counted of its
-  !> magnitude; not done where there are no numbers between its ends, or too many pieces.
+  !> Appends the halves of the current piece, each with its share of the magnitude. done = .false.
+  !> if there are no numbers between its ends, or too many pieces.
   pure subroutine cut(self, counted, done)
     class(integral_t), intent(inout) :: self
     real(wp), intent(in) :: counted

@@ -1,4 +1,4 @@
-!> J0 at many places: some ten times as fast as the intrinsic function, to 1e-14.
+!> J0 at many arguments, about ten times as fast as the intrinsic function, with an error of 1e-14.
 module bessel
   use, intrinsic :: iso_c_binding, only: c_int, c_double
   use kinds, only: wp, pi
@@ -7,12 +7,12 @@ module bessel
   private
   public :: bessel_t, new_bessel
 
-  !> Up to `near`, J0 is a series in the square of its argument; beyond, amplitude and phase are
+  !> Up to `near`, J0 is a series in the square of its argument. Beyond, amplitude and phase are
   !> series in the inverse square: J0 + i Y0 = sqrt(2/(pi x)) amplitude exp(i (x - pi/4 - lag/x)).
   real(wp), parameter :: near = 8
-  !> Degrees are those of bessel_values.c.
+  !> The same degrees as in bessel_values.c.
   integer, parameter :: degree = 14, degree_far = 8, degree_cosine = 7
-  !> The series, in powers of a variable from -1 to 1.
+  !> The series, in powers of a variable in [-1, 1].
   type :: bessel_t
     private
     real(wp) :: near(0:degree) = 0, amplitude(0:degree_far) = 0, lag(0:degree_far) = 0, &
@@ -21,7 +21,6 @@ module bessel
     procedure :: j0
   end type bessel_t
 
-  ! bessel_values.c
   interface
     pure subroutine near_values(count, x, value, near, series) bind(c, name='snapin_j0_near')
       import :: c_int, c_double
@@ -43,7 +42,7 @@ module bessel
 
 contains
 
-  !> The series, from the intrinsic functions.
+  !> The series, from values of the intrinsic functions.
   pure type(bessel_t) function new_bessel() result(bessel)
     real(wp) :: of_near(0:degree), x, j, y
     real(wp), dimension(0:degree_far) :: place, amplitude, lag
@@ -69,7 +68,7 @@ contains
     bessel%lag = power_series(chebyshev_series(lag))
   end function new_bessel
 
-  !> J0 at x >= 0, ascending, of which none may be above 1e6.
+  !> J0 at arguments 0 <= x <= 1e6 in ascending order.
   pure subroutine j0(self, x, value)
     class(bessel_t), intent(in) :: self
     real(wp), intent(in), contiguous :: x(:)

@@ -28,8 +28,8 @@ void snapin_j0_near(int count, const double *restrict x, double *restrict value,
     value[i] = power_series(DEGREE_NEAR, series, 2 * (x[i] / near) * (x[i] / near) - 1);
 }
 
-/* Adding the rounder to a number, and taking it off again, rounds that. pi is in two parts: the
-   first has so few digits that whole multiples of it are exact. */
+/* Adding the rounder to a number and subtracting it again rounds the number. pi is the sum of two
+   parts, the first of which has so few digits that its multiples by integers are exact. */
 FOR_EACH_WIDTH
 void snapin_j0_far(int count, const double *restrict x, double *restrict value, double near,
                    const double *amplitude, const double *lag, const double *cosine) {

@@ -1,40 +1,41 @@
-!> Numbers and texts packed into one row of 64-bit words, and back, bit by bit the same.
+!> Numbers and texts packed into one array of 64-bit words, and unpacked again bit by bit.
 !>
-!> Whoever packs something names its components once: `pass` writes them into a record, or reads
-!> them from one that was filled.
+!> A procedure that packs an object calls `pass` once for each component: `pass` writes the
+!> component into a record, or reads it from a record that was filled.
 module byte_record
   use kinds, only: wp, long
   implicit none
   private
   public :: byte_record_t
 
-  !> What is passed in comes out in the same order.
+  !> Components come out in the order in which they were passed in.
   type :: byte_record_t
-    !> words(:held) are in use, of so many as there is room for. To be read only.
+    !> words(:held) are in use. To be read only.
     integer(long), allocatable :: words(:)
     integer :: held = 0
     !> Whether `pass` reads. To be read only.
     logical :: reading = .false.
-    !> Whether more was read than there is; what was read then is zero or empty.
+    !> Whether more was read than the record holds; those values are zero or empty.
     logical :: exhausted = .false.
     integer, private :: room = 0, taken = 0
   contains
     procedure :: clear
     procedure :: fill
     procedure :: add
-    !> No intent: it is written, so that it may be a constant, unless the record is one to be read.
+    !> The argument has no intent: it is an input while the record is written, when it may be a
+    !> constant, and an output while the record is read.
     generic :: pass => pass_words, pass_integer, pass_real, pass_reals, pass_matrix, &
       pass_logical, pass_text
     procedure, private :: pass_words, pass_integer, pass_real, pass_reals, pass_matrix, &
       pass_logical, pass_text
   end type byte_record_t
 
-  !> Characters in a word.
+  !> Number of characters in a word.
   integer, parameter :: letters = storage_size(0_long)/8
 
 contains
 
-  !> Empties it, to be written.
+  !> Empties the record for writing.
   subroutine clear(self)
     class(byte_record_t), intent(inout) :: self
 
@@ -44,7 +45,7 @@ contains
     self%exhausted = .false.
   end subroutine clear
 
-  !> Makes it the record of these words, to be read.
+  !> Fills the record with these words for reading.
   subroutine fill(self, words)
     class(byte_record_t), intent(inout) :: self
     integer(long), intent(in) :: words(:)
@@ -54,7 +55,7 @@ contains
     self%reading = .true.
   end subroutine fill
 
-  !> Adds words as they are.
+  !> Appends words.
   subroutine add(self, words)
     class(byte_record_t), intent(inout) :: self
     integer(long), intent(in) :: words(:)
@@ -70,7 +71,7 @@ contains
     self%held = self%held + size(words)
   end subroutine add
 
-  !> As many words as there are in `words`.
+  !> Passes size(words) words.
   subroutine pass_words(self, words)
     class(byte_record_t), intent(inout) :: self
     integer(long) :: words(:)
@@ -116,7 +117,7 @@ contains
     if (self%reading) value = transfer(words(1), value)
   end subroutine pass_real
 
-  !> The number of values goes with them.
+  !> Passes the number of values, then the values.
   subroutine pass_reals(self, values)
     class(byte_record_t), intent(inout) :: self
     real(wp), allocatable :: values(:)
@@ -133,7 +134,7 @@ contains
     end do
   end subroutine pass_reals
 
-  !> The number of columns goes with them.
+  !> Passes the number of columns, then the values.
   subroutine pass_matrix(self, values)
     class(byte_record_t), intent(inout) :: self
     real(wp), allocatable :: values(:, :), flat(:)
@@ -148,7 +149,7 @@ contains
     if (self%reading) values = reshape(flat, [size(flat)/max(columns, 1), columns])
   end subroutine pass_matrix
 
-  !> Its length goes with it.
+  !> Passes the length, then the characters.
   subroutine pass_text(self, text)
     class(byte_record_t), intent(inout) :: self
     character(len=:), allocatable :: text
@@ -171,7 +172,7 @@ contains
     end do
   end subroutine pass_text
 
-  !> A number of items, never more than could be held.
+  !> Passes a number of items; a number that the record cannot hold counts as exhausted.
   subroutine pass_count(self, count)
     class(byte_record_t), intent(inout) :: self
     integer, intent(inout) :: count

@@ -102,8 +102,8 @@ contains
     end do
   end function power_series
 
-  !> A series of powers at x: those of even and of odd order at once, for neither waits for the
-  !> other.
+  !> A series of powers at x. Even and odd orders are summed apart, since the processor can work on
+  !> both sums at once.
   pure real(wp) function power_value(power, x) result(value)
     real(wp), intent(in) :: power(0:), x
     real(wp) :: square, odd

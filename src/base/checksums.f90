@@ -1,11 +1,11 @@
-!> Checksums, by which it is seen that something has changed.
+!> Checksums, which show whether data have changed.
 module checksums
   use kinds, only: long
   implicit none
   private
   public :: checksum
 
-  !> checksum(words), checksum(text): a number of 32 bits; not proof against intent.
+  !> checksum(words), checksum(text): a number of 32 bits; no protection against forgery.
   interface checksum
     module procedure :: of_words, of_text
   end interface checksum
@@ -15,10 +15,10 @@ module checksums
 
 contains
 
-  !> A checksum of 32 bits. Every half word changes it one to one, so that a single wrong one never
-  !> goes unseen; the shift brings upper bits down, or two wrong signs could cancel. The products
-  !> stay below 2^63. (The multiplier is MurmurHash's.) A product waits for the one before: lanes,
-  !> each with every fourth word, wait side by side.
+  !> A checksum of 32 bits. Each half word maps the checksum one to one, so that a single wrong half
+  !> word always changes it; the shift brings upper bits down, without which two wrong signs could
+  !> cancel. The products stay below 2^63. (The multiplier is MurmurHash's.) Each product needs the
+  !> one before, so that four lanes, each with every fourth word, run side by side.
   pure integer(long) function of_words(words) result(checksum)
     integer(long), intent(in) :: words(:)
     integer, parameter :: lanes = 4
@@ -56,10 +56,10 @@ contains
     next = ieor(next, ishft(next, -15))
   end function with_half
 
-  !> The same of a text without NUL bytes.
+  !> The checksum of a text without NUL bytes.
   pure integer(long) function of_text(text) result(checksum)
     character(len=*), intent(in) :: text
-    !> Characters in a word.
+    !> Number of characters in a word.
     integer, parameter :: letters = storage_size(0_long)/8
     integer(long) :: words((len(text) + letters - 1)/letters)
     character(len=letters) :: piece

@@ -1,4 +1,4 @@
-!> Cubic polynomials through points, piece by piece.
+!> Piecewise cubic polynomials through points.
 module cubic
   use kinds, only: wp
   use linear_algebra, only: solve_tridiagonal
@@ -8,9 +8,9 @@ module cubic
 
 contains
 
-  !> Coefficients, by columns, of 1, t, t^2, t^3 in each piece, t being the distance from its left
-  !> end: the spline of continuous curvature through (x, y), x ascending. At the right end its slope
-  !> is 0; at the left end the first two pieces are one cubic. Four points at least.
+  !> The spline with continuous curvature through (x, y), x ascending, at least four points. Each
+  !> column holds the coefficients of 1, t, t^2, t^3 in one piece, where t is the distance from its
+  !> left end. The slope is 0 at the right end; at the left end the first two pieces are one cubic.
   function spline(x, y) result(coefficient)
     real(wp), intent(in) :: x(:), y(:)
     real(wp) :: coefficient(0:3, size(x) - 1), width(size(x) - 1), chord(size(x) - 1)
@@ -36,7 +36,7 @@ contains
     coefficient = with_slopes(y, slope, width)
   end function spline
 
-  !> The same with slopes that make no extremum between points (Fritsch and Butland, SIAM J. Sci.
+  !> The same for slopes that make no extremum between points (Fritsch and Butland, SIAM J. Sci.
   !> Stat. Comput. 5, 300, 1984).
   pure function monotone(x, y) result(coefficient)
     real(wp), intent(in) :: x(:), y(:)

@@ -1,31 +1,31 @@
-!> Numbers as decimal text, digit by digit the same as the compiler's library writes them, at a
-!> fortieth of its cost: rows of results are mostly numbers.
+!> Numbers as decimal text with the same digits that the compiler's library writes, at a fortieth of
+!> its cost: most of a result file is numbers.
 !>
-!> A real is m 2^b with a whole m of 53 bits. Times 10^p it is m 5^p 2^(b + p), and m 5^p fits into
-!> two words of 128 bits for every number of common size, so that its digits and its rounding are
-!> exact. What is very small or large, and what is not a number, is left to the library.
+!> A real is m 2^b with an integer m of 53 bits. Times 10^p it is m 5^p 2^(b + p). For numbers of
+!> common size m 5^p fits into two words of 128 bits, so that digits and rounding are exact. The
+!> library writes very small and very large numbers and NaN.
 module decimal
   use kinds, only: wp, long
   implicit none
   private
   public :: put_real, put_whole, longest_real
 
-  !> Characters that a number takes at most.
-  integer, parameter :: longest_real = 24, longest_whole = 11
+  !> The largest number of characters of a real number.
+  integer, parameter :: longest_real = 24
 
   integer, parameter :: wide = selected_int_kind(38)
-  !> Significant digits, so that reading them gives the number again.
+  !> Significant digits, enough to read the same number back.
   integer, parameter :: places = 17
-  !> A power of five that one factor holds below 2^63, and the largest power of ten there is.
+  !> The largest power of five that fits one factor below 2^63, and the largest power of ten.
   integer, parameter :: one_factor = 27, most_powers = 2*one_factor
-  !> Bits of the lower word where a product takes two.
+  !> Number of bits in the lower of two words.
   integer, parameter :: low_bits = 60
   integer(long), parameter :: smallest = 10_long**(places - 1), beyond = 10*smallest
 
 contains
 
-  !> Puts x with 17 significant digits, as es24.16e3 has it but for blanks before it, into
-  !> text(:length); text has room for `longest_real`.
+  !> Writes x with 17 significant digits, as es24.16e3 without leading blanks, into text(:length);
+  !> `text` has at least `longest_real` characters.
   pure subroutine put_real(x, text, length)
     real(wp), intent(in) :: x
     character(len=*), intent(inout) :: text
@@ -44,7 +44,7 @@ contains
       sign_width = 1
       text(1:1) = '-'
     end if
-    ! One place to the left, so that a point fits in after the first digit.
+    ! The digits start one place to the right, so that a point fits in after the first digit.
     call put_digits(significand, places, text(sign_width + 2:))
     text(sign_width + 1:sign_width + 1) = text(sign_width + 2:sign_width + 2)
     text(sign_width + 2:sign_width + 2) = '.'
@@ -54,7 +54,7 @@ contains
     length = length + 5
   end subroutine put_real
 
-  !> Puts a whole number into text(:length); text has room for `longest_whole` characters.
+  !> Writes an integer into text(:length); `text` has at least 11 characters.
   pure subroutine put_whole(i, text, length)
     integer, intent(in) :: i
     character(len=*), intent(inout) :: text
@@ -77,7 +77,7 @@ contains
     length = length + sign_width
   end subroutine put_whole
 
-  !> The last `count` digits of a number that is not negative.
+  !> Writes the last `count` digits of a nonnegative integer.
   pure subroutine put_digits(number, count, text)
     integer(long), intent(in) :: number
     integer, intent(in) :: count
@@ -93,8 +93,8 @@ contains
     end do
   end subroutine put_digits
 
-  !> x >= 0 as significand*10^(order - 16), correctly rounded, halves to even. found = .false.: it
-  !> is beyond what two words hold.
+  !> x >= 0 as significand*10^(order - 16), correctly rounded, halves to even. found = .false. if
+  !> two words cannot hold m 5^p.
   pure subroutine decompose(x, significand, order, found)
     real(wp), intent(in) :: x
     integer(long), intent(out) :: significand
@@ -105,13 +105,13 @@ contains
 
     significand = 0
     order = 0
-    ! Bits of positive numbers are in the numbers' order, and a comparison of them traps no NaN.
+    ! Bits of positive numbers have the order of the numbers, and comparing bits traps no NaN.
     bits = transfer(x, 0_long)
     found = bits == 0
     if (bits < transfer(tiny(x), 0_long) .or. bits > transfer(huge(x), 0_long)) return
     m = int(scale(fraction(x), digits(x)), long)
     b = exponent(x) - digits(x)
-    ! 2^(exponent - 1) <= x, so that this is right or one too small.
+    ! 2^(exponent - 1) <= x, so that this order is right or one too small.
     order = floor((exponent(x) - 1)*log10(2.0_wp))
     call scaled(m, b, places - 1 - order, significand, found)
     if (significand < beyond) return
@@ -119,7 +119,7 @@ contains
     call scaled(m, b, places - 1 - order, significand, found)
   end subroutine decompose
 
-  !> m 2^b 10^p as a whole number, halves to even. found = .false.: p is beyond the table.
+  !> m 2^b 10^p as an integer, halves to even. found = .false. if p is beyond the table.
   pure subroutine scaled(m, b, p, number, found)
     integer(long), intent(in) :: m
     integer, intent(in) :: b, p
@@ -135,7 +135,7 @@ contains
     low = 0
     shift = -(b + p)
     if (p > one_factor) then
-      ! product 2^60 + low: above 2^117, while the number is below 2^57, so that shift exceeds 60.
+      ! product 2^60 + low is above 2^117 and the number below 2^57, so that shift exceeds 60.
       low = iand(product, mask(low_bits))*5_long**(p - one_factor)
       product = ishft(product, -low_bits)*5_long**(p - one_factor) + ishft(low, -low_bits)
       low = iand(low, mask(low_bits))
@@ -152,14 +152,14 @@ contains
       number = number + 1
   end subroutine scaled
 
-  !> A word of so many ones.
+  !> A word whose lowest `bits` bits are ones.
   pure integer(wide) function mask(bits)
     integer, intent(in) :: bits
 
     mask = ishft(1_wide, bits) - 1
   end function mask
 
-  !> What the table does not reach.
+  !> Writes a number outside the range of `decompose`.
   pure subroutine put_by_library(x, text, length)
     real(wp), intent(in) :: x
     character(len=*), intent(inout) :: text

@@ -8,8 +8,8 @@ module elliptic
 contains
 
   !> R_F(x, y, z), half the integral of 1/sqrt((t + x)(t + y)(t + z)) over t from 0 to infinity; no
-  !> argument is negative, and one at most is 0. Duplication leaves it as it is and brings the
-  !> arguments together, up to where five terms of its series have all digits.
+  !> argument is negative, and at most one is 0. Duplication does not change R_F and brings the
+  !> arguments together, until five terms of its series give all digits.
   elemental real(wp) function carlson_rf(x, y, z) result(rf)
     real(wp), intent(in) :: x, y, z
     real(wp), parameter :: near = (3*epsilon(1.0_wp))**(1.0_wp/6)

@@ -1,11 +1,11 @@
-!> The polynomial through a few scattered values: weights, value, slope, maximum; and Hermite's,
-!> which has given slopes there too.
+!> The polynomial through a few scattered values: weights, value, slope, maximum; and Hermite's
+!> polynomial, which has given slopes there too.
 module interpolation
   use kinds, only: wp
   use root_finding, only: bracket_t
   implicit none
   private
-  public :: polynomial_weights, polynomial_slope, interpolated_maximum
+  public :: polynomial_weights, polynomial_slope, interpolated_maximum, interval_of
   public :: hermite_t, hermite_through, hermite_weights, most_hermite_nodes, find_nodes_about
 
   integer, parameter :: most_hermite_nodes = 4
@@ -37,6 +37,23 @@ contains
     end do
   end function polynomial_weights
 
+  !> The last index i of the ascending x with x(i) <= at, by bisection; 1 if there is none.
+  pure integer function interval_of(x, at) result(low)
+    real(wp), intent(in) :: x(:), at
+    integer :: high, middle
+
+    low = 1
+    high = size(x) + 1
+    do while (high - low > 1)
+      middle = (low + high)/2
+      if (x(middle) <= at) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
+  end function interval_of
+
   !> The polynomial through (at, value) at x.
   pure real(wp) function polynomial_value(at, value, x)
     real(wp), intent(in) :: at(:), value(:), x
@@ -63,7 +80,8 @@ contains
     end do
   end function polynomial_slope
 
-  !> Where in [low, high] the polynomial through (at, value) is largest, by golden section.
+  !> The abscissa in [low, high] at which the polynomial through (at, value) is largest, by golden
+  !> section.
   pure real(wp) function interpolated_maximum(at, value, low, high) result(x)
     real(wp), intent(in) :: at(:), value(:), low, high
     type(bracket_t) :: bracket
@@ -79,9 +97,8 @@ contains
     x = bracket%middle()
   end function interpolated_maximum
 
-  !> Weights of values and of slopes at `at` (all different) in Hermite's polynomial at x: it is the
-  !> sum of [v (1 - 2 l'(x_j) (x - x_j)) + s (x - x_j)] l(x)^2 over
-  !> Lagrange's l.
+  !> Weights of values v and slopes s at `at` (all different) in Hermite's polynomial at x. It is
+  !> the sum of [v (1 - 2 l'(x_j) (x - x_j)) + s (x - x_j)] l(x)^2 with Lagrange's polynomials l.
   pure subroutine hermite_weights(at, x, of_value, of_slope)
     real(wp), intent(in) :: at(:), x
     real(wp), intent(out) :: of_value(:), of_slope(:)
@@ -101,9 +118,9 @@ contains
     end do
   end subroutine hermite_weights
 
-  !> The nodes (rising) whose polynomial tells about the interval from x(i) to the next: its ends
-  !> and one on either side, or two on one side where the other has none. Neighbours must be well
-  !> apart: one too near makes the polynomial worse.
+  !> The nodes (rising) for the polynomial on the interval from x(i) to x(i + 1): the two ends and
+  !> one node on either side, or two on one side if the other has none. Nodes that are too near to
+  !> each other are left out, because they make the polynomial worse.
   pure subroutine find_nodes_about(x, i, nodes, n)
     real(wp), intent(in) :: x(:)
     integer, intent(in) :: i
@@ -173,7 +190,7 @@ contains
     end do
   end function hermite_value
 
-  !> Its value and derivative at x.
+  !> Value and derivative at x.
   pure subroutine hermite_evaluate(self, x, y, slope)
     class(hermite_t), intent(in) :: self
     real(wp), intent(in) :: x
@@ -188,7 +205,7 @@ contains
     end do
   end subroutine hermite_evaluate
 
-  !> Its derivative at x.
+  !> The derivative at x.
   pure real(wp) function hermite_slope(self, x) result(slope)
     class(hermite_t), intent(in) :: self
     real(wp), intent(in) :: x

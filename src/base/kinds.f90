@@ -3,11 +3,13 @@ module kinds
   use, intrinsic :: iso_fortran_env, only: real64, int64
   implicit none
   private
-  public :: wp, pi, long
+  public :: wp, pi, nan, long
 
-  !> Working precision of every real in the library.
+  !> Working precision of all reals.
   integer, parameter :: wp = real64
-  !> Integer for counters that may exceed 2^31.
+  !> Integers that may exceed 2^31.
   integer, parameter :: long = int64
   real(wp), parameter :: pi = 3.14159265358979323846264338327950288_wp
+  !> The value of a number that does not exist.
+  real(wp), parameter :: nan = transfer(int(z'7ff8000000000000', int64), 0.0_wp)
 end module kinds

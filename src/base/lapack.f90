@@ -1,4 +1,4 @@
-!> The routines of BLAS and LAPACK that are called.
+!> Interfaces of the BLAS and LAPACK routines in use.
 module lapack
   use kinds, only: wp
   implicit none

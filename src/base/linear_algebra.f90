@@ -13,14 +13,14 @@ module linear_algebra
   type :: factorisation_t
     real(wp), allocatable :: lu(:, :)
     integer, allocatable :: pivot(:)
-    !> .false. where no factors are held or the matrix was singular.
+    !> .false. if there are no factors, or the matrix was singular.
     logical :: valid = .false.
   end type factorisation_t
 
 contains
 
-  !> Has the library map what it needs for itself while there is room. OpenBLAS would ask for it for
-  !> ever in the middle of a run that has used the memory up.
+  !> Makes OpenBLAS allocate its buffers now. In a run that has used up the memory OpenBLAS would
+  !> ask for them for ever.
   subroutine claim_buffers()
     real(wp) :: a(2, 2)
     integer :: pivot(2), info
@@ -88,7 +88,7 @@ contains
       1.0_wp, c, size(c, 1))
   end subroutine add_by_transposed
 
-  !> Overwrites b with the solution; factors must be valid.
+  !> Overwrites b with the solution; `factors` must be valid.
   subroutine solve(factors, b)
     type(factorisation_t), intent(in) :: factors
     real(wp), intent(inout) :: b(:)
@@ -102,7 +102,7 @@ contains
     end if
   end subroutine solve
 
-  !> Overwrites b with the solution of a regular tridiagonal system, and the three diagonals.
+  !> Overwrites b with the solution of a regular tridiagonal system; destroys the three diagonals.
   subroutine solve_tridiagonal(below, middle, above, b)
     real(wp), intent(inout) :: below(:), middle(:), above(:), b(:)
     integer :: info
@@ -110,8 +110,8 @@ contains
     call dgtsv(size(b), 1, below, middle, above, b, size(b), info)
   end subroutine solve_tridiagonal
 
-  !> Singular values of a matrix with no fewer rows than columns, largest first, and the right
-  !> vectors, one a row. Zeros where they were not found.
+  !> Singular values of a matrix with at least as many rows as columns, largest first, and the right
+  !> singular vectors, one a row. Zeros if the iteration did not converge.
   subroutine singular_values(a, values, right)
     real(wp), intent(in) :: a(:, :)
     real(wp), intent(out) :: values(:), right(:, :)
@@ -153,10 +153,10 @@ contains
     end do
   end function log_determinant
 
-  !> Real parts of all eigenvalues of a square matrix. The true ones are as far from them as `error`
-  !> at most: with V the vectors found and B the values, a + E = V B V^-1 with E = (V B - a V) V^-1,
-  !> and by Bauer and Fike (1960) E moves no eigenvalue by more than |E| |V| |V^-1|. found = .false.
-  !> if they were not found, or V is singular.
+  !> Real parts of all eigenvalues of a square matrix, and a bound of their errors. With the vectors
+  !> V and values B found, a + E = V B V^-1 with E = (V B - a V) V^-1, and by Bauer and Fike (1960)
+  !> E moves no eigenvalue by more than |E| |V| |V^-1|. found = .false. if the iteration did not
+  !> converge, or V is singular.
   subroutine eigenvalues(a, real_part, error, found)
     real(wp), intent(in) :: a(:, :)
     real(wp), intent(out) :: real_part(:), error
@@ -177,8 +177,8 @@ contains
       size(work), info)
     found = info == 0
     if (.not. found) return
-    ! A pair of complex vectors is held as its real and its imaginary part; B has a 2 x 2 block
-    ! then, and is still normal.
+    ! A pair of complex vectors is stored as its real and its imaginary part. B then has a 2 x 2
+    ! block, and is still normal.
     defect = -matmul(a, vectors)
     do j = 1, n
       defect(:, j) = defect(:, j) + real_part(j)*vectors(:, j)

@@ -1,10 +1,10 @@
-!> Who wants to know how far long work is.
+!> The receiver of messages about the progress of long work.
 module listener
   implicit none
   private
   public :: listener_t
 
-  !> Hears nothing; who wants to extends it.
+  !> Ignores the messages; extensions show them.
   type :: listener_t
   contains
     procedure :: hear
@@ -12,7 +12,7 @@ module listener
 
 contains
 
-  !> Takes what is being done just now, a few words.
+  !> Takes the present activity in a few words.
   subroutine hear(self, what)
     class(listener_t), intent(inout) :: self
     character(len=*), intent(in) :: what

@@ -1,14 +1,13 @@
-!> Searches for roots and maxima of a function of one variable. A search says where it wants a value
-!> next and is told what was found there; evaluating the function, what that costs and how it may
-!> fail are the caller's.
+!> Searches for roots and maxima of a function of one variable. The caller evaluates the function:
+!> a search gives the abscissa, and takes the value.
 module root_finding
   use kinds, only: wp
   implicit none
   private
-  public :: bracket_t, root_search_t, new_root_search, secant_root, golden, resolution
+  public :: bracket_t, root_search_t, new_root_search, golden, resolution
 
-  !> An interval that what is searched for lies in, its ends in any order. A root is found by
-  !> `narrow` while the bracket `is_open`, a maximum by `keep_larger`.
+  !> An interval that contains a root or a maximum, its ends in any order. `narrow` finds a root
+  !> while the bracket `is_open`, `keep_larger` a maximum.
   type :: bracket_t
     real(wp) :: low = 0, high = 0
     integer, private :: narrowed = 0
@@ -21,16 +20,16 @@ module root_finding
     procedure :: keep_larger
   end type bracket_t
 
-  !> The root of a continuous function between two places at which it differs in sign, to rounding:
+  !> The root of a continuous function between two abscissas at which its signs differ, to rounding:
   !> by inverse quadratic interpolation where the last three values allow it, else by halving
-  !> (Chandrupatla). (A function that jumps over zero is searched for the jump.) `note` is told the
-  !> value at `place` while the search `is_open`.
+  !> (Chandrupatla). (Of a function that jumps over zero it finds the jump.) While the search
+  !> `is_open`, `note` takes the value at `place`.
   type :: root_search_t
-    !> The place with the smallest value: in the end the root.
+    !> The abscissa with the smallest magnitude of the value: at the end the root.
     real(wp) :: root = 0
-    !> The newest place, the one beyond the root, and the one before, with the values there.
+    !> The newest abscissa, the one on the other side of the root, and the one before; their values.
     real(wp), private :: x(3) = 0, f(3) = 0
-    !> The part of the way from the newest to the one beyond the root that the next place is at.
+    !> The next abscissa, as a fraction of the way from the newest one to the other side.
     real(wp), private :: part = 0.5_wp
     integer, private :: noted = 0
     logical, private :: met = .false.
@@ -43,7 +42,7 @@ module root_finding
 
   !> The part of an interval that a golden section keeps.
   real(wp), parameter :: golden = 0.618033988749894848_wp
-  !> Halvings that take an interval of any size to rounding.
+  !> Number of halvings that take an interval of any size to rounding.
   integer, parameter :: most_halvings = 100
 
 contains
@@ -54,8 +53,8 @@ contains
     middle = 0.5_wp*(self%low + self%high)
   end function middle
 
-  !> Whether there is a number between the ends, and so few halvings were made that the next tells
-  !> anything.
+  !> Whether the interval can be halved again: a number lies between the ends, and the limit of
+  !> halvings is not reached.
   elemental logical function is_open(self)
     class(bracket_t), intent(in) :: self
 
@@ -72,8 +71,8 @@ contains
     if (.not. (x >= self%low .and. x <= self%high)) within = self%middle()
   end function within
 
-  !> Moves an end to the middle or, where it is given, to `at`: the low one where the root is beyond
-  !> it, else the high one.
+  !> Moves an end to the middle or, if given, to `at`: the low end if the root is beyond it, else
+  !> the high end.
   elemental subroutine narrow(self, root_beyond, at)
     class(bracket_t), intent(inout) :: self
     logical, intent(in) :: root_beyond
@@ -90,7 +89,7 @@ contains
     self%narrowed = self%narrowed + 1
   end subroutine narrow
 
-  !> The two places that a golden section compares, the one nearer to `low` first.
+  !> The two abscissas that a golden section compares, the one nearer to `low` first.
   pure function golden_points(self) result(points)
     class(bracket_t), intent(in) :: self
     real(wp) :: points(2)
@@ -98,7 +97,7 @@ contains
     points = [self%high - golden*(self%high - self%low), self%low + golden*(self%high - self%low)]
   end function golden_points
 
-  !> Drops the end beyond the golden point with the smaller one of these values.
+  !> Drops the end next to the golden point with the smaller value.
   pure subroutine keep_larger(self, values)
     class(bracket_t), intent(inout) :: self
     real(wp), intent(in) :: values(2)
@@ -119,12 +118,12 @@ contains
     search%x(:2) = [a, b]
     search%f(:2) = [f_a, f_b]
     search%root = merge(a, b, abs(f_a) < abs(f_b))
-    ! Of one sign: rounding at an end that is the root.
+    ! Equal signs: an end is the root, but for rounding.
     search%met = (f_a > 0 .eqv. f_b > 0) .or. abs(f_a) <= 0 .or. abs(f_b) <= 0
     if (.not. search%met) search%part = f_a/(f_a - f_b)
   end function new_root_search
 
-  !> Whether another value tells anything.
+  !> Whether another value improves the root.
   elemental logical function root_is_open(self)
     class(root_search_t), intent(in) :: self
 
@@ -132,14 +131,14 @@ contains
       abs(self%x(2) - self%x(1)) > resolution(self%root)
   end function root_is_open
 
-  !> Where the function is to be evaluated next.
+  !> The abscissa of the next value.
   elemental real(wp) function place(self)
     class(root_search_t), intent(in) :: self
 
     place = self%x(1) + self%part*(self%x(2) - self%x(1))
   end function place
 
-  !> Takes the value at x, the place that was asked for.
+  !> Takes the value at x, the last `place`.
   elemental subroutine note(self, x, value)
     class(root_search_t), intent(inout) :: self
     real(wp), intent(in) :: x, value
@@ -159,8 +158,8 @@ contains
     if (self%is_open()) call self%choose_part()
   end subroutine note
 
-  !> Interpolates where the place is a monotonic function of the value between the three. No place
-  !> is nearer to another than can be told.
+  !> Interpolates if the abscissa is a monotonic function of the value between the three points. The
+  !> next abscissa keeps a distance of `resolution` from both ends.
   elemental subroutine choose_part(self)
     class(root_search_t), intent(inout) :: self
     real(wp) :: of_way, of_rise, least
@@ -178,19 +177,12 @@ contains
     end associate
   end subroutine choose_part
 
-  !> Differences from x that are no more than rounding: between one and two units of its last
-  !> place. (The intrinsic `spacing` takes x to pieces by calls, which shows in the rows' cost.)
+  !> The largest difference from x that is only rounding: between one and two units in the last
+  !> place. (The intrinsic `spacing` is slower.)
   elemental real(wp) function resolution(x)
     real(wp), intent(in) :: x
 
     resolution = max(epsilon(x)*abs(x), tiny(x))
   end function resolution
-
-  !> Where the line through (x, value) and (x_before, value_before) is zero; the values differ.
-  elemental real(wp) function secant_root(x, value, x_before, value_before)
-    real(wp), intent(in) :: x, value, x_before, value_before
-
-    secant_root = x - value*(x - x_before)/(value - value_before)
-  end function secant_root
 
 end module root_finding

@@ -1,5 +1,5 @@
-!> LU factors, with partial pivoting, of matrices of tens to a few hundred rows: there LAPACK's
-!> bookkeeping takes as long as its arithmetic. The factors are held as by DGETRF.
+!> LU factors, with partial pivoting, of matrices with tens to a few hundred rows, for which
+!> LAPACK's bookkeeping takes as long as its arithmetic. The factors have the form of DGETRF.
 module small_lu
   use kinds, only: wp
   use lapack, only: idamax, dgemm
@@ -7,16 +7,16 @@ module small_lu
   private
   public :: lu_factorise, lu_solve, most_rows
 
-  !> Up to so many rows this is the faster way; beyond, LAPACK's.
+  !> The largest number of rows for which this is faster than LAPACK.
   integer, parameter :: most_rows = 320
-  !> Columns that are eliminated before the rest follows in one product; and that are substituted
-  !> at a time.
+  !> Number of columns that are eliminated before one product updates the rest; number of columns
+  !> that are substituted at a time.
   integer, parameter :: panel = 8, group = 4
 
 contains
 
-  !> Overwrites a square matrix with its factors; pivot(k): the row that row k was exchanged with.
-  !> regular = .false. where a pivot has no inverse: then there are no factors.
+  !> Overwrites a square matrix with its factors. pivot(k): the row that row k was exchanged with.
+  !> regular = .false. if a pivot has no inverse; the factors are then undefined.
   subroutine lu_factorise(n, a, pivot, regular)
     integer, intent(in) :: n
     real(wp), intent(inout) :: a(n, n)
@@ -43,7 +43,7 @@ contains
         end do
       end do
       if (last == n) return
-      ! A full square with zeros lets the compiler do without loops.
+      ! With a full square, zeros included, the compiler needs no loops.
       lower = 0
       do k = 1, panel - 1
         lower(k + 1:, k) = a(first + k:last, first + k - 1)
@@ -60,7 +60,7 @@ contains
     end do
   end subroutine lu_factorise
 
-  !> Overwrites b with the solution, by the factors of a matrix.
+  !> Overwrites b with the solution for the factors of a matrix.
   pure subroutine lu_solve(n, lu, pivot, b)
     integer, intent(in) :: n, pivot(n)
     real(wp), intent(in) :: lu(n, n)

@@ -1,11 +1,16 @@
-!> Small text tools: what messages are made with, and numbers and strings as a deck has them.
+!> Text tools: parts of messages, and numbers and strings as in a deck.
 module text
   use kinds, only: wp
-  use decimal, only: put_real, longest_real
+  use decimal, only: put_real, put_whole, longest_real
   implicit none
   private
   public :: lower, quoted, unquoted, brief, rounded, rounded_to, full, guess, clip, listing, &
     printable, word_count, word_of, first_line
+
+  !> brief(x), brief(n): a number for a message, with the fewest digits that read back as the same.
+  interface brief
+    module procedure :: brief_real, brief_integer
+  end interface brief
 
 contains
 
@@ -21,8 +26,8 @@ contains
     end do
   end function lower
 
-  !> `text`, the name of a file or the like, on one line and without orders to the terminal: control
-  !> characters become question marks. What is not ASCII stays.
+  !> `text`, such as a file's name, on one line and without control sequences for the terminal:
+  !> control characters become question marks. Other characters stay.
   pure function printable(text) result(clean)
     character(len=*), intent(in) :: text
     character(len=len(text)) :: clean
@@ -48,7 +53,7 @@ contains
     literal = literal // "'"
   end function quoted
 
-  !> The text inside the quotes of `literal`, doubled quotes made single.
+  !> The text inside the quotes of `literal`, with doubled quotes made single.
   pure function unquoted(literal) result(text)
     character(len=*), intent(in) :: literal
     character(len=:), allocatable :: text
@@ -65,7 +70,7 @@ contains
     text = buffer(:n)
   end function unquoted
 
-  !> `x` with 17 significant digits, so that reading it gives `x` again.
+  !> `x` with 17 significant digits, enough to read `x` back.
   pure function full(x) result(text)
     real(wp), intent(in) :: x
     character(len=:), allocatable :: text
@@ -76,8 +81,7 @@ contains
     text = buffer(:length)
   end function full
 
-  !> `x` for a message: the fewest digits that still read back as `x`.
-  pure function brief(x) result(text)
+  pure function brief_real(x) result(text)
     real(wp), intent(in) :: x
     character(len=:), allocatable :: text
     character(len=40) :: buffer, form
@@ -85,8 +89,7 @@ contains
     integer :: digits, status, mark, order
 
     if (abs(x) < 2e9_wp .and. abs(x - anint(x)) <= 0.0_wp) then
-      write (buffer, '(i0)') nint(x)
-      text = trim(buffer)
+      text = brief(nint(x))
       return
     end if
     do digits = 0, 16
@@ -100,15 +103,24 @@ contains
       if (status == 0 .and. abs(back - x) <= 0.0_wp) exit
     end do
     text = trim(adjustl(buffer))
-    ! 1.E-09 as people write it: 1e-9.
+    ! 1.E-09 becomes 1e-9.
     mark = index(text, 'E')
     if (mark == 0) return
     read (text(mark + 1:), *, iostat=status) order
     if (status /= 0) return
-    write (buffer, '(i0)') order
     if (text(mark - 1:mark - 1) == '.') text(mark - 1:mark - 1) = ' '
-    text = trim(text(:mark - 1)) // 'e' // trim(buffer)
-  end function brief
+    text = trim(text(:mark - 1)) // 'e' // brief(order)
+  end function brief_real
+
+  pure function brief_integer(n) result(text)
+    integer, intent(in) :: n
+    character(len=:), allocatable :: text
+    character(len=longest_real) :: buffer
+    integer :: length
+
+    call put_whole(n, buffer, length)
+    text = buffer(:length)
+  end function brief_integer
 
   !> `x` for a message to three digits.
   pure function rounded(x) result(text)
@@ -143,17 +155,11 @@ contains
   !> Number of blank-separated words in `list`.
   pure integer function word_count(list) result(n)
     character(len=*), intent(in) :: list
+    character(len=len(list) + 1) :: padded
     integer :: i
 
-    n = 0
-    do i = 1, len(list)
-      if (list(i:i) == ' ') cycle
-      if (i == 1) then
-        n = n + 1
-      else if (list(i - 1:i - 1) == ' ') then
-        n = n + 1
-      end if
-    end do
+    padded = ' ' // list
+    n = count([(padded(i:i) == ' ' .and. padded(i + 1:i + 1) /= ' ', i=1, len(list))])
   end function word_count
 
   !> Word number `n` of the blank-separated `list`.
@@ -194,7 +200,7 @@ contains
 
     best = ''
     if (len(word) > 63) return
-    ! A third of the letters wrong is still a slip of the fingers; more is another word.
+    ! With a third of the letters wrong it is still a misspelling, with more another word.
     smallest = max(1, (len(word) + 1)/3) + 1
     do i = 1, word_count(list)
       distance = edits(lower(word), word_of(list, i))
@@ -241,7 +247,7 @@ contains
     if (len(token) > 40) text = token(:37) // '...'
   end function clip
 
-  !> What comes before the end of the first line.
+  !> `text` up to the end of its first line.
   pure function first_line(text) result(line)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: line

@@ -1,6 +1,6 @@
-!> The theories of JKR, DMT and Maugis-Dugdale as models of a measured curve. Bodies apart do not
+!> The theories of JKR, DMT and Maugis-Dugdale as models of a measured curve. Separate bodies do not
 !> attract each other. Bodies in contact follow the theory's curve, ordered by contact radius. These
-!> theories do not say where the jump into contact is.
+!> theories do not predict the jump into contact.
 module classical_model
   use kinds, only: wp
   use root_finding, only: bracket_t
@@ -21,8 +21,8 @@ module classical_model
   !> and sections that refine it.
   integer, parameter :: tried = 400, sections = 60
 
-  !> The unknowns are the work of adhesion [J/m^2] and the stiffness [Pa], where these are to be
-  !> found; otherwise the values here hold. radius [m]; range [m]: of the tension in Maugis-Dugdale
+  !> The unknowns are the work of adhesion [J/m^2] and the stiffness [Pa], as far as the fit finds
+  !> them; otherwise the values here hold. radius [m]; range [m]: of the tension in Maugis-Dugdale
   !> theory.
   type, extends(force_model_t) :: classical_model_t
     character(len=14) :: theory = 'jkr'
@@ -45,7 +45,7 @@ contains
 
     number = [self%work, self%stiffness]
     number(pack([1, 2], [self%finds_work, self%finds_stiffness])) = value
-    ! Hertz's contact radius under the largest load and a hundred times the adhesion.
+    ! Hertz's contact radius at the largest load and a hundred times the adhesion.
     widest = (1.5_wp*self%radius*(2*max(largest, 0.0_wp) + 100*number(1)*self%radius)/ &
       number(2))**(1.0_wp/3)
     turn = turning_radius(self, number, 1/stiffness, widest)
@@ -61,7 +61,7 @@ contains
     response%way(outward) = way_t([2, 1], [response%branch(2)%position(1), huge(1.0_wp)], 1)
   end subroutine respond
 
-  !> The branch of bodies apart: no load.
+  !> The branch of separate bodies: no load.
   subroutine set_apart(widest, unknowns, branch)
     real(wp), intent(in) :: widest
     integer, intent(in) :: unknowns
@@ -69,13 +69,13 @@ contains
 
     allocate (branch%h0(4, 1), branch%load(4, 1), branch%h0_rate(unknowns, 2, 1), &
       branch%load_rate(unknowns, 2, 1), source=0.0_wp)
-    ! h0 falls evenly from beyond any distance.
+    ! h0 falls linearly from beyond all distances.
     branch%h0(:, 1) = widest*[1, 0, -1, -1]
     branch%turns_last = .true.
   end subroutine set_apart
 
-  !> The branch in contact, from where the position turns round inward. Panels become longer with
-  !> the contact.
+  !> The branch in contact, from the turn of the position inward. Panels become longer as the
+  !> contact grows.
   subroutine set_in_contact(model, number, turn, widest, unknowns, branch)
     class(classical_model_t), intent(in) :: model
     real(wp), intent(in) :: number(2), turn, widest

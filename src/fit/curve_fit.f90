@@ -21,16 +21,16 @@ module curve_fit
   !> Contact points kept for each candidate; searches from the best candidates; results of searches
   !> that are followed up; rounds in which the data are examined again.
   integer, parameter :: most_points = 2, most_fits = 8, most_looks = 3, most_rounds = 8
-  !> The same result of this many searches ends the search. Relative differences between sums of
-  !> squares: below `same` they are equal, above `apart` they belong to different minima.
+  !> Number of searches with the same result that ends the search. Relative differences between sums
+  !> of squares: below `same` they are equal, above `apart` they belong to different minima.
   integer, parameter :: enough = 3
   real(wp), parameter :: same = 1.0e-4_wp, apart = 0.02_wp
 
   !> The result of a fit. value, deviation: each unknown and its standard deviation, in the unit of
   !> its key. fitted_deviation, correlation: the same for the fitted numbers (`fit_request`), whose
-  !> errors are symmetric. identifiable: the least singular value of their Jacobian with columns of
-  !> length 1; 1 where the data tell all unknowns apart, 0 where they do not. effect: how many
-  !> standard deviations of all data together a change of the fitted number by 1 makes.
+  !> errors are symmetric. identifiable: the smallest singular value of their Jacobian with columns
+  !> of length 1; 1 if the data tell all unknowns apart, 0 if they do not. effect: the change of the
+  !> curve, in standard deviations of all data together, if the fitted number changes by 1.
   type :: fitted_t
     logical :: found = .false., has_curve = .false.
     real(wp), allocatable :: value(:), deviation(:), fitted_deviation(:), correlation(:, :), &
@@ -42,7 +42,7 @@ module curve_fit
     type(lack_t) :: lack = lack_t()
     !> At all samples: the model with its baseline, the residual, the baseline.
     real(wp), allocatable :: model(:), residual(:), baseline(:)
-    !> Position of the base where the model jumps in and out; NaN where it does not jump.
+    !> Position of the base at which the model jumps in and out; NaN without a jump.
     real(wp) :: jump_z(2) = 0
   contains
     procedure :: end_of
@@ -52,8 +52,8 @@ module curve_fit
 contains
 
   !> Fits the model, starting from several candidates, start(unknown, candidate), and from several
-  !> contact points if that is unknown. It ends when a fit describes the data, and keeps the best.
-  !> renew: the model is used to find noise (unless keep_noise), outliers and jumps again.
+  !> contact points if that is unknown. The search ends when a fit describes the data; the best fit
+  !> is kept. renew: the model is used to find noise (unless keep_noise), outliers and jumps again.
   subroutine fit_curve(curve, model, start, renew, keep_noise, fitted)
     type(modelled_curve_t), intent(inout) :: curve
     class(force_model_t), intent(inout), target :: model
@@ -85,13 +85,13 @@ contains
         curve = trial%curve
       end if
       if (fitted%lack%is_noise()) exit
-      ! The others that lead to the same minimum.
+      ! Other searches with the same minimum are left out.
       where (left < (1 + apart)*left(k)) left = huge(left)
     end do
   end subroutine fit_curve
 
-  !> Searches from the candidates with the least sums of squares, `cost`, and replaces them by the
-  !> minima found. left: the sums of squares there; huge where no search was made.
+  !> Searches from the candidates with the smallest sums of squares, `cost`, and replaces them by
+  !> the minima found. left: the sums of squares there; huge without a search.
   subroutine search_from(residuals, cost, value, left, found)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(inout) :: cost(:), value(:, :)
@@ -163,7 +163,7 @@ contains
 
   contains
 
-    !> Adds the trial to the candidates, if the model has a curve there.
+    !> Adds the trial to the candidates, if the model has a curve for it.
     subroutine add(left)
       real(wp), intent(in) :: left
 
@@ -175,8 +175,8 @@ contains
   end subroutine find_candidates
 
   !> The contact points between two ends with the lowest sums of squares, and these sums. role: the
-  !> index of the contact point among the unknowns. The model is not solved again when only the
-  !> contact point changes, so many are tried.
+  !> index of the contact point among the unknowns. Many points are tried, since the model is not
+  !> solved again when only the contact point changes.
   subroutine lowest_points(residuals, value, role, ends, points, costs)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:), ends(2)
@@ -213,7 +213,7 @@ contains
 
   end subroutine lowest_points
 
-  !> The sum of squares; huge where the model has no curve.
+  !> The sum of squares; huge if the model has no curve.
   real(wp) function cost_of(residuals, value) result(cost)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:)
@@ -240,7 +240,7 @@ contains
     value = residuals%values(x)
   end subroutine search
 
-  !> Whether a fit has errors and leaves less than another.
+  !> Whether a fit has errors and smaller residuals than another.
   pure logical function is_better_than(self, other)
     class(fitted_t), intent(in) :: self
     type(fitted_t), intent(in) :: other
@@ -310,7 +310,7 @@ contains
     real(wp), parameter :: largest = 100
 
     value = self%value(i) + sign*self%deviation(i)
-    if (unknown%in_log) value = self%value(i)* exp(sign*min(self%fitted_deviation(i), largest))
+    if (unknown%in_log) value = self%value(i)*exp(sign*min(self%fitted_deviation(i), largest))
   end function end_of
 
 end module curve_fit

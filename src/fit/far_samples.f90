@@ -10,11 +10,11 @@ module far_samples
   public :: find_far, off_baseline
 
   !> With fewer far samples the noise comes from their differences, and no slope is found. The part
-  !> of the travel that may be far from contact: it is halved as long as the farther half varies by
-  !> less than this part of the whole.
+  !> of the travel that may be far from contact; it is halved while the farther half varies by less
+  !> than this part of the whole.
   integer, parameter :: fewest_far = 12
   real(wp), parameter :: far_part = 1.0_wp/3, less = 0.6_wp
-  !> A spike is away from its neighbours by this many deviations, and this many times the change of
+  !> A spike differs from its neighbours by this many deviations, plus this many times the change of
   !> signal over a step of z at the spring's own slope.
   real(wp), parameter :: apart = 5, bent = 3
 
@@ -71,8 +71,8 @@ contains
 
   end subroutine find_far
 
-  !> The step of z about each sample: the mean over its way or, where samples lie farther apart,
-  !> half the distance to the second on either side.
+  !> The step of z about each sample: the mean over its way, or half the distance to the second
+  !> sample on either side if that is larger.
   pure function steps_about(measured) result(step)
     type(measured_t), intent(in) :: measured
     real(wp) :: step(size(measured%z))

@@ -13,8 +13,8 @@ module fit_doubts
   private
   public :: doubts_of
 
-  !> Limits: correlation of two unknowns; least singular value; standard deviation of a logarithm;
-  !> distance of a jump in standard deviations.
+  !> Limits: correlation of two unknowns; smallest singular value; standard deviation of a
+  !> logarithm; distance of a jump in standard deviations.
   real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, far = 4
   character(len=*), parameter :: not_described = ': the model does not describe these data, ' // &
     'and the true errors are larger than the standard errors'
@@ -29,8 +29,7 @@ contains
 
     allocate (lines(0))
     associate (fitted => outcome%fitted, unknown => outcome%curve%unknown)
-      if (.not. fitted%found) call add(lines, 'the search for the best values ended before it ' // &
-        'had them')
+      if (.not. fitted%found) call add(lines, 'the search ended before it found the best values')
       if (.not. outcome%resolved) call add(lines, 'the meshes do not resolve the force law, ' // &
         'and the model is not exact; smoother forces are resolved')
       if (.not. fitted%lack%is_noise()) call add(lines, what_is_left(fitted%lack) // &
@@ -41,8 +40,8 @@ contains
         call doubt_unknown(fitted, unknown(i), i, lines)
         call doubt_pairs(fitted, unknown, i, lines)
       end do
-      if (fitted%identifiable < lost) call add(lines, 'some combination of the parameters ' // &
-        'cannot be told from these data: identifiable = ' // rounded(fitted%identifiable))
+      if (fitted%identifiable < lost) call add(lines, 'these data do not determine some ' // &
+        'combination of the parameters: identifiable = ' // rounded(fitted%identifiable))
     end associate
     call doubt_jumps(outcome, lines)
   end function doubts_of
@@ -61,13 +60,13 @@ contains
       rounded(abs(held(i)%asked)) // ' standard deviations)' // not_described)
   end subroutine doubt_held
 
-  !> Describes what was compared with noise: samples or means over neighbours.
+  !> The quantity that was compared with the noise, in words: samples or means over neighbours.
   function what_is_left(lack) result(words)
     type(lack_t), intent(in) :: lack
     character(len=:), allocatable :: words
 
-    words = 'what the model leaves is '
-    if (lack%width > 1) words = 'what the model leaves, on average over ' // &
+    words = 'the residual is '
+    if (lack%width > 1) words = 'the residual, on average over ' // &
       rounded(real(lack%width, wp)) // ' neighbours, is '
     words = words // rounded(lack%times)
   end function what_is_left
@@ -80,16 +79,16 @@ contains
     type(line_t), allocatable, intent(inout) :: lines(:)
 
     if (unknown%in_log .and. fitted%fitted_deviation(i) > vague) call add(lines, 'the data ' // &
-      'say little of ' // unknown%name // ': it may be larger or smaller by a factor of ' // &
+      'hardly determine ' // unknown%name // ': it may be larger or smaller by a factor of ' // &
       rounded(exp(min(fitted%fitted_deviation(i), 100.0_wp))))
     associate (low => fitted%end_of(i, unknown, -1.0_wp), high => fitted%end_of(i, unknown, 1.0_wp))
       if (allocated(unknown%lower)) then
         if (low <= unknown%lower) call add(lines, unknown%name // ': its 68 % interval ' // &
-          'touches lower = ' // rounded(unknown%lower) // ', which decides and not the data')
+          'touches lower = ' // rounded(unknown%lower) // ', so that this bound decides')
       end if
       if (allocated(unknown%upper)) then
         if (high >= unknown%upper) call add(lines, unknown%name // ': its 68 % interval ' // &
-          'touches upper = ' // rounded(unknown%upper) // ', which decides and not the data')
+          'touches upper = ' // rounded(unknown%upper) // ', so that this bound decides')
       end if
     end associate
   end subroutine doubt_unknown
@@ -109,7 +108,7 @@ contains
     end do
   end subroutine doubt_pairs
 
-  !> Doubts about jumps of the data that are not where the model jumps.
+  !> Doubts about jumps of the data that the model does not have there.
   subroutine doubt_jumps(outcome, lines)
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), allocatable, intent(inout) :: lines(:)

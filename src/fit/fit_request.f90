@@ -1,4 +1,4 @@
-!> What a fit is asked for: the measured curve and the unknowns.
+!> The input of a fit: the measured curve and the unknowns.
 !>
 !> The search uses free numbers without bounds. A positive unknown is represented by its logarithm;
 !> two bounds are mapped by a sine, a single one by a hyperbola.
@@ -9,7 +9,7 @@ module fit_request
   public :: measurement_t, fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
     of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted
 
-  !> &measurement [SI]. sensitivity: of a signal in volts; unallocated: the signal is the force.
+  !> &measurement [SI]. sensitivity: of a signal in volts; not allocated: the signal is the force.
   type :: measurement_t
     character(len=:), allocatable :: file, segment
     character(len=48), allocatable :: columns(:)
@@ -21,12 +21,12 @@ module fit_request
     real(wp) :: unit(2) = 1
   end type measurement_t
 
-  !> What an unknown is a number of: the problem, the contact point, the detector, the spring.
+  !> The role of an unknown: a number of the problem, contact point, detector, spring.
   integer, parameter :: of_model = 0, of_contact_point = 1, of_sensitivity = 2, of_spring = 3
 
   !> An unknown, in the unit of its key. in_log: it is positive and its logarithm is fitted;
-  !> otherwise its difference from `origin`, over `scale`. prior: standard deviation of the deck's
-  !> value as known beforehand; 0: none.
+  !> otherwise its difference from `origin`, over `scale`. prior: prior standard deviation about the
+  !> deck's value; 0: none.
   type :: unknown_t
     character(len=:), allocatable :: name
     integer :: role = of_model
@@ -35,7 +35,7 @@ module fit_request
     real(wp), allocatable :: lower, upper
   end type unknown_t
 
-  !> &fit. noise: standard deviation of the signal; unallocated: that of the baseline.
+  !> &fit. noise: standard deviation of the signal; not allocated: that of the baseline.
   type :: fit_t
     type(unknown_t), allocatable :: unknown(:)
     real(wp), allocatable :: noise
@@ -52,7 +52,7 @@ contains
     if (unknown%in_log) u = log(value/unknown%scale)
   end function fitted_of
 
-  !> The free number of a value. A value at its bound or beyond is moved a little inside.
+  !> The free number of a value. A value at or beyond its bound is moved slightly inside.
   elemental real(wp) function free_of(unknown, value) result(x)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: value

@@ -31,7 +31,7 @@ module fit_run
     type(fitted_t) :: fitted
   end type theory_fit_t
 
-  !> The result. trouble: why there is no fit, and what to do.
+  !> The result. trouble: the reason why there is no fit, with advice.
   type :: fit_outcome_t
     character(len=:), allocatable :: trouble
     type(modelled_curve_t) :: curve
@@ -39,13 +39,13 @@ module fit_run
     !> Whether the meshes of the model resolve the force law.
     logical :: resolved = .true.
     type(theory_fit_t), allocatable :: theory(:)
-    !> What the data say of the numbers that the deck holds fixed.
+    !> The test of each number that the deck holds fixed.
     type(held_t), allocatable :: held(:)
-    !> The problem with the fitted values, where it could be posed.
+    !> The problem with the fitted values, if it could be posed.
     type(problem_t), allocatable :: problem
   end type fit_outcome_t
 
-  !> Least noise over the largest signal: a computed signal has less.
+  !> Smallest noise over the largest signal, for computed signals.
   real(wp), parameter :: least_noise = 1.0e-9_wp
   !> The model is solved up to this many times the largest signal, since a trial may be too soft.
   real(wp), parameter :: beyond = 1.2_wp
@@ -88,8 +88,8 @@ contains
     outcome%resolved = model%left_out <= too_much*model%numerics%accuracy
     outcome%curve = curve
     if (.not. outcome%fitted%has_curve) then
-      outcome%trouble = 'with the values of the deck the path could not be solved as ' // &
-        'far as the data go, or does not come near them; start from others, or fit a part of them'
+      outcome%trouble = 'with the values of the deck the path could not be solved over the ' // &
+        'range of the data, or is far from them; start from other values, or fit a part of the data'
       return
     end if
     if (.not. allocated(outcome%fitted%effect)) then
@@ -100,7 +100,7 @@ contains
     do i = 1, size(outcome%fitted%effect)
       if (outcome%fitted%effect(i) > least_effect) cycle
       outcome%trouble = outcome%curve%unknown(i)%name // ' has no effect on this curve; ' // &
-        'take it out of parameters'
+        'remove it from parameters'
       return
     end do
     call test_held(outcome%curve, outcome%fitted%value, measurement, numerics, wider, outcome%held)

@@ -1,5 +1,5 @@
-!> The samples of a measured curve that count in a fit: on which side of a jump each one is, and how
-!> residuals are whitened and freed of the baseline.
+!> The samples of a measured curve that count in a fit: the side of a jump on which each one is, and
+!> the whitening of residuals and the removal of their baseline.
 !>
 !> The baseline is a constant for each way and a slope common to both. It does not depend on the
 !> unknowns of a model, so one projection removes it from residuals and from their derivatives.
@@ -116,7 +116,7 @@ contains
     baseline_numbers = size(self%column, 2)
   end function baseline_numbers
 
-  !> Whitens columns of numbers, one a sample that counts, and removes their baseline.
+  !> Whitens columns of numbers, one number for each sample that counts, and removes their baseline.
   pure subroutine clean(self, column)
     class(fit_samples_t), intent(in) :: self
     real(wp), intent(inout) :: column(:, :)

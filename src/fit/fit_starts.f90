@@ -1,5 +1,5 @@
-!> Starting values of a model's unknowns: the deck's, and those that give work of adhesion,
-!> stiffness and range of the force the values that the data and the classical theories suggest.
+!> Starting values of a model's unknowns: the deck's, and those that give the work of adhesion,
+!> stiffness and range of force that the data and the classical theories suggest.
 module fit_starts
   use kinds, only: wp
   use failure, only: failure_t
@@ -17,12 +17,12 @@ module fit_starts
     real(wp) :: work = 0, stiffness = 0, range = 0
   end type character_t
 
-  !> Most steps of the secant method; the size of a last step and of the first differences; the
-  !> largest logarithm of a start over the deck's value; starts that differ by less than `alike` are
-  !> the same.
+  !> Largest number of steps of the secant method; the size of a last step and of the first
+  !> differences; the largest logarithm of a start over the deck's value; starts that differ by less
+  !> than `alike` are the same.
   integer, parameter :: steps = 6
   real(wp), parameter :: near = 0.01_wp, change = 1.0e-3_wp, farthest = 4.5_wp, alike = 0.05_wp
-  !> Damping, which keeps unknowns of hardly any effect from moving far.
+  !> Damping, which keeps unknowns with hardly any effect from moving far.
   real(wp), parameter :: damping = 1.0e-4_wp
 
 contains
@@ -39,7 +39,7 @@ contains
   end function character_of
 
   !> Starting values, (unknown, start). The first are the deck's. Each other start has the character
-  !> `wanted(i)` by the least change of the deck's values.
+  !> `wanted(i)` with the smallest change of the deck's values.
   subroutine starts_like(wanted, family, unknown, start)
     type(character_t), intent(in) :: wanted(:)
     class(problem_family_t), intent(in) :: family

@@ -10,14 +10,14 @@ module force_branch
   private
   public :: branch_t, load_at_t
 
-  !> Error of a position over that of its panel at which the search ends.
+  !> Error of a position at which the search ends, over the length of its panel.
   real(wp), parameter :: found_at = 1.0e-13_wp
   integer, parameter :: most_steps = 60
 
-  !> Panels, ordered from afar inward. h0(:, i), load(:, i): values at begin and end of panel i, and
-  !> derivatives there by t, which goes from 0 to 1. h0_rate, load_rate(unknown, end, panel):
-  !> derivatives by the unknowns at fixed t. turns: the piece ends at a turn of the position, not
-  !> where the path ends.
+  !> Panels, ordered from large to small h0. h0(:, i), load(:, i): values at begin and end of panel
+  !> i, and derivatives there by t, which goes from 0 to 1. h0_rate, load_rate(unknown, end, panel):
+  !> derivatives by the unknowns at fixed t. turns: the piece ends at a turn of the position, not at
+  !> an end of the path.
   type :: branch_t
     real(wp), allocatable :: h0(:, :), load(:, :), h0_rate(:, :, :), load_rate(:, :, :)
     logical :: turns_first = .false., turns_last = .false.
@@ -132,8 +132,8 @@ contains
       self%compliance*found%rate)
   end function on_panel
 
-  !> Load and derivatives at an end. A turn moves with the unknowns to where the derivative of the
-  !> position by t vanishes again.
+  !> Load and derivatives at an end. A turn is where the derivative of the position by t vanishes,
+  !> and moves with the unknowns.
   pure type(load_at_t) function end_of(self, inner) result(found)
     class(branch_t), intent(in) :: self
     logical, intent(in) :: inner

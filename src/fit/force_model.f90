@@ -9,9 +9,9 @@ module force_model
   !> The two ways.
   integer, parameter :: inward = 1, outward = 2
 
-  !> The branches of a way in order, and the position of the drive at which each is left. The main
+  !> The branches of a way in order, and the position of the drive at the end of each. The main
   !> jump, that with the largest change of load, starts from the end of branch number `main` of
-  !> these; 0: there is none. foretold = .false.: the theory does not say where the bodies jump.
+  !> these; 0: there is none. foretold = .false.: the theory does not predict the jump.
   type :: way_t
     integer, allocatable :: branch(:)
     real(wp), allocatable :: leaves_at(:)
@@ -49,8 +49,8 @@ module force_model
 
 contains
 
-  !> The load at a position on a way. side: 1 before the main jump, 2 after it, whatever the
-  !> position; 0: jumps are where the model has them.
+  !> The load at a position on a way. side: 1 before the main jump, 2 after it, at any position; 0:
+  !> with the jumps of the model.
   pure type(load_at_t) function load_on(self, way, side, position) result(found)
     class(response_t), intent(in) :: self
     integer, intent(in) :: way, side

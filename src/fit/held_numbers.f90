@@ -1,11 +1,12 @@
-!> Whether the data contradict a number that a fit holds fixed. A change of it changes the residuals
-!> r along some direction. The unknowns can compensate a part of that; g is the rest as a unit
-!> vector. If the value is right, g.r is a standard normal number (the score test; Rao, 1948). The
-!> test needs no further fit, and detects a small deviation that all samples share.
+!> A test whether the data contradict a number that a fit holds fixed. A change of the number
+!> changes the residuals r in some direction. The unknowns can compensate a part of this change; g
+!> is the rest as a unit vector. If the value is right, g.r is a standard normal number (the score
+!> test; Rao, 1948). The test needs no further fit, and detects a small deviation that all samples
+!> share.
 module held_numbers
   use kinds, only: wp
   use fit_request, only: measurement_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
-    of_spring, value_by_fitted
+    of_spring
   use failure, only: failure_t
   use problem_family, only: problem_family_t
   use variation, only: variation_t, vary, to_search
@@ -18,8 +19,8 @@ module held_numbers
   private
   public :: held_t, test_held
 
-  !> A number that is held, and by how many standard deviations the data ask for another value, a
-  !> larger one if positive.
+  !> A number that is held, and the change that the data ask for, in standard deviations; positive
+  !> for a larger value.
   type :: held_t
     character(len=:), allocatable :: name
     real(wp) :: asked = 0
@@ -27,7 +28,7 @@ module held_numbers
     procedure :: is_right
   end type held_t
 
-  !> Least part of a direction that must remain; rounding of the derivatives leaves less.
+  !> Smallest part of a direction that must remain; rounding of the derivatives leaves less.
   real(wp), parameter :: rounding = 1.0e-4_wp
 
 contains
@@ -39,7 +40,7 @@ contains
     is_right = abs(self%asked) <= hardly_ever
   end function is_right
 
-  !> Tests every number that is held. curve, value: the fit. wider: the family of the fit with the
+  !> Tests all numbers that are held. curve, value: the fit. wider: the family of the fit with the
   !> deck's other positive numbers as further parameters. Numbers that the unknowns compensate
   !> completely, or that cannot be varied, are left out.
   subroutine test_held(curve, value, measurement, numerics, wider, held)
@@ -85,7 +86,7 @@ contains
     end do
   end subroutine test_held
 
-  !> Makes a vector orthogonal to orthonormal ones, twice against rounding.
+  !> Makes a vector orthogonal to orthonormal ones, in two passes against rounding.
   pure subroutine take_off(basis, vector)
     real(wp), intent(in) :: basis(:, :)
     real(wp), intent(inout) :: vector(:)
@@ -114,7 +115,7 @@ contains
     family%parameter = pack(family%parameter, keep)
   end subroutine keep_variable
 
-  !> Appends what is held to the unknowns: numbers of the model and of the measurement.
+  !> Appends the numbers that are held to the unknowns: of the model and of the measurement.
   subroutine add_held(family, curve, has_detector, unknown)
     class(problem_family_t), intent(in) :: family
     type(modelled_curve_t), intent(in) :: curve

@@ -1,5 +1,5 @@
-!> Whether the residuals of a fit are noise. A wrong model leaves residuals of one sign over many
-!> neighbours, so that means over blocks of samples reveal it.
+!> A test whether the residuals of a fit are noise. A wrong model leaves residuals of one sign over
+!> many neighbours, so that means over blocks of samples reveal it.
 module lack_of_fit
   use kinds, only: wp
   use noise, only: noise_t
@@ -7,8 +7,8 @@ module lack_of_fit
   private
   public :: lack_t, lack_in, hardly_ever
 
-  !> The lack of fit where it is largest. excess: by how many standard deviations the means of
-  !> blocks of `width` samples exceed those of noise. times: their ratio to those of noise.
+  !> The largest lack of fit. excess: by how many standard deviations the means of blocks of `width`
+  !> samples exceed those of noise. times: their ratio to those of noise.
   type :: lack_t
     integer :: width = 1
     real(wp) :: excess = 0, times = 1
@@ -16,8 +16,8 @@ module lack_of_fit
     procedure :: is_noise
   end type lack_t
 
-  !> Fewer blocks are not tested. The excess that noise reaches in one fit of two hundred, given
-  !> some seven widths.
+  !> Smallest number of blocks that is tested. The excess that noise reaches in one fit of two
+  !> hundred with about seven widths.
   integer, parameter :: fewest_blocks = 8
   real(wp), parameter :: hardly_ever = 3.2_wp
 
@@ -30,9 +30,9 @@ contains
     is_noise = self%excess <= hardly_ever
   end function is_noise
 
-  !> The largest lack of fit over all widths. white: whitened residuals. run: samples of different
-  !> runs are not neighbours. freedom: how many residuals are independent. noise: what whitened
-  !> them.
+  !> The largest lack of fit over all widths. white: whitened residuals. run: number of the run of
+  !> each sample; samples of different runs are not neighbours. freedom: number of independent
+  !> residuals. noise: the noise that they were whitened with.
   pure type(lack_t) function lack_in(white, run, freedom, noise) result(worst)
     real(wp), intent(in) :: white(:)
     type(noise_t), intent(in) :: noise
@@ -59,8 +59,8 @@ contains
       end do
       if (width == 1) blocks = max(1, freedom)
       if (width > 1 .and. blocks < fewest_blocks) return
-      ! The ratio of the variance of all samples to that of their steps has the variance 1/n, half
-      ! that of the former alone (von Neumann, 1941), as if n were twice as large.
+      ! The ratio of the variance of all samples to that of their steps has the variance 1/n (von
+      ! Neumann, 1941), half that of the variance of all samples, as if n were twice as large.
       excess = normal_of(total, blocks, noise%known_by)
       if (width == 1 .and. noise%of_steps) excess = normal_of(2*total, 2*blocks, huge(1.0_wp))
       if (excess > worst%excess) worst = lack_t(width, excess, sqrt(total/blocks))

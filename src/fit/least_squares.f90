@@ -1,4 +1,4 @@
-!> The least sum of squares, by MINPACK's lmder (J. J. More, 1978).
+!> The smallest sum of squares, by MINPACK's lmder (J. J. More, 1978).
 module least_squares
   use, intrinsic :: iso_c_binding, only: c_ptr, c_loc, c_f_pointer
   use kinds, only: wp
@@ -6,7 +6,7 @@ module least_squares
   private
   public :: residuals_t, minimise
 
-  !> Residuals to be minimised; an extension holds what they depend on.
+  !> Residuals to be minimised; an extension has the data for them.
   type, abstract :: residuals_t
   contains
     !> The residuals at x; found = .false.: there are none.
@@ -32,7 +32,7 @@ module least_squares
     end subroutine evaluate_derivatives
   end interface
 
-  !> lmder hands on a C pointer to this; a polymorphic object cannot be handed on.
+  !> lmder passes on a C pointer to this, since a polymorphic object cannot be passed on.
   type :: carrier_t
     class(residuals_t), pointer :: residuals => null()
   end type carrier_t
@@ -52,15 +52,15 @@ module least_squares
   end interface
 
   !> Relative changes of the sum of squares and of x at which the search ends (noise changes the sum
-  !> by far more than 1e-7 of it); most evaluations; length of the first step.
+  !> by far more than 1e-7 of it); largest number of evaluations; length of the first step.
   real(wp), parameter :: less = 1.0e-7_wp, nearer = 1.0e-10_wp, first_step = 0.3_wp
   integer, parameter :: most_evaluations = 80
-  !> Stands for residuals that do not exist; lmder then shortens its step.
+  !> Replaces residuals that do not exist; lmder then shortens its step.
   real(wp), parameter :: nowhere = 1.0e8_wp
 
 contains
 
-  !> Moves x to the least sum of squares. A change of x by 1 should be large: the first step is
+  !> Moves x to the smallest sum of squares. A change of x by 1 should be large: the first step is
   !> shorter. found = .false.: there are no residuals at the first x, or the evaluations did not
   !> suffice.
   subroutine minimise(residuals, x, residual, found)
@@ -78,7 +78,7 @@ contains
     call lmder(evaluate_for_lmder, c_loc(carrier), size(residual), size(x), x, residual, jacobian, &
       size(residual), less, nearer, 0.0_wp, most_evaluations, diag, 2, first_step, 0, &
       info, evaluations, jacobians, pivot, qtf, wa1, wa2, wa3, wa4)
-    ! 6 to 8: this arithmetic allows no further gain.
+    ! 6 to 8: rounding allows no further gain.
     found = any(info == [1, 2, 3, 4, 6, 7, 8])
   end subroutine minimise
 

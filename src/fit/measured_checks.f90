@@ -1,4 +1,4 @@
-!> Whether a measured curve can be fitted; if not, why, and what to do.
+!> Checks whether a measured curve can be fitted; if not, with the reason and advice.
 module measured_checks
   use kinds, only: wp
   use text, only: rounded
@@ -11,15 +11,15 @@ module measured_checks
   public :: check_measured
 
   !> Limits: a signal in standard deviations of the noise; the part of the travel that counts as an
-  !> end; the slope, over the spring's, of an end in contact; standard errors of a certain
+  !> end; the slope of an end in contact, over that of the spring; standard errors of a certain
   !> statement.
   real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5
   integer, parameter :: parts = nint(1/nearest_part)
 
 contains
 
-  !> Checks a curve. trouble: allocated where it cannot be fitted. stiffness: of the spring, units
-  !> of signal over z.
+  !> Checks a curve. trouble: allocated if it cannot be fitted. stiffness: of the spring, units of
+  !> signal over z.
   subroutine check_measured(measured, noise, stiffness, trouble)
     type(measured_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
@@ -32,8 +32,8 @@ contains
 
     left = off_baseline(measured)
     if (.not. maxval(abs(left), measured%usable) > stands_out*noise%deviation) then
-      trouble = 'no contact in the data: nothing stands out of the noise of ' // &
-        rounded(noise%deviation) // '; measure nearer, or see that columns names the signal'
+      trouble = 'no contact in the data: the signal does not exceed the noise of ' // &
+        rounded(noise%deviation) // '; measure nearer, or check that columns names the signal'
       return
     end if
     call check_ways(measured, noise, stiffness, trouble)
@@ -45,13 +45,13 @@ contains
     jump(1) = find_jump(turned, noise%deviation, stiffness, .true.)
     jump(2) = find_jump(turned, noise%deviation, stiffness, .false.)
     if (before - near > steep*stiffness*travel .or. any(jump%before > 0)) trouble = &
-      'the force falls where the bodies are pressed together: repulsion is positive here; a ' // &
-      'minus before the name of a column turns its sign'
+      'the force falls where the bodies are pressed together, but repulsion must be positive; ' // &
+      'a minus before the name of a column changes its sign'
   end subroutine check_measured
 
-  !> Sets `trouble` where approach and retreat are exchanged. A cycle dissipates energy: between its
-  !> ends, where the ways meet, the approach lies above the retreat, whatever the baseline. Where
-  !> the difference is within the noise, a contact at the far end decides.
+  !> Sets `trouble` if approach and retreat are exchanged. A cycle dissipates energy: between its
+  !> ends, where the ways meet, the approach lies above the retreat, for any baseline. If the
+  !> difference is within the noise, a contact at the far end decides.
   subroutine check_ways(measured, noise, stiffness, trouble)
     type(measured_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
@@ -68,25 +68,24 @@ contains
     end do
     call slope_at(position, slope(1), slope_error(1))
     call slope_at(-position, slope(2), slope_error(2))
-    ! The signal has the other sign: both ends bend down.
+    ! The signal has the opposite sign: both ends bend down.
     if (sum(slope) < 0) return
     taken = sum(above)/parts - above([1, parts])
     sure = surely*maxval(error([1, parts]))
     if (all(taken < -sure)) then
-      trouble = 'the bodies would give energy in a cycle, as they hold together better on the ' // &
-        'way in than on the way out: the rows of the file go backwards, or approach and ' // &
-        'retreat are exchanged in the third column'
+      trouble = 'a cycle would gain energy, as the adhesion is stronger on the way in than on ' // &
+        'the way out: the rows of the file are in reverse order, or approach and retreat are ' // &
+        'exchanged in the third column'
     else if (sum(taken) < 0.2_wp*sure .and. &
       slope(2) > steep*stiffness + surely*slope_error(2) .and. &
       abs(slope(1)) + surely*slope_error(1) < slope(2)/4) then
-      trouble = 'the bodies press on each other where the base is farthest: approach and ' // &
-        'retreat are exchanged in the third column, or its rows are'
+      trouble = 'the bodies press on each other at the largest distance of the base: approach ' // &
+        'and retreat are exchanged in the third column, or its rows are in reverse order'
     end if
 
   contains
 
-    !> How far the approach lies above the retreat in a part of the travel, beside their common
-    !> slope.
+    !> Height of the approach above the retreat in a part of the travel, without their common slope.
     pure subroutine compare(part, above, error)
       integer, intent(in) :: part
       real(wp), intent(out) :: above, error
@@ -134,7 +133,7 @@ contains
   end subroutine check_ways
 
   !> The mean residual of the samples nearest to the other body, that of as many before them, and
-  !> the distance between both.
+  !> the distance between the two groups.
   pure subroutine nearest(measured, left, near, before, travel)
     type(measured_t), intent(in) :: measured
     real(wp), intent(in) :: left(:)

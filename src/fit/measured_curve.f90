@@ -18,16 +18,16 @@ module measured_curve
     real(wp) :: facing = 1
     !> Samples far from contact, which show the baseline, once they are known.
     logical, allocatable :: far(:)
-    !> Samples that count: neither outliers nor skipped by the deck.
+    !> Samples in use: neither outliers nor skipped by the deck.
     logical, allocatable :: usable(:), skipped(:)
   contains
     procedure :: outlier
   end type measured_t
 
-  !> Fewest samples of a way.
+  !> Smallest number of samples of a way.
   integer, parameter :: fewest = 20
-  !> Turns over the number of samples: above `rough` a column is noise, below `even` it goes there
-  !> and back. The longest travel of a base [m].
+  !> Turns over the number of samples: above `rough` a column is noise, below `even` it goes to and
+  !> fro. The longest travel of a base [m].
   real(wp), parameter :: rough = 0.2_wp, even = 0.02_wp, longest = 1.0e-3_wp
   !> The part of a way's samples at either end within which a turn does not count, and over which
   !> the ends are averaged.
@@ -43,8 +43,8 @@ contains
     outlier = .not. (self%usable .or. self%skipped)
   end function outlier
 
-  !> Reads what `request` says, from its file. A third column says of which way a sample is: 0
-  !> approach, 1 retreat. Without one the ways part where z turns.
+  !> Reads the curve of `request` from its file. A third column has the way of each sample: 0
+  !> approach, 1 retreat. Without it the ways are separated at the turn of z.
   subroutine read_measured(request, measured, error)
     type(measurement_t), intent(in) :: request
     type(measured_t), intent(out) :: measured
@@ -61,7 +61,7 @@ contains
       call check_columns(table%source%file, z, signal, error)
       if (allocated(error)) return
       if (size(z) < fewest) then
-        call fail(error, bad_input, table%source%file // ': fewer than 20 samples are no curve')
+        call fail(error, bad_input, table%source%file // ': a curve needs 20 samples or more')
         return
       end if
       if (size(request%columns) > 2) then
@@ -99,15 +99,15 @@ contains
 
     if (turns_of(z) > rough*size(z) .and. turns_of(signal) < even*size(z)) then
       call fail(error, bad_input, file // ': the position goes up and down, the signal ' // &
-        'evenly; are the two columns exchanged? columns says which is which')
+        'evenly; are the two columns exchanged? columns gives their order')
     else if (maxval(z) - minval(z) > longest) then
       call fail(error, bad_input, file // ': positions span more than a millimetre; if they ' // &
-        'are not in metres, say units = ''nm'', ''nN'' or the like')
+        'are not in metres, give units, such as units = ''nm'', ''nN''')
     end if
 
   contains
 
-    !> How often the differences of a column change their sign.
+    !> Number of changes of sign of the differences of a column.
     pure integer function turns_of(number) result(turns)
       real(wp), intent(in) :: number(:)
       integer :: n
@@ -118,7 +118,7 @@ contains
 
   end subroutine check_columns
 
-  !> Marks the samples before the turn of z; where z does not turn, `segment` decides.
+  !> Marks the samples before the turn of z; without a turn `segment` decides.
   pure function before_turn(z, segment) result(inward)
     real(wp), intent(in) :: z(:)
     character(len=*), intent(in) :: segment
@@ -132,8 +132,8 @@ contains
     inward = [(i <= turn, i=1, size(z))]
   end function before_turn
 
-  !> Finds in which sense z changes on the approach. It fails where a way is too short or both ways
-  !> have the same sense.
+  !> Finds the direction of z on the approach. Fails if a way is too short or both ways have the
+  !> same direction.
   subroutine find_facing(file, measured, error)
     character(len=*), intent(in) :: file
     type(measured_t), intent(inout) :: measured
@@ -144,7 +144,8 @@ contains
     n = [count(measured%inward), count(.not. measured%inward)]
     if (any(n < fewest .and. n > 0) .or. sum(n) == 0) then
       call fail(error, bad_input, file // ': fewer than 20 samples of the approach or the ' // &
-        'retreat; segment says which of them to fit, and columns where the file says so')
+        'retreat; segment chooses the branches to fit, and the third entry of ' // &
+        'columns is the column of the segments')
       return
     end if
     travel = 0

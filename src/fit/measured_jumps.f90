@@ -1,8 +1,8 @@
 !> Jumps of a measured curve between branches. The force falls in a jump inward and rises in a jump
 !> outward, over less travel of the base than the spring alone would need.
 !>
-!> Before a model is known, the mean of some samples before a place is compared with that of as many
-!> after it: of few samples if the difference stands out of the noise, otherwise of more.
+!> Before a model is known, the mean of some samples before a place is compared with the mean of as
+!> many after it: of few samples if the difference exceeds the noise, otherwise of more.
 !>
 !> Once both branches are known, each place between two samples has a likelihood: that the samples
 !> before it lie on one branch and those after it on the other. Samples taken during the jump lie on
@@ -14,26 +14,26 @@ module measured_jumps
   private
   public :: measured_jump_t, find_jump, likely_jump
 
-  !> A jump between the samples `before` and `after`; 0 where none was seen. Position of the base
-  !> with its uncertainty, and the change of the signal.
+  !> A jump between the samples `before` and `after`; 0 if there is none. Position of the base with
+  !> its uncertainty, and the change of the signal.
   type :: measured_jump_t
     integer :: before = 0, after = 0
     real(wp) :: z = 0, uncertainty = 0, change = 0
   end type measured_jump_t
 
-  !> Least change over what the spring makes of it; least remaining change over the noise; most
-  !> steps of a jump that an amplifier has smoothed.
+  !> Smallest change over the change due to the spring; smallest remaining change over the noise;
+  !> largest number of steps of a jump that an amplifier has smoothed.
   real(wp), parameter :: steep = 3, seen = 8
   integer, parameter :: most_steps = 6
 
-  !> Most samples within a smoothed jump. A sample is within the jump, or an outlier, if it is
-  !> farther from both branches than this part of the jump and this many standard deviations. A
-  !> single one is either with equal likelihood; each further neighbour favours the jump by
-  !> `together`, in squares of standard deviations.
+  !> Largest number of samples within a smoothed jump. A sample is within the jump, or an outlier,
+  !> if it is farther from both branches than this part of the jump and this many standard
+  !> deviations. A single one is either with equal likelihood; each further neighbour favours the
+  !> jump by `together`, in squares of standard deviations.
   integer, parameter :: most_within = 6
   real(wp), parameter :: off_part = 0.2_wp, off = 4, together = 4
-  !> The side of a sample is known if the other has less than this chance; the jump is known if less
-  !> than this part of the way's samples is doubtful.
+  !> The side of a sample is known if the other side has less than this chance; the jump is known if
+  !> less than this part of the way's samples is doubtful.
   real(wp), parameter :: doubtful = 1.0e-3_wp, known_part = 0.2_wp
 
 contains
@@ -110,7 +110,7 @@ contains
 
   !> The jump by likelihood. before(i), after(i): squared distances of sample i from either branch
   !> in standard deviations; 0 for samples that do not count. change: of the signal in the jump.
-  !> noise: its standard deviation. first: number of the first sample. No jump where its place is
+  !> noise: its standard deviation. first: number of the first sample. No jump if its position is
   !> not known.
   pure type(measured_jump_t) function likely_jump(z, before, after, change, noise, first) &
     result(jump)

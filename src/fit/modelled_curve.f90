@@ -3,10 +3,9 @@
 !>     signal = F(Z)/(k s) + baseline of the way + slope z ,   Z = facing (z - contact point) ,
 !>
 !> k: stiffness of the spring; s: sensitivity of the detector. The last response of the model is
-!> kept: another contact point or detector needs no new solution.
+!> kept, since another contact point or detector needs no new solution.
 module modelled_curve
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring
   use fit_samples, only: fit_samples_t
   use force_model, only: force_model_t, response_t
@@ -20,10 +19,10 @@ module modelled_curve
     class(force_model_t), pointer :: model => null()
     type(fit_samples_t) :: data
     type(unknown_t), allocatable :: unknown(:)
-    !> Spring, detector and contact point where they are not unknown. If the signal is a force, the
+    !> Spring, detector and contact point if they are not unknown. If the signal is a force, the
     !> detector measures the deflection of the deck's spring.
     real(wp) :: spring = 1, sensitivity = 1, contact_point = 0
-    !> The model is asked for signals up to this, without baseline.
+    !> The largest signal, without baseline, that the model must reach.
     real(wp) :: largest = 0
     type(response_t) :: response
     real(wp), allocatable, private :: asked(:)
@@ -43,7 +42,7 @@ module modelled_curve
 
 contains
 
-  !> Takes another model, and forgets the last response.
+  !> Sets another model, without a response yet.
   subroutine use_model(self, model)
     class(modelled_curve_t), intent(inout) :: self
     class(force_model_t), intent(in), target :: model
@@ -52,7 +51,7 @@ contains
     if (allocated(self%asked)) deallocate (self%asked)
   end subroutine use_model
 
-  !> Has the model respond for these values, unless the last response serves.
+  !> Makes the model respond for these values, unless the last response is sufficient.
   subroutine ask(self, value, with_rates, found)
     class(modelled_curve_t), intent(inout) :: self
     real(wp), intent(in) :: value(:)
@@ -69,7 +68,7 @@ contains
       (self%has_rates .or. .not. with_rates)
     if (found) return
     if (allocated(self%asked)) deallocate (self%asked)
-    ! Twice the travel is enough, wherever the contact point is.
+    ! Twice the travel is enough for any contact point.
     farthest = 2*(maxval(self%data%measured%z) - minval(self%data%measured%z))
     call self%model%respond(asked(:size(asked) - 1), k, farthest, largest, with_rates, &
       self%response, found)
@@ -80,7 +79,7 @@ contains
   end subroutine ask
 
   !> The model's signal at samples, without baseline, by the last response. side: of the jump, for
-  !> all samples; absent: that on which each was measured.
+  !> all samples; absent: the side on which each was measured.
   function signal_of(self, value, sample, side) result(signal)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -101,7 +100,7 @@ contains
       self%number_of(value, of_sensitivity, self%sensitivity))
   end function signal_of
 
-  !> Its derivatives by the unknowns, (sample, unknown), at the samples that count.
+  !> Derivatives of the signal by the unknowns, (sample, unknown), at the samples that count.
   function signal_rates(self, value) result(by)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -129,14 +128,14 @@ contains
     real(wp) :: position, load
     real(wp), allocatable :: rate(:)
 
-    z = ieee_value(z, ieee_quiet_nan)
+    z = nan
     if (self%response%way(way)%main == 0 .or. .not. self%response%way(way)%foretold) return
     call self%response%jump_from(way, position, rate, load)
     z = self%number_of(value, of_contact_point, self%contact_point) + &
       self%data%measured%facing*position
   end function jump_of
 
-  !> Its derivatives by the unknowns; 0 without a jump.
+  !> Derivatives of `jump_of` by the unknowns; 0 without a jump.
   function jump_rates(self, value, way) result(by)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -151,8 +150,8 @@ contains
       0.0_wp, load/self%number_of(value, of_spring, self%spring)**2)
   end function jump_rates
 
-  !> Derivatives by the unknowns in their order, from those by the model's unknowns and by the
-  !> others.
+  !> Derivatives by the unknowns in their order, from those by the model's unknowns and by the other
+  !> unknowns.
   pure function unfolded(role, by_model, by_contact_point, by_sensitivity, by_spring) result(by)
     integer, intent(in) :: role(:)
     real(wp), intent(in) :: by_model(:), by_contact_point, by_sensitivity, by_spring
@@ -212,7 +211,7 @@ contains
       self%number_of(value, of_contact_point, self%contact_point))
   end function position_of
 
-  !> The value of the unknown with a role; `otherwise` where there is none.
+  !> The value of the unknown with a role; `otherwise` if there is none.
   pure real(wp) function number_of(self, value, role, otherwise) result(number)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:), otherwise

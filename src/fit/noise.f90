@@ -8,10 +8,10 @@ module noise
   public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, &
     median_of, normal_median, whiten
 
-  !> Most samples that a prediction uses.
+  !> Largest number of samples that a prediction uses.
   integer, parameter :: longest = 8
 
-  !> The gain n ln(left^2) of any order that is hardly due to chance.
+  !> Gain n ln(left^2) of any order that chance hardly explains.
   real(wp), parameter :: by_chance = 10
   !> The median of the magnitude of a standard normal number.
   real(wp), parameter :: normal_median = 0.6745_wp
@@ -22,8 +22,8 @@ module noise
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
-    !> The number of independent samples that the deviation is known from, and whether it is known
-    !> from the steps between the samples.
+    !> Number of independent samples that give the deviation, and whether the steps between samples
+    !> give it.
     real(wp) :: known_by = huge(1.0_wp)
     logical :: of_steps = .false.
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
@@ -37,7 +37,7 @@ contains
   pure real(wp) function long_deviation(self) result(deviation)
     class(noise_t), intent(in) :: self
 
-    deviation = self%left(self%order)/ abs(1 - sum(self%weight(:self%order, max(1, self%order))))
+    deviation = self%left(self%order)/abs(1 - sum(self%weight(:self%order, max(1, self%order))))
   end function long_deviation
 
   !> Uncorrelated noise.
@@ -133,7 +133,7 @@ contains
       max(sum((z - middle(1))**2, mask), tiny(1.0_wp))
   end function off_line
 
-  !> The weights of all orders from the correlations, and the order with the least n ln(left^2) +
+  !> The weights of all orders from the correlations, and the order with the smallest n ln(left^2) +
   !> order ln(n) (Schwarz, 1978), if chance does not explain the gain over order 0.
   pure subroutine find_weights(noise, n)
     type(noise_t), intent(inout) :: noise
@@ -166,8 +166,8 @@ contains
     reversed = a(size(a):1:-1)
   end function reversed
 
-  !> Transforms columns of numbers, one a sample, so that noise in them becomes white with deviation
-  !> 1. Samples of different runs are uncorrelated.
+  !> Transforms columns of numbers, one for each sample, so that their noise becomes white with
+  !> deviation 1. Samples of different runs are uncorrelated.
   pure subroutine whiten(noise, run, column)
     type(noise_t), intent(in) :: noise
     integer, intent(in) :: run(:)

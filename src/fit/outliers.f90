@@ -1,18 +1,18 @@
-!> Outliers: samples that stand apart from their neighbours on both sides. A jump, a bend or a
-!> change that lasts is not one.
+!> Outliers: samples that differ from their neighbours on both sides. A jump, a bend or a lasting
+!> change is not an outlier.
 module outliers
   use kinds, only: wp
   implicit none
   private
   public :: stand_apart
 
-  !> Neighbours on each side, whose median is compared: one of three may be an outlier itself.
+  !> Number of neighbours on each side, whose median is compared: one of three may be an outlier.
   integer, parameter :: neighbours = 3
 
 contains
 
-  !> Marks samples that lie more than their `tolerance` outside the range between the medians of
-  !> their neighbours in the run. Samples that are not `usable` are ignored.
+  !> Marks samples that are outside the range between the medians of their neighbours in the run by
+  !> more than their `tolerance`. Samples that are not `usable` are ignored.
   pure function stand_apart(signal, run, usable, tolerance) result(apart)
     real(wp), intent(in) :: signal(:), tolerance(:)
     integer, intent(in) :: run(:)
@@ -23,7 +23,7 @@ contains
     integer :: i, pass
 
     good = usable
-    ! The second pass leaves out what the first found, which may have hidden others.
+    ! The second pass leaves out the outliers of the first, which may have hidden others.
     do pass = 1, 2
       apart = .false.
       do i = 1, size(signal)

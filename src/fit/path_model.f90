@@ -77,7 +77,7 @@ contains
     call find_ways(self%steps%problem, self%driven, response)
   end subroutine respond
 
-  !> Whether the trial solved last is of these values, and goes as far.
+  !> Whether the trial solved last has these values, and reaches far enough.
   pure logical function is_known(self, value, stiffness, farthest, largest)
     class(path_model_t), intent(in) :: self
     real(wp), intent(in) :: value(:), stiffness, farthest, largest
@@ -189,7 +189,7 @@ contains
 
   contains
 
-    !> Begin (1) or end (2) of panel n, at x, where t has the unit `width` of x.
+    !> Sets the begin (1) or end (2) of panel n, at x; `width` is the unit of t.
     subroutine add_end(side, x, width)
       integer, intent(in) :: side
       real(wp), intent(in) :: x, width
@@ -207,7 +207,7 @@ contains
 
   end subroutine make_branch
 
-  !> Which branches the bodies go along, in and out, and from which of them they jump farthest.
+  !> Finds the branches of the way in and of the way out, and the main jump of each.
   subroutine find_ways(problem, driven, response)
     type(problem_t), intent(in) :: problem
     type(driven_t), intent(in) :: driven
@@ -226,7 +226,7 @@ contains
           problem%law%separation_of(driven%drive%position(driven%leg(i)%to))]
       end associate
     end do
-    ! The jumps of a way start from its legs, in order, but for the last.
+    ! The jumps of a way start from its legs, in order, except the last leg.
     largest = 0
     do i = 1, size(driven%jump)
       k = merge(inward, outward, driven%jump(i)%inward)

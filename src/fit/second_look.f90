@@ -10,17 +10,18 @@ module second_look
   private
   public :: look_again
 
-  !> Standard deviations beyond which a sample is an outlier; one good sample in 150,000 is.
+  !> Standard deviations above which a sample is an outlier; one good sample in 150,000 exceeds
+  !> this.
   real(wp), parameter :: apart = 4.5_wp
-  !> Far samples that suffice to find a correlation of the noise; standard errors by which the noise
-  !> far from contact must differ from that elsewhere.
+  !> Number of far samples that suffices to find a correlation of the noise; standard errors by
+  !> which the noise far from contact must differ from the noise elsewhere.
   integer, parameter :: enough = 50
   real(wp), parameter :: differs = 4
 
 contains
 
   !> Finds noise, outliers and jumps again. value: the best fit so far. keep_noise: the noise is
-  !> given. settled: nothing significant has changed.
+  !> given. settled: there was no significant change.
   subroutine look_again(curve, value, keep_noise, settled)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: value(:)
@@ -58,7 +59,7 @@ contains
     call curve%data%take(1)
   end subroutine look_again
 
-  !> The noise of the residuals, of all samples if possible.
+  !> Finds the noise of the residuals, of all samples if possible.
   subroutine renew_noise(curve, left)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: left(:)

@@ -1,6 +1,6 @@
 !> Forces beyond the end of a mesh, where the deformation hardly varies: from the position r0 on the
-!> gap is H(r) = H(r0) + f(r) - f(r0). For the parabola r dr = dH, so the integrals are the law's
-!> own, Derjaguin's (23). For other shapes they are integrated over r0/r.
+!> gap is H(r) = H(r0) + f(r) - f(r0). For the parabola r dr = dH, so that the integrals are the
+!> law's own, Derjaguin's (23). For other shapes they are integrals over r0/r.
 module beyond_mesh
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -9,10 +9,10 @@ module beyond_mesh
   private
   public :: load_beyond, load_slope_beyond, energy_beyond, energy_density, farthest
 
-  !> Points of the quadrature, and for the energy of the parabola, where a power of the gap needs
-  !> few.
+  !> Number of points of the quadrature; and for the energy of the parabola, where the gap is a
+  !> power of the variable.
   integer, parameter :: points = 24, few = 8
-  !> No force acts beyond this gap; its powers are numbers.
+  !> Largest gap with a force; powers of this gap do not overflow.
   real(wp), parameter :: farthest = 1.0e30_wp
 
   !> The points: gap, position, and the weight of g in Int g(H) r dr.
@@ -36,7 +36,7 @@ contains
     end if
   end function load_beyond
 
-  !> Its derivatives by the gap and by the position.
+  !> The derivatives of the load by the gap and by the position.
   pure function load_slope_beyond(problem, gap, from) result(slope)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap, from
@@ -52,7 +52,7 @@ contains
     slope(2) = slope(2) - problem%shape%slope(from)*slope(1)
   end function load_slope_beyond
 
-  !> Int e(H) r dr, e being the `energy_density`.
+  !> Int e(H) r dr, where e is the `energy_density`.
   pure real(wp) function energy_beyond(problem, gap, from) result(energy)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap, from
@@ -70,9 +70,9 @@ contains
   end function energy_beyond
 
   !> The energy of the surface force per area, at gaps and positions. Between shapes that open
-  !> slowly it falls so slowly (as r^-2 under gap^-3 between cones) that its integral hardly
-  !> converges, or diverges. Only differences of energies count, so that of undeformed bodies at H0
-  !> = 1 is subtracted.
+  !> slowly it falls so slowly (as r^-2 for gap^-3 between cones) that its integral hardly
+  !> converges, or diverges. Since only differences of energies matter, the energy of undeformed
+  !> bodies at H0 = 1 is subtracted.
   pure function energy_density(problem, gap, r) result(energy)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap(:), r(:)
@@ -85,7 +85,7 @@ contains
     energy = energy - problem%law%energy(min(1 + problem%shape%height(r), farthest))
   end function energy_density
 
-  !> With r = from/x.
+  !> The rule for r = from/x.
   pure type(rule_t) function rule_beyond(problem, gap, from) result(rule)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap, from

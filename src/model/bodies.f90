@@ -1,4 +1,4 @@
-!> The two elastic bodies, seen as one.
+!> The two elastic bodies as one.
 module bodies
   use kinds, only: wp
   implicit none
@@ -7,10 +7,10 @@ module bodies
 
 contains
 
-  !> Stiffness E/(1-nu^2) [Pa] of two identical bodies that deform together as these two do.
-  !> `young` [Pa] and `poisson` hold one value a body. The compliances add, so that (1-nu^2)/E of
-  !> the identical bodies is the arithmetic mean of the two bodies' values; the usual composite
-  !> modulus E* is half of this stiffness. A body may be stiffer than the other by any factor.
+  !> Stiffness E/(1-nu^2) [Pa] of two identical bodies that deform together as much as these two.
+  !> `young` [Pa] and `poisson` have one value for each body. The compliances add, so that
+  !> (1-nu^2)/E of the identical bodies is the mean of the two bodies' values; the usual composite
+  !> modulus E* is half of this stiffness. The two stiffnesses may differ by any factor.
   pure real(wp) function composite_stiffness(young, poisson) result(stiffness)
     real(wp), intent(in) :: young(2), poisson(2)
 
@@ -18,7 +18,7 @@ contains
   end function composite_stiffness
 
   !> The deformation of each of two bodies over that of identical bodies of the composite stiffness:
-  !> its compliance over the mean compliance. Arguments as above.
+  !> its compliance over the mean compliance. Arguments as in `composite_stiffness`.
   pure function compliance_shares(young, poisson) result(share)
     real(wp), intent(in) :: young(2), poisson(2)
     real(wp) :: share(2)

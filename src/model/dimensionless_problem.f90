@@ -1,11 +1,11 @@
-!> The problem without its units. With gaps in units of the law's length L, lateral positions in
-!> those of the shape, sqrt(R L), and pressures in the law's unit, (14)-(18) of the paper become
+!> The dimensionless problem. With gaps in units of the law's length L, lateral positions in the
+!> unit of the shape, sqrt(R L), and pressures in the law's unit, (14)-(18) of the paper become
 !>
 !>     H(rho) = H0 + f(rho) + 2 coupling Int P(H) k rho' drho' ,
 !>
 !> with f(rho) = rho^2/2 for the paper's parabola and one parameter, coupling = (1-nu^2)/E sqrt(R/L)
 !> pressure_unit: sigma (40) for the Lennard-Jones law, Lambda (39) at h0 = 0 for the exponential
-!> one, 0 for rigid bodies. Of other shapes R is only what makes sqrt(R L) their lateral unit.
+!> law, 0 for rigid bodies. For other shapes R is defined by their lateral unit, sqrt(R L).
 module dimensionless_problem
   use kinds, only: wp, pi
   use force_law, only: force_law_t
@@ -29,20 +29,21 @@ module dimensionless_problem
     real(wp) :: radius = 1, stiffness = 1
     logical :: rigid = .false.
     !> Largest gap (law's lengths) at which the pressure of a draining fluid is not yet a power of
-    !> the position; 0: there is no fluid.
+    !> the position; 0 without a fluid.
     real(wp) :: film_gap = 0
     !> Deformation of each body over that of identical bodies.
     real(wp) :: share(2) = 1
   end type problem_t
 
-  !> Bodies are in contact, as in the paper's Fig. 6, where the gap is below this many gaps at rest.
+  !> Bodies are in contact, as in the paper's Fig. 6, at gaps below this multiple of the gap at
+  !> rest.
   real(wp), parameter :: contact_gap = 1.1_wp
   !> Width of the neck times sigma, lateral units.
   real(wp), parameter :: neck = 0.375_wp
 
 contains
 
-  !> stiffness [Pa] as in `bodies`; it is not used for rigid bodies.
+  !> A problem; stiffness [Pa] is that of `bodies`, and is ignored for rigid bodies.
   type(problem_t) function new_problem(law, shape, stiffness, rigid) result(problem)
     class(force_law_t), intent(in) :: law
     class(shape_t), intent(in) :: shape
@@ -70,8 +71,8 @@ contains
   end function adhesion_strength
 
   !> The coupling of half-spaces that yield as much to a flat punch of this radius (lateral units),
-  !> approximately. A punch makes waves of weight (sin(k radius)/(k radius))^2; equal weights up to
-  !> a k that keeps their sum stand for these.
+  !> approximately. A punch makes waves of weight (sin(k radius)/(k radius))^2; these are replaced
+  !> by equal weights up to a k that keeps their sum.
   elemental real(wp) function coupling_over(problem, radius) result(coupling)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: radius
@@ -81,8 +82,8 @@ contains
       coupling = coupling*(1 + problem%body%mean_beside(0.5_wp*pi/max(radius, tiny(radius))))
   end function coupling_over
 
-  !> Width of the zone outside the contact edge over which the tension decays, lateral units:
-  !> 0.75 E* L^2/gamma = 0.375/sigma; huge where bodies are rigid or nothing attracts.
+  !> Width of the zone outside the contact edge over which the tension decays, in lateral units:
+  !> 0.75 E* L^2/gamma = 0.375/sigma; huge for rigid bodies or without attraction.
   pure real(wp) function neck_width(problem)
     type(problem_t), intent(in) :: problem
 
@@ -90,7 +91,7 @@ contains
     if (adhesion_strength(problem) > 0) neck_width = neck/adhesion_strength(problem)
   end function neck_width
 
-  !> A distance between nodes (lateral units) over the width of the neck; 0 where there is no neck.
+  !> A distance between nodes (lateral units) over the width of the neck; 0 without a neck.
   pure real(wp) function spacing_over_neck(problem, spacing)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: spacing
@@ -98,8 +99,8 @@ contains
     spacing_over_neck = spacing*adhesion_strength(problem)/neck
   end function spacing_over_neck
 
-  !> Tabor's parameter (R gamma^2/(E*^2 L^3))^(1/3) = (4 sigma^2)^(1/3), and for a gap B r^n
-  !> ((gamma/E*)^n/(2 B L^(2n-1)))^(1/(2n-1)) = (2 sigma)^(n/(2n-1)); 0 without adhesion.
+  !> Tabor's parameter (R gamma^2/(E*^2 L^3))^(1/3) = (4 sigma^2)^(1/3); for a gap B r^n it is
+  !> ((gamma/E*)^n/(2 B L^(2n-1)))^(1/(2n-1)) = (2 sigma)^(n/(2n-1)). 0 without adhesion.
   pure real(wp) function tabor_parameter(problem)
     type(problem_t), intent(in) :: problem
 
@@ -112,12 +113,12 @@ contains
     end associate
   end function tabor_parameter
 
-  !> A gap beyond which bodies hardly deform: twice that of the jump of parabolas into contact under
-  !> an r^-3 attraction, (37). For any shape and attractive law, about a tenth of the yielding that
-  !> a jump takes remains there. It lies outside a step of the law.
+  !> A gap beyond which bodies hardly deform: twice the gap at which parabolas jump into contact
+  !> under an r^-3 attraction, (37). For any shape and attractive law, the deformation there is
+  !> about a tenth of that at the jump. The gap is outside a step of the law.
   pure real(wp) function calm_gap(problem) result(gap)
     type(problem_t), intent(in) :: problem
-    !> Widths of a step outside it at which erfc(x) is below rounding.
+    !> Distance from a step, in its widths, at which erfc(x) is below rounding.
     real(wp), parameter :: outside = 6
 
     gap = max(5.0_wp, yielding_gap(problem, 1.0_wp/8))
@@ -128,16 +129,16 @@ contains
       problem%law%adhesion)**(2.0_wp/7))
   end function calm_gap
 
-  !> The largest gap at which bodies yield by more than the fraction `left` of what makes them jump
-  !> into contact; 0 where they never do. Over the zone of interaction, sqrt(gap) wide for a
-  !> parabola, the law's slope makes bodies yield by coupling*slope*width of their gap, times a
-  !> constant. The constant is chosen so that the result is one at (37), the gap of the jump under
-  !> an r^-3 attraction.
+  !> The largest gap at which bodies deform by more than the fraction `left` of the deformation at
+  !> the jump into contact; 0 if there is none. Over the zone of interaction, sqrt(gap) wide for a
+  !> parabola, the law's slope deforms bodies by coupling*slope*width of their gap, times a
+  !> constant. The constant makes the result one at (37), the gap of the jump under an r^-3
+  !> attraction.
   pure real(wp) function yielding_gap(problem, left) result(gap)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: left
     real(wp), parameter :: at_jump = 27.0_wp/8
-    !> Ratio of gaps that are tried, and their number: up to 1e6 lengths.
+    !> Ratio of the gaps tried, and their number: up to 1e6 lengths.
     real(wp), parameter :: ratio = 1.05_wp
     integer, parameter :: tried = 284
     real(wp) :: at(tried), width(tried)
@@ -152,15 +153,15 @@ contains
     if (last > 0) gap = at(last)
   end function yielding_gap
 
-  !> gamma [J/m^2], the work of adhesion; 0 for a law that does not attract, negative where contact
-  !> is only metastable.
+  !> gamma [J/m^2], the work of adhesion; 0 for a law that does not attract, negative if contact is
+  !> only metastable.
   pure real(wp) function surface_energy(problem)
     type(problem_t), intent(in) :: problem
 
     surface_energy = problem%law%work*problem%pressure*problem%length
   end function surface_energy
 
-  !> Largest tension of the law [Pa], that at the contact edge; 0 for a law without a largest one.
+  !> Largest tension of the law [Pa], at the contact edge; 0 for a law without a largest tension.
   pure real(wp) function largest_tension(problem)
     type(problem_t), intent(in) :: problem
     real(wp) :: pressure(1)
@@ -171,7 +172,7 @@ contains
     largest_tension = -pressure(1)*problem%pressure
   end function largest_tension
 
-  !> The gap up to which bodies are in contact, law's lengths; below any where nothing says so.
+  !> Largest gap of bodies in contact (law's lengths); -huge if the law does not define it.
   pure real(wp) function contact_level_of(problem) result(level)
     type(problem_t), intent(in) :: problem
 

@@ -1,15 +1,16 @@
-!> What the two bodies, seen as one, yield to a pressure: an elastic half-space and, for bodies that
-!> are not homogeneous, a remainder. Under a pressure p J0(k r) the surfaces of a half-space come
-!> closer by something over k, and those of the bodies by L(k) times that. The gap rises at r by
+!> The deformation of the two bodies, as one body, under a pressure: that of an elastic half-space
+!> and, for bodies that are not homogeneous, a remainder. Under a pressure p J0(k r) the surfaces of
+!> a half-space approach each other by a constant over k, and those of the bodies by L(k) times
+!> this. The gap at r rises by
 !>
 !>     2 coupling Int P(t) [k(r, t) + D(r, t)] t dt ,
 !>     D = 2 Int_0^inf (L(k) - 1) J0(k r) J0(k t) dk ,
 !>
-!> with the half-space's kernel of (15), of which the coupling says how much it yields.
+!> with the kernel of a half-space (15), whose compliance is in the coupling.
 !>
-!> A homogeneous body has no remainder. Its kernel scales with all lengths at once, so that one
-!> matrix serves every contact radius; that of other bodies is made anew for each
-!> (`elastic_operator`). No other module of the equations asks which body it has.
+!> A homogeneous body has no remainder. Its kernel scales with all lengths, so that one matrix
+!> is valid for all contact radii; for other bodies a matrix is made for each radius
+!> (`elastic_operator`). No other module of the equations depends on the kind of body.
 module elastic_body
   use kinds, only: wp
   implicit none
@@ -42,15 +43,15 @@ module elastic_body
       real(wp) :: value(size(k))
     end function describe
 
-    !> The mean of L - 1 up to a wave number.
+    !> The mean of L - 1 over wave numbers from 0 to k.
     elemental real(wp) function average(self, k)
       import :: elastic_body_t, wp
       class(elastic_body_t), intent(in) :: self
       real(wp), intent(in) :: k
     end function average
 
-    !> Wave numbers up to the first of which L is a polynomial of low degree, as it is between k and
-    !> 3 k from there on, and beyond the last of which L - 1 is nothing.
+    !> Two wave numbers: up to the first L is a polynomial of low degree, as it is between k and 3 k
+    !> from there on; beyond the second L - 1 is negligible.
     pure function bound(self) result(k)
       import :: elastic_body_t, wp
       class(elastic_body_t), intent(in) :: self
@@ -70,14 +71,14 @@ module elastic_body
 
 contains
 
-  !> Whether both bodies yield by the same but for a factor.
+  !> Whether the deformations of the two bodies differ only by a factor.
   pure logical function is_alike(self)
     class(elastic_body_t), intent(in) :: self
 
     is_alike = .true.
   end function is_alike
 
-  !> What one of the two bodies, 1 or 2, yields beside its own half-space.
+  !> The remainder of one of the two bodies, 1 or 2, beside its own half-space.
   subroutine take_one(self, which, one)
     class(elastic_body_t), intent(in) :: self
     integer, intent(in) :: which

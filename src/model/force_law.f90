@@ -1,9 +1,9 @@
-!> What every surface-force law offers. A law is a type that extends this one, in a file of its own
-!> under laws/, with its keys, the reading of its group, its parameters and formulas.
+!> The interface of all surface-force laws. A law is a type that extends this one, in a file of its
+!> own under laws/, with its keys, the reader of its group, its parameters and formulas.
 !>
 !> Formulas are in the law's own units: gaps from `origin` in units of `length`, pressures in
-!> `pressure_unit`, energies per area in their product. Pressures are inward positive: repulsion is
-!> positive, (16) of the paper.
+!> `pressure_unit`, energies per area in their product. A repulsive pressure is positive, (16) of
+!> the paper.
 module force_law
   use kinds, only: wp
   implicit none
@@ -11,61 +11,62 @@ module force_law
   public :: force_law_t
 
   type, abstract :: force_law_t
-    !> Set by the law: unit of gap [m] and of pressure [Pa], and the separation [m] at gap 0. That
-    !> is the separation of the bodies, unless the well of the law may be anywhere; then gap 0 is
-    !> one length before the well.
+    !> Set by the law: unit of gap [m] and of pressure [Pa], and the separation [m] at gap 0, which
+    !> is 0 unless the well of the law may be anywhere; then gap 0 is one length before the well.
     real(wp) :: length = 1, pressure_unit = 1, origin = 0
     !> Change of gap over which a strong repulsion changes by a factor of e.
     real(wp) :: repulsion_length = 1
-    !> A gap may close in one iteration by at most closure_fraction*gap + closure_length, within
-    !> which the linearised law is meaningful. This keeps gaps where the formulas are defined.
+    !> In one iteration a gap may close by at most closure_fraction*gap + closure_length, over which
+    !> the linearised law is meaningful. This keeps gaps where the formulas are defined.
     real(wp) :: closure_fraction = 0, closure_length = 0
-    !> Smallest gap at which the formulas are evaluated. No equilibrium has a smaller one; below it
+    !> Smallest gap at which the formulas are evaluated. No equilibrium has a smaller gap; below it
     !> pressures, or their products with the coupling, would overflow.
     real(wp) :: smallest_gap = -300
-    !> Far away the pressure falls as gap^-tail_power; `huge` where it falls faster than any power.
+    !> For large gaps the pressure falls as gap^-tail_power; `huge` if it falls faster than any
+    !> power.
     real(wp) :: tail_power = huge(1.0_wp)
-    !> Gap beyond which the pressure is that power times a series in the inverse of the gap.
+    !> Gap beyond which the pressure is this power times a series in the inverse of the gap.
     real(wp) :: power_from = 0
-    !> Whether `length` and `pressure_unit` are scales of the force. Otherwise those of its well
+    !> Whether `length` and `pressure_unit` are scales of the force. If not, the scales of its well
     !> become the units (`force_sum`).
     logical :: has_units = .true.
-    !> Whether the force has a characteristic length. A single power has none; its `length` is
+    !> Whether the force has a characteristic length. A single power has none; its `length` is then
     !> arbitrary.
     logical :: has_length = .true.
-    !> Whether `length` is the z0 of a law of powers, by which the field defines sigma and Tabor's
-    !> parameter. Otherwise it is the range, surface energy over largest tension.
+    !> Whether `length` is the z0 of a law of powers, which defines sigma and Tabor's parameter. If
+    !> not, it is the range, surface energy over largest tension.
     logical :: has_z0 = .false.
-    !> Period of gap in which the pressure oscillates, and the gap of a step of it and its width,
-    !> for meshes; 0: none.
-    real(wp) :: period = 0, step_at = 0, step_width = 0
-    !> Whether the force is not smooth at some gaps: where it begins or ends, at a table's points.
-    logical :: has_kink = .false.
-    !> Gaps at which the pressure or a derivative of it jumps or nearly does, where integrals over
-    !> the gap are split. Unallocated: none.
-    real(wp), allocatable :: breaks(:)
-    !> How many forces are evaluated at a gap.
-    integer :: terms = 1
-    !> The summary's name for the coupling of law and bodies; sigma (40) if the law attracts. Blank:
+    !> For meshes: period of gap in which the pressure oscillates, gap of a step and its width; 0:
     !> none.
+    real(wp) :: period = 0, step_at = 0, step_width = 0
+    !> Whether the force is not smooth at some gaps: where it begins or ends, or at points of a
+    !> table.
+    logical :: has_kink = .false.
+    !> Gaps at which the pressure or a derivative jumps or nearly jumps; integrals over the gap are
+    !> split there. Not allocated if there are none.
+    real(wp), allocatable :: breaks(:)
+    !> Number of forces in the law.
+    integer :: terms = 1
+    !> Name of the coupling of law and bodies in the summary, for a law that does not attract (else
+    !> sigma (40)). Blank: none.
     character(len=12) :: coupling_name = ''
-    !> The group of the deck that the law is read from, and the keys in it that set the sizes of
-    !> pressure and gap, for messages.
+    !> For messages: the group of the deck that has the law, and its keys for the magnitudes of
+    !> pressure and gap.
     character(len=24) :: group = '', strength_key = '', length_key = ''
-    !> A warning where the law's own assumptions do not hold for the numbers of the deck.
+    !> A warning if the law's own assumptions do not hold for the numbers of the deck.
     character(len=200) :: caveat = ''
 
-    !> Set by the scan of the law (`law_scan`), or by the law where closed forms are known.
+    !> Set by the scan of the law (`law_scan`), or by the law if closed forms are known.
     !> adhesion: tension integrated from the gap at rest to the next zero of the pressure, in units
     !> of length*pressure_unit, which sets the scale of the contact edge; 0 for a law that does not
     !> attract. work: the work of adhesion, from rest to infinity; less than adhesion if a barrier
-    !> lies outside, negative where contact is only metastable.
+    !> is outside, negative if contact is only metastable.
     real(wp) :: adhesion = 0, work = 0
-    !> Gap of maximum tension, which defines the contact edge; 0 where there is no such gap.
+    !> Gap of largest tension, which defines the contact edge; 0 if there is none.
     real(wp) :: edge_gap = 0
-    !> Gap of zero pressure; 0 where there is none.
+    !> Gap of zero pressure; 0 if there is none.
     real(wp) :: rest_gap = 0
-    !> Gap beyond which the repulsion is below rounding; 0 before it is known.
+    !> Gap beyond which the repulsion is below rounding; 0 until it is known.
     real(wp) :: range = 0
   contains
     !> Pressure, its derivative by the gap, and its integral from the gap to infinity.
@@ -89,7 +90,7 @@ module force_law
 
 contains
 
-  !> Largest change by which gaps may close in one iteration.
+  !> Largest decrease of gaps in one iteration.
   pure function closure(self, gap) result(most)
     class(force_law_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
@@ -98,7 +99,7 @@ contains
     most = self%closure_fraction*gap + self%closure_length
   end function closure
 
-  !> Estimated errors of pressure and energy, by rows, where the law is interpolated; 0 for a
+  !> Estimated errors of pressure and energy, one row each, of a law that is interpolated; 0 for a
   !> formula.
   pure function table_error(self, gap) result(value)
     class(force_law_t), intent(in) :: self

@@ -1,4 +1,4 @@
-!> The sum of several forces. A single law is kept as it is, so that an absent force costs nothing.
+!> The sum of several forces. A single law is kept as it is, without the cost of a sum.
 module force_sum
   use kinds, only: wp
   use force_law, only: force_law_t
@@ -7,8 +7,8 @@ module force_sum
   private
   public :: add_term, settle
 
-  !> One of the forces. Its gap is stretch*gap + shift in its own units, and its pressure counts
-  !> `weight` times.
+  !> One of the forces. Its gap is stretch*gap + shift in its own units, and its pressure is
+  !> multiplied by `weight`.
   type :: term_t
     class(force_law_t), allocatable :: law
     real(wp) :: stretch = 1, shift = 0, weight = 1
@@ -69,7 +69,7 @@ contains
 
   end subroutine add_term
 
-  !> Number of forces in a law; a group of the deck may be several.
+  !> Number of forces in a law; one group of the deck may have several.
   pure integer function terms_in(law)
     class(force_law_t), intent(in) :: law
 
@@ -80,11 +80,11 @@ contains
     end select
   end function terms_in
 
-  !> Sets units and scales of a law whose terms are complete. A sum is first scanned in units of its
-  !> shortest term, of those with a length. If it has a well, its units then become those of the
-  !> well: as length the z0 of the first term that has one, else the range (depth over largest
-  !> tension); as pressure the largest tension. The contact is at gap 1. The same holds for a single
-  !> law without units of its own.
+  !> Sets units and scales of a law with all its terms. A sum is first scanned in units of its
+  !> shortest length. If it has a well, the scales of the well become its units: as length the z0 of
+  !> the first term that has one, else the range (depth over largest tension); as pressure the
+  !> largest tension. The contact is at gap 1. The same is done for a single law without units of
+  !> its own.
   subroutine settle(law)
     class(force_law_t), allocatable, intent(inout) :: law
     type(force_sum_t) :: alone
@@ -120,7 +120,7 @@ contains
     end select
   end subroutine settle
 
-  !> Sets the units of a sum; its scales must be found again.
+  !> Sets the units of a sum; its scales must then be found again.
   subroutine take_units(law, length, unit, origin)
     type(force_sum_t), intent(inout) :: law
     real(wp), intent(in) :: length, unit, origin
@@ -171,7 +171,7 @@ contains
     law%length_key = law%term(1)%law%length_key
   end subroutine take_units
 
-  !> Gaps of the sum as those of a term.
+  !> The gap of a term at a gap of the sum.
   elemental real(wp) function own(self, gap)
     class(term_t), intent(in) :: self
     real(wp), intent(in) :: gap
@@ -179,7 +179,7 @@ contains
     own = self%stretch*gap + self%shift
   end function own
 
-  !> Lengths of the terms, of those with a length if there are any.
+  !> Lengths of those terms that have a characteristic length, or of all terms if none has.
   pure function lengths(law)
     type(force_sum_t), intent(in) :: law
     real(wp), allocatable :: lengths(:)
@@ -264,8 +264,8 @@ contains
     end do
   end function table_error
 
-  !> The least closure that any of the forces allows. Beyond the range half of the excess is allowed
-  !> as well, whatever the lengths: distant gaps are large, and so is the error of their prediction.
+  !> The smallest closure of all forces; beyond the range also half of the excess over the range,
+  !> since distant gaps are large, and so are the errors of their prediction.
   pure function closure(self, gap) result(most)
     class(force_sum_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)

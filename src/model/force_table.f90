@@ -1,11 +1,12 @@
-!> A force known at points only. The pressure, or the energy, is divided by its tail and
+!> A force that is known at points. The pressure, or the energy, is divided by its tail and
 !> interpolated: q = p g^m as a function of u = ln g for a tail that is a power, q = p exp(u) with u
-!> = g/l for an exponential one; the gap g is in units of the first. The energy is the integral of
-!> the interpolant, or the pressure its derivative. Beyond the last point q is constant. Before the
-!> first point the pressure is a power of the gap that continues value and slope.
+!> = g/l for an exponential tail; the gap g is in units of the first gap. The energy is the integral
+!> of the interpolant, or the pressure its derivative. Beyond the last point q is constant. Before
+!> the first point the pressure is a power of the gap with the same value and slope.
 module force_table
   use kinds, only: wp
   use cubic, only: spline, monotone
+  use interpolation, only: interval_of
   use quadrature, only: gauss_legendre
   implicit none
   private
@@ -32,8 +33,8 @@ module force_table
 
 contains
 
-  !> The table of `value`, pressures or energies, at the gaps g, of which the first is 1 and which
-  !> ascend. The pressure ends as g^-tail_exponent, or as exp(-g/decay_length) where that is not 0.
+  !> The table of `value`, pressures or energies, at the ascending gaps g, the first of which is 1.
+  !> The pressure ends as g^-tail_exponent, or as exp(-g/decay_length) if decay_length is not 0.
   function new_force_table(g, value, of_energy, tail_exponent, decay_length, by_spline) &
     result(table)
     real(wp), intent(in) :: g(:), value(:), tail_exponent, decay_length
@@ -67,7 +68,7 @@ contains
     at_first = table%values(1.0_wp)
     table%pressure = at_first(1)
     table%energy = at_first(3)
-    ! No pressure, no power.
+    ! Without a pressure there is no power.
     table%power = -at_first(2)/sign(max(abs(at_first(1)), tiny(1.0_wp)), at_first(1))
   end function new_force_table
 
@@ -123,7 +124,7 @@ contains
       du = 1/self%decay_length
       ddu = 0
     end if
-    i = piece_of(self%u, u)
+    i = interval_of(self%u(:n - 1), u)
     t = min(u, self%u(n)) - self%u(i)
     associate (c => self%cubic(:, i))
       q = [c(1) + t*(c(2) + t*(c(3) + t*c(4))), c(2) + t*(2*c(3) + 3*t*c(4)), 2*c(3) + 6*t*c(4)]
@@ -142,23 +143,5 @@ contains
       value = [q(0), du*q(1), self%energy_from(i + 1) + self%integral(i, u)]
     end if
   end function values
-
-  !> The piece between neighbours of the ascending x that contains `at`; the last one beyond the
-  !> end.
-  pure integer function piece_of(x, at) result(low)
-    real(wp), intent(in) :: x(:), at
-    integer :: high, middle
-
-    low = 1
-    high = size(x)
-    do while (high - low > 1)
-      middle = (low + high)/2
-      if (x(middle) <= at) then
-        low = middle
-      else
-        high = middle
-      end if
-    end do
-  end function piece_of
 
 end module force_table

@@ -1,4 +1,4 @@
-!> Common parts of the laws' readers of their groups.
+!> Common parts of the readers of force laws.
 module law_reading
   use kinds, only: wp
   use failure, only: failure_t
@@ -9,13 +9,13 @@ module law_reading
   private
   public :: keys_of_force, is_law, check_parameter, check_decades
 
-  !> Most decades, either way, of units and derived quantities.
+  !> Largest decimal order, positive or negative, of units and derived quantities.
   integer, parameter :: most_decades = 100
 
 contains
 
-  !> The row of &force, the group of the paper's two laws, and the row of `law`; the laws add their
-  !> own rows.
+  !> The row of &force, the group of the paper's two laws, and the row of its key `law`; the laws
+  !> add their own rows.
   pure function keys_of_force() result(rows)
     type(key_spec), allocatable :: rows(:)
 
@@ -37,7 +37,7 @@ contains
     is_law = name == law
   end function is_law
 
-  !> Requires a parameter of &force with its law, and refuses it with another.
+  !> Requires a parameter of &force for its law, if it is `needed`, and refuses it for another law.
   pure subroutine check_parameter(deck, law, key, needed, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: law, key
@@ -56,7 +56,7 @@ contains
   end subroutine check_parameter
 
   !> Refuses `what`, a quantity of 10^decades `unit` that follows from values of &bodies and of the
-  !> group. Decades are sums of logarithms, which do not overflow.
+  !> group, if it is out of range.
   pure subroutine check_decades(deck, group, key, decades, what, unit, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: group, key, what, unit
@@ -65,7 +65,7 @@ contains
 
     if (.not. abs(decades) <= most_decades) call deck%mistake(group, key, &
       'these values of &bodies and &'//group//' make '//what//' of 1e'// &
-      brief(real(nint(decades), wp))//unit//'; allowed: from 1e-100 to 1e100', error)
+      brief(nint(decades))//unit//'; allowed: from 1e-100 to 1e100', error)
   end subroutine check_decades
 
 end module law_reading

@@ -1,7 +1,8 @@
-!> The natural scales of a force law from a scan of its pressure: zeros, largest tension, range,
-!> depth of the well. Solvers use nothing else of a law than these and its formulas.
+!> The scales of a force law from a scan of its pressure: zeros, largest tension, range, depth of
+!> the well. Solvers use only these and the formulas of a law.
 module law_scan
   use kinds, only: wp
+  use root_finding, only: bracket_t
   use force_law, only: force_law_t
   implicit none
   private
@@ -15,23 +16,23 @@ module law_scan
   end type surroundings_t
 
   !> Gaps of the scan, in the law's lengths: geometrically spaced from `nearest` to `farthest` above
-  !> the smallest gap of a singular law, and evenly spaced below for others.
+  !> the smallest gap of a singular law; for other laws also evenly spaced below.
   real(wp), parameter :: nearest = 1.0e-2_wp, farthest = 1.0e5_wp, lowest = -60
   integer, parameter :: geometric = 3000, even = 3000
-  !> Pressure at which a law has ended, relative to the largest tension or the unit; and lengths
-  !> beyond the gap at rest after which a tail does not matter: a repulsion of the ninth power has
-  !> then ended.
+  !> Pressure below which a law has ended, relative to the largest tension or the unit; and the
+  !> number of lengths beyond the gap at rest after which a tail does not matter, where a repulsion
+  !> of the ninth power has ended.
   real(wp), parameter :: ended = 1.0e-16_wp, longest = 59
-  !> Smaller pressures count as zero.
+  !> Pressures below this count as zero.
   real(wp), parameter :: vanished = 1.0e-100_wp
-  !> A pressure has become a power where its local exponent agrees to this.
+  !> Error of the local exponent below which a pressure counts as a power.
   real(wp), parameter :: settled = 1.0e-2_wp
-  !> Barriers and outer wells of less pressure than this part of the largest tension are ignored.
+  !> Barriers and outer wells with pressures below this part of the largest tension are ignored.
   real(wp), parameter :: nothing = 1.0e-12_wp
 
 contains
 
-  !> Fills in adhesion, work, edge_gap, rest_gap and range of a law that has not set its range.
+  !> Sets adhesion, work, edge_gap, rest_gap and range of a law that has not set its range.
   subroutine find_scales(law)
     class(force_law_t), intent(inout) :: law
     real(wp), allocatable :: gap(:), pressure(:), slope(:)
@@ -44,7 +45,7 @@ contains
     end if
     gap = gaps_of(law)
     pressure = law%pressure(gap)
-    ! Exponentials below this underflow, and their signs mean nothing.
+    ! Exponentials below this underflow, and their signs are meaningless.
     i = findloc(abs(pressure) > vanished, .true., 1, back=.true.)
     gap = gap(:i)
     pressure = pressure(:i)
@@ -64,7 +65,7 @@ contains
         largest = -pressure_at(law, law%edge_gap)
       end if
     else if (pressure(1) < 0) then
-      ! Without a well the energy at one length stands for its depth.
+      ! Without a well the adhesion is the energy at one length.
       law%adhesion = -energy_at(law, 1.0_wp)
       law%work = law%adhesion
     end if
@@ -89,7 +90,8 @@ contains
     if (.not. law%edge_gap > 0) return
     gap = gaps_of(law)
     pressure = law%pressure(gap)
-    ! Smaller pressures are rounding or negligible; a barrier that fades into them has no well.
+    ! Smaller pressures are negligible or rounding errors; a barrier that fades into them has no
+    ! well.
     counts = abs(pressure) >= nothing*abs(pressure_at(law, law%edge_gap))
     gap = pack(gap, counts)
     pressure = pack(pressure, counts)
@@ -120,8 +122,8 @@ contains
     end do
   end function surroundings_of
 
-  !> The first index from `from` after which values change their sign from positive to negative
-  !> (falling) or back; 0 if none does.
+  !> The first index at or after `from` after which values change their sign from positive to
+  !> negative (falling) or from negative to positive; 0 if there is none.
   pure integer function next_zero(value, from, falling) result(i)
     real(wp), intent(in) :: value(:)
     integer, intent(in) :: from
@@ -134,27 +136,21 @@ contains
     i = 0
   end function next_zero
 
-  !> A zero of the pressure, or of its slope, between two gaps of different signs, bisected to the
-  !> last bit because all scales are built on it.
+  !> A zero of the pressure, or of its slope, between two gaps of different signs, bisected to
+  !> rounding, since all scales depend on it.
   real(wp) function zero_between(law, from, to, of_slope) result(middle)
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: from, to
     logical, intent(in) :: of_slope
-    real(wp) :: low, high
+    type(bracket_t) :: bracket
     logical :: positive
 
-    low = from
-    high = to
-    positive = is_positive(low)
-    do
-      middle = low + 0.5_wp*(high - low)
-      if (middle <= low .or. middle >= high) exit
-      if (is_positive(middle) .eqv. positive) then
-        low = middle
-      else
-        high = middle
-      end if
+    bracket = bracket_t(from, to)
+    positive = is_positive(from)
+    do while (bracket%is_open())
+      call bracket%narrow(is_positive(bracket%middle()) .eqv. positive)
     end do
+    middle = bracket%middle()
 
   contains
 

@@ -1,11 +1,11 @@
-!> The pressure of the nonlinear double layer as a table, made once. With u = -ln tanh(h/2), which
-!> is -ln(h/2) at small gaps h and 2 exp(-h) at large ones, q = p sinh h varies slowly over the
-!> decades of u and is constant far away, but for terms like u ln u. On panels of u it is a
-!> Chebyshev series. Since du = -dh/sinh h, the energy is the integral of q over u: that of the
-!> series, exactly, as the slope is its derivative.
+!> The pressure of the nonlinear double layer as a table. With u = -ln tanh(h/2), which is -ln(h/2)
+!> at small gaps h and 2 exp(-h) at large gaps, q = p sinh h varies slowly over the decades of u and
+!> is constant at large gaps, except for terms like u ln u. On panels of u it is a Chebyshev series.
+!> Since du = -dh/sinh h, the energy is the integral of q over u, the exact integral of the series,
+!> and the slope is its derivative.
 !>
-!> Few panels are solved, but u is dear. What is read are polynomials of the gap itself: on an
-!> eighth of a factor of two pressure, slope and energy times exp(h) are as smooth as powers.
+!> Few panels are solved, but u takes long to evaluate. The table itself has polynomials of the gap:
+!> on an eighth of a factor of two, pressure, slope and energy times exp(h) are as smooth as powers.
 module layer_table
   use kinds, only: wp
   use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
@@ -16,34 +16,35 @@ module layer_table
   private
   public :: layer_table_t, new_layer_table, nearest_gap, of_pressure, of_slope, of_energy
 
-  !> What is read.
+  !> The quantities of the table.
   integer, parameter :: of_pressure = 1, of_slope = 2, of_energy = 3
 
-  !> Exponents of the first and the last factor of two of the table.
+  !> Binary exponents of the first and the last factor of two of the table.
   integer, parameter :: first_octave = -19, last_octave = 6
-  !> Smallest gap of the table, in Debye lengths, 1e-6. Even the 1 um of pure water makes that
-  !> smaller than an atom by a factor of a hundred.
+  !> Smallest gap of the table in Debye lengths, 1e-6. Even for the 1 um of pure water this is a
+  !> hundredth of an atom.
   real(wp), parameter :: nearest_gap = 2.0_wp**(first_octave - 1)
-  !> Gap beyond which q is its limit to rounding: u ln u is 1e-16 there.
+  !> Gap beyond which q is its limit to rounding: u ln u is below 1e-16.
   real(wp), parameter :: farthest_gap = 40
   !> The largest gap on a piece.
   real(wp), parameter :: last_gap = 2.0_wp**last_octave*(1 - epsilon(1.0_wp))
-  !> Degree on a piece, the least and the largest number of pieces of a factor of two: powers of the
-  !> gap, seen from 17 half-widths away, leave 34**-10 of themselves. What the last coefficient may
-  !> be of the pressure, for the next to be less by 30.
+  !> Degree on a piece, smallest and largest number of pieces of a factor of two: on a piece whose
+  !> centre is 17 half-widths from 0, powers of the gap have errors of 34**-10. Largest last
+  !> coefficient over the pressure; the next one would be smaller by a factor of 30.
   integer, parameter :: piece_degree = 9, fewest = 8, finest = 64
   real(wp), parameter :: last_part = 1.0e-12_wp
-  !> Degree of a series, and the most that its last two coefficients may be of the pressure; so much
-  !> is left to the rounding of the quadratures.
+  !> Degree of a series; largest size of its last two coefficients over the pressure, and the size
+  !> that is tolerated for the rounding of the quadratures.
   integer, parameter :: degree = 18
   real(wp), parameter :: resolved = 1.0e-13_wp, tolerated = 1.0e-11_wp
-  !> The ratio of u over a panel, in logarithms: at first and at most, and at least.
+  !> Logarithm of the ratio of u over a panel: first and largest value, and smallest.
   real(wp), parameter :: longest = 8, shortest = 0.02_wp
-  !> Over the ratio that would just be resolved, that of the next panel, and of one that was not.
+  !> The ratio for the next panel, or for a failed panel, over the ratio that would just be
+  !> resolved.
   real(wp), parameter :: careful = 0.9_wp
 
-  !> power(:, piece, quantity): coefficients of the powers of the place on a piece, from -1 to 1;
-  !> parts: pieces of a factor of two.
+  !> power(:, piece, quantity): coefficients of the powers of the coordinate on a piece, from -1 to
+  !> 1; parts: number of pieces of a factor of two.
   type :: layer_table_t
     private
     integer :: parts = fewest
@@ -52,15 +53,15 @@ module layer_table
     procedure :: value
   end type layer_table_t
 
-  !> Panels from the smallest u on, which begin at `first` and end at `last`; columns are series in
-  !> the panel's [-1, 1]. Energies are those from the panel's first u to infinity.
+  !> Panels from the smallest u on, each from `first` to `last`; columns are series in the panel's
+  !> [-1, 1]. Energies are integrals from the gap to infinity.
   type :: panels_t
     real(wp), allocatable :: first(:), last(:)
     real(wp), allocatable :: q(:, :), slope(:, :), energy(:, :)
   end type panels_t
 
-  !> The last gaps that were solved, from which the next is extrapolated; their number, and the
-  !> largest pressure met, without its sign.
+  !> The last states that were solved, from which the next is extrapolated; their number, and the
+  !> largest magnitude of the pressure so far.
   integer, parameter :: most = 4
   type :: trail_t
     integer :: length = 0
@@ -71,8 +72,8 @@ module layer_table
 
 contains
 
-  !> Tabulates the pressure between two surfaces, the first of which has the higher potential; it is
-  !> positive. `solved` is false where an equation was not solved: then there is no table.
+  !> Tabulates the pressure between two surfaces; the first has the higher potential, which is
+  !> positive. solved = .false. if an equation was not solved; there is then no table.
   pure subroutine new_layer_table(surface, table, solved)
     type(surface_t), intent(in) :: surface(2)
     type(layer_table_t), intent(out) :: table
@@ -90,7 +91,7 @@ contains
       trial = trail
       call solve_panel(surface, first, last, trial, series, solved)
       rest = huge(rest)
-      ! Where the pressure vanishes, so much of the largest counts.
+      ! Where the pressure vanishes, errors are relative to a part of the largest pressure.
       if (solved) rest = maxval(abs(series(degree - 1:)))/ &
         max(maxval(abs(series)), trial%largest*sinh(u_at(last)))
       better = careful*(resolved/max(rest, tiny(rest)))**(1.0_wp/degree)
@@ -129,7 +130,7 @@ contains
     u = first + (last - first)*(1 + chebyshev_points(degree))/2
     solved = .true.
     do i = 0, degree
-      ! The point that a panel shares with the one before.
+      ! The first point of a panel is the last of the panel before.
       if (i > 0 .or. trail%length == 0) then
         state = next_state(surface, u(i), trail)
         call solve_gap(surface, u_at(u(i)), state, solved)
@@ -142,7 +143,7 @@ contains
     series = chebyshev_series(q)
   end subroutine solve_panel
 
-  !> Where to begin at u: extrapolated from what was solved.
+  !> The first estimate of the state at u, extrapolated from the states that were solved.
   pure type(gap_state_t) function next_state(surface, u, trail) result(state)
     type(surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: u
@@ -161,7 +162,7 @@ contains
     end select
   end function next_state
 
-  !> Adds a panel after those there are; before the first q is what it is there.
+  !> Appends a panel; before the first panel q is constant.
   pure subroutine append(panels, first, last, series)
     type(panels_t), intent(inout) :: panels
     real(wp), intent(in) :: first, last, series(0:degree)
@@ -190,7 +191,7 @@ contains
 
     u = u_at(gap)
     i = max(count(panels%first <= u), 1)
-    ! Beyond the panels q is its limit, that of the first point.
+    ! At larger gaps q is its limit, that of the first point.
     x = max(-1.0_wp, 2*(u - panels%first(i))/(panels%last(i) - panels%first(i)) - 1)
     q = series_value(panels%q(:, i), x)
     value(of_pressure) = q/sinh(gap)
@@ -202,7 +203,7 @@ contains
     if (u >= panels%first(i)) value(of_energy) = series_value(panels%energy(:, i), x)
   end function solved_at
 
-  !> The polynomials that are read.
+  !> Makes the polynomials of the table from the panels.
   pure subroutine tabulate(panels, table)
     type(panels_t), intent(in) :: panels
     type(layer_table_t), intent(inout) :: table
@@ -227,7 +228,8 @@ contains
           gap = 2.0_wp**(octave - 1)*(1 + (part + (1 + point(k))/2)/table%parts)
           sample(k, :) = exp(gap)*solved_at(panels, gap)
         end do
-        ! One after the other: coefficients of a series fall, so that those of powers round little.
+        ! One matrix after the other: coefficients of a series decrease, so that those of powers
+        ! have small rounding errors.
         table%power(:, piece, :) = matmul(powers, matmul(series, sample))
       end do
     end do
@@ -243,8 +245,8 @@ contains
     integer :: i, k, piece
 
     do i = 1, size(gap)
-      ! Beyond the last piece it is the limit that is met there. What is no number has a piece too,
-      ! and stays none by the exponential.
+      ! Beyond the last piece its end value is used. A NaN also gets a piece, and the exponential
+      ! makes the result NaN.
       near = last_gap
       if (gap(i) < last_gap) near = gap(i)
       x = self%parts*(2*fraction(near) - 1)
@@ -258,7 +260,7 @@ contains
     value = value*exp(-gap)
   end function value
 
-  !> u = -ln tanh(gap/2), to all digits near and far. The function is its own inverse.
+  !> u = -ln tanh(gap/2), with all digits at small and large gaps. The function is its own inverse.
   pure real(wp) function u_at(gap) result(u)
     real(wp), intent(in) :: gap
 

@@ -1,9 +1,8 @@
-!> Bodies of bonded layers. Their surfaces yield to a wave k by L(k) of what half-spaces of the top
-!> layers do (`layered_surface`). L - 1 falls as exp(-2 k thickness) with the thickness of the top
-!> layer; it is tabulated once, as series of powers on panels of k.
+!> Bodies of bonded layers. To a wave k their surfaces yield L(k) times as much as half-spaces of
+!> the top layers (`layered_surface`). L - 1 falls as exp(-2 k thickness) with the thickness of the
+!> top layer. It is tabulated as series of powers on panels of k.
 module layered_body
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use linear_algebra, only: multiply_transposed
   use chebyshev, only: chebyshev_points, chebyshev_series, series_slope, series_integral, &
     power_series, power_value
@@ -14,31 +13,32 @@ module layered_body
   private
   public :: layered_body_t, new_layered_body
 
-  !> Largest k times twice the top layer's thickness: exp(-28) (28)^2 = 5e-10 is left of L - 1, and
-  !> of what pressures have of so short a wave still less.
+  !> Largest k times twice the top layer's thickness: L - 1 is then exp(-28) (28)^2 = 5e-10, and so
+  !> short a wave has still less of a pressure.
   real(wp), parameter :: last_wave = 28
-  !> Degree of L - 1 on a panel of waves, what may be left of its last coefficients, and how often a
-  !> panel is halved.
+  !> Degree of L - 1 on a panel of waves; largest number of halvings of a panel.
   integer, parameter :: degree = 16, halvings = 60
-  !> How far a wave turns over a panel of waves whose sums are to be exact, and nodes of panels
-  !> (`wave_rule`).
+  !> Largest turn of a wave over a panel of waves, and numbers of nodes of a panel (`wave_rule`).
   real(wp), parameter :: swing = 16
   real(wp), parameter :: nodes(2) = 20
-  !> More panels than any layers need whose numbers are not too unlike (`layer_group`).
+  !> More panels than needed for layers within the limits of `layer_group`.
   integer, parameter :: most_panels = 1000
+  !> Largest size of the last coefficients of a series.
   real(wp), parameter :: resolved = 1.0e-13_wp
+
   !> L - 1 of both bodies together, in lateral units.
   type, extends(elastic_body_t) :: layered_body_t
     private
-    !> Ends of panels of k; on them, as series, L - 1, dL/dk, and the integral of L - 1 from 0.
+    !> Ends of panels of k; series on the panels of L - 1, of dL/dk, and of the integral of L - 1
+    !> from 0.
     real(wp), allocatable :: ends(:), series(:, :), slope(:, :), whole(:, :)
-    !> Whether L is 1 throughout: layers and base are of one material.
+    !> Whether L is 1 for all k: layers and base are of one material.
     logical :: plain = .false.
-    !> L(0), of the base; infinite waves.
+    !> L(0), of the base: for infinitely long waves.
     real(wp), public :: bottom = 1
     !> The thinnest of the top layers.
     real(wp), public :: thinnest = 1
-    !> The bodies, and the part that the half-space of the top layer of each has in what both yield.
+    !> The bodies, and the share of each in the compliance of the half-spaces of the top layers.
     type(layered_surface_t), public :: surface(2)
     real(wp), public :: part(2) = 0.5_wp
   contains
@@ -55,7 +55,7 @@ module layered_body
 
 contains
 
-  !> Bodies of these surfaces, thicknesses in lateral units.
+  !> Bodies of these surfaces, with thicknesses in lateral units.
   type(layered_body_t) function new_layered_body(surface, part) result(body)
     type(layered_surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: part(2)
@@ -93,10 +93,10 @@ contains
       body%whole = reshape([body%whole, power_series(whole)], [degree + 2, size(body%ends) - 1])
     end do
     body%plain = largest <= resolved
-    ! Without an end of the series no state may converge.
-    if (body%ends(size(body%ends)) < last) body%series = ieee_value(last, ieee_quiet_nan)
+    ! NaN if the panels do not reach the largest k, so that no state converges.
+    if (body%ends(size(body%ends)) < last) body%series = nan
     body%bottom = body%yielding(tiny(last))
-    ! On a rigid base next to nothing is left.
+    ! On a rigid base only rounding errors are left.
     if (body%bottom < resolved) body%bottom = 0
 
   contains
@@ -131,7 +131,7 @@ contains
     is_homogeneous = self%plain
   end function is_homogeneous
 
-  !> Whether both have the same layers on the same base.
+  !> Whether both bodies have the same number of layers on the same base.
   pure logical function is_alike(self)
     class(layered_body_t), intent(in) :: self
 
@@ -180,7 +180,7 @@ contains
     mean_beside = whole(1)/k
   end function mean_beside
 
-  !> The series of the panels in which the wave numbers lie; nothing beyond.
+  !> The series at wave numbers, each from the panel that contains it; 0 beyond the panels.
   pure function on_panels(ends, series, k) result(value)
     real(wp), intent(in) :: ends(:), series(:, :), k(:)
     real(wp) :: value(size(k))
@@ -190,7 +190,7 @@ contains
     do i = 1, size(k)
       value(i) = 0
       if (k(i) > ends(size(ends))) cycle
-      ! Wave numbers mostly come in order.
+      ! Wave numbers mostly are in ascending order.
       if (k(i) < ends(panel)) panel = 1
       do while (k(i) > ends(panel + 1))
         panel = panel + 1

@@ -1,6 +1,6 @@
-!> What the surface of a body of bonded layers on a base yields to a wave of pressure. Under
-!> p cos(k x), or p J0(k r), it moves by 2 p L(k)/(E' k), with E' = E/(1-nu^2) of the top layer; a
-!> half-space has L = 1.
+!> The compliance of a surface of bonded layers on a base to a wave of pressure. Under p cos(k x),
+!> or p J0(k r), the surface moves by 2 p L(k)/(E' k), with E' = E/(1-nu^2) of the top layer; for a
+!> half-space L = 1.
 !>
 !> In a layer the state (U, W, S, T) of a wave, displacements along and across the surface and
 !> stresses S normal and T tangential over the shear modulus G, obeys with z k as depth
@@ -8,15 +8,15 @@
 !>     U' = W + T,  W' = -eta U + beta S,  T' = gamma U + eta S,  S' = -T ,
 !>
 !> eta = nu/(1-nu), beta = (1-2nu)/(2(1-nu)), gamma = 2/(1-nu), all finite at nu = 1/2. The base
-!> allows two such states. It is not these that are followed upward, since both grow alike and
-!> nothing would be left of their difference, but their five minors (Dunkin, Bull. Seism. Soc. Am.
-!> 55, 335 (1965)), here with signs that make them positive in a half-space:
+!> allows two such states. Both grow upward in the same way, and their difference would be lost.
+!> Instead their five minors are followed upward (Dunkin, Bull. Seism. Soc. Am. 55, 335 (1965)),
+!> with signs that make them positive in a half-space:
 !>
 !>     p = -|U W|,  q = |U S|,  r = -|W S| = |U T|,  v = -|W T|,  x = |S T| ,
 !>     d/d(-z) (p, q, r, v, x) =
 !>       (v + beta q, x + 2 r, v - eta q, gamma p - 2 eta r + beta x, gamma q) .
 !>
-!> This matrix M satisfies M^3 (M^2 - 4) = 0, so that a layer of k t = a turns minors y into
+!> This matrix M satisfies M^3 (M^2 - 4) = 0, so that a layer of k t = a changes minors y into
 !>
 !>     exp(M a) y = [1 + a M + a^2/2 M^2 + (sinh 2a - 2a)/8 M^3 + (cosh 2a - 1 - 2 a^2)/16 M^4] y .
 !>
@@ -27,10 +27,10 @@ module layered_surface
   private
   public :: layered_surface_t
 
-  !> Layers from the top down; lengths in any unit, moduli in any.
+  !> Layers from the top down; lengths in any unit, moduli in any unit.
   type :: layered_surface_t
     real(wp), allocatable :: thickness(:), shear(:), poisson(:)
-    !> What the layers are on: something rigid, or a half-space.
+    !> The base below the layers: rigid, or a half-space.
     logical :: on_rigid = .false.
     real(wp) :: base_shear = 1, base_poisson = 0
   contains
@@ -58,7 +58,7 @@ contains
       below = self%shear(size(self%shear))
     end if
     do i = size(self%thickness), 1, -1
-      ! Stresses are over the shear modulus of the layer.
+      ! Stresses are relative to the shear modulus of the layer.
       associate (ratio => self%shear(i)/below)
         y(1) = y(1)*ratio
         y(5) = y(5)/ratio

@@ -20,7 +20,7 @@ contains
     real(wp) :: value(3), y(2), p(2), sense, x, d, ab, g, mixed, top, top_slope, bottom
 
     ! Changing the sign of one potential, and p into 1 - p, only changes the sign of the pressure.
-    ! The form below loses no digits at small gaps where both p are small; they sum to 1 at most.
+    ! The form below loses no digits at small gaps where both p are small; their sum is at most 1.
     y = surface%potential
     p = surface%regulation
     sense = 1

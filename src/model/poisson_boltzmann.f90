@@ -2,16 +2,16 @@
 !> y'' = sinh y. Potentials y are in kT/(z e), gaps in Debye lengths, pressures in 2 n kT, the
 !> osmotic pressure of the bulk.
 !>
-!> Its first integral, y'^2 = 2 (cosh y - 1 - P), holds the pressure P, and the gap is an integral
-!> of 1/y' over y, an elliptic one. The force is attractive, P < 0, where the electric field
+!> Its first integral, y'^2 = 2 (cosh y - 1 - P), contains the pressure P, and the gap is an
+!> elliptic integral, that of 1/y' over y. The force is attractive, P < 0, if the electric field
 !> vanishes nowhere.
 !>
-!> A surface that regulates its charge, p = 1 constant charge, p = 0 constant potential, keeps
-!> p (s - s0) + (1 - p) cosh(y0/2) (y - y0) = 0, s being the slope of y towards the surface, y0 and
-!> s0 = 2 sinh(y0/2) those of the surface alone: the charge of the inner layer is linear in the
-!> potential, and p = C_D/(C_D + C_I) the share of the diffuse layer's capacity cosh(y0/2) (the
-!> constant regulation approximation, J. Phys. Chem. B 108, 19467, 2004). Along that line
-!> y = y0 + p t and s = s0 - (1 - p) cosh(y0/2) t. Unknown are the two t.
+!> A surface that regulates its charge, p = 1 constant charge, p = 0 constant potential, obeys p (s
+!> - s0) + (1 - p) cosh(y0/2) (y - y0) = 0, where s is the slope of y towards the surface, and y0
+!> and s0 = 2 sinh(y0/2) are the values of the isolated surface: the charge of the inner layer is
+!> linear in the potential, and p = C_D/(C_D + C_I) is the share of the diffuse layer's capacity
+!> cosh(y0/2) (the constant regulation approximation, J. Phys. Chem. B 108, 19467, 2004). On this
+!> line y = y0 + p t and s = s0 - (1 - p) cosh(y0/2) t. The two t are the unknowns.
 module poisson_boltzmann
   use kinds, only: wp
   use elliptic, only: carlson_rf
@@ -19,7 +19,7 @@ module poisson_boltzmann
   private
   public :: surface_t, gap_state_t, far_state, solve_gap
 
-  !> One surface: reduced potential alone, and regulation from 0 to 1.
+  !> One surface: reduced potential of the isolated surface, and regulation from 0 to 1.
   type :: surface_t
     real(wp) :: potential = 0, regulation = 1
   end type surface_t
@@ -31,7 +31,7 @@ module poisson_boltzmann
 
 contains
 
-  !> The state at a large gap, to first order in exp(-gap). The first surface is the one of higher
+  !> The state at a large gap, to first order in exp(-gap). The first surface has the higher
   !> potential, which is not 0.
   pure type(gap_state_t) function far_state(surface, gap) result(state)
     type(surface_t), intent(in) :: surface(2)
@@ -46,18 +46,18 @@ contains
     state%t(1) = state%pressure/sinh(surface(1)%potential)
   end function far_state
 
-  !> Newton's iteration from a nearby state to that at `gap`; solved: whether it converged. The
-  !> derivatives are differences, updated from the steps (Broyden, 1965) as long as the steps gain.
+  !> Newton's iteration from a nearby state to the state at `gap`; solved: whether it converged. The
+  !> derivatives are differences, updated from the steps (Broyden, 1965) while steps are successful.
   pure subroutine solve_gap(surface, gap, state, solved)
     type(surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: gap
     type(gap_state_t), intent(inout) :: state
     logical, intent(out) :: solved
-    !> Increment of the differences relative to the unknowns, which is also their error; gain of a
-    !> step below which the differences are renewed; and the largest error that a step may leave,
-    !> relative to the unknowns, estimated as its length times the error of its derivatives.
+    !> Increment of the differences relative to the unknowns, which is also their error; reduction
+    !> of the residual above which the differences are renewed; and the largest error after the last
+    !> step, relative to the unknowns, estimated as its length times the error of its derivatives.
     real(wp), parameter :: increment = 1.0e-7_wp, gain = 0.1_wp, rounding = 1.0e-16_wp
-    !> The smaller t counts as at least this part of the other.
+    !> The smaller t counts as at least this part of the larger one.
     real(wp), parameter :: negligible = 1.0e-3_wp
     integer, parameter :: most_steps = 60, most_halvings = 20
     real(wp) :: r(2), trial(2), jacobian(2, 2), step(2), t(2), scale(2), unit, off, last
@@ -107,7 +107,7 @@ contains
 
   contains
 
-    !> Difference of the two pressures and of the gap to that asked for.
+    !> Difference of the two pressures, and of the gap from the wanted one.
     pure function residual(t) result(r)
       real(wp), intent(in) :: t(2)
       real(wp) :: r(2)
@@ -139,8 +139,8 @@ contains
   end function slope_at
 
   !> The gap between two surfaces: the integral of 1/y' over y. With w = sinh(y/2)^2 it is that of
-  !> 1/(2 sqrt(w (w - P/2) (1 + w))) over w, from one surface to the other or, where w has its
-  !> minimum between them, P/2 or 0, from there to both.
+  !> 1/(2 sqrt(w (w - P/2) (1 + w))) over w, from one surface to the other or, if w has its minimum,
+  !> P/2 or 0, between them, from there to both.
   elemental real(wp) function gap_of(surface_1, surface_2, t_1, t_2) result(gap)
     type(surface_t), intent(in) :: surface_1, surface_2
     real(wp), intent(in) :: t_1, t_2
@@ -152,7 +152,7 @@ contains
     s = [slope_at(surface_1, t_1), slope_at(surface_2, t_2)]
     p = pressure_at(surface_2, t_2)
     p = sign(max(abs(p), tiny(p)), p)
-    ! Before convergence slopes and potentials are inconsistent; the smaller of both gives the
+    ! Before convergence slopes and potentials are inconsistent; the smaller of the two gives the
     ! better w.
     if (p > 0) then
       between = .not. s(1)*s(2) < 0
@@ -186,7 +186,7 @@ contains
     end function from_least
 
     !> The integral between two w, from their difference and the roots of the three factors at the
-    !> first, x, and the second, y.
+    !> first, x, and at the second, y.
     pure real(wp) function integral(difference, x, y)
       real(wp), intent(in) :: difference, x(3), y(3)
 

@@ -1,6 +1,6 @@
-!> Repulsion and attraction of two powers of the gap: with the surface energy w
-!> p = (w/z0) C [(z0/h)^n - (z0/h)^m], C = (n - 1)(m - 1)/(n - m), whole or either part alone. n, m
-!> = 9, 3 is the Lennard-Jones law between half-spaces.
+!> Repulsion and attraction as two powers of the gap: with the surface energy w
+!> p = (w/z0) C [(z0/h)^n - (z0/h)^m], C = (n - 1)(m - 1)/(n - m), whole or either part alone. With
+!> n, m = 9, 3 it is the Lennard-Jones law between half-spaces.
 module power_pair
   use kinds, only: wp
   use force_law, only: force_law_t
@@ -20,7 +20,7 @@ module power_pair
 
 contains
 
-  !> C.
+  !> The factor C.
   pure real(wp) function pair_factor(exponents)
     real(wp), intent(in) :: exponents(2)
 
@@ -28,7 +28,7 @@ contains
   end function pair_factor
 
   !> surface_energy [J/m^2], z0 [m]; exponents n > m > 1; part is 'full', 'repulsive' or
-  !> 'attractive'. Scales in closed form; otherwise as `new_lennard_jones`.
+  !> 'attractive'. Scales have closed forms; all else is as in `new_lennard_jones`.
   pure type(power_pair_t) function new_power_pair(surface_energy, z0, exponents, part) result(law)
     real(wp), intent(in) :: surface_energy, z0, exponents(2)
     character(len=*), intent(in) :: part

@@ -1,4 +1,4 @@
-!> Problems that differ in the values of some parameters, for derivatives by these and for fits.
+!> Problems that differ in the values of parameters, for derivatives by these and for fits.
 module problem_family
   use kinds, only: wp
   use failure, only: failure_t
@@ -7,8 +7,8 @@ module problem_family
   private
   public :: problem_family_t, parameter_t
 
-  !> A parameter: its value in the present problem, SI units, and its scale, which is that value
-  !> unless it is zero.
+  !> A parameter: its value in the present problem, SI units, and its scale, which is the value
+  !> unless the value is zero.
   type :: parameter_t
     character(len=:), allocatable :: name
     real(wp) :: value = 0, scale = 1
@@ -17,7 +17,7 @@ module problem_family
   type, abstract :: problem_family_t
     type(parameter_t), allocatable :: parameter(:)
   contains
-    !> The problem with other values of the parameters; fails where one is not allowed.
+    !> The problem with other values of the parameters; fails if a value is not allowed.
     procedure(pose_problem), deferred :: pose
   end type problem_family_t
 

@@ -1,9 +1,9 @@
-!> The interface of every shape of the two bodies: the gap f(r) between them when they touch without
+!> The interface of all shapes of the two bodies: the gap f(r) between them when they touch without
 !> force. A shape is a type that extends this one, in a file of its own under shapes/, with its
 !> keys, their reader, its parameters and formulas.
 !>
 !> Formulas are in the units of `dimensionless_problem`: lateral positions in l, heights in the
-!> force law's length L. A shape chooses l; with the radius l^2/L everything else follows as for the
+!> force law's length L. A shape chooses l; with the radius l^2/L all else follows as for the
 !> parabola r^2/(2R), whose l is sqrt(R L). Shapes are convex and smooth except at `breaks`.
 !>
 !> The theory of contact needs two integrals of the slope, after Galin and Sneddon: the indentation
@@ -17,15 +17,15 @@ module shape
   public :: shape_t
 
   type, abstract :: shape_t
-    !> l^2/L [m], l being the lateral unit.
+    !> l^2/L [m], with the lateral unit l.
     real(wp) :: radius = 1
     !> Whether this is the parabola, for which the load of rigid bodies is the law's energy.
     logical :: parabolic = .false.
-    !> Power of r that describes the shape near the axis (0: none), and far away.
+    !> Power of r that describes the shape near the axis (0: none), and at large r.
     real(wp) :: exponent = 2, growth = 2
     !> Positions between 0 and infinity at which the slope or a derivative of it jumps.
     real(wp), allocatable :: breaks(:)
-    !> Position at which the body ends. The shape continues beyond it only to define a gap.
+    !> Position at which the body ends. Beyond it the shape only defines a gap.
     real(wp) :: ends = huge(1.0_wp)
   contains
     !> f(r) and f'(r) at positions r >= 0.
@@ -50,7 +50,7 @@ module shape
     end function profile_function
   end interface
 
-  !> Points of the quadratures, and the fewest in each piece between breaks.
+  !> Number of points of the quadratures, and smallest number in each piece between breaks.
   integer, parameter :: points = 48, fewest = 4
 
 contains
@@ -95,7 +95,7 @@ contains
     indentation = a*slope_integral(self, a, 0)
   end function indentation
 
-  !> Int_0^a [q(a) - q(x)] dx = Int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr: times 2 E*, the load.
+  !> Int_0^a [q(a) - q(x)] dx = Int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr; times 2 E* it is the load.
   elemental real(wp) function indentation_load(self, a) result(load)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: a
@@ -124,7 +124,7 @@ contains
     end do
   end function slope_integral
 
-  !> Inverse of `indentation`; 0 where nothing is indented.
+  !> Inverse of `indentation`; 0 if there is no indentation.
   elemental real(wp) function contact_radius(self, depth) result(a)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: depth
@@ -147,8 +147,8 @@ contains
     a = search%root
   end function contact_radius
 
-  !> How fast the gap outside a contact of radius a opens: with the distance s from the edge as
-  !> sqrt(opening) s^(3/2), as for the parabola, whose opening is a.
+  !> How fast the gap opens outside a contact of radius a: at the distance s from the edge as
+  !> sqrt(opening) s^(3/2), as for the parabola, for which it is a.
   elemental real(wp) function opening(self, a)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: a
@@ -187,7 +187,7 @@ contains
 
   end function hertz_gap
 
-  !> Position beyond which, up to its end, the body is smooth; 0 where it is so but on the axis.
+  !> Position beyond which, up to its end, the body is smooth; 0 if it is smooth except on the axis.
   pure real(wp) function smooth_from(self) result(r)
     class(shape_t), intent(in) :: self
 

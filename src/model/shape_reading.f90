@@ -1,4 +1,4 @@
-!> What shapes have in common when they read their keys of &shape.
+!> Common parts of the readers of shapes.
 module shape_reading
   use kinds, only: wp
   use failure, only: failure_t
@@ -11,22 +11,22 @@ module shape_reading
 
 contains
 
-  !> The rows that belong to no single kind; `kinds` are the names of all. The shapes' own rows come
-  !> after them.
+  !> The rows that belong to no single kind; `kinds` has the names of all kinds. The rows of the
+  !> shapes follow them.
   pure function keys_of_shape(kinds) result(rows)
     character(len=*), intent(in) :: kinds
     type(key_spec), allocatable :: rows(:)
 
     rows = [ &
-      group('shape', 'Shape of the undeformed gap f(r), so that bodies at h0 are h0 + f(r) ' // &
-            'apart; without it r^2/(2R).'), &
+      group('shape', 'Shape of the undeformed gap f(r): bodies at h0 are h0 + f(r) apart. ' // &
+            'Without this group it is r^2/(2R).'), &
       word_key('shape', 'kind', kinds, 'Kind of shape.', required=.true.), &
       real_key('shape', 'radius', 'm', 'Radius R of a parabola or sphere, of the end of a ' // &
-               'spheroid, of the rim of a punch; of a power B = 1/(2 R^(n-1)).', above=0.0_wp, &
+               'spheroid, of the rim of a punch; for a power B = 1/(2 R^(n-1)).', above=0.0_wp, &
                otherwise='that of &bodies')]
   end function keys_of_shape
 
-  !> Fails where the deck does not give a key that its kind of shape cannot do without.
+  !> Fails if the deck does not give a key that its kind of shape needs.
   pure subroutine require(deck, kind, key, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: kind, key
@@ -36,7 +36,7 @@ contains
       call deck%mistake('shape', key, 'missing; kind '//quoted(kind)//' needs it', error)
   end subroutine require
 
-  !> R [m], which &shape or &bodies gives.
+  !> Reads R [m] from &shape or &bodies.
   subroutine read_radius(deck, radius, error)
     type(deck_t), intent(in) :: deck
     real(wp), intent(out) :: radius
@@ -54,7 +54,7 @@ contains
     end if
   end subroutine read_radius
 
-  !> Fails where there is a radius that means nothing, for the reason given.
+  !> Fails for the given reason if the deck gives a radius.
   pure subroutine refuse_radius(deck, reason, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: reason
@@ -66,7 +66,7 @@ contains
       call deck%mistake('bodies', 'radius', 'has no meaning here: '//reason, error)
   end subroutine refuse_radius
 
-  !> Fails where the deck gives a key of `owner`, whose rows these are, to a shape of another kind.
+  !> Fails if the deck gives a key of the kind `owner`, whose rows these are, to another kind.
   pure subroutine refuse_foreign(deck, kind, owner, rows, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: kind, owner

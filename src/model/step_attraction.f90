@@ -1,6 +1,6 @@
-!> An attraction that is constant up to some separation and then ends: p = -stress erfc((h -
-!> range)/s)/2. A jump of the pressure would have no Jacobian, hence the smoothing length s.
-!> Dugdale's law, the depletion force and a capillary bridge at equilibrium are of this kind.
+!> An attraction that is constant up to some separation and ends there: p = -stress
+!> erfc((h - range)/s)/2. The smoothing length s avoids a jump of the pressure, which would have no
+!> Jacobian. Dugdale's law, the depletion force and a capillary bridge are of this kind.
 module step_attraction
   use kinds, only: wp, pi
   use failure, only: failure_t
@@ -12,7 +12,7 @@ module step_attraction
   private
   public :: new_step, read_step, smoothing_key
 
-  !> In units of its range and stress.
+  !> The law, in units of its range and stress.
   type, extends(force_law_t) :: step_t
     real(wp) :: smoothing = 0
   contains
@@ -22,11 +22,11 @@ module step_attraction
     procedure :: closure
   end type step_t
 
-  !> Smoothing where the deck does not say, over the range; and beyond how many smoothing lengths
-  !> the error function is what it is at infinity.
+  !> Default of the smoothing over the range; and number of smoothing lengths beyond which the error
+  !> function has its limit.
   real(wp), parameter :: usual = 0.02_wp, farthest = 26
-  !> Smoothing lengths from the step to where nothing of it is left beside what it steps between;
-  !> and a length below which rounding hides where the step is.
+  !> Distance from the step, in smoothing lengths, beyond which nothing of the step is left; and
+  !> smallest such distance, below which rounding hides the position of the step.
   real(wp), parameter :: outside = 6, least = 1.0e-12_wp
 
 contains
@@ -39,8 +39,8 @@ contains
       above=0.0_wp, otherwise='0.02 of its range')
   end function smoothing_key
 
-  !> The law of a group whose keys `strength_key` [Pa] and `length_key` [m] are stress and range, if
-  !> the deck has that group.
+  !> The law of a group whose keys `strength_key` [Pa] and `length_key` [m] give stress and range,
+  !> if the deck has the group.
   subroutine read_step(deck, group, strength_key, length_key, law, error)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, strength_key, length_key
@@ -54,7 +54,8 @@ contains
     call new_step(deck, group, strength_key, length_key, stress, range, law, error)
   end subroutine read_step
 
-  !> stress [Pa], range [m]; `group` and its keys for messages. The key `smoothing` is read.
+  !> The law with stress [Pa] and range [m], and the key `smoothing` of the group; the other keys
+  !> are for messages.
   subroutine new_step(deck, group, strength_key, length_key, stress, range, law, error)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, strength_key, length_key
@@ -67,7 +68,7 @@ contains
     call deck%assume(group, 'smoothing', usual*range)
     call deck%get(group, 'smoothing', this%smoothing)
     if (this%smoothing > 0.5_wp*range) call deck%mistake(group, 'smoothing', &
-      'is more than half of the range, beyond which there is no step', error)
+      'is more than half of the range; above that there is no step', error)
     if (allocated(error)) return
     this%length = range
     this%pressure_unit = stress
@@ -81,7 +82,7 @@ contains
     allocate (law, source=this)
   end subroutine new_step
 
-  !> The gap from the step in smoothing lengths.
+  !> Distance of the gap from the step in smoothing lengths.
   elemental real(wp) function place(self, gap)
     class(step_t), intent(in) :: self
     real(wp), intent(in) :: gap
@@ -117,7 +118,7 @@ contains
     where (x >= farthest) value = 0
   end function energy
 
-  !> By how much gaps may close in one iteration: half the way to the step, and its width.
+  !> Largest decrease of gaps in one iteration: half the way to the step, and its width.
   pure function closure(self, gap) result(most)
     class(step_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)

@@ -1,7 +1,7 @@
 !> Bodies that do not deform, because they are rigid or far apart: Derjaguin's load (23), which is
 !> the integral of the pressure over the gap H0 + f, and the energy; in the units of
-!> `dimensionless_problem`. The load of parabolas is the law's own energy; all else is a quadrature
-!> to rounding, in pieces between the places where law or shape are not smooth.
+!> `dimensionless_problem`. The load of parabolas is the law's own energy; all else is integrated to
+!> rounding, in pieces between the positions at which law or shape are not smooth.
 module undeformed
   use kinds, only: wp, pi
   use adaptive_quadrature, only: integral_t, new_integral, rule_nodes, in_order
@@ -17,18 +17,18 @@ module undeformed
     real(wp) :: value = 0, error = 0
   end type measured_t
 
-  !> What is integrated over the gap.
+  !> The integrands.
   integer, parameter :: of_pressure = 1, of_slope = 2, of_energy = 3
-  !> Error of what needs no quadrature, relative.
+  !> Relative error of numbers without a quadrature.
   real(wp), parameter :: rounding = 8*epsilon(1.0_wp)
-  !> Height of the shape at the end of the first piece; the others are twice as long as what is
-  !> before them, up to this many times the height h0 or 1, and from there one goes to infinity.
+  !> Height of the shape at the end of the first piece. Each further piece doubles the position, up
+  !> to the position at which the height is this many times h0 or 1; the last one goes to infinity.
   real(wp), parameter :: first = 0.25_wp, last = 4
-  !> Power of r from which on a pressure falls so fast that what is left at the largest gap that is
-  !> a number is nothing.
+  !> Power of r from which on a pressure falls so fast that the integral beyond `farthest` is
+  !> negligible.
   real(wp), parameter :: fast = 4
-  !> Length of a piece over its position up to which the slope in it is that of a step: its nodes
-  !> are too close for rounding to tell them apart.
+  !> Largest length of a piece over its position for which the slope in it is that of a step:
+  !> rounding does not tell its nodes apart.
   real(wp), parameter :: narrow = 1.0e-5_wp
 
 contains
@@ -46,7 +46,7 @@ contains
     end if
   end function measured_load
 
-  !> Its derivative by h0.
+  !> The derivative of the load by h0.
   pure type(measured_t) function measured_slope(problem, h0) result(slope)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
@@ -59,7 +59,7 @@ contains
     end if
   end function measured_slope
 
-  !> The load alone.
+  !> The load without its error.
   pure real(wp) function load_undeformed(problem, h0) result(load)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
@@ -69,7 +69,7 @@ contains
     load = found%value
   end function load_undeformed
 
-  !> Its derivative alone.
+  !> The derivative of the load without its error.
   pure real(wp) function load_slope_undeformed(problem, h0) result(slope)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
@@ -79,7 +79,7 @@ contains
     slope = found%value
   end function load_slope_undeformed
 
-  !> The energy at h0, whose derivative by h0 is minus the load.
+  !> The energy at h0; its derivative by h0 is minus the load.
   pure real(wp) function energy_undeformed(problem, h0) result(energy)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
@@ -113,9 +113,9 @@ contains
     jumps = 0
     if (what == of_slope) jumps = sum(jump_over(ends(:size(ends) - 1), ends(2:)), too_narrow)
     found = measured_t(2*pi*(near%value + jumps), 2*pi*near%error)
-    ! Of a body that ends, what a force that falls slowly would do to its continuation is nothing.
+    ! A body that ends has no tail; a force that falls slowly would act on the shape beyond its end.
     if (problem%law%tail_power <= 2/problem%shape%growth) return
-    ! The tail in x = reach/r, as far as a gap is a number whose powers are.
+    ! The tail in x = reach/r, up to the gap `farthest`.
     associate (least => (problem%shape%height(reach)/farthest)**(1/problem%shape%growth))
       tail = new_integral([least], [1.0_wp], near)
       do while (tail%is_open())
@@ -123,7 +123,7 @@ contains
         call tail%note((reach/x)**2/x*integrand(reach/x))
       end do
       found = measured_t(found%value + 2*pi*tail%value, found%error + 2*pi*tail%error)
-      ! What is beyond is a power of r, and nothing but where that falls slowly.
+      ! Beyond, the integrand is a power of r; its integral is negligible unless it falls slowly.
       if (problem%law%tail_power >= fast/problem%shape%growth .or. what == of_slope) return
       x = least
       x = (reach/x)**2*integrand(reach/x)
@@ -147,7 +147,7 @@ contains
       end select
     end function integrand
 
-    !> The integral of the slope over a piece so narrow that the pressure alone varies in it.
+    !> The integral of the slope over a piece so narrow that only the pressure varies in it.
     elemental real(wp) function jump_over(left, right) result(jump)
       real(wp), intent(in) :: left, right
       real(wp) :: pressure(2)
@@ -161,7 +161,7 @@ contains
 
   end function integral_of
 
-  !> Where the pieces of an integral from the axis end, in any order.
+  !> The ends of the pieces of an integral from the axis, in any order.
   pure function ends_of_pieces(problem, h0) result(r)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0

@@ -1,6 +1,6 @@
-!> A problem with one of its parameters varied, and the rule that makes derivatives by it out of
-!> values at the varied problems: differences, so that laws, shapes and bodies need no derivatives
-!> of their own. Those that are reported are of sixth order; for a search second order is enough.
+!> A problem with one of its parameters varied, and the rule for derivatives from values at the
+!> varied problems: differences, so that laws, shapes and bodies need no derivatives by parameters.
+!> Reported derivatives are of sixth order; second order suffices for a search.
 module variation
   use kinds, only: wp
   use failure, only: failure_t
@@ -11,31 +11,30 @@ module variation
   private
   public :: variation_t, vary, along_path, to_report, to_search
 
-  !> Problems on either side of the one in hand; and for these the step between two as a part of the
-  !> parameter's scale. What differences of sixth order leave out, for h^-n about n^7/140 step^6, is
-  !> below what rounding makes of them, about 1e-16/step; those of second order, n^3/6 step^2, have
-  !> six digits.
+  !> Number of problems on either side of the present one; and for each number the step between two,
+  !> as a part of the parameter's scale. The error of differences of sixth order, for h^-n about
+  !> n^7/140 step^6, is below their rounding error, about 1e-16/step; those of second order have an
+  !> error of n^3/6 step^2, which leaves six digits.
   integer, parameter :: to_report = 3, to_search = 1
   real(wp), parameter :: step(to_report) = [1.0e-4_wp, 1.0e-3_wp, 1.0e-3_wp]
 
   type :: variation_t
     type(parameter_t) :: parameter
-    !> By how much the parameter differs in each problem, SI units.
+    !> Difference of the parameter in each problem, SI units.
     real(wp), allocatable :: offset(:)
-    !> dQ/dp = sum(weight*Q); and without the outermost points, whose difference from it says how
-    !> good it is.
+    !> dQ/dp = sum(weight*Q); and the same without the outermost points; the difference of the two
+    !> shows the error.
     real(wp), allocatable, dimension(:) :: weight, coarser
     !> Allocatable: compiler note 11.
     type(problem_t), allocatable :: problem(:)
-    !> By how much the place on the path differs (`continuation`); it is what is varied then.
+    !> Difference of the coordinate on the path (`continuation`), if the coordinate is varied.
     real(wp), allocatable :: shift(:)
   end type variation_t
 
 contains
 
-  !> Varies parameter i by so many problems on either side, `to_report` or `to_search`. Where its
-  !> range ends nearby, the problems are all on one side of it. Fails where it can be varied on
-  !> neither.
+  !> Varies parameter i by `aside` problems on either side, `to_report` or `to_search`. If the range
+  !> of the parameter ends nearby, all problems are on one side. Fails if neither side is allowed.
   subroutine vary(family, i, aside, varied, error)
     class(problem_family_t), intent(in) :: family
     integer, intent(in) :: i, aside
@@ -48,7 +47,7 @@ contains
     allocate (varied%problem(0))
     do shift = 0, 2
       varied%offset = [(real(k + aside*merge(-1, shift, shift == 2), wp), k=-aside, aside)]
-      ! Between two sides the problem in hand has no weight.
+      ! With two sides the present problem has no weight.
       if (shift == 0) varied%offset = pack(varied%offset, abs(varied%offset) > 0)
       varied%offset = step(aside)*varied%parameter%scale*varied%offset
       deallocate (varied%problem)
@@ -66,7 +65,7 @@ contains
     call find_rule(varied)
   end subroutine vary
 
-  !> The path's coordinate varied, and not the problem.
+  !> Varies the path's coordinate, with the same problem.
   type(variation_t) function along_path(problem) result(varied)
     type(problem_t), intent(in) :: problem
     integer :: k
@@ -78,7 +77,7 @@ contains
     call find_rule(varied)
   end function along_path
 
-  !> The weights that belong to the offsets.
+  !> Sets the weights for the offsets.
   subroutine find_rule(varied)
     type(variation_t), intent(inout) :: varied
     real(wp) :: one(size(varied%offset))

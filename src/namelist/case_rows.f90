@@ -1,5 +1,5 @@
-!> The rows of a file with a line of names, one after the other: of the file only a piece is held,
-!> however many rows it has. Lines are as in `data_table`.
+!> The rows of a file with a line of names, one after the other. Only a piece of the file is in
+!> memory, however many rows it has. Lines are as in `data_table`.
 module case_rows
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
@@ -9,34 +9,35 @@ module case_rows
   use text, only: lower, printable, word_of
   use deck_number, only: parse_real
   use deck_numbers, only: words_of, number_of_word
+  use deck_scan, only: span_t
   use deck_source, only: source_t, take_source
   use deck_store, only: deck_t
-  use data_table, only: cell_t, split, is_header, after_mark, uncommented, point_decimals, counted
+  use data_table, only: split, is_header, after_mark, uncommented, point_decimals, counted
   implicit none
   private
   public :: case_rows_t
 
-  !> Bytes of the piece that is held.
+  !> Largest number of bytes in memory.
   integer, parameter :: piece = 65536
 
-  !> A file that is being read. Not to be copied meanwhile.
+  !> A file that is being read. An open one must not be copied.
   type :: case_rows_t
-    !> Blank-separated, in lower case.
+    !> The names, blank-separated, in lower case.
     character(len=:), allocatable :: names
-    !> The words that each column may hold, as `words_of`.
+    !> For each column the words that it may hold, as `words_of`.
     character(len=80), allocatable :: words(:)
-    !> Checksum of what was read so far.
+    !> Checksum of the lines read so far.
     integer(long) :: digest = 0
     character(len=:), allocatable, private :: file
     integer(c_int), private :: descriptor = -1
     character(len=piece), private :: buffer
-    !> Bytes in the buffer, and those of them that lines were made of.
+    !> Number of bytes in the buffer, and number of those that were made into lines.
     integer, private :: held = 0, used = 0
     !> The present line and its cells.
     type(source_t), private :: line
-    type(cell_t), allocatable, private :: cells(:)
+    type(span_t), allocatable, private :: cells(:)
     integer, private :: lines = 0
-    !> Whether the present line is a row that is still to be handed out.
+    !> Whether the present line is a row that `next` has not returned yet.
     logical, private :: waiting = .false.
   contains
     procedure :: open => open_rows
@@ -47,15 +48,15 @@ module case_rows
 
 contains
 
-  !> Opens a file and reads its line of names, the last comment before the rows if no other is one;
-  !> `deck` knows which of them are keys that hold a word.
+  !> Opens a file and reads its line of names: the first line that is not a comment or, if it holds
+  !> numbers, the last comment before it. `deck` knows which names are keys that hold a word.
   subroutine open_rows(self, file, deck, error)
     class(case_rows_t), intent(inout) :: self
     character(len=*), intent(in) :: file
     type(deck_t), intent(in) :: deck
     type(failure_t), allocatable, intent(out) :: error
     type(source_t) :: comment, named
-    type(cell_t), allocatable :: names(:)
+    type(span_t), allocatable :: names(:)
     character(len=:), allocatable :: reason
     integer(c_int) :: sort
     logical :: found
@@ -103,8 +104,8 @@ contains
     end do
   end subroutine open_rows
 
-  !> The values of the next row; of words their numbers. Not found: there are no more, and the file
-  !> is closed. error: what is wrong with the row, with file and line.
+  !> The values of the next row; a word counts as its number. found = .false. after the last row;
+  !> the file is then closed. error: the mistake in the row, with file and line.
   subroutine next(self, values, found, error)
     class(case_rows_t), intent(inout) :: self
     real(wp), allocatable, intent(inout) :: values(:)
@@ -149,12 +150,12 @@ contains
     class(case_rows_t), intent(inout) :: self
     integer(c_int) :: status
 
-    ! Nothing was written.
+    ! The status does not matter, since nothing was written.
     if (self%descriptor >= 0) status = c_close(self%descriptor)
     self%descriptor = -1
   end subroutine close_rows
 
-  !> Reads one line further and finds its cells.
+  !> Reads one more line and finds its cells.
   subroutine next_line(self, found, error)
     class(case_rows_t), intent(inout) :: self
     logical, intent(out) :: found
@@ -166,7 +167,7 @@ contains
     if (self%descriptor < 0) return
     length = line_length()
     if (length < 0) then
-      ! What is left of the buffer may be the beginning of a line.
+      ! The rest of the buffer may be the beginning of a line.
       self%held = self%held - self%used
       self%buffer(:self%held) = self%buffer(self%used + 1:self%used + self%held)
       self%used = 0
@@ -182,7 +183,7 @@ contains
       if (self%held == 0) return
     end if
     if (length == piece) then
-      call fail(error, file_trouble, printable(self%file) // ': a line that is no row of a table')
+      call fail(error, file_trouble, printable(self%file) // ': a line is too long for a table')
       return
     end if
     bytes = self%buffer(self%used + 1:self%used + length)
@@ -200,7 +201,7 @@ contains
 
   contains
 
-    !> Characters before the next line's end in the buffer; -1: it has none.
+    !> Number of characters before the next line's end in the buffer; -1 if there is no line's end.
     integer function line_length()
       line_length = index(self%buffer(self%used + 1:self%held), new_line('a')) - 1
     end function line_length

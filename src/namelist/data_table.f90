@@ -1,55 +1,44 @@
 !> A text file with a table of numbers, as measuring programs write it: comments after #, perhaps a
-!> line with the names of the columns, itself perhaps a comment, then a row a line, cells apart by
-!> blanks, tabs, commas or semicolons. Where semicolons or tabs stand between cells, a comma within
-!> a number is a decimal one.
+!> line with the names of the columns, which may itself be a comment, then one row a line. Blanks,
+!> tabs, commas or semicolons separate cells. In a line with semicolons or tabs between cells, a
+!> comma within a number is a decimal comma.
 module data_table
   use kinds, only: wp
   use checksums, only: checksum
   use failure, only: failure_t
-  use text, only: lower, quoted, clip, guess
+  use text, only: lower, quoted, brief, clip, guess
   use deck_number, only: parse_real, parse_integer
+  use deck_scan, only: span_t
   use deck_source, only: source_t, load_source
   use deck_store, only: deck_t
   implicit none
   private
-  public :: data_table_t, read_data_table, largest_table, columns_t, read_columns
-  public :: cell_t, split, is_header, after_mark, uncommented, point_decimals, counted
+  public :: data_table_t, read_data_table, largest_table, read_columns
+  public :: split, is_header, after_mark, uncommented, point_decimals, counted
 
-  !> The columns asked for, value(row, column), and where in the file's text each row stands.
+  !> The columns asked for, value(row, column), and the position of each row in the file's text.
   type :: data_table_t
     type(source_t) :: source
     real(wp), allocatable :: value(:, :)
     integer, allocatable :: place(:)
   end type data_table_t
 
-  !> A file of two columns of numbers, and where in its text each row stands.
-  type :: columns_t
-    type(source_t) :: source
-    real(wp), allocatable :: first(:), second(:)
-    integer, allocatable :: place(:)
-  end type columns_t
-
-  !> A cell: its first and last character in a line.
-  type :: cell_t
-    integer :: first = 0, last = 0
-  end type cell_t
-
-  !> Bytes of a table.
+  !> Largest number of bytes of a table.
   integer, parameter :: largest_table = 64*2**20
   character(len=*), parameter :: newline = new_line('a')
-  !> Blank and tab, comma, semicolon.
+  !> Separators of cells: blank, tab, comma, semicolon.
   character(len=*), parameter :: between = ' '//achar(9)//',;'
 
 contains
 
   !> Reads the columns `wanted` of `file`: names from its header line, in upper or lower case, or
-  !> numbers counted from 1; a minus before either turns the column's sign. error: what is wrong
-  !> with the file, with the line.
+  !> numbers counted from 1; a minus before either changes the column's sign. error: the mistake in
+  !> the file, with its line.
   subroutine read_data_table(file, wanted, table, error)
     character(len=*), intent(in) :: file, wanted(:)
     type(data_table_t), intent(out) :: table
     type(failure_t), allocatable, intent(out) :: error
-    type(cell_t), allocatable :: cells(:), names(:)
+    type(span_t), allocatable :: cells(:), names(:)
     integer, allocatable :: at(:)
     logical, allocatable :: turned(:)
     integer :: first, next, n, columns, named
@@ -99,46 +88,42 @@ contains
     table%place = table%place(:n)
   end subroutine read_data_table
 
-  !> Reads the file of two columns that a key of the deck names; `error` says what is not two
-  !> numbers, and where. No comma is a decimal one there.
-  subroutine read_columns(deck, group, key, columns, error)
+  !> Reads the file of two columns that a key of the deck names; `error` says where there are not
+  !> two numbers. Decimal commas are not accepted.
+  subroutine read_columns(deck, group, key, table, error)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, key
-    type(columns_t), intent(out) :: columns
+    type(data_table_t), intent(out) :: table
     type(failure_t), allocatable, intent(out) :: error
-    type(cell_t), allocatable :: cells(:)
-    real(wp) :: pair(2)
+    type(span_t), allocatable :: cells(:)
     integer :: first, next, n, comment
 
-    call load_source(deck%path_of(group, key), columns%source, error)
+    call load_source(deck%path_of(group, key), table%source, error)
     if (allocated(error)) return
-    call deck%note_file(group, key, checksum(columns%source%text))
-    n = lines_of(columns%source%text)
-    allocate (columns%first(n), columns%second(n), columns%place(n))
+    call deck%note_file(group, key, checksum(table%source%text))
+    n = lines_of(table%source%text)
+    allocate (table%place(n), table%value(n, 2))
     n = 0
     next = 1
     do
-      call next_row(columns%source, next, first, cells, comment)
+      call next_row(table%source, next, first, cells, comment)
       if (first == 0) exit
-      call read_row(columns%source, first, cells(:min(2, size(cells))), [.false., .false.], pair, &
-        error)
+      n = n + 1
+      table%place(n) = first
+      call read_row(table%source, first, cells(:min(2, size(cells))), [.false., .false.], &
+        table%value(n, :), error)
       if (allocated(error)) return
-      if (size(cells) == 1) call columns%source%complain(first, '', '', &
+      if (size(cells) == 1) call table%source%complain(first, '', '', &
         'one number where two are expected', error)
-      if (size(cells) > 2) call columns%source%complain(first + cells(3)%first - 1, '', '', &
+      if (size(cells) > 2) call table%source%complain(first + cells(3)%first - 1, '', '', &
         'more than two numbers', error)
       if (allocated(error)) return
-      n = n + 1
-      columns%first(n) = pair(1)
-      columns%second(n) = pair(2)
-      columns%place(n) = first
     end do
-    columns%first = columns%first(:n)
-    columns%second = columns%second(:n)
-    columns%place = columns%place(:n)
+    table%value = table%value(:n, :)
+    table%place = table%place(:n)
   end subroutine read_columns
 
-  !> How many lines a text has, at most.
+  !> Number of lines of a text, at most.
   pure integer function lines_of(text)
     character(len=*), intent(in) :: text
     integer :: i
@@ -146,13 +131,14 @@ contains
     lines_of = count([(text(i:i) == newline, i=1, len(text))]) + 1
   end function lines_of
 
-  !> Finds the next line with cells from the position `next` on, which moves behind it. first: where
-  !> it begins; 0: there are no more. comment: where the last line before it begins that is one.
+  !> Finds the next line with cells at or after the position `next`, and moves `next` behind it.
+  !> first: the position of the line; 0 if there is none. comment: the position of the last comment
+  !> before the line, unchanged if there is none.
   subroutine next_row(source, next, first, cells, comment)
     type(source_t), intent(in) :: source
     integer, intent(inout) :: next, comment
     integer, intent(out) :: first
-    type(cell_t), allocatable, intent(out) :: cells(:)
+    type(span_t), allocatable, intent(out) :: cells(:)
 
     do while (next <= len(source%text))
       first = next
@@ -173,7 +159,7 @@ contains
     text = line(:index(line//'#', '#') - 1)
   end function uncommented
 
-  !> The first line of some, with its comment mark a blank.
+  !> The first line of `lines`, with blanks for its comment marks.
   pure function after_mark(lines) result(line)
     character(len=*), intent(in) :: lines
     character(len=:), allocatable :: line
@@ -187,8 +173,7 @@ contains
     end do
   end function after_mark
 
-  !> Writes decimal commas as points: commas between digits in lines that have semicolons or tabs
-  !> between cells.
+  !> Replaces decimal commas by points: commas between digits in lines with semicolons or tabs.
   pure subroutine point_decimals(text)
     character(len=*), intent(inout) :: text
     character(len=*), parameter :: digits = '0123456789'
@@ -211,7 +196,7 @@ contains
   !> The cells of a line.
   subroutine split(line, cells)
     character(len=*), intent(in) :: line
-    type(cell_t), allocatable, intent(out) :: cells(:)
+    type(span_t), allocatable, intent(out) :: cells(:)
     integer :: first, length
 
     allocate (cells(0))
@@ -222,16 +207,16 @@ contains
       first = first + length - 1
       length = scan(line(first:), between) - 1
       if (length < 0) length = len(line) - first + 1
-      cells = [cells, cell_t(first, first + length - 1)]
+      cells = [cells, span_t(first, first + length - 1)]
       first = first + length
     end do
   end subroutine split
 
-  !> Whether a line has a cell that is no number.
+  !> Whether a line has a cell that is not a number.
   logical function is_header(source, start, cells)
     type(source_t), intent(in) :: source
     integer, intent(in) :: start
-    type(cell_t), intent(in) :: cells(:)
+    type(span_t), intent(in) :: cells(:)
     character(len=:), allocatable :: what
     real(wp) :: number
     integer :: i
@@ -244,11 +229,11 @@ contains
     end do
   end function is_header
 
-  !> In which column each wanted one is, from the first line that is no comment.
+  !> The column of each wanted name or number; the names are in the line at position `start`.
   subroutine find_columns(source, start, cells, wanted, at, error)
     type(source_t), intent(in) :: source
     integer, intent(in) :: start
-    type(cell_t), intent(in) :: cells(:)
+    type(span_t), intent(in) :: cells(:)
     character(len=*), intent(in) :: wanted(:)
     integer, intent(out) :: at(:)
     type(failure_t), allocatable, intent(inout) :: error
@@ -291,11 +276,11 @@ contains
     if (index(unsigned, '-') == 1) unsigned = trim(adjustl(unsigned(2:)))
   end function unsigned
 
-  !> The numbers in these cells of a line; turned: with the other sign.
+  !> The numbers in these cells of a line; turned: with the sign changed.
   subroutine read_row(source, start, cells, turned, row, error)
     type(source_t), intent(in) :: source
     integer, intent(in) :: start
-    type(cell_t), intent(in) :: cells(:)
+    type(span_t), intent(in) :: cells(:)
     logical, intent(in) :: turned(:)
     real(wp), intent(out) :: row(:)
     type(failure_t), allocatable, intent(inout) :: error
@@ -318,10 +303,8 @@ contains
   pure function counted(n)
     integer, intent(in) :: n
     character(len=:), allocatable :: counted
-    character(len=12) :: number
 
-    write (number, '(i0)') n
-    counted = trim(number) // ' column' // trim(merge(' ', 's', n == 1))
+    counted = brief(n) // ' column' // trim(merge(' ', 's', n == 1))
   end function counted
 
 end module data_table

@@ -1,10 +1,10 @@
 !> Any namelist file, read against a table of the groups and keys it may hold.
 !>
-!> `read_deck` finds every mistake that one key can make by itself; what keys must do together is
-!> for the caller, who reports it with `mistake` so that it carries file, line, group and key too.
+!> `read_deck` finds every mistake within one key. The caller checks how keys go together, and
+!> reports with `mistake`, which adds file, line, group and key.
 module deck
   use failure, only: failure_t
-  use text, only: lower, guess, listing, clip
+  use text, only: lower, brief, guess, listing, clip
   use deck_source, only: load_source, take_source
   use deck_scan, only: span_t, entry_t, scan_t, scan_deck
   use deck_keys, only: key_spec, ignored_group, allowed, names_of
@@ -14,14 +14,14 @@ module deck
   private
   public :: deck_t, read_deck
 
-  !> Beyond this many mistakes the reader of the messages has enough to do.
+  !> Largest number of mistakes that are reported.
   integer, parameter :: most_mistakes = 20
 
 contains
 
-  !> Reads `file` against the table `specs`; where `text` is given that is read, and `file` is only
-  !> its name in messages. `error` lists the mistakes found, each as
-  !> `FILE:LINE: &group: key "x": what is wrong, what is allowed` with the line and a caret below.
+  !> Reads `file` against the table `specs`, or `text` if it is given; `file` is then only a name
+  !> for messages. `error` lists the mistakes found, each as `FILE:LINE: &group: key "x": what is
+  !> wrong, what is allowed` with the line and a caret below.
   subroutine read_deck(file, specs, deck, error, text)
     character(len=*), intent(in) :: file
     type(key_spec), intent(in) :: specs(:)
@@ -45,7 +45,7 @@ contains
     if (mistakes < most_mistakes) call complete(deck, error)
   end subroutine read_deck
 
-  !> Enters what the scanner found into the table's values.
+  !> Enters the scanned groups and assignments into the values of the table.
   subroutine take_entries(deck, found, mistakes, error)
     type(deck_t), intent(inout) :: deck
     type(scan_t), intent(in) :: found
@@ -62,7 +62,7 @@ contains
     end do
     do i = 1, found%n_entries
       associate (row => rows(found%entries(i)%group))
-        ! Nothing can be said about the keys of a group that is unknown, repeated or skipped.
+        ! Keys of a group that is unknown, repeated or skipped are not checked.
         if (row == 0) cycle
         if (deck%specs(row)%kind == ignored_group) cycle
         name = deck%source%part(found%entries(i)%name%first, found%entries(i)%name%last)
@@ -86,14 +86,13 @@ contains
 
   end subroutine take_entries
 
-  !> Finds the row of a group (0 where it has none that may be used) and marks it as met.
+  !> Finds the row of a group (0 if the group is unknown or repeated) and marks it as given.
   subroutine open_group(deck, name, row, what)
     type(deck_t), intent(inout) :: deck
     type(span_t), intent(in) :: name
     integer, intent(out) :: row
     character(len=:), allocatable, intent(out) :: what
     character(len=:), allocatable :: word
-    character(len=12) :: line
 
     word = lower(deck%source%part(name%first, name%last))
     row = deck%row_of(word, '')
@@ -102,8 +101,8 @@ contains
              guess(word, names_of(deck%specs, ''), '&') // '; groups are ' // &
              listing(names_of(deck%specs, ''), '&', '')
     else if (deck%values(row)%status == given) then
-      write (line, '(i0)') deck%source%line_at(deck%values(row)%at)
-      what = 'a second &' // word // '; the first is on line ' // trim(line)
+      what = 'a second &' // word // '; the first is on line ' // &
+        brief(deck%source%line_at(deck%values(row)%at))
       row = 0
     else
       deck%values(row)%status = given
@@ -111,7 +110,7 @@ contains
     end if
   end subroutine open_group
 
-  !> Enters one assignment; `what` says what is wrong with it, if anything, and `at` where.
+  !> Enters one assignment. what: its mistake, if there is one, at the position `at`.
   subroutine take_entry(deck, found, entry, group, at, what)
     type(deck_t), intent(inout) :: deck
     type(scan_t), intent(in) :: found
@@ -120,7 +119,6 @@ contains
     integer, intent(out) :: at
     character(len=:), allocatable, intent(out) :: what
     character(len=:), allocatable :: name, keys
-    character(len=12) :: line
     integer :: row
 
     at = entry%name%first
@@ -133,8 +131,8 @@ contains
       if (len(keys) > 0) what = what // guess(name, keys, '') // '; keys of &' // group // ' are ' &
         // listing(keys, '', '')
     else if (deck%values(row)%status == given) then
-      write (line, '(i0)') deck%source%line_at(deck%values(row)%at)
-      what = 'given twice; the first is on line ' // trim(line)
+      what = 'given twice; the first is on line ' // &
+        brief(deck%source%line_at(deck%values(row)%at))
     else
       deck%values(row)%at = at
       deck%values(row)%status = given
@@ -145,7 +143,7 @@ contains
     end if
   end subroutine take_entry
 
-  !> Fills in the table's defaults and reports what is required but missing.
+  !> Fills in the table's defaults and reports required groups and keys that are missing.
   subroutine complete(deck, error)
     type(deck_t), intent(inout) :: deck
     type(failure_t), allocatable, intent(inout) :: error

@@ -1,4 +1,4 @@
-!> The table that describes every group and key a deck may hold, and its printed form.
+!> The table of all groups and keys that a deck may hold, and its printed form.
 module deck_keys
   use kinds, only: wp
   use text, only: brief, listing
@@ -10,34 +10,34 @@ module deck_keys
   public :: group, real_key, list_key, integer_key, logical_key, word_key, text_key, names_key
   public :: allowed, names_of, is_of, write_keys
 
-  !> Kinds of row: a group, a group that is skipped when met, and seven kinds of key.
+  !> Kinds of row: a group, a group that is skipped, and seven kinds of key.
   integer, parameter :: group_row = 0, ignored_group = 1
   integer, parameter :: real_value = 2, real_list = 3, integer_value = 4
   integer, parameter :: logical_value = 5, word_value = 6, text_value = 7
   integer, parameter :: names_value = 8
 
-  !> One row of the table. The row of a group stands before those of its keys.
+  !> One row of the table. The row of a group comes before those of its keys.
   type :: key_spec
     character(len=24) :: group = ''
     character(len=24) :: key = ''
     integer :: kind = group_row
     character(len=8) :: unit = ''
-    !> What the key has where the deck is silent; blank where there is no such value.
+    !> The value of a key that the deck does not give; blank if there is none.
     character(len=32) :: default = ''
-    !> In words, what a blank default stands for ("as in &loading"); shown, never read.
+    !> Meaning of a blank default in words ("as in &loading"); shown, never read.
     character(len=48) :: otherwise = ''
     character(len=240) :: meaning = ''
-    !> Blank-separated words a `word_value` may be.
+    !> Blank-separated words that a `word_value` may be.
     character(len=80) :: choices = ''
     real(wp) :: low = -huge(1.0_wp)
     real(wp) :: high = huge(1.0_wp)
-    !> Whether the bound itself is excluded.
+    !> Whether the interval excludes the bound itself.
     logical :: low_open = .false.
     logical :: high_open = .false.
-    !> Most values of a list, of numbers or names; most characters of a text.
+    !> Largest number of values in a list, of numbers or names; of characters in a text.
     integer :: most = 1
     logical :: required = .false.
-    !> For a group: its defaults hold, and are written out, even where the deck does not name it.
+    !> For a group: its defaults hold and are written even if the deck does not name it.
     logical :: always = .false.
   end type key_spec
 
@@ -150,7 +150,7 @@ contains
     spec%most = most
   end function names_key
 
-  !> What the rows of all keys have in common.
+  !> The components that the rows of all keys have.
   pure function key_row(group, key, kind, meaning, default, otherwise, required) result(spec)
     character(len=*), intent(in) :: group, key, meaning
     integer, intent(in) :: kind
@@ -167,18 +167,16 @@ contains
     if (present(required)) spec%required = required
   end function key_row
 
-  !> What values a key takes, in words.
+  !> The values that a key may have, in words.
   pure function allowed(spec) result(text)
     type(key_spec), intent(in) :: spec
     character(len=:), allocatable :: text
-    character(len=12) :: most
 
-    write (most, '(i0)') spec%most
     select case (spec%kind)
     case (real_value)
       text = 'a number' // bounds(spec)
     case (real_list)
-      text = 'up to ' // trim(most) // ' numbers' // bounds(spec)
+      text = 'up to ' // brief(spec%most) // ' numbers' // bounds(spec)
     case (integer_value)
       text = 'a whole number' // bounds(spec)
     case (logical_value)
@@ -186,9 +184,9 @@ contains
     case (word_value)
       text = 'one of ' // listing(spec%choices, "'", "'")
     case (text_value)
-      text = 'text in quotes, at most ' // trim(most) // ' characters'
+      text = 'text in quotes, at most ' // brief(spec%most) // ' characters'
     case (names_value)
-      text = 'up to ' // trim(most) // ' names in quotes'
+      text = 'up to ' // brief(spec%most) // ' names in quotes'
     case default
       text = ''
     end select
@@ -220,7 +218,7 @@ contains
     end if
   end function bounds
 
-  !> Whether and with what a key may be left out, in words.
+  !> Whether a key may be left out, and its default, in words.
   pure function default_text(spec) result(text)
     type(key_spec), intent(in) :: spec
     character(len=:), allocatable :: text
@@ -259,7 +257,7 @@ contains
     end do
   end subroutine write_keys
 
-  !> Which rows are of the group or key `name`, 'group' or 'group.key'.
+  !> Whether each row belongs to the group or key `name`, 'group' or 'group.key'.
   pure function is_of(specs, name) result(rows)
     type(key_spec), intent(in) :: specs(:)
     character(len=*), intent(in) :: name
@@ -272,7 +270,7 @@ contains
       specs%kind == group_row .and. any(rows .and. specs%key == name(dot + 1:)))
   end function is_of
 
-  !> Blank-separated names of the keys of `group`, of all groups for an empty `group`.
+  !> Blank-separated names of the keys of `group`, or of all groups if `group` is ''.
   pure function names_of(specs, group) result(names)
     type(key_spec), intent(in) :: specs(:)
     character(len=*), intent(in) :: group

@@ -1,4 +1,4 @@
-!> Numbers and logicals as they stand in a deck: strict readers for one token.
+!> Numbers and logicals in a deck: strict readers for one token.
 module deck_number
   use kinds, only: wp, long
   use text, only: lower, clip
@@ -6,18 +6,18 @@ module deck_number
   private
   public :: parse_real, parse_integer, parse_logical
 
-  !> Decimal orders outside +-50 are refused: no length, pressure or energy is near, and products
-  !> and quotients of six numbers stay finite.
+  !> Decimal orders outside +-50 are refused: lengths, pressures and energies are far from these,
+  !> and products and quotients of six numbers stay finite.
   integer, parameter :: largest_order = 50
-  !> Farther out than the digits of a token can make good.
+  !> An exponent that the digits of a token cannot balance.
   integer, parameter :: beyond = 1000000
-  !> More digits than any double needs, so a longer token is a slip and not a number.
+  !> A longer token has more digits than any double needs, and is a mistake.
   integer, parameter :: longest_number = 100
 
 contains
 
-  !> Reads one real number: sign, digits with at most one point, exponent with `e` or `d`.
-  !> `what` is allocated and says what is wrong where `token` is anything else.
+  !> Reads one real number: sign, digits with at most one point, exponent with `e` or `d`. what: the
+  !> mistake, if `token` is not such a number.
   pure subroutine parse_real(token, value, what)
     character(len=*), intent(in) :: token
     real(wp), intent(out) :: value
@@ -60,7 +60,7 @@ contains
     end if
     i = scan(small(:mark - 1), '123456789')
     if (i > 0) then
-      ! Clipped first, since a sum with the largest integer would overflow.
+      ! Clipped, since adding to the largest integer would overflow.
       order = max(-beyond, min(beyond, order)) + leading_order(small(:mark - 1), i)
       if (abs(order) > largest_order) then
         what = token // ' is too ' // merge('large', 'small', order > 0) // &
@@ -68,7 +68,7 @@ contains
         return
       end if
     else
-      ! A zero needs no exponent, and 0e999 must not reach the reader.
+      ! A zero needs no exponent, and `read` fails on 0e999.
       small = '0'
     end if
     read (small, *, iostat=status) value
@@ -78,7 +78,7 @@ contains
     deallocate (what)
   end subroutine parse_real
 
-  !> Decimal order of the first digit that is not zero, standing at `first` in `digits`.
+  !> Decimal order of the first digit that is not zero, at position `first` in `digits`.
   pure integer function leading_order(digits, first) result(order)
     character(len=*), intent(in) :: digits
     integer, intent(in) :: first
@@ -89,7 +89,7 @@ contains
     order = merge(point - first - 1, point - first, first < point)
   end function leading_order
 
-  !> Reads one whole number; `what` as in `parse_real`.
+  !> Reads one integer; `what` as in `parse_real`.
   pure subroutine parse_integer(token, value, what)
     character(len=*), intent(in) :: token
     integer, intent(out) :: value

@@ -1,5 +1,5 @@
-!> The numbers of a deck by their names, "group.key" or "group.key(2)": what sweeps, sensitivities
-!> and fits vary. A sweep may vary words too: their numbers, from 1, among those of the key.
+!> The numbers of a deck by their names, "group.key" or "group.key(2)", which sweeps, sensitivities
+!> and fits vary. A sweep may also vary a word, by its number, from 1, among the words of its key.
 module deck_numbers
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
@@ -16,10 +16,10 @@ module deck_numbers
 
 contains
 
-  !> Row of the key `path` ("force.hamaker"), and the term that it names of a list
-  !> ("hydration.pressure(2)"); 0: none. Fails where the table has no such key, the key does not
-  !> hold numbers or so many, or the deck lacks its group; `error` then says so without a place in
-  !> the file, which is the caller's to add. words: also a key that holds one of its words.
+  !> Row of the key `path` ("force.hamaker"), and the number of the list element that it names
+  !> ("hydration.pressure(2)"); 0: none. Fails if the table has no such key, if the key does not
+  !> hold numbers or not as many, or if the deck lacks its group. `error` then has no position in
+  !> the file; the caller adds it. words: whether the key may also hold words.
   subroutine find_number(deck, path, row, term, error, words)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: path
@@ -52,8 +52,8 @@ contains
     end if
   end subroutine find_number
 
-  !> ' (did you mean "x"?)' where one of the blank-separated `names` is near `name`, or is that with
-  !> a group before it; else ''.
+  !> ' (did you mean "x"?)' if one of the blank-separated `names` resembles `name`, or is `name`
+  !> with a group before it; else ''.
   pure function guess_number(name, names) result(text)
     character(len=*), intent(in) :: name, names
     character(len=:), allocatable :: text
@@ -68,7 +68,7 @@ contains
     end do
   end function guess_number
 
-  !> Takes "(2)" off the end of a name; 0 where there is none.
+  !> Removes "(2)" from the end of a name; term = 0 if there is none.
   subroutine take_off_term(name, term)
     character(len=:), allocatable, intent(inout) :: name
     integer, intent(out) :: term
@@ -82,7 +82,8 @@ contains
     name = name(:opens - 1)
   end subroutine take_off_term
 
-  !> The words that the key `path` may hold, blank-separated; '' where it holds none or is no key.
+  !> The words that the key `path` may hold, blank-separated; '' if it is not a key that holds
+  !> words.
   pure function words_of(deck, path) result(words)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: path
@@ -97,7 +98,7 @@ contains
     end do
   end function words_of
 
-  !> The number of a word among the blank-separated `words`. what: what is wrong with it.
+  !> The number of a word among the blank-separated `words`. what: the mistake, if it is not there.
   subroutine number_of_word(word, words, number, what)
     character(len=*), intent(in) :: word, words
     real(wp), intent(out) :: number
@@ -112,7 +113,7 @@ contains
       // '; allowed: ' // listing(trim(words), "'", "'")
   end subroutine number_of_word
 
-  !> How many numbers a key holds.
+  !> Number of numbers that a key holds.
   pure integer function terms_in(value)
     type(value_t), intent(in) :: value
 
@@ -120,7 +121,7 @@ contains
     if (allocated(value%reals)) terms_in = size(value%reals)
   end function terms_in
 
-  !> Blank-separated 'group.key' of every key that holds numbers, of the groups in use.
+  !> Blank-separated 'group.key' of all keys that hold numbers, in the groups in use.
   pure function numbers_of(deck) result(names)
     type(deck_t), intent(in) :: deck
     character(len=:), allocatable :: names
@@ -134,9 +135,9 @@ contains
     end do
   end function numbers_of
 
-  !> Gives the key `path` another value (a word: its number; a list: this one value, or one of its
-  !> terms), as if the deck said so. Fails as `find_number` does and where the value is out of
-  !> range.
+  !> Gives the key `path` a new value, as if it came from the deck (for a word: its number; for a
+  !> list: this one value, or one of its elements). Fails as `find_number` does, and if the value is
+  !> out of range.
   subroutine set_number(deck, path, value, error)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: path
@@ -154,7 +155,7 @@ contains
     end if
     associate (spec => deck%specs(row), stored => deck%values(row))
       refused = outside(spec, value)
-      ! Steps of a range make whole numbers only up to rounding.
+      ! The steps of a range give integers only up to rounding.
       if (spec%kind == integer_value .and. .not. refused) &
         refused = abs(value - anint(value)) > 1e-9_wp*abs(value)
       if (refused) then

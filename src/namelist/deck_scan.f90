@@ -1,4 +1,4 @@
-!> Namelist grammar: finds the groups and assignments of a deck and where each of them stands.
+!> Namelist grammar: finds the groups and assignments of a deck and their positions.
 !>
 !> The compiler's own namelist reader is not used: compiler note 9.
 module deck_scan
@@ -19,8 +19,8 @@ module deck_scan
     integer :: last = -1
   end type span_t
 
-  !> One assignment `name = items`, where `items(first_item : first_item + n_items - 1)` are its
-  !> values.
+  !> One assignment `name = items` in group number `group`, with the values
+  !> `items(first_item : first_item + n_items - 1)`.
   type :: entry_t
     integer :: group = 0
     type(span_t) :: name
@@ -28,8 +28,8 @@ module deck_scan
     integer :: n_items = 0
   end type entry_t
 
-  !> What a deck says, in the order in which it says it: names of groups without `&`, assignments,
-  !> and values with their quotes. There is room for more than there are.
+  !> The content of a deck in its order: names of groups without `&`, assignments, and values with
+  !> their quotes. The arrays are longer than their contents.
   type :: scan_t
     integer :: n_groups = 0, n_entries = 0, n_items = 0
     type(span_t), allocatable :: groups(:)
@@ -44,11 +44,11 @@ contains
     type(source_t), intent(in) :: source
     type(scan_t), intent(out) :: found
     type(failure_t), allocatable, intent(out) :: error
-    !> The group, and the key whose values are being read.
+    !> The present group, and the key whose values are being read.
     character(len=:), allocatable :: group, key
-    !> Where the scanner is, where the present thing begins, and where the `&` of its group is.
+    !> The position of the scanner, of the beginning of the present token, and of the group's `&`.
     integer :: at, start, group_at
-    !> Whether the group has an assignment already, and whether the last thing was a comma.
+    !> Whether the group has an assignment already, and whether the last token was a comma.
     logical :: assigned, after_comma
 
     allocate (found%groups(8), found%entries(32), found%items(32))
@@ -121,7 +121,7 @@ contains
       end do
     end subroutine scan_group
 
-    !> At an `&` inside a group: the old end `&end`, or another group's beginning.
+    !> After an `&` inside a group: the old end `&end`, or the beginning of another group.
     subroutine end_by_name()
       at = at + 1
       call take_word()
@@ -144,7 +144,7 @@ contains
       after_comma = .true.
     end subroutine take_comma
 
-    !> Checks that the assignment that ends here has a value; what: what is wrong otherwise.
+    !> Checks that the assignment that ends here has a value; what: the mistake otherwise.
     subroutine close_entry(what)
       character(len=*), intent(in) :: what
 
@@ -154,7 +154,7 @@ contains
       end associate
     end subroutine close_entry
 
-    !> Begins the assignment to the key that was read last and goes beyond its "=".
+    !> Begins an assignment to the key just read and moves behind its "=".
     subroutine open_entry()
       key = lower(present_thing())
       if (index(key, '(') > 0) then
@@ -174,7 +174,7 @@ contains
       end if
     end subroutine open_entry
 
-    !> Adds the value that was read last to the present assignment.
+    !> Adds the value just read to the present assignment.
     subroutine add_value()
       if (.not. assigned) then
         call complain(start, key, 'a value without a key; write key = value')
@@ -189,8 +189,8 @@ contains
       after_comma = .false.
     end subroutine add_value
 
-    !> Moves `at` behind a word. What stands in parentheses belongs to it, so that a subscript can
-    !> be named as such.
+    !> Moves `at` behind a word. Parentheses and their contents belong to the word, so that a
+    !> message can name a subscript.
     subroutine take_word()
       character(len=1) :: c
       logical :: inside
@@ -234,7 +234,7 @@ contains
         'text right after a closing quote; a quote inside a string is written twice')
     end subroutine take_string
 
-    !> The beginning of what was read last.
+    !> The beginning of the token just read.
     pure function present_thing() result(text)
       character(len=:), allocatable :: text
 
@@ -250,7 +250,7 @@ contains
 
   end subroutine scan_deck
 
-  !> Says what is wrong with text that stands outside every group.
+  !> The mistake in text outside every group.
   pure function stray(text, at, n_groups) result(what)
     character(len=*), intent(in) :: text
     integer, intent(in) :: at, n_groups
@@ -299,7 +299,7 @@ contains
     if (ahead <= len(text)) next_is_equals = text(ahead:ahead) == '='
   end function next_is_equals
 
-  !> Whether a character may stand outside comments.
+  !> Whether a character is accepted outside comments.
   pure logical function plain(c)
     character(len=1), intent(in) :: c
 

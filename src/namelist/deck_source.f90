@@ -1,28 +1,28 @@
-!> The text of a deck as one string, and messages that point into it.
+!> The text of a deck as one string, and messages with a position in it.
 !>
-!> Files are read by system calls: a Fortran `open` passes over blanks at the end of a name and so
-!> finds another file.
+!> System calls read the files: a Fortran `open` ignores blanks at the end of a name and so opens
+!> another file.
 module deck_source
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use failure, only: failure_t, fail, bad_input, file_trouble
   use c_library, only: c_open, c_read, c_close, explain, as_input, not_there, nul
-  use text, only: printable
+  use text, only: brief, printable
   implicit none
   private
   public :: source_t, load_source, take_source, unprintable
 
   character(len=*), parameter :: newline = new_line('a')
-  !> Ten thousand sweep values take a quarter of this; anything larger is not a deck.
+  !> Largest size of a deck; ten thousand sweep values take a quarter of it.
   integer, parameter :: largest_deck = 1048576
 
-  !> A deck's text, line ends made uniform.
+  !> A deck's text, with uniform line ends.
   type :: source_t
-    !> Name of the file, fit for a message.
+    !> Name of the file, in printable characters.
     character(len=:), allocatable :: file
     character(len=:), allocatable :: text
-    !> Lines of the file before the text, where that is a piece of it.
+    !> Number of lines of the file before the text, if the text is a piece of it.
     integer :: lines_before = 0
-    !> The folder that the file is in, up to the last slash: what a deck names is looked for there.
+    !> The folder of the file, up to the last slash, where files named in the deck are searched for.
     character(len=:), allocatable :: folder
   contains
     procedure :: part
@@ -32,8 +32,8 @@ module deck_source
 
 contains
 
-  !> Reads `file` whole. Fails on files that are missing, unreadable, a folder, too large or not
-  !> plain text.
+  !> Reads the whole `file`. Fails if it is missing, unreadable, a folder, larger than `most` bytes,
+  !> or not plain text.
   subroutine load_source(file, source, error, most)
     character(len=*), intent(in) :: file
     type(source_t), intent(out) :: source
@@ -72,14 +72,13 @@ contains
     end if
   end subroutine load_source
 
-  !> Takes the bytes of a deck; messages call it `name`. lines_before: of the file before these.
-  !> Fails where they are too many or not plain text.
+  !> Takes the bytes of a deck; `name` is its name in messages, and lines_before the number of lines
+  !> of the file before these bytes. Fails if there are more than `most` bytes, or not plain text.
   subroutine take_source(name, bytes, source, error, most, lines_before)
     character(len=*), intent(in) :: name, bytes
     type(source_t), intent(out) :: source
     type(failure_t), allocatable, intent(out) :: error
     integer, intent(in), optional :: most, lines_before
-    character(len=12) :: limit
     integer :: n
 
     source%file = printable(name)
@@ -89,9 +88,8 @@ contains
     n = largest_deck
     if (present(most)) n = most
     if (len(bytes) > n) then
-      write (limit, '(i0)') n/2**20
-      call fail(error, bad_input, source%file // ': larger than ' // trim(limit) // ' MiB, so ' // &
-        merge('not a table', 'not a deck ', present(most)))
+      call fail(error, bad_input, source%file // ': larger than ' // brief(n/2**20) // &
+        ' MiB, so ' // merge('not a table', 'not a deck ', present(most)))
       return
     end if
     call straighten(bytes, source%text)
@@ -99,7 +97,7 @@ contains
     if (n > 0) call source%complain(n, '', '', 'a NUL byte: a deck is plain text', error)
   end subroutine take_source
 
-  !> Makes every line end a single line feed (CR LF and CR are others') and drops a byte-order mark.
+  !> Makes every line end (LF, CR LF or CR) a single line feed and drops a byte-order mark.
   pure subroutine straighten(bytes, text)
     character(len=*), intent(in) :: bytes
     character(len=:), allocatable, intent(out) :: text
@@ -133,7 +131,7 @@ contains
     text = self%text(first:last)
   end function part
 
-  !> Number of the line in which position `at` of the text stands.
+  !> Number of the line with the position `at` of the text.
   pure integer function line_at(self, at)
     class(source_t), intent(in) :: self
     integer, intent(in) :: at
@@ -152,14 +150,13 @@ contains
     integer, intent(in) :: at
     character(len=*), intent(in) :: group, key, what
     type(failure_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: message
-    character(len=12) :: line
+    character(len=:), allocatable :: line, message
 
-    write (line, '(i0)') self%line_at(at)
-    message = self%file // ':' // trim(line) // ': '
+    line = brief(self%line_at(at))
+    message = self%file // ':' // line // ': '
     if (len_trim(group) > 0) message = message // '&' // trim(group) // ': '
     if (len_trim(key) > 0) message = message // 'key "' // trim(key) // '": '
-    message = message // what // excerpt(self%text, at, trim(line))
+    message = message // what // excerpt(self%text, at, line)
     if (allocated(error)) then
       error%message = error%message // newline // message
     else
@@ -172,7 +169,7 @@ contains
     character(len=*), intent(in) :: text, number
     integer, intent(in) :: at
     character(len=:), allocatable :: lines
-    !> So much of a long line is shown, and so much of it before the caret.
+    !> Number of characters of a long line that are shown, and of those before the caret.
     integer, parameter :: width = 90, lead = 60
     character(len=:), allocatable :: shown
     integer :: first, last, caret, i
@@ -188,7 +185,7 @@ contains
       if (iachar(shown(i:i)) == 9) shown(i:i) = ' '
       if (iachar(shown(i:i)) < 32 .or. iachar(shown(i:i)) == 127) shown(i:i) = '?'
     end do
-    ! A character of several bytes takes one place.
+    ! A character of several bytes takes one column.
     caret = 0
     do i = first, at - 1
       if (iand(iachar(text(i:i)), 192) /= 128) caret = caret + 1
@@ -197,21 +194,19 @@ contains
             newline // '    ' // repeat(' ', len(number)) // ' | ' // repeat(' ', caret) // '^'
   end function excerpt
 
-  !> Names the character at the beginning of a text, which may not stand in a group, and the one
-  !> that is meant where word processors put it: quotes, a minus, a blank.
+  !> Names the character at the beginning of a text, which is not accepted in a group, and its
+  !> replacement for those that word processors write: quotes, minus, blank.
   pure function unprintable(text) result(what)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: what
     character(len=*), parameter :: e2 = char(226)//char(128), single(2) = [e2//char(152), &
       e2//char(153)], double(2) = [e2//char(156), e2//char(157)], minus(3) = &
       [char(226)//char(136)//char(146), e2//char(147), e2//char(148)]
-    character(len=4) :: code
     integer :: length
 
     length = max(1, bytes_of(text))
     if (length == 1) then
-      write (code, '(i0)') iachar(text(1:1))
-      what = 'a byte that is not plain ASCII (code ' // trim(code) // ')'
+      what = 'a byte that is not plain ASCII (code ' // brief(iachar(text(1:1))) // ')'
     else
       what = 'the character ' // text(:length) // ', which is not plain ASCII'
     end if
@@ -225,7 +220,7 @@ contains
     what = what // '; only comments may hold such characters'
   end function unprintable
 
-  !> Bytes of the UTF-8 character at the beginning of a text; 0 where there is none.
+  !> Number of bytes of the UTF-8 character at the beginning of a text; 0 if it is not one.
   pure integer function bytes_of(text)
     character(len=*), intent(in) :: text
     integer :: i

@@ -1,8 +1,7 @@
-!> A deck in memory: what each key holds, where it stands in the file, and the deck written out.
+!> A deck in memory: the value of each key, its position in the file, and the deck written out.
 module deck_store
   use kinds, only: wp, long
   use failure, only: failure_t
-  use checksums, only: checksum
   use files, only: whole_path
   use text_file, only: plain
   use deck_source, only: source_t
@@ -12,7 +11,7 @@ module deck_store
   private
   public :: deck_t
 
-  !> A deck that has been read. The components are `read_deck`'s to fill; use the procedures.
+  !> A deck that has been read. `read_deck` fills the components; others use the procedures.
   type :: deck_t
     type(source_t) :: source
     type(key_spec), allocatable :: specs(:)
@@ -21,16 +20,16 @@ module deck_store
     procedure :: has_group
     procedure :: is_set
     procedure, private :: get_real, get_reals, get_integer, get_logical, get_text
-    !> `call deck%get(group, key, value)`: the value the deck gives, or the default. Without either
-    !> a scalar keeps what it had, a list is empty and a text ''. `value` is a real, an allocatable
-    !> list of reals, an integer, a logical or an allocatable text, as the table has it.
+    !> `call deck%get(group, key, value)`: the value in the deck, or the default. Without either a
+    !> scalar keeps its value, a list becomes empty and a text ''. `value` is a real, an allocatable
+    !> list of reals, an integer, a logical or an allocatable text, as the table says.
     generic :: get => get_real, get_reals, get_integer, get_logical, get_text
     procedure, private :: assume_real, assume_reals, assume_text
-    !> `call deck%assume(group, key, value)`: the default of a key, where it follows from other
-    !> keys; it is written by `resolved` and gives way to what the deck says.
+    !> `call deck%assume(group, key, value)`: the default of a key that follows from other keys;
+    !> `resolved` writes it, and a value in the deck has precedence.
     generic :: assume => assume_real, assume_reals, assume_text
     procedure, private :: get_optional_real, get_optional_integer
-    !> The same for a scalar that is allocated only where the key has a value.
+    !> The same for a scalar that is allocated only if the key has a value.
     generic :: get_optional => get_optional_real, get_optional_integer
     procedure :: path_of
     procedure :: note_file
@@ -64,8 +63,8 @@ contains
     if (row > 0) is_set = self%values(row)%status == given
   end function is_set
 
-  !> Position in the text of the key, or of the group where the deck does not give the key or
-  !> `key` is ''; 0 where it gives neither.
+  !> Position of the key in the text; if the deck does not give the key, or `key` is '', position of
+  !> the group; 0 if the deck gives neither.
   pure integer function place(self, group, key)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
@@ -193,7 +192,7 @@ contains
     self%values(row)%status = assumed
   end subroutine assume_text
 
-  !> Path of the file that a key names: unless it begins with a slash, from the folder of the deck.
+  !> Path of the file that a key names; a relative path begins at the folder of the deck.
   pure function path_of(self, group, key) result(path)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
@@ -203,8 +202,8 @@ contains
     if (index(path, '/') /= 1) path = self%source%folder // path
   end function path_of
 
-  !> Notes what was in the file that a key names: `resolved` then gives the whole path, since it may
-  !> be read in another folder, and a checksum: a deck whose file has changed is another one.
+  !> Notes the checksum of the file that a key names. `resolved` writes it, so that a deck with a
+  !> changed file counts as another deck, and the absolute path, which also holds in other folders.
   subroutine note_file(self, group, key, digest)
     class(deck_t), intent(inout) :: self
     character(len=*), intent(in) :: group, key
@@ -215,7 +214,7 @@ contains
 
     row = self%row_of(group, key)
     path = whole_path(self%path_of(group, key))
-    ! What no deck could say stays as it is.
+    ! A path that a deck cannot hold is not replaced.
     if (len(path) <= self%specs(row)%most .and. plain(path) == path) self%values(row)%text = path
     write (number, '(z8.8)') digest
     self%values(row)%remark = 'checksum ' // number
@@ -229,7 +228,7 @@ contains
     in_use = self%has_group(group) .or. self%specs(self%row_of(group, ''))%always
   end function in_use
 
-  !> Forgets `&group` and everything in it.
+  !> Removes `&group` and its keys.
   subroutine drop_group(self, group)
     class(deck_t), intent(inout) :: self
     character(len=*), intent(in) :: group
@@ -240,8 +239,8 @@ contains
     end do
   end subroutine drop_group
 
-  !> The deck as read, defaults included, so that it can be read again. Groups appear that the deck
-  !> names or whose defaults always hold.
+  !> The deck as read, with defaults, as text that can be read again. It has the groups that the
+  !> deck names and those whose defaults always hold.
   pure function resolved(self) result(text)
     class(deck_t), intent(in) :: self
     character(len=:), allocatable :: text
@@ -271,7 +270,7 @@ contains
     if (self%values(row)%status == unset) row = 0
   end function held
 
-  !> Row of a key to which the deck itself gives no value, or 0.
+  !> Row of a key to which the deck itself gives no value; 0 if it gives one.
   pure integer function silent(self, group, key) result(row)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
@@ -281,7 +280,7 @@ contains
     if (self%values(row)%status == given) row = 0
   end function silent
 
-  !> Row of `group` and `key` in the table, of the group itself for an empty `key`; 0 without one.
+  !> Row of `group` and `key` in the table, or of the group itself if `key` is ''; 0 if none.
   pure integer function row_of(self, group, key)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key

@@ -1,8 +1,8 @@
 !> One key's value: made from the tokens of an assignment, checked against the key's row of the
-!> table, and written again.
+!> table, and written as text.
 module deck_values
   use kinds, only: wp
-  use text, only: lower, quoted, unquoted, full, guess, clip, word_count, word_of
+  use text, only: lower, quoted, unquoted, brief, full, guess, clip, word_count, word_of
   use deck_number, only: parse_real, parse_integer, parse_logical
   use deck_source, only: source_t
   use deck_scan, only: span_t
@@ -12,10 +12,10 @@ module deck_values
   private
   public :: value_t, unset, assumed, given, interpret, convert, outside, assignment_text
 
-  !> Where a value comes from: nowhere, the table or the program, the deck.
+  !> Source of a value: none, the table or the program, the deck.
   integer, parameter :: unset = 0, assumed = 1, given = 2
-  !> What one key holds; only the component of the key's kind is used, for names `text` with blanks
-  !> between them. For the row of a group, `at` is where the deck opens it.
+  !> The value of one key. Only the component of the key's kind is used; names are in `text`, with
+  !> blanks between them. For the row of a group, `at` is the position of the group in the deck.
   type :: value_t
     integer :: status = unset
     integer :: at = 0
@@ -23,14 +23,14 @@ module deck_values
     integer :: whole = 0
     logical :: flag = .false.
     character(len=:), allocatable :: text
-    !> What is known of it besides, a comment where the deck is written again.
+    !> A comment that is written behind the value.
     character(len=:), allocatable :: remark
   end type value_t
 
 contains
 
-  !> Turns the items of an assignment into a value of the kind that `spec` asks for; `what` says
-  !> what is wrong, if anything, and `at` where.
+  !> Turns the items of an assignment into a value of the kind of `spec`. what: the mistake, if
+  !> there is one, at the position `at`.
   subroutine interpret(source, spec, items, value, at, what)
     type(source_t), intent(in) :: source
     type(key_spec), intent(in) :: spec
@@ -39,7 +39,6 @@ contains
     integer, intent(inout) :: at
     character(len=:), allocatable, intent(out) :: what
     character(len=:), allocatable :: token
-    character(len=12) :: count
     logical :: literal, wanted
     integer :: i
 
@@ -49,8 +48,7 @@ contains
       value%text = ''
     else if (size(items) > 1) then
       at = items(2)%first
-      write (count, '(i0)') size(items)
-      what = trim(count) // ' values where one is expected'
+      what = brief(size(items)) // ' values where one is expected'
       return
     end if
     wanted = any(spec%kind == [word_value, text_value, names_value])
@@ -70,7 +68,7 @@ contains
     end do
   end subroutine interpret
 
-  !> Whether a token is a word of digits, which needs no quotes.
+  !> Whether a token is a word of digits, for which quotes are optional.
   pure logical function is_number(spec, token)
     type(key_spec), intent(in) :: spec
     character(len=*), intent(in) :: token
@@ -78,7 +76,7 @@ contains
     is_number = spec%kind == word_value .and. verify(token, '0123456789') == 0
   end function is_number
 
-  !> Converts one token, without quotes, and checks it against the bounds of `spec`; elements of a
+  !> Converts one token, without quotes, and checks it against the bounds of `spec`. Elements of a
   !> list, and names, are appended.
   subroutine convert(spec, token, value, what)
     type(key_spec), intent(in) :: spec
@@ -91,7 +89,7 @@ contains
 
     select case (spec%kind)
     case (real_value, real_list)
-      ! A repeat count, as other writers of namelists make them: 3*1.0.
+      ! A repeat count, which other namelist writers use: 3*1.0.
       star = index(token, '*')
       times = 1
       if (star > 0) call parse_integer(token(:star - 1), times, what)
@@ -138,7 +136,7 @@ contains
     end select
   end subroutine convert
 
-  !> Whether `x` breaks the bounds of `spec`; true for NaN.
+  !> Whether `x` is outside the bounds of `spec`; true for NaN.
   pure logical function outside(spec, x)
     type(key_spec), intent(in) :: spec
     real(wp), intent(in) :: x
@@ -148,12 +146,11 @@ contains
     if (spec%high_open .and. x >= spec%high) outside = .true.
   end function outside
 
-  !> One assignment, as a deck has it; long lists go on in further lines.
+  !> One assignment as in a deck; a long list takes several lines.
   pure function assignment_text(spec, value) result(text)
     type(key_spec), intent(in) :: spec
     type(value_t), intent(in) :: value
     character(len=:), allocatable :: text
-    character(len=12) :: number
     integer :: i
 
     text = '  ' // trim(spec%key) // ' = '
@@ -166,8 +163,7 @@ contains
         text = text // full(value%reals(i))
       end do
     case (integer_value)
-      write (number, '(i0)') value%whole
-      text = text // trim(number)
+      text = text // brief(value%whole)
     case (logical_value)
       text = text // trim(merge('.true. ', '.false.', value%flag))
     case (names_value)

@@ -1,4 +1,4 @@
-!> Assignments as they stand in a namelist group, made from values that may not exist.
+!> Assignments in a namelist group, made from values that may not exist.
 module namelist_writer
   use kinds, only: wp, long
   use text, only: full, quoted
@@ -12,8 +12,8 @@ module namelist_writer
     character(len=:), allocatable :: text
   end type line_t
 
-  !> assignment_of(key, value): the lines `  key = value`, each with its end, for a value that is
-  !> allocated, and nothing otherwise. Reals read back as the same numbers.
+  !> assignment_of(key, value): the lines `  key = value` with their ends, or '' if the value is not
+  !> allocated. Reals read back as the same numbers.
   interface assignment_of
     module procedure :: of_reals, of_counts, of_logical, of_text, of_lines
   end interface assignment_of
@@ -88,8 +88,8 @@ contains
     text = written(key, items)
   end function of_lines
 
-  !> `text` as a string that all readers take: nothing in it looks like the beginning of a group
-  !> (compiler note 8).
+  !> `text` as a string that all namelist readers accept: nothing in it looks like the beginning of
+  !> a group (compiler note 8).
   pure function literal(text)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: literal
@@ -112,12 +112,12 @@ contains
     text = '  ' // key // ' = ' // item // new_line('a')
   end function single
 
-  !> The assignment of the items to the key, in lines of moderate length; nothing without items.
+  !> The assignment of the items to the key, broken into lines; '' without items.
   pure function written(key, items) result(text)
     character(len=*), intent(in) :: key
     type(line_t), intent(in) :: items(:)
     character(len=:), allocatable :: text
-    !> Where lines end, except those of a single longer item.
+    !> Last column of a line, unless a single item is longer.
     integer, parameter :: last_column = 80
     integer :: i, column
 

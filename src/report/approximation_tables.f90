@@ -1,8 +1,8 @@
 !> The approximation of slowly varying deformation over the range of a scene, as rows of a table,
-!> and where it says that approaching bodies jump. SI units.
+!> and the jumps of approaching bodies in this approximation. SI units.
 module approximation_tables
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
-  use kinds, only: wp
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
   use slow_deformation, only: by_quadrature, closed_form, attraction_only, has_form, &
     slow_displacement, slow_load
@@ -15,32 +15,32 @@ module approximation_tables
   private
   public :: write_approximations, summarise_approximations
 
-  !> A state [m], [m], [m], [N]; `theory` is the name of its row in the table, '' of none.
+  !> A state [m], [m], [m], [N]; `theory` is the name of its row in the table, '' for no state.
   type :: slow_state_t
     character(len=24) :: theory = ''
     real(wp) :: gap = 0, h0 = 0, displacement = 0, load = 0
   end type slow_state_t
 
-  !> Where approaching bodies jump, in the order of the rows: by the stability criterion (29); by
-  !> (37), which is (29) for the attraction of Lennard-Jones alone; where h0 turns round along
-  !> (35b); and where it does so along (35a), or along (22) for a law without closed form.
+  !> The jumps of approaching bodies, in the order of the rows: by the stability criterion (29); by
+  !> (37), which is (29) for the attraction of Lennard-Jones alone; at the fold of h0 by (35b); and
+  !> at its fold by (35a), or by (22) for a law without closed form.
   integer, parameter :: of_criterion = 1, of_equation_37 = 2, of_attraction = 3, of_fold = 4
 
   !> Names of the curves, in the order of the forms.
   character(len=*), parameter :: names(3) = [character(len=16) :: 'slow_deformation', &
     'closed_form', 'attractive_only']
 
-  !> Points of the curve along which its rows are spaced.
+  !> Number of points of the curve along which its rows are spaced.
   integer, parameter :: samples = 2000
 
 contains
 
   !> Writes the curve of each form that the law has, in range%count rows from the start of the range
-  !> inwards, and one row for each jump, whether or not it is within the range. The parameter of a
-  !> curve is the gap on the axis, whose steps have equal |change of gap| + |change of
-  !> displacement|. Curves of a law that attracts end where the bodies jump, by (29) or (37), if
-  !> that is before the end of the range; there is none if it is before the start. `from` [m] stands
-  !> in for a range without a start. For rigid bodies the displacement is zero and the load exact.
+  !> to smaller gaps, and one row for each jump, within the range or not. Along a curve the steps
+  !> have equal |change of gap on the axis| + |change of displacement|. Curves of a law that
+  !> attracts end at the jump by (29) or (37), if that is before the end of the range; there is no
+  !> curve if it is before the start. `from` [m] replaces a start that the range does not have. For
+  !> rigid bodies the displacement is zero and the load exact.
   subroutine write_approximations(problem, range, from, results)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -81,7 +81,7 @@ contains
 
   end subroutine write_approximations
 
-  !> The jumps of approaching bodies; none for rigid ones or without attraction.
+  !> The jumps of approaching bodies; none for rigid bodies or without attraction.
   pure function jumps_of(problem) result(jumps)
     type(problem_t), intent(in) :: problem
     type(slow_state_t) :: jumps(of_fold)
@@ -107,8 +107,8 @@ contains
 
   end function jumps_of
 
-  !> Where approaching bodies jump in the approximation of slow deformation; the fold of a law
-  !> without a closed form is in approximations.csv alone.
+  !> Adds the jumps of approaching bodies to the summary. The fold of a law without a closed form is
+  !> in approximations.csv only.
   subroutine summarise_approximations(problem, summary)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
@@ -127,7 +127,7 @@ contains
       call summary%set('jump_equation_37_gap', jumps(of_equation_37)%gap)
   end subroutine summarise_approximations
 
-  !> The state of a form at a gap on the axis (law's lengths).
+  !> The state of a form at a gap on the axis (in lengths of the law).
   pure type(slow_state_t) function state_at(problem, form, gap, theory) result(state)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
@@ -149,11 +149,12 @@ contains
     type(slow_state_t), intent(in) :: state
 
     call results%row(trim(state%theory), [state%h0, state%displacement, state%load, &
-      ieee_value(1.0_wp, ieee_quiet_nan)])
+      nan])
   end subroutine write_row
 
-  !> Gaps on the axis, descending, from the one at h0 = start to the one at h0 = finish or to
-  !> `nearest`, whichever is larger (law's lengths). None if h0 = start is not reached beyond it.
+  !> Gaps on the axis, descending, from the gap at h0 = start to the gap at h0 = finish or to
+  !> `nearest`, whichever is larger (in lengths of the law). None if h0 = start is reached only
+  !> below `nearest`.
   pure function gaps_between(problem, form, start, finish, nearest, count) result(gap)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form, count
@@ -166,7 +167,7 @@ contains
     if (.not. start > finish) return
     if (.not. problem%coupling > 0) then
       gap = [(start + (finish - start)*(i - 1)/(count - 1), i=1, count)]
-      ! Nearer than that rigid bodies would touch.
+      ! At smaller gaps rigid bodies would touch.
       gap = pack(gap, gap >= problem%law%smallest_gap)
       return
     end if
@@ -177,8 +178,8 @@ contains
     if (high > low) gap = spaced(problem, form, high, low, count)
   end function gaps_between
 
-  !> `count` gaps from high to low, equally far apart along the curve of gap and displacement. For a
-  !> displacement that grows as the gap falls these are equal steps of h0.
+  !> `count` gaps from high to low, equally spaced along the curve of gap and displacement. If the
+  !> displacement grows as the gap falls these are equal steps of h0.
   pure function spaced(problem, form, high, low, count) result(gap)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form, count
@@ -186,7 +187,7 @@ contains
     real(wp) :: gap(count), at(0:samples), delta(0:samples), length(0:samples), wanted
     integer :: i, j
 
-    ! The displacement varies most at the near end, over the law's own length.
+    ! The displacement varies most at small gaps, over the law's own length.
     associate (scale => problem%law%repulsion_length)
       at = [(low + scale*((1 + (high - low)/scale)**(real(samples - j, wp)/samples) - 1), &
         j=0, samples)]

@@ -1,9 +1,7 @@
-!> What a case of a sweep leaves in the table of all cases: the values of its keys, the rows of
-!> `result_rows` that are columns there, which follows from the deck, and one number a column of
-!> these, from the case's summary.
+!> The columns and numbers of a case in sweep.csv: the values of its keys, and those rows of
+!> `result_rows` that are columns for this deck, with one number each from the case's summary.
 module case_columns
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use failure, only: failure_t
   use text, only: brief, word_of
   use deck_numbers, only: find_number
@@ -15,16 +13,16 @@ module case_columns
   private
   public :: columns_of, numbers_of, column_width
 
-  !> Characters of a column's description.
+  !> Number of characters of a column's description.
   integer, parameter :: column_width = 132
   !> The last column.
   character(len=*), parameter :: failure_column = &
-    'failure [] why the case has no results, or not all; blank where it has'
+    'failure [] why results of the case are missing; blank if none is'
 
 contains
 
-  !> The columns of this scene's sweep, each described as 'name [unit] what it is': the keys,
-  !> numbers, and `failure`.
+  !> The columns of this scene's sweep, each described as 'name [unit] meaning': the keys, numbers,
+  !> and `failure`.
   function columns_of(scene) result(columns)
     type(scene_t), intent(in) :: scene
     character(len=column_width), allocatable :: columns(:)
@@ -48,7 +46,7 @@ contains
       n = keys + size(single)
     end associate
     do k = 1, turning_points(scene)
-      number = brief(real(k, wp))
+      number = brief(k)
       do i = 1, size(rows)
         if (.not. each_turn(rows(i))) cycle
         n = n + 1
@@ -59,7 +57,7 @@ contains
   end function columns_of
 
   !> The numbers of a case's summary, one for each of `columns_of(scene)` between keys and failure;
-  !> NaN for what does not exist.
+  !> NaN for a number that does not exist.
   pure function numbers_of(summary, scene) result(values)
     type(summary_t), intent(in) :: summary
     type(scene_t), intent(in) :: scene
@@ -69,7 +67,7 @@ contains
     integer :: i, k
 
     single = single_columns(scene)
-    allocate (values(size(single)), source=ieee_value(1.0_wp, ieee_quiet_nan))
+    allocate (values(size(single)), source=nan)
     do i = 1, size(single)
       associate (key => rows(single(i))%key)
         if (summary%has(key)) values(i) = summary%number(key)
@@ -84,8 +82,8 @@ contains
     end do
   end function numbers_of
 
-  !> The rows that are columns of their own in a sweep of the scene: first those of every sweep,
-  !> then those that a group adds.
+  !> The rows that have one column in a sweep of the scene: first those of every sweep, then those
+  !> that a group adds.
   pure function single_columns(scene) result(single)
     type(scene_t), intent(in) :: scene
     integer, allocatable :: single(:)
@@ -98,7 +96,7 @@ contains
 
   contains
 
-    !> The deck is only asked for what names a group: each case asks for all rows.
+    !> Looks into the deck only if the row names a group, since each case calls this for all rows.
     pure logical function comes_with_group(row)
       type(row_t), intent(in) :: row
 
@@ -112,7 +110,7 @@ contains
 
   end function single_columns
 
-  !> Whether a row is one column for each turning point.
+  !> Whether a row has one column for each turning point.
   elemental logical function each_turn(row)
     type(row_t), intent(in) :: row
 
@@ -134,13 +132,13 @@ contains
     text = trim(row%key) // suffix // ' [' // trim(row%unit) // '] ' // row%meaning
   end function described
 
-  !> An element of an array that a case which failed does not have; and it may have fewer turning
-  !> points than the deck.
+  !> Element k of an array; NaN if there is none, as in a case that failed, or that has fewer
+  !> turning points than the deck.
   pure real(wp) function item(values, k)
     real(wp), intent(in) :: values(:)
     integer, intent(in) :: k
 
-    item = ieee_value(item, ieee_quiet_nan)
+    item = nan
     if (k <= size(values)) item = values(k)
   end function item
 

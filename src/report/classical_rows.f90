@@ -20,20 +20,20 @@ module classical_rows
   private
   public :: write_classical, summarise_classical
 
-  !> Relative difference of two radii that are one.
+  !> Relative difference of two radii that count as equal.
   real(wp), parameter :: small = 1e-6_wp
 
 contains
 
   !> Writes the wanted theories at range%count values of h0 [m]: Hertz; for a law that attracts, JKR
-  !> and DMT; for one whose tension has a largest value, Maugis-Dugdale with that value as its
-  !> strength and with the law's surface energy, and what was fitted to it. The theories put
-  !> touching bodies at no separation, so the displacement is -h0; the state is the one that is
-  !> stable there, and where a theory has none there is no row. Carpick's formula says nothing of
-  !> displacements: its contact radius is that under the load of Maugis-Dugdale theory. `from` [m]
-  !> stands in for a range without a start. None for rigid bodies, which have no displacement. Of
-  !> other shapes than the parabola Hertz and JKR in the form for any convex body; of layered
-  !> bodies in the form for these.
+  !> and DMT; for a law whose tension has a largest value, Maugis-Dugdale, with this value as its
+  !> strength and with the law's surface energy, and the formulas fitted to it. In the theories the
+  !> separation of touching bodies is zero, so that the displacement is -h0. The state is the stable
+  !> one at this h0; there is no row without such a state. Carpick's formula gives no displacement:
+  !> its contact radius is that at the load of Maugis-Dugdale theory. `from` [m] replaces a start
+  !> that the range does not have. No rows for rigid bodies, which have no displacement. For other
+  !> shapes than the parabola there are Hertz and JKR for any convex body, for layered bodies Hertz
+  !> and JKR for layers.
   subroutine write_classical(problem, range, from, results)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -86,7 +86,7 @@ contains
           if (.not. ieee_is_nan(a)) then
             load = maugis_load(a, r, y, gamma, strength)
             call add(maugis_dugdale, load, a)
-            ! Below the pull-off under a load Maugis' state is stable at its displacement alone.
+            ! Below the pull-off at fixed load Maugis' state is stable only at fixed displacement.
             if (a >= maugis_radius_at_load(load, r, y, gamma, strength)*(1 - small)) then
               fit = carpick_fit(r, y, gamma, strength)
               call add(carpick, load, fit%radius_at_load(load))
@@ -125,7 +125,7 @@ contains
       integer, intent(in) :: theory
       real(wp), intent(in) :: load, contact_radius
 
-      ! A theory without a state here says NaN.
+      ! NaN: the theory has no state here.
       if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
       if (range%shown(theory)) &
         call results%row(trim(theories(theory)), [h0, delta, load, contact_radius])
@@ -133,7 +133,7 @@ contains
 
   end subroutine write_classical
 
-  !> Whether bodies have layers, of whatever material.
+  !> Whether the bodies have layers.
   pure logical function is_layered(problem)
     type(problem_t), intent(in) :: problem
 
@@ -156,8 +156,8 @@ contains
     end select
   end function layered_contact_of
 
-  !> What theory says of layered bodies: the pull-off of JKR, and E* of the half-spaces on which
-  !> Hertz finds the load of the deepest contact at its displacement.
+  !> Adds numbers of layered bodies: the pull-off of JKR, and E* of half-spaces on which Hertz's
+  !> load at the displacement of the deepest contact is that of the layers.
   subroutine summarise_layered(problem, range, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -178,7 +178,7 @@ contains
       0.5_wp*problem%stiffness*contact%load(hertz, a)/homogeneous)
   end subroutine summarise_layered
 
-  !> Maugis-Dugdale theory with the law's surface energy and largest tension, where both exist.
+  !> Adds numbers of Maugis-Dugdale theory with the law's surface energy and largest tension.
   subroutine summarise_classical(problem, range, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -200,7 +200,7 @@ contains
     call summarise_fits(problem, range, gamma, strength, summary)
   end subroutine summarise_classical
 
-  !> What the closed forms fitted to it say, where they are wanted.
+  !> Adds numbers of the formulas fitted to Maugis-Dugdale theory, if they are wanted.
   subroutine summarise_fits(problem, range, gamma, strength, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range

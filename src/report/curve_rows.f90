@@ -1,4 +1,4 @@
-!> The curve: one row an equilibrium.
+!> The curve: one row for each equilibrium.
 module curve_rows
   use records, only: record_t
   use decimal, only: put_whole, longest_real
@@ -10,8 +10,8 @@ module curve_rows
 
 contains
 
-  !> The columns of the table; with those of stability where `eigenvalues` are shown, and as many of
-  !> a drive in time as there are.
+  !> The columns of the table: with those of stability if there are eigenvalues, and with the first
+  !> `of_drive` of those of a drive in time.
   pure function columns_of_curve(eigenvalues, of_drive) result(columns)
     logical, intent(in) :: eigenvalues
     integer, intent(in) :: of_drive
@@ -24,7 +24,7 @@ contains
     columns = [columns, more(:of_drive)]
   end function columns_of_curve
 
-  !> The row of a record; columns of stability where the record has them.
+  !> The row of a record, with columns of stability if the record has them.
   pure function curve_row(record) result(text)
     type(record_t), intent(in) :: record
     character(len=:), allocatable :: text
@@ -44,10 +44,9 @@ contains
     if (allocated(record%time)) call put_cells([record%time], row, held)
     if (allocated(record%z)) call put_cells([record%z], row, held)
     text = row(:held)
-
   end function curve_row
 
-  !> Adds a whole number after a comma.
+  !> Adds an integer after a comma.
   pure subroutine put_count(count, row, held)
     integer, intent(in) :: count
     character(len=*), intent(inout) :: row

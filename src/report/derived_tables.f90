@@ -1,6 +1,6 @@
-!> The tables beside the curve, in `write_derived_tables` one statement each.
+!> The tables beside the curve, each written by one statement.
 module derived_tables
-  ! First what uses most: compiler note 12.
+  ! The module with most dependencies is first: compiler note 12.
   use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t
   use experiment_request, only: sensitivity_t
@@ -20,7 +20,7 @@ module derived_tables
 
 contains
 
-  !> Writes those that the scene asks for.
+  !> Writes the tables of theories that the scene asks for.
   subroutine write_derived_tables(scene, problem, results)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -35,7 +35,7 @@ contains
     call write_approximations(problem, scene%approximations, path_start(scene, problem), results)
   end subroutine write_derived_tables
 
-  !> Writes those that are read from the path.
+  !> Writes the tables that are read from the path.
   subroutine write_path_tables(problem, outcome, results)
     type(problem_t), intent(in) :: problem
     type(experiment_result_t), intent(in) :: outcome
@@ -59,7 +59,7 @@ contains
     end associate
   end subroutine write_path_tables
 
-  !> Writes the derivatives of what is in the summary and read from the path.
+  !> Writes the derivatives of the summary's numbers and of the curve.
   subroutine write_sensitivities(sensitivity, problem, outcome, summary, results)
     type(sensitivity_t), intent(in) :: sensitivity
     type(problem_t), intent(in) :: problem

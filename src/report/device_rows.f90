@@ -1,8 +1,7 @@
-!> Bodies driven through springs: the path against the position of the drive, the ways in and out
-!> with their jumps, and what they leave in the summary.
+!> Bodies driven through springs: the path against the position of the drive, approaches and
+!> retreats with their jumps, and their numbers in the summary.
 module device_rows
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
   use curve_states, only: path_state_t
   use driven_pieces, only: drive_t
@@ -17,7 +16,7 @@ module device_rows
   private
   public :: write_device, write_jumps, summarise_device
 
-  !> An energy is worth having where the two routes to it differ by less than this part.
+  !> Relative difference of the two energies of a cycle above which there is a warning.
   real(wp), parameter :: known_energy = 1.0e-4_wp
 
 contains
@@ -40,7 +39,7 @@ contains
 
   contains
 
-    !> The whole path.
+    !> Adds the whole path.
     subroutine add_path(driven)
       type(driven_t), intent(in) :: driven
       integer :: j
@@ -53,7 +52,7 @@ contains
       end do
     end subroutine add_path
 
-    !> One leg; where a jump starts it is not stable any more.
+    !> Adds one leg; the state in which a jump starts is not stable.
     subroutine add_leg(driven, leg)
       type(driven_t), intent(in) :: driven
       type(leg_t), intent(in) :: leg
@@ -122,12 +121,11 @@ contains
     type(drive_t), intent(in) :: drive
     type(path_state_t), intent(in) :: state
 
-    z = ieee_value(z, ieee_quiet_nan)
+    z = nan
     if (drive%weights(1) > 0) z = problem%law%separation_of(drive%position(state))
   end function z_of
 
-  !> What the drives leave in the summary besides what is read at places, an element for each
-  !> stiffness.
+  !> Adds numbers of the drives that are not read at places, with one element for each stiffness.
   subroutine summarise_device(problem, readings, places, summary)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
@@ -149,8 +147,8 @@ contains
     end associate
   end subroutine summarise_device
 
-  !> How well the energy lost is known: the two routes to it share the states where jumps start and
-  !> end, but one takes the energy of these and the other the load on the way between them.
+  !> Uncertainty of the energy lost: the difference of two ways to find it, from the energies before
+  !> and after jumps, and from the load between them.
   elemental real(wp) function uncertainty(driven)
     type(driven_t), intent(in) :: driven
 

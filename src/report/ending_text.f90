@@ -1,4 +1,4 @@
-!> What a user is told of an experiment that ends before it should.
+!> The messages for experiments that end early.
 module ending_text
   use ending, only: ending_t, touching, beyond_rounding, no_equilibrium, path_lost, steps_lost, &
     fallen_before, beyond_path, nothing_afar, state_lost, turn_not_reached, not_kept
@@ -8,14 +8,15 @@ module ending_text
 
 contains
 
-  !> The reason in words, blank if it ended as planned; not of deferred length: compiler note 4.
+  !> The reason of the end, blank if it was planned. The length is not deferred: compiler note 4.
   pure function text_of(ending) result(text)
     type(ending_t), intent(in) :: ending
     character(len=160) :: text
 
     select case (ending%cause)
     case (touching)
-      text = 'rigid bodies would touch: so near (h0 <= 0, or far below it) this law has no pressure'
+      text = 'rigid bodies would touch: the law has no pressure at gaps so small (h0 <= 0, or ' // &
+        'far below it)'
     case (beyond_rounding)
       text = 'adhesion is so strong that rounding hides the force law once the bodies are in ' // &
         'contact'
@@ -26,7 +27,7 @@ contains
     case (steps_lost)
       text = 'no step, however small, converged'
     case (fallen_before)
-      text = 'the bodies have fallen onto each other before the h0 where it is to start'
+      text = 'the bodies have jumped into contact before the h0 at which this branch starts'
     case (beyond_path)
       text = 'this h0 is beyond the path that was traced'
     case (nothing_afar)
@@ -37,7 +38,7 @@ contains
     case (turn_not_reached)
       text = 'loading did not reach the turning point'
     case (not_kept)
-      text = 'what was found can no longer be kept'
+      text = 'the results can no longer be written'
     case default
       text = ''
     end select

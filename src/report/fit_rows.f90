@@ -1,4 +1,4 @@
-!> What a fit found: fit.csv, sample by sample; fit.nml, the unknowns; and the same in words.
+!> The results of a fit: fit.csv, sample by sample; fit.nml, the unknowns; and messages.
 module fit_rows
   use kinds, only: wp
   use text, only: rounded, rounded_to, brief
@@ -15,9 +15,9 @@ module fit_rows
   private
   public :: write_fit_rows, fit_text, fit_words
 
-  !> More that a theory may leave, in chi squared, and still do as well.
+  !> Difference of chi squared up to which two fits are equally good.
   real(wp), parameter :: as_well = 4
-  !> Standard deviations of a 95 % interval.
+  !> Half-width of a 95 % interval in standard deviations.
   real(wp), parameter :: most = 1.959964_wp
   character(len=1), parameter :: nl = new_line('a')
 
@@ -42,7 +42,7 @@ contains
     end associate
   end subroutine write_fit_rows
 
-  !> fit.nml: a group for the fit of the path, and one for that of each theory.
+  !> The text of fit.nml: a group for the fit of the path, and one for the fit of each theory.
   function fit_text(outcome, title) result(text)
     type(fit_outcome_t), intent(in) :: outcome
     character(len=*), intent(in) :: title
@@ -51,7 +51,7 @@ contains
     integer :: i
 
     name = title
-    text = '! A fit by snapin, SI units. What does not exist is NaN or left out.' // nl // &
+    text = '! A fit by snapin, SI units. Values that do not exist are NaN or left out.' // nl // &
       '&fit' // nl // assignment_of('title', name) // &
       of_fitted(outcome%curve%unknown, outcome%fitted)
     associate (curve => outcome%curve)
@@ -77,7 +77,7 @@ contains
     end do
   end function fit_text
 
-  !> The entries that all fits have.
+  !> The entries of each fit.
   function of_fitted(unknown, fitted) result(text)
     type(unknown_t), intent(in) :: unknown(:)
     type(fitted_t), intent(in) :: fitted
@@ -111,7 +111,7 @@ contains
     text = text // numbers('excess_width', [real(fitted%lack%width, wp)])
   end function of_fitted
 
-  !> What the data say of numbers that were held.
+  !> The entries about numbers that were held.
   function of_held(held) result(text)
     type(held_t), intent(in) :: held(:)
     character(len=:), allocatable :: text
@@ -125,7 +125,8 @@ contains
     text = assignment_of('held', names) // numbers('held_asked', held%asked)
   end function of_held
 
-  !> Where the base was at a jump, as measured and by the model; nothing where none was seen.
+  !> Positions of the base at a jump, measured and modelled; without a measured jump only the
+  !> model's.
   function of_jump(name, jump, model) result(text)
     character(len=*), intent(in) :: name
     type(measured_jump_t), intent(in) :: jump
@@ -159,10 +160,10 @@ contains
 
     allocate (lines(0))
     associate (curve => outcome%curve)
-      line%text = brief(real(size(curve%data%sample), wp)) // ' samples, noise ' // &
+      line%text = brief(size(curve%data%sample)) // ' samples, noise ' // &
         rounded(curve%data%noise%deviation) // ', correlation of neighbours ' // &
-        rounded(curve%data%noise%correlation(1)) // ', ' // brief(real(count( &
-        curve%data%measured%outlier()), wp)) // ' outliers left out'
+        rounded(curve%data%noise%correlation(1)) // ', ' // brief(count( &
+        curve%data%measured%outlier())) // ' outliers left out'
       lines = [lines, line]
       do i = 1, size(curve%unknown)
         line%text = curve%unknown(i)%name // ' = ' // rounded_to(outcome%fitted%value(i), &
@@ -170,7 +171,7 @@ contains
         lines = [lines, line]
       end do
     end associate
-    line%text = 'what is left is ' // rounded(left_of(outcome%fitted)) // ' times the noise'
+    line%text = 'the residuals are ' // rounded(left_of(outcome%fitted)) // ' times the noise'
     do i = 1, size(outcome%theory)
       associate (theory => outcome%theory(i))
         if (.not. allocated(theory%fitted%effect)) cycle
@@ -193,7 +194,7 @@ contains
     end do
   end function fit_words
 
-  !> What a fit leaves over the noise.
+  !> Standard deviation of the residuals of a fit, over the noise.
   pure real(wp) function left_of(fitted)
     type(fitted_t), intent(in) :: fitted
 

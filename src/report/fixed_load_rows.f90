@@ -1,4 +1,4 @@
-!> Equilibria under given loads, as rows of a table and numbers of the summary.
+!> Equilibria at given loads, as rows of a table and numbers of the summary.
 module fixed_load_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -14,7 +14,7 @@ module fixed_load_rows
 
 contains
 
-  !> Writes the rows of fixed_load.csv: load by load, each from afar inward.
+  !> Writes the rows of fixed_load.csv: load by load, from large to small h0.
   subroutine write_fixed_loads(problem, readings, places, results)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
@@ -35,7 +35,7 @@ contains
     end do
   end subroutine write_fixed_loads
 
-  !> How many equilibria each load has, and how many of them are stable.
+  !> Adds the number of equilibria at each load, and of stable ones.
   subroutine summarise_fixed_loads(problem, loads, loaded, summary)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: loads(:)

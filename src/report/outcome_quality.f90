@@ -1,5 +1,5 @@
-!> What all experiments of an outcome have in common: how good their states are, how far they go and
-!> whether they came to their end.
+!> The quality of all experiments of an outcome together: residuals, spacing of nodes, extent, and
+!> whether one of them ended early.
 module outcome_quality
   use kinds, only: wp
   use ending, only: ending_t
@@ -9,7 +9,8 @@ module outcome_quality
   private
   public :: quality_t, quality_of
 
-  !> The largest residual and the widest spacing of nodes over the neck.
+  !> The largest residual, the widest spacing of nodes over the neck width, the extent of the
+  !> states, and whether an experiment ended early.
   type :: quality_t
     real(wp) :: residual = 0, spacing = 0
     type(extent_t) :: extent

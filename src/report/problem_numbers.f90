@@ -1,9 +1,8 @@
-!> Numbers that follow from the problem alone: of the force law, of the theories, of layers. With
-!> parameters of &sensitivity they are found for varied problems too, whose differences are the
-!> derivatives.
+!> Numbers that follow from the problem alone: of the force law, of theories, of layers. Their
+!> derivatives by parameters of &sensitivity are differences between varied problems.
 module problem_numbers
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
-  use kinds, only: wp
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t, adhesion_strength, tabor_parameter, surface_energy, &
     largest_tension
   use classical, only: jkr_pull_off, dmt_pull_off
@@ -17,7 +16,7 @@ module problem_numbers
   private
   public :: describe_problem
 
-  !> A number for each row; NaN where there is none.
+  !> A number for each row; NaN if there is none.
   type :: numbers_t
     real(wp) :: of_row(size(rows)) = 0
   contains
@@ -26,7 +25,7 @@ module problem_numbers
 
 contains
 
-  !> Enters the numbers of a problem, with derivatives by what is varied.
+  !> Adds the numbers of a problem, with derivatives by what `varied` varies.
   subroutine describe_problem(problem, summary, varied)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
@@ -42,7 +41,7 @@ contains
     do j = 1, size(rate, 1)
       do k = 1, size(varied(j)%problem)
         other = numbers_of(varied(j)%problem(k))
-        ! Of differences, so that what does not depend on a parameter has no derivative.
+        ! Differences, so that a number that does not depend on a parameter has a derivative of 0.
         rate(j, :) = rate(j, :) + varied(j)%weight(k)*(other%of_row - own%of_row)
       end do
     end do
@@ -63,7 +62,7 @@ contains
   type(numbers_t) function numbers_of(problem) result(numbers)
     type(problem_t), intent(in) :: problem
 
-    numbers%of_row = ieee_value(1.0_wp, ieee_quiet_nan)
+    numbers%of_row = nan
     if (problem%law%adhesion > 0) then
       if (problem%law%work > 0) then
         call numbers%set('surface_energy', surface_energy(problem))
@@ -78,7 +77,7 @@ contains
     end if
     select type (body => problem%body)
     type is (layered_body_t)
-      ! The moduli of short and of long waves.
+      ! The top layer has the modulus for short waves, the base that for long waves.
       call numbers%set('top_modulus', 0.5_wp*problem%stiffness)
       if (body%bottom > 0) &
         call numbers%set('bottom_modulus', 0.5_wp*problem%stiffness/body%bottom)
@@ -89,15 +88,15 @@ contains
     end if
   end function numbers_of
 
-  !> Pull-offs of the theories. Of other shapes than the parabola that of JKR theory depends on the
-  !> stiffness, and that of rigid bodies on more of the law than its surface energy.
+  !> Pull-offs of the theories. For other shapes than the parabola the pull-off of JKR theory
+  !> depends on the stiffness, and that of rigid bodies on more of the law than its surface energy.
   subroutine take_pull_offs(problem, numbers)
     type(problem_t), intent(in) :: problem
     type(numbers_t), intent(inout) :: numbers
 
     if (problem%shape%parabolic) call numbers%set('dmt_pull_off', &
       -dmt_pull_off(problem%radius, surface_energy(problem)))
-    ! JKR of layered bodies is with &classical.
+    ! JKR of layered bodies needs &classical.
     if (.not. problem%body%is_homogeneous()) return
     if (problem%shape%parabolic) then
       call numbers%set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
@@ -106,7 +105,7 @@ contains
     end if
   end subroutine take_pull_offs
 
-  !> The well of contact and what lies outside it; nothing of what the law does not have.
+  !> Numbers of the well of contact and of barrier and well outside it, as far as the law has them.
   subroutine take_forces(problem, numbers)
     type(problem_t), intent(in) :: problem
     type(numbers_t), intent(inout) :: numbers

@@ -24,14 +24,14 @@ contains
     if (.not. alike(problem)) columns = [columns, more]
   end function columns_of_profiles
 
-  !> Whether both bodies deform by as much.
+  !> Whether both bodies deform equally.
   pure logical function alike(problem)
     type(problem_t), intent(in) :: problem
 
     alike = problem%body%is_alike() .and. .not. abs(problem%share(1) - problem%share(2)) > 0
   end function alike
 
-  !> Adds a state to a table of profiles: the axis, then its nodes. `h0` is in metres.
+  !> Adds a state to a table of profiles: the axis, then the nodes. `h0` is in metres.
   subroutine write_profile(table, branch, h0, problem, grid, state, error)
     type(table_t), intent(inout) :: table
     character(len=*), intent(in) :: branch
@@ -72,8 +72,8 @@ contains
     call table%flush(error)
   end subroutine write_profile
 
-  !> By how much the first body's surface moves outward, on the axis and at the nodes, where bodies
-  !> do not yield alike.
+  !> Outward displacement of the first body's surface, on the axis and at the nodes, for bodies that
+  !> deform differently.
   function deformation_of_first(problem, grid, state) result(deformation)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid

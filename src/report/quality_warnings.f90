@@ -1,33 +1,34 @@
-!> What the user has to know of the numbers in a summary: whether the mesh resolves the neck, and
-!> whether they are as good as the deck asks for.
+!> Warnings about the numbers in a summary: whether the mesh resolves the neck, and whether the
+!> numbers have the accuracy that the deck asks for.
 module quality_warnings
   use kinds, only: wp
   use scene_groups, only: scene_t
+  use text, only: rounded
   use mending, only: too_much
   use experiment_result, only: experiment_result_t
   use outcome_quality, only: quality_t
   use summary, only: summary_t
   implicit none
   private
-  public :: judge_resolution, judge_accuracy, judge_stopping, short_number
+  public :: judge_resolution, judge_accuracy, judge_stopping
 
-  !> Nodes may lie this many necks apart at the contact edge: beyond it the edge is pinned between
-  !> them. To a mesh that moves with the edge, whose panels meet there, that does not happen: some
-  !> two nodes in a neck make a polynomial of it.
+  !> Largest spacing of nodes at the contact edge, in neck widths: with a wider spacing the edge is
+  !> pinned between the nodes. On a mesh that moves with the edge it is not pinned; there two nodes
+  !> in a neck make a polynomial of it.
   real(wp), parameter :: resolved_spacing = 0.2_wp, resolved_locked = 0.4_wp
 
-  !> Relative error above which the numbers of a grid that the deck has chosen get a warning; it is
-  !> chosen to show such errors.
+  !> Relative error above which the numbers on a grid of the deck's choice get a warning. Such grids
+  !> are chosen to show these errors.
   real(wp), parameter :: meaningless = 0.1_wp
-  !> An estimate carries a margin of two and more; only beyond this many times the accuracy is it
-  !> clear that the accuracy is missed.
+  !> Ratio of estimated error and accuracy above which there is a warning: an estimate has a margin
+  !> of a factor of two or more.
   real(wp), parameter :: clearly = 3
-  !> A residual not worth a warning.
+  !> Residual below which there is no warning.
   real(wp), parameter :: usual_residual = 1.0e-8_wp
 
 contains
 
-  !> Whether the neck is resolved, and what to do if not. locked: on a mesh locked to the edge.
+  !> Warns of a neck that is not resolved, with advice. locked: the mesh is locked to the edge.
   subroutine judge_resolution(locked, quality, summary)
     logical, intent(in) :: locked
     type(quality_t), intent(in) :: quality
@@ -44,16 +45,16 @@ contains
         advice = '; ask for a higher accuracy'
       else
         advice = ', which is then pinned between them; use '// &
-          short_number(spacing/resolved_spacing)//' times as many nodes or grid = ''panels'''
+          rounded(spacing/resolved_spacing)//' times as many nodes or grid = ''panels'''
       end if
-      call summary%warn('under-resolved: nodes are '//short_number(spacing)// &
+      call summary%warn('under-resolved: nodes are '//rounded(spacing)// &
         ' neck widths apart at the contact edge'//advice)
     end associate
   end subroutine judge_resolution
 
-  !> Whether the numbers are as good as the deck asks for; on a grid that the deck has chosen,
-  !> whether they are any good. And whether residuals count as converged because rounding allows no
-  !> better, though they may show in a displacement of one of the law's lengths.
+  !> Warns if the numbers do not have the accuracy that the deck asks for, or on a grid of the
+  !> deck's choice if they are meaningless. Warns also of residuals that rounding keeps above the
+  !> tolerance, if they matter for displacements of the law's length.
   subroutine judge_accuracy(scene, outcome, quality, summary)
     type(scene_t), intent(in) :: scene
     type(experiment_result_t), intent(in) :: outcome
@@ -63,15 +64,12 @@ contains
 
     associate (tolerance => outcome%chosen%options%tolerance)
       if (summary%is_true('converged') .and. .not. outcome%chosen%options%stop_on_change .and. &
-        quality%residual > &
-        max(tolerance, scene%numerics%accuracy, usual_residual)) &
-        call summary%warn('rounding leaves residuals of up to '// &
-        short_number(quality%residual)// &
-        ' lengths of the force law, above the tolerance of '//short_number(tolerance))
+        quality%residual > max(tolerance, scene%numerics%accuracy, usual_residual)) &
+        call summary%warn('rounding leaves residuals of up to '//rounded(quality%residual)// &
+        ' lengths of the force law, above the tolerance of '//rounded(tolerance))
     end associate
     if (outcome%left_out > too_much*scene%numerics%accuracy) &
-      call summary%warn( &
-      'the mesh does not resolve the force law: '//short_number(outcome%left_out)// &
+      call summary%warn('the mesh does not resolve the force law: '//rounded(outcome%left_out)// &
       ' of the load is left out between nodes; smoother forces are resolved')
     if (.not. allocated(outcome%error_estimate)) return
     enough = clearly*scene%numerics%accuracy
@@ -80,12 +78,12 @@ contains
       call summary%warn('the error could not be estimated: a finer mesh has no such states, or '// &
         'these did not converge; the numbers may mean nothing')
     else if (outcome%error_estimate > enough) then
-      call summary%warn('the error is estimated as '//short_number(outcome%error_estimate)// &
-        ', above the accuracy of '//short_number(scene%numerics%accuracy)//' asked for')
+      call summary%warn('the error is estimated as '//rounded(outcome%error_estimate)// &
+        ', above the accuracy of '//rounded(scene%numerics%accuracy)//' asked for')
     end if
   end subroutine judge_accuracy
 
-  !> Whether equations that were not asked to hold hold all the same.
+  !> Warns if the iteration stopped on a small change, and checks whether the equations hold anyway.
   subroutine judge_stopping(outcome, quality, summary)
     type(experiment_result_t), intent(in) :: outcome
     type(quality_t), intent(in) :: quality
@@ -94,19 +92,9 @@ contains
     if (.not. outcome%chosen%options%stop_on_change) return
     call summary%warn('the iteration was stopped on a small change of the displacement, '// &
       'which is not convergence: the largest residual left is '// &
-      short_number(quality%residual)//' lengths of the force law')
+      rounded(quality%residual)//' lengths of the force law')
     call summary%set('converged', .not. quality%early .and. &
       quality%residual <= outcome%chosen%options%tolerance)
   end subroutine judge_stopping
-
-  !> A number for a message, to three digits.
-  pure function short_number(x) result(text)
-    real(wp), intent(in) :: x
-    character(len=:), allocatable :: text
-    character(len=24) :: buffer
-
-    write (buffer, '(g12.3)') x
-    text = trim(adjustl(buffer))
-  end function short_number
 
 end module quality_warnings

@@ -1,4 +1,4 @@
-!> A drive in time, in the summary.
+!> The numbers of a drive in time in the summary.
 module rate_entries
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t, adhesion_strength
@@ -6,20 +6,20 @@ module rate_entries
   use timed_record, only: timed_result_t, numbers, of_tension, of_tension_h0, of_end_h0, &
     of_end_load, of_end_displacement, of_dissipation, of_suction
   use summary, only: summary_t
-  use quality_warnings, only: short_number
+  use text, only: rounded
   implicit none
   private
   public :: summarise_timed, si_numbers
 
-  !> The part of the memory that panels may leave without a word. What it makes of the gap is much
-  !> smoother: of 100 random cycles none with less was off by more than its errors.
+  !> The part of the memory that the mesh may fail to resolve without a warning. Its effect on the
+  !> gap is much smoother: in 100 random cycles with less no number was off by more than its error.
   real(wp), parameter :: unresolved = 0.7_wp
-  !> Pa.
+  !> Atmospheric pressure [Pa].
   real(wp), parameter :: atmosphere = 101325
 
 contains
 
-  !> Numbers, errors and trouble of a drive.
+  !> Adds numbers, errors and warnings of a drive.
   subroutine summarise_timed(scene, problem, timed, summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -29,14 +29,14 @@ contains
     if (allocated(scene%creep) .and. problem%law%adhesion > 0) call summary%set('sigma_relaxed', &
       adhesion_strength(problem)*scene%creep%relaxed())
     if (.not. timed%begun) then
-      call summary%fail_with('drive: at z_start the bodies have jumped into contact already; ' // &
+      call summary%fail_with('drive: at z_start the bodies have already jumped into contact; ' // &
         'start farther apart')
       return
     end if
     call summary%set('time_steps', int(timed%steps, long))
     if (timed%lost) then
-      call summary%fail_with('drive: after ' // short_number(timed%lost_at) // ' s no state ' // &
-        'was found that the bodies go on to, or steps were too many; the curve ends there')
+      call summary%fail_with('drive: after ' // rounded(timed%lost_at) // ' s no further ' // &
+        'state was found, or there were too many steps; the curve ends there')
       return
     end if
     if (allocated(timed%not_rated)) call summary%fail_with('sensitivity: a run with another ' // &
@@ -55,24 +55,23 @@ contains
       call take('max_suction', of_suction)
       if (timed%number(of_suction)*problem%pressure > atmosphere) call warn_of_cavities()
     end if
-    if (timed%memory_tail > unresolved) call summary%warn('the mesh does not resolve what the ' // &
-      'bodies remember: ' // short_number(timed%memory_tail) // ' of it is left between ' // &
-      'nodes; a higher accuracy resolves more')
+    if (timed%memory_tail > unresolved) call summary%warn('the mesh does not resolve the ' // &
+      'memory of the bodies: ' // rounded(timed%memory_tail) // ' of it is lost between ' // &
+      'nodes; ask for a higher accuracy')
 
   contains
 
     subroutine warn_of_cavities()
       associate (at => timed%suction_at)
         call summary%warn('the fluid is under a suction of ' // &
-          short_number(timed%number(of_suction)*problem%pressure) // ' Pa after ' // &
-          short_number(at(1)) // ' s, at h0 = ' // &
-          short_number(problem%law%separation_of(at(2))) // ' m and ' // &
-          short_number(at(3)*problem%lateral) // ' m from the axis: more than an atmosphere, ' // &
-          'it may cavitate, which the model does not')
+          rounded(timed%number(of_suction)*problem%pressure) // ' Pa after ' // &
+          rounded(at(1)) // ' s, at h0 = ' // rounded(problem%law%separation_of(at(2))) // &
+          ' m and ' // rounded(at(3)*problem%lateral) // ' m from the axis: more than an ' // &
+          'atmosphere; a real fluid may cavitate, which the model does not include')
       end associate
     end subroutine warn_of_cavities
 
-    !> Enters a number, times a factor, with its error and derivatives.
+    !> Adds a number, times a factor, with its error and derivatives.
     subroutine take(key, which, factor)
       character(len=*), intent(in) :: key
       integer, intent(in) :: which

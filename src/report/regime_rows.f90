@@ -1,8 +1,8 @@
-!> Which theory of contact describes a scene: the parameters that say so, and the errors of the
-!> theories in pull-off, contact radius and indentation, measured against the solved path.
+!> Which theory of contact describes a scene: the parameters for this choice, and the errors of the
+!> theories in pull-off, contact radius and indentation against the solved path.
 module regime_rows
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
-  use kinds, only: wp, pi
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use kinds, only: wp, pi, nan
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
   use edge_locked, only: approach
   use layered_body, only: layered_body_t
@@ -19,15 +19,15 @@ module regime_rows
   private
   public :: summarise_regime
 
-  !> Theories, of half-spaces (for layers of half-spaces of the top ones) and of layers; then fits
-  !> to one of them, and which of all are closed forms of the load.
+  !> Theories: of half-spaces (for layers, of the top layers' half-spaces), of layers, and formulas
+  !> fitted to one of them. closed: those that are closed forms of the load.
   character(len=*), parameter :: theories(*) = [character(len=13) :: 'hertz', 'jkr', 'dmt', &
     'maugis', 'hertz_layered', 'jkr_layered', 'carpick', 'pietrement']
   integer, parameter :: of_layers_from = 5, fits_from = 7
   integer, parameter :: closed(*) = [2, 3, 7, 8]
   character(len=*), parameter :: numbers(3) = [character(len=14) :: 'pull-off', 'contact radius', &
     'indentation']
-  !> A theory that misses more than this is not recommended.
+  !> Largest error of a theory that is recommended.
   real(wp), parameter :: acceptable = 0.1_wp
 
   !> Pull-off [N], negative; contact radius and indentation [m] at the largest load.
@@ -37,9 +37,9 @@ module regime_rows
 
 contains
 
-  !> The contact radius is where the tension is largest. In the theories bodies touch at no
-  !> separation, here at the gap at rest: indentations count from there, their errors are relative
-  !> to a^2/R.
+  !> Adds the regime to the summary. The contact radius is the radius of largest tension. In the
+  !> theories touching bodies have no separation, here that of the gap at rest; indentations count
+  !> from there, and their errors are relative to a^2/R.
   subroutine summarise_regime(problem, places, summary)
     type(problem_t), intent(in) :: problem
     type(places_t), intent(in) :: places
@@ -64,16 +64,16 @@ contains
     select type (body => problem%body)
     type is (layered_body_t)
       has_layers = .true.
-      ! Contacts deep enough for theories that have less load there than the path.
+      ! Deep enough for theories with a smaller load at an indentation than the path.
       layered = new_layered_contact(problem, body, 2*solved%indentation/problem%length)
     end select
     associate (r => problem%radius, y => problem%stiffness)
-      ! With E* = y/2 and the range gamma/strength.
+      ! Tabor's parameter with E* = y/2 and the range gamma/strength.
       call summary%set('regime_tabor_range', (4*r*strength**3/(y**2*gamma))**(1.0_wp/3))
       call summary%set('regime_maugis_lambda', maugis_lambda(r, y, gamma, strength))
       call summary%set('regime_load_number', load/(pi*gamma*r), load_error/(pi*gamma*r))
       errors = all_errors(load, solved)
-      ! What each number may be off by changes the errors of the theories by so much.
+      ! The errors of the solved numbers change the errors of the theories by so much.
       spread = abs(all_errors(load + load_error, solved) - errors) + &
         abs(all_errors(load, sum_of(solved, measured_t(pull_off=uncertain%pull_off))) - errors) + &
         abs(all_errors(load, sum_of(solved, measured_t(radius=uncertain%radius))) - errors)
@@ -94,7 +94,7 @@ contains
       type(measured_t) :: says
       integer :: k
 
-      errors = ieee_value(1.0_wp, ieee_quiet_nan)
+      errors = nan
       do k = 1, size(theories)
         if (.not. is_of_layers(k)) then
           says = of_theory(trim(theories(k)), at_load, problem%radius, problem%stiffness, gamma, &
@@ -115,7 +115,8 @@ contains
     is_of_layers = theory >= of_layers_from .and. theory < fits_from
   end function is_of_layers
 
-  !> What the path says, with errors; there = .false.: it has no pull-off, or no contact at its end.
+  !> The numbers of the path, with errors. there = .false. if it has no pull-off, or no contact at
+  !> its end.
   subroutine measure(problem, places, load, solved, load_error, uncertain, there)
     type(problem_t), intent(in) :: problem
     type(places_t), intent(in) :: places
@@ -137,7 +138,7 @@ contains
     end associate
   end subroutine measure
 
-  !> What a theory says at a load [N]; NaN where it does not.
+  !> The numbers of a theory at a load [N]; NaN if it has none.
   type(measured_t) function of_theory(name, load, r, y, gamma, strength) result(says)
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: load, r, y, gamma, strength
@@ -158,14 +159,13 @@ contains
     case ('maugis')
       says%pull_off = maugis_pull_off(r, y, gamma, strength)
       says%radius = maugis_radius_at_load(load, r, y, gamma, strength)
-      says%indentation = ieee_value(1.0_wp, ieee_quiet_nan)
+      says%indentation = nan
       if (says%radius > 0) &
         says%indentation = maugis_displacement(says%radius, r, y, gamma, strength)
     case ('carpick')
       fit = carpick_fit(r, y, gamma, strength)
-      ! The formula says nothing of the displacement.
-      says = measured_t(fit%pull_off, fit%radius_at_load(load), &
-        ieee_value(1.0_wp, ieee_quiet_nan))
+      ! The formula gives no displacement.
+      says = measured_t(fit%pull_off, fit%radius_at_load(load), nan)
     case ('pietrement')
       fit = pietrement_fit(r, y, gamma, strength)
       says = measured_t(fit%pull_off, fit%radius_at_load(load), fit%displacement_at_load(load))
@@ -183,7 +183,7 @@ contains
 
     theory = merge(jkr, hertz, name == 'jkr_layered')
     if (theory == jkr) says%pull_off = contact%pull_off()*problem%load
-    a = contact%radius_at_load(theory, load/problem%load)
+    a = contact%radius_at(theory, load=load/problem%load)
     says%radius = a*problem%lateral
     says%indentation = a
     if (.not. ieee_is_nan(a)) says%indentation = contact%displacement(theory, a)*problem%length
@@ -205,8 +205,8 @@ contains
       1 + (theory%indentation - solved%indentation)*radius/solved%radius**2] - 1
   end function errors_of
 
-  !> Recommends the theory whose largest error is the smallest, and says why. What was fitted to a
-  !> theory is nearer than the theory by chance alone and is not recommended here.
+  !> Recommends the theory whose largest error is the smallest, and says why. A formula fitted to a
+  !> theory can be nearer than the theory only by chance, and is not recommended here.
   subroutine recommend(errors, summary)
     real(wp), intent(in) :: errors(:, :)
     type(summary_t), intent(inout) :: summary
@@ -249,7 +249,7 @@ contains
     call summary%set('regime_formula_error', worst(best))
   end subroutine recommend_formula
 
-  !> The largest error of each theory; of one that does not have all, it is huge.
+  !> The largest error of each theory; huge if the theory does not give all numbers.
   pure function largest_of_each(errors) result(largest)
     real(wp), intent(in) :: errors(:, :)
     real(wp) :: largest(size(errors, 2))

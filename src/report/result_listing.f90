@@ -1,5 +1,5 @@
-!> What `snapin --results` prints: every file of results with its columns, and every entry of
-!> summary.nml. Columns and entries are read from the tables that write the files.
+!> The output of `snapin --results`: all files of results with their columns, and all entries of
+!> summary.nml, from the tables that write the files.
 module result_listing
   use result_rows, only: row_t, rows, in_summary, in_cost
   use result_tables, only: tables
@@ -9,8 +9,8 @@ module result_listing
 
 contains
 
-  !> Prints, for each file, a line with its name and the group that asks for it, a line that says
-  !> what it holds, and two lines for each column or entry: name and unit, then the meaning.
+  !> Prints for each file a line with its name and the group that asks for it, a line with its
+  !> content, and two lines for each column or entry: name and unit, then the meaning.
   subroutine write_result_listing(unit)
     integer, intent(in) :: unit
     character(len=len(tables)) :: note
@@ -38,9 +38,9 @@ contains
         end select
       end associate
     end do
-    write (unit, '(/, a, /, 4x, a)', iostat=status) '&summary', 'What was found.'
+    write (unit, '(/, a, /, 4x, a)', iostat=status) '&summary', 'Results of the run.'
     call list_rows(unit, in_summary)
-    write (unit, '(/, a, /, 4x, a)', iostat=status) '&cost', 'What it took.'
+    write (unit, '(/, a, /, 4x, a)', iostat=status) '&cost', 'Time and work of the run.'
     call list_rows(unit, in_cost)
   end subroutine write_result_listing
 
@@ -58,7 +58,7 @@ contains
     end do
   end subroutine list_rows
 
-  !> When a row is a column of sweep.csv; empty for never.
+  !> Says when a row is a column of sweep.csv; empty for never.
   pure function sweep_note(row) result(note)
     type(row_t), intent(in) :: row
     character(len=:), allocatable :: note

@@ -1,9 +1,9 @@
 !> The results of one run: a folder with the curve, the profiles, the tables and the summary.
 !>
-!> All of them are written to `.partial` files, the curve and the profiles row by row; `finish`
-!> gives the whole set its names (`publication`). Until then the results of an earlier run stay as
-!> they are, and what an interrupted run leaves is partial by name. One run at a time has the
-!> folder; what it finds goes into a journal, so that another can go on from there.
+!> All files are first written as `.partial` files, the curve and the profiles row by row; `finish`
+!> gives the whole set its names (`publication`). Until then the results of an earlier run stay
+!> unchanged, and files of an interrupted run have partial names. One run at a time has the folder.
+!> A journal keeps the states found, from which another run can continue.
 module results
   use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
@@ -32,27 +32,27 @@ module results
   private
   public :: results_t, journal_of, to_stream
 
-  !> Stands for a folder where results go to standard output, file by file in pieces (`text_file`).
+  !> Replaces a folder if results go to standard output, file by file in pieces (`text_file`).
   character(len=*), parameter :: to_stream = '-'
   integer(c_int), parameter :: standard_output = 1
 
-  !> Takes what a run has to show, between `open` and `finish`. The first thing that goes wrong is
-  !> kept in `trouble`; after it nothing more is written. Not to be copied while files are open.
+  !> Takes the results of a run, between `open` and `finish`. The first error is kept in `trouble`;
+  !> after it nothing more is written. Must not be copied while files are open.
   type, extends(observer_t) :: results_t
-    !> Unallocated while all is well.
+    !> Not allocated if there was no error.
     type(failure_t), allocatable :: trouble
-    !> Once started, it counts a step with every record of a cycle. The states of a path come all at
-    !> once, when the work is done, and are not counted.
+    !> Once started, it counts a step for each record of a cycle. The states of a path come all at
+    !> once, after the work, and are not counted.
     type(progress_t) :: progress
-    !> What the run has found so far, and what an interrupted one had.
+    !> The states found by this run, and by an interrupted one.
     type(journal_t) :: journal
-    !> Where results go to a stream, its descriptor. There is no folder then, and no journal.
+    !> The descriptor, if results go to a stream. Then there is no folder and no journal.
     integer(c_int), allocatable, private :: stream
-    !> Keeps other runs out of the folder.
+    !> Excludes other runs from the folder.
     type(folder_lock_t) :: lock
     character(len=:), allocatable, private :: folder, title, version
     type(table_t), private :: curve, shapes, cases, beside
-    !> Which of `result_files` this run has made.
+    !> Whether this run has made each of `result_files`.
     logical, private :: made(size(result_files)) = .false.
   contains
     procedure :: open => open_results
@@ -66,16 +66,16 @@ module results
     procedure :: finish
     procedure, private :: claim
     procedure, private :: check_presence
-    procedure, private :: path_of
+    procedure, private :: file_of
     procedure, private :: begin
   end type results_t
 
 contains
 
-  !> Makes the folder, which from then on is this run's alone, opens its journal and begins the
-  !> curve and the profiles where the scene has them, so that a place where nothing can be written
-  !> shows before anything is computed. `owner` is the run's identity; resume: the journal that an
-  !> interrupted run has left, if there is one, is continued.
+  !> Creates and locks the folder, opens its journal and begins the curve and the profiles if the
+  !> scene has them, so that a folder that cannot be written shows before anything is computed.
+  !> `owner` is the run's identity; resume: the journal of an interrupted run, if there is one, is
+  !> continued.
   subroutine open_results(self, folder, scene, version, problem, owner, resume, error)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: folder, version, owner
@@ -115,10 +115,10 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
 
     where (result_files == name) self%made = .true.
-    call table%begin(self%path_of(name), self%title, self%version, columns, error, self%stream)
+    call table%begin(self%file_of(name), self%title, self%version, columns, error, self%stream)
   end subroutine begin
 
-  !> Makes the folder, keeps others out of it and opens the journal.
+  !> Creates and locks the folder and opens the journal.
   subroutine claim(self, owner, resume, error)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: owner
@@ -137,8 +137,8 @@ contains
       return
     end if
     call self%journal%go_on(path, owner, other, error)
-    if (allocated(other)) call fail(error, file_trouble, 'cannot go on: what was interrupted ' // &
-      'is of another ' // difference_between(other, owner))
+    if (allocated(other)) call fail(error, file_trouble, 'cannot continue: the interrupted ' // &
+      'run had another ' // difference_between(other, owner))
   end subroutine claim
 
   !> Path of the journal in a folder of results.
@@ -149,7 +149,7 @@ contains
     path = folder // '/' // journal_name
   end function journal_of
 
-  !> Shows what is being done.
+  !> Shows the present activity.
   subroutine hear(self, what)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: what
@@ -179,7 +179,8 @@ contains
   end subroutine take
 
   !> Adds a case of a sweep to `sweep.csv`: the values of its keys, its numbers, and why it failed,
-  !> blank if it did not. `columns` are those of both, `words` those of which a value is the number.
+  !> blank if it did not. `columns` has the columns of keys and numbers; if words(k) is not blank,
+  !> value k is the number of one of these words.
   subroutine take_case(self, columns, words, values, numbers, failure)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: columns(:), words(:), failure
@@ -202,7 +203,7 @@ contains
     if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
   end subroutine take_case
 
-  !> A text as a cell of a table.
+  !> A text as a cell of a table: without commas and control characters.
   pure function without_commas(text) result(cell)
     character(len=*), intent(in) :: text
     character(len=len(text)) :: cell
@@ -215,7 +216,7 @@ contains
     end do
   end function without_commas
 
-  !> Begins one of `result_tables`, and ends the one before. Rows follow.
+  !> Begins one of `result_tables`, for rows to follow, and ends the one before.
   subroutine begin_table(self, name)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: name
@@ -225,7 +226,7 @@ contains
     call self%begin(self%beside, name, columns_of(name), self%trouble)
   end subroutine begin_table
 
-  !> Adds a row: text first, then numbers, then 1 or 0 for each of `truths`; text may be absent.
+  !> Adds a row: text first, if given, then numbers, then 1 or 0 for each of `truths`.
   subroutine row(self, text, numbers, truths)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in), optional :: text
@@ -245,7 +246,7 @@ contains
     call self%beside%line(line, self%trouble)
   end subroutine row
 
-  !> Writes the file `name`, one of `result_files`, whole.
+  !> Writes the whole file `name`, one of `result_files`.
   subroutine write_text(self, name, text)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: name, text
@@ -255,16 +256,12 @@ contains
     call self%beside%close(self%trouble)
     if (allocated(self%trouble)) return
     where (result_files == name) self%made = .true.
-    if (allocated(self%stream)) then
-      call file%open(name, self%trouble, self%stream)
-    else
-      call file%open(self%path_of(name) // partial, self%trouble)
-    end if
+    call file%open(self%file_of(name), self%trouble, self%stream)
     if (.not. allocated(self%trouble)) call file%put(text, self%trouble)
     if (.not. allocated(self%trouble)) call file%close(self%trouble)
   end subroutine write_text
 
-  !> Writes the summary. Its title and version, where not allocated, are those of `open`.
+  !> Writes the summary; title and version are those given to `open`.
   subroutine write_summary(self, summary, cost, deck)
     class(results_t), intent(inout) :: self
     type(summary_t), intent(in) :: summary
@@ -278,7 +275,7 @@ contains
     call complete%set('title', self%title)
     call complete%set('version', self%version)
     call complete%take_cost(cost)
-    ! A folder that has taken the name of this run's may hold another's summary.
+    ! Another folder of the same name may hold the summary of another run.
     if (.not. allocated(self%stream)) call self%check_presence(missing)
     if (allocated(missing)) then
       call move_alloc(missing, self%trouble)
@@ -287,9 +284,9 @@ contains
     call self%write_text(summary_name, summary_text(complete) // deck%resolved())
   end subroutine write_summary
 
-  !> Ends the progress and gives the files of this run their names; those of an earlier run which
-  !> this one has not made disappear, and so does the journal, at last. With `trouble`, the
-  !> journal's included, the partial files stay and `error` tells why. The folder is then free.
+  !> Ends the progress and gives the files of this run their names. Files of an earlier run that
+  !> this run has not made are removed, and finally the journal. After an error, also in the
+  !> journal, the partial files stay and `error` gives the reason. The folder is unlocked.
   subroutine finish(self, error)
     class(results_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -315,7 +312,7 @@ contains
     call self%lock%release()
   end subroutine finish
 
-  !> Fails where a file that this run has begun is no longer in the folder it was begun in.
+  !> Fails if a file that this run has begun is no longer in the folder.
   subroutine check_presence(self, error)
     class(results_t), intent(in) :: self
     type(failure_t), allocatable, intent(inout) :: error
@@ -334,8 +331,8 @@ contains
     subroutine complain(name)
       character(len=*), intent(in) :: name
 
-      call fail(error, file_trouble, self%path_of(name) // ' was removed or moved away during ' // &
-        'the run; see that nothing does so')
+      call fail(error, file_trouble, self%folder // '/' // name // ' was removed or moved ' // &
+        'away during the run; make sure that no other program does this')
     end subroutine complain
 
   end subroutine check_presence
@@ -350,14 +347,14 @@ contains
     if (allocated(another) .and. .not. allocated(error)) call move_alloc(another, error)
   end subroutine finish_table
 
-  !> Path of a file of the folder.
-  pure function path_of(self, name) result(path)
+  !> Path of a file while it is written: its partial name in the folder, or its name in a stream.
+  pure function file_of(self, name) result(path)
     class(results_t), intent(in) :: self
     character(len=*), intent(in) :: name
     character(len=:), allocatable :: path
 
-    path = self%folder // '/' // name
+    path = self%folder // '/' // name // partial
     if (allocated(self%stream)) path = name
-  end function path_of
+  end function file_of
 
 end module results

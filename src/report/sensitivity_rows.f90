@@ -1,8 +1,9 @@
-!> Derivatives of what is reported by the parameters of &sensitivity, as rows of tables: of numbers,
-!> and of the curve.
+!> Derivatives of reported numbers and of the curve by the parameters of &sensitivity, as rows of
+!> tables.
 module sensitivity_rows
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf
-  use kinds, only: wp
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
+  use kinds, only: wp, nan
+  use text, only: brief
   use dimensionless_problem, only: problem_t
   use variation, only: variation_t
   use reported_place, only: of_h0, of_displacement, of_radius
@@ -17,14 +18,14 @@ module sensitivity_rows
   private
   public :: write_sensitivity, write_curve_sensitivity
 
-  !> Where z changes along the path by less than this part of its terms, or of the law's units, it
-  !> turns round.
+  !> z turns where it changes along the path by less than this part of its terms, or of the law's
+  !> units.
   real(wp), parameter :: turning = 1.0e-8_wp
 
 contains
 
-  !> Writes the rows of sensitivity.csv, quantity by quantity in the order of the summary, then
-  !> those for the rows of fixed_load.csv.
+  !> Writes the rows of sensitivity.csv: the numbers of the summary in its order, then those of the
+  !> rows of fixed_load.csv.
   subroutine write_sensitivity(problem, varied, summary, places, results)
     type(problem_t), intent(in) :: problem
     type(variation_t), intent(in) :: varied(:)
@@ -64,10 +65,8 @@ contains
       character(len=*), intent(in) :: key
       type(readings_t), intent(in) :: number
       integer, intent(in) :: k
-      character(len=12) :: element
 
-      write (element, '(a, i0, a)') '(', k, ')'
-      call write_lines(key // trim(element), number, k)
+      call write_lines(key // '(' // brief(k) // ')', number, k)
     end subroutine write_element
 
     subroutine write_lines(quantity, number, k)
@@ -87,8 +86,8 @@ contains
 
   end subroutine write_sensitivity
 
-  !> Writes the rows of curve_sensitivity.csv: the curve at prescribed h0 and then behind each
-  !> spring, for each parameter.
+  !> Writes the rows of curve_sensitivity.csv for each parameter: the curve at prescribed h0, then
+  !> behind each spring.
   subroutine write_curve_sensitivity(problem, varied, readings, results)
     type(problem_t), intent(in) :: problem
     type(variation_t), intent(in) :: varied(:)
@@ -122,10 +121,10 @@ contains
         rate = held(problem, node, readings%rate(j, i), weights)
         if (.not. abs(sum(terms)) > turning*sum(abs(terms) + &
           abs(weights)*[problem%length, problem%load])) then
-          rate%h0 = ieee_value(1.0_wp, ieee_quiet_nan)
+          rate%h0 = nan
           rate%load = rate%h0
         end if
-        z = ieee_value(1.0_wp, ieee_quiet_nan)
+        z = nan
         if (weights(1) > 0) z = problem%law%separation_of(node%h0) + weights(2)*node%load* &
           problem%load
         call results%row(varied(j)%parameter%name, [stiffness, z, &

@@ -1,6 +1,6 @@
-!> An observer that adds the stability of each state to its record and passes it on. Only scenes
-!> with &stability have one. What the record says of stability already stays: the path counts
-!> unstable modes, and eigenvalue and count have to agree.
+!> An observer that adds the stability of each state to its record and passes the record on, for
+!> scenes with &stability. A stability that the record already has is kept: the path counts unstable
+!> modes, and the eigenvalue has to agree with this count.
 module stability_records
   use kinds, only: wp
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
@@ -20,15 +20,15 @@ module stability_records
   public :: stability_recorder_t
 
   type, extends(observer_t) :: stability_recorder_t
-    !> Whom the completed records go to.
+    !> The observer that gets the completed records.
     class(observer_t), pointer :: next => null()
-    !> What the eigenvalues took.
+    !> Cost of the eigenvalues.
     type(cost_t) :: cost
-    !> States whose eigenvalue is not certain, and those where it contradicts the record.
+    !> Number of states with an uncertain eigenvalue, and with one that contradicts the record.
     integer :: uncertain = 0, contradicted = 0
     !> Relative accuracy that the scene asks for.
     real(wp) :: accuracy = 0
-    !> Where they are kept.
+    !> The journal that keeps the eigenvalues.
     type(journal_t), pointer :: journal => null()
   contains
     procedure :: take
@@ -37,8 +37,8 @@ module stability_records
     procedure, private :: find_eigenvalue
   end type stability_recorder_t
 
-  !> An eigenvalue that contradicts nothing, over the accuracy: at a fold it is zero but for what
-  !> the mesh leaves, 7e-6 at most where 1e-4 was asked for.
+  !> Largest magnitude, over the accuracy, of an eigenvalue that contradicts no count: at a fold it
+  !> is zero except for the error of the mesh, at most 7e-6 for an accuracy of 1e-4.
   real(wp), parameter :: zero = 100
 
 contains
@@ -65,7 +65,7 @@ contains
     completed%eigenvalue = unknown()
     completed%local_criterion = unknown()
     completed%axis_criterion = unknown()
-    ! What is no equilibrium is neither stable nor unstable.
+    ! A state that is not an equilibrium is neither stable nor unstable.
     if (record%converged) then
       call self%find_eigenvalue(problem, grid, state, eigenvalue, certain)
       completed%eigenvalue = eigenvalue
@@ -83,18 +83,18 @@ contains
     call self%next%take(completed, problem, grid, state, profile)
   end subroutine take
 
-  !> Enters states whose eigenvalues are in doubt into the warnings.
+  !> Adds warnings about states with doubtful eigenvalues.
   subroutine warn(self, summary)
     class(stability_recorder_t), intent(in) :: self
     type(summary_t), intent(inout) :: summary
 
     if (self%uncertain > 0) call summary%warn('the smallest eigenvalue of '// &
-      brief(real(self%uncertain, wp))//' states could not be verified: their rows have NaN')
+      brief(self%uncertain)//' states could not be verified: their rows have NaN')
     if (self%contradicted > 0) call summary%warn('the eigenvalue of '// &
-      brief(real(self%contradicted, wp))//' states contradicts their column stable')
+      brief(self%contradicted)//' states contradicts their column stable')
   end subroutine warn
 
-  !> The smallest eigenvalue of a state; from the journal, where that has it.
+  !> The smallest eigenvalue of a state, from the journal if it is there.
   subroutine find_eigenvalue(self, problem, grid, state, eigenvalue, certain)
     class(stability_recorder_t), intent(inout) :: self
     type(problem_t), intent(in) :: problem

@@ -1,11 +1,10 @@
-!> From what the experiments found to what the user is told: SI units, and a warning for all that
-!> is not as it should be.
+!> Makes the summary of the results of experiments: SI units, and warnings.
 module summarise
   use kinds, only: wp, long
   use numerics_choice, only: grid_names, unchosen, edge_locked
   use dimensionless_problem, only: problem_t
   use scene_groups, only: scene_t
-  use text, only: brief
+  use text, only: brief, rounded
   use experiment_result, only: experiment_result_t
   use stepped_branch, only: branch_t
   use path, only: path_t
@@ -24,14 +23,14 @@ module summarise
   use regime_rows, only: summarise_regime
   use rate_entries, only: summarise_timed
   use validity, only: judge_law, judge_extent, judge_layers
-  use quality_warnings, only: judge_resolution, judge_accuracy, judge_stopping, short_number
+  use quality_warnings, only: judge_resolution, judge_accuracy, judge_stopping
   implicit none
   private
   public :: summary_of
 
 contains
 
-  !> The summary of a run: a line for each experiment and table.
+  !> The summary of a run, with one statement for each experiment and table.
   type(summary_t) function summary_of(scene, problem, outcome) result(summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -67,7 +66,7 @@ contains
     call judge_stopping(outcome, quality, summary)
   end function summary_of
 
-  !> The numerics that were chosen, and the largest residual and error.
+  !> Adds the chosen numerics, and the largest residual and error.
   subroutine describe_numerics(outcome, quality, summary)
     type(experiment_result_t), intent(in) :: outcome
     type(quality_t), intent(in) :: quality
@@ -83,7 +82,7 @@ contains
       call summary%set('error_estimate', outcome%error_estimate)
   end subroutine describe_numerics
 
-  !> All numbers that are read at places, with their errors and derivatives.
+  !> Adds all numbers that are read at places, with their errors and derivatives.
   subroutine take_places(problem, places, summary)
     type(problem_t), intent(in) :: problem
     type(places_t), intent(in) :: places
@@ -102,7 +101,7 @@ contains
     end do
   end subroutine take_places
 
-  !> What branches stepped in h0 have besides.
+  !> Adds further numbers and warnings of branches that are stepped in h0.
   subroutine tell_branches(scene, problem, outcome, summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -119,7 +118,7 @@ contains
     if (.not. allocated(outcome%unloading)) return
     call summary%set('unload_from', scene%unloading%from)
     do k = 1, size(outcome%unloading)
-      call tell_trouble('unloading_'//brief(real(k, wp)), outcome%unloading(k))
+      call tell_trouble('unloading_'//brief(k), outcome%unloading(k))
     end do
     do k = 1, size(outcome%unloading)
       if (.not. allocated(outcome%unloading(k)%jump)) cycle
@@ -131,7 +130,7 @@ contains
 
   contains
 
-    !> Whether a jump is known to start from a fold.
+    !> Whether a jump starts from a fold that is known.
     pure logical function exact(name)
       character(len=*), intent(in) :: name
       type(place_t) :: place
@@ -145,33 +144,33 @@ contains
       type(branch_t), intent(in) :: branch
 
       if (branch%unconverged > 0) &
-        call summary%fail_with(name//': '//brief(real(branch%unconverged, wp))//' of '// &
-          brief(real(branch%states, wp))//' states did not converge, the first at h0 = '// &
-          short_number(problem%law%separation_of(branch%first_unconverged))// &
-          ' m; the largest residual is '// &
-          short_number(branch%worst_residual)//' lengths of the force law')
+        call summary%fail_with(name//': '//brief(branch%unconverged)//' of '// &
+          brief(branch%states)//' states did not converge, the first at h0 = '// &
+          rounded(problem%law%separation_of(branch%first_unconverged))// &
+          ' m; the largest residual is '//rounded(branch%worst_residual)// &
+          ' lengths of the force law')
       if (branch%ending%early()) &
         call summary%fail_with(name//' ended early: '//trim(text_of(branch%ending)))
     end subroutine tell_trouble
 
   end subroutine tell_branches
 
-  !> What the path has besides.
+  !> Adds further numbers and warnings of the path.
   subroutine tell_path(problem, path, summary)
     type(problem_t), intent(in) :: problem
     type(path_t), intent(in) :: path
     type(summary_t), intent(inout) :: summary
 
     if (path%ending%early()) call summary%fail_with('path: '//trim(text_of(path%ending)))
-    if (path%fallen) call summary%warn('path: nothing keeps the bodies apart under this law: '// &
-      'the path ends in their fall onto each other, and there is no state in contact')
+    if (path%fallen) call summary%warn('path: the bodies fall onto each other ' // &
+      'under this law; the path ends there and has no state in contact')
     if (ends_before_contact(problem, path)) call summary%note('path: it ends at h0 = ' // &
-      short_number(problem%law%separation_of(path%finish%at(of_h0))) // ' m, before contact, ' // &
+      rounded(problem%law%separation_of(path%finish%at(of_h0))) // ' m, before contact, ' // &
       'with the largest tension in its last row; lower h0_end')
     call summary%set('folds_stable', merge(1, 0, path%unstable_after == 0))
   end subroutine tell_path
 
-  !> Whether bodies that would touch farther in have not come to that, and the tension still grows.
+  !> Whether the path ends before contact, under a law with contact, while the tension still grows.
   pure logical function ends_before_contact(problem, path)
     type(problem_t), intent(in) :: problem
     type(path_t), intent(in) :: path
@@ -183,7 +182,7 @@ contains
       abs(path%lowest%at(of_h0) - path%finish%at(of_h0)) <= 0
   end function ends_before_contact
 
-  !> What was read from the path.
+  !> Adds numbers that are read from the path.
   subroutine take_readings(scene, problem, readings, places, summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -195,7 +194,7 @@ contains
     if (readings%undeformed_from > readings%traced_from) call summary%set( &
       'path_undeformed_h0', problem%law%separation_of(readings%undeformed_from))
     if (.not. readings%solved) &
-      call summary%fail_with('not all that is read from the path was solved')
+      call summary%fail_with('some numbers that are read from the path were not solved')
     if (allocated(readings%device)) call summarise_device(problem, readings, places, summary)
     if (places%has('table')) then
       call summary%set('table_load_error', places%largest_of('table', of_load)*problem%load)

@@ -1,5 +1,5 @@
-!> The summary of a run: a value for each row of `result_rows` that the run has, and the text of
-!> summary.nml made of them. gfortran, f90nml and this program read it.
+!> The summary of a run: a value for each row of `result_rows` that the run has, and their text in
+!> summary.nml, which gfortran, f90nml and this program can read.
 module summary
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, long
@@ -11,10 +11,10 @@ module summary
   private
   public :: summary_t, summary_text
 
-  !> More warnings than this are not read.
+  !> Largest number of warnings.
   integer, parameter :: most_warnings = 20
 
-  !> The value of a row, SI units: whichever component is allocated; one or several.
+  !> The value of a row, in SI units: one component is allocated, with one or several values.
   type :: value_t
     real(wp), allocatable :: number(:)
     integer(long), allocatable :: count(:)
@@ -25,11 +25,11 @@ module summary
     real(wp), allocatable :: error(:), rate(:, :)
   end type value_t
 
-  !> What has no value is absent from the file. Where one value of an array does not exist, such as
+  !> A row without a value is absent from the file. If one value of an array does not exist, such as
   !> the jump out of an unloading without one, it is NaN.
   type :: summary_t
-    !> One a row, once a value has been set. On the heap: several summaries at once would make the
-    !> stack grow, which a limit of memory can forbid.
+    !> One element for each row, after the first value has been set. It is allocatable, since
+    !> several summaries at once would need a larger stack, which a limit of memory can forbid.
     type(value_t), allocatable, private :: value(:)
     type(line_t), allocatable :: warnings(:), notes(:)
   contains
@@ -49,7 +49,7 @@ module summary
 
 contains
 
-  !> Where the value of a key is.
+  !> The index of a key's value.
   subroutine find(self, key, i)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: key
@@ -59,7 +59,7 @@ contains
     i = row_of(key)
   end subroutine find
 
-  !> The numbers that row i has, with what its errors and derivatives are, if any.
+  !> The numbers of row i with their derivatives, if there are any.
   pure type(readings_t) function numbers_of_row(self, i) result(found)
     class(summary_t), intent(in) :: self
     integer, intent(in) :: i
@@ -83,8 +83,8 @@ contains
     end if
   end subroutine set_number
 
-  !> Numbers with their errors, of which one alone that is not known is left out, and derivatives;
-  !> of no parameters there are none.
+  !> Sets numbers with their errors and derivatives. A single error that is not known is left out;
+  !> without parameters there are no derivatives.
   subroutine set_numbers(self, key, values, error, rate)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: key
@@ -153,7 +153,7 @@ contains
     end associate
   end function has
 
-  !> The number of a key that has one; a truth is 1 or 0.
+  !> The number of a key, or 1 or 0 for a truth.
   pure real(wp) function number(self, key)
     class(summary_t), intent(in) :: self
     character(len=*), intent(in) :: key
@@ -167,7 +167,7 @@ contains
     end associate
   end function number
 
-  !> Whether a key is there and true.
+  !> Whether a key has a value that is true.
   pure logical function is_true(self, key)
     class(summary_t), intent(in) :: self
     character(len=*), intent(in) :: key
@@ -179,7 +179,7 @@ contains
     end associate
   end function is_true
 
-  !> The text of a key; empty where it has none.
+  !> The text of a key; empty if there is none.
   pure function text(self, key)
     class(summary_t), intent(in) :: self
     character(len=*), intent(in) :: key
@@ -211,7 +211,7 @@ contains
       self%warnings(most_warnings)%text = 'further warnings are not shown'
   end subroutine warn
 
-  !> Adds a note, one line: what the user may want to know, with nothing wrong.
+  !> Adds a note, one line: information that is not a warning.
   pure subroutine note(self, text)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -222,7 +222,7 @@ contains
     self%notes = [self%notes, line]
   end subroutine note
 
-  !> Not everything was found: adds the reason as a warning.
+  !> Marks the run as not converged, and adds the reason as a warning.
   subroutine fail_with(self, text)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -231,7 +231,7 @@ contains
     call self%warn(text)
   end subroutine fail_with
 
-  !> What was spent, as rows of &cost.
+  !> Adds the cost as rows of &cost.
   subroutine take_cost(self, cost)
     class(summary_t), intent(inout) :: self
     type(cost_t), intent(in) :: cost
@@ -255,8 +255,8 @@ contains
     character(len=:), allocatable :: text
     character(len=1), parameter :: nl = new_line('a')
 
-    text = '! Results of snapin, SI units. What does not exist is NaN or left out.' // nl // &
-      '! The groups after the first two are the deck, defaults included: run it again.' // nl // &
+    text = '! Results of snapin, SI units. Values that do not exist are NaN or left out.' // nl // &
+      '! The groups after the first two are the deck with defaults; run it again.' // nl // &
       '&summary' // nl // group_text(self, in_summary) // '/' // nl // &
       '&cost' // nl // group_text(self, in_cost) // '/' // nl
   end function summary_text

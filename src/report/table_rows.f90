@@ -1,8 +1,7 @@
-!> Stable states on the ways in and out at prescribed h0, as the table that discrete-element and
-!> finite-element programs take: load, contact radius and stiffness against indentation.
+!> Stable states of approach and retreat at prescribed h0, as the table that discrete-element and
+!> finite-element programs need: load, contact radius and stiffness against indentation.
 module table_rows
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t, surface_energy
   use maugis, only: maugis_units_t, maugis_units
   use curve_states, only: path_state_t
@@ -42,16 +41,13 @@ contains
       type(maugis_units_t) :: unit
       real(wp) :: si(4)
 
-      si = [-state%h0*problem%length, state%load*problem%load, state%radius*problem%lateral, &
-        ieee_value(1.0_wp, ieee_quiet_nan)]
+      si = [-state%h0*problem%length, state%load*problem%load, state%radius*problem%lateral, nan]
       if (.not. at_jump) &
         si(4) = -state%slopes(2)/state%slopes(1)*problem%load/problem%length
       unit = maugis_units(problem%radius, problem%stiffness, surface_energy(problem))
-      ! Other shapes have no radius.
+      ! Other shapes have no radius on the axis.
       if (.not. problem%shape%parabolic) then
-        unit%displacement = ieee_value(1.0_wp, ieee_quiet_nan)
-        unit%load = unit%displacement
-        unit%radius = unit%displacement
+        unit = maugis_units_t(nan, nan, nan)
       end if
       call results%row(trim(merge('approach', 'retreat ', inward)), [si, &
         si(1)/unit%displacement, si(2)/unit%load, si(3)/unit%radius, &

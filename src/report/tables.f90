@@ -1,16 +1,15 @@
-!> Tables as comma-separated values, written row by row to a `.partial` file; whoever has it made
-!> gives it its name when it is whole.
+!> Tables as comma-separated values, written row by row.
 module tables
   use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
   use failure, only: failure_t
   use decimal, only: put_real, longest_real
-  use text_file, only: output_t, partial, plain
+  use text_file, only: output_t, plain
   implicit none
   private
   public :: table_t, cells, put_cells
 
-  !> A table being written, a row a line, made with `cells`.
+  !> A table that is being written, one row a line, made with `cells`.
   type, extends(output_t) :: table_t
   contains
     procedure :: begin
@@ -18,9 +17,9 @@ module tables
 
 contains
 
-  !> Begins the table `path`, for now `path`.partial: lines that start with '#' (title, version,
-  !> what each column is), then the names of the columns. A column is described as 'name [unit] what
-  !> it is'. stream: the table `path` is part of that (`text_file`).
+  !> Begins the table `path`: lines that begin with '#' (title, version, and the description of each
+  !> column as 'name [unit] meaning'), then the names of the columns. stream: the stream that the
+  !> table becomes part of (`text_file`).
   subroutine begin(self, path, title, version, columns, error, stream)
     class(table_t), intent(inout) :: self
     character(len=*), intent(in) :: path, title, version, columns(:)
@@ -37,16 +36,12 @@ contains
       if (i > 1) names = names // ','
       names = names // columns(i)(:scan(columns(i) // ' ', ' ') - 1)
     end do
-    if (present(stream)) then
-      call self%open(path, error, stream)
-    else
-      call self%open(path // partial, error)
-    end if
+    call self%open(path, error, stream)
     if (.not. allocated(error)) call self%line(text // names, error)
     if (.not. allocated(error)) call self%flush(error)
   end subroutine begin
 
-  !> Numbers as cells that read back as the same numbers; a NaN is `NaN`.
+  !> Numbers as cells that read back as the same numbers; NaN is `NaN`.
   pure function cells(values) result(text)
     real(wp), intent(in) :: values(:)
     character(len=:), allocatable :: text
@@ -58,7 +53,8 @@ contains
     text = row(2:held)
   end function cells
 
-  !> Adds numbers to row(:held), a comma before each; the row has room for `longest_real` + 1 each.
+  !> Adds numbers to row(:held), a comma before each; `row` has `longest_real` + 1 characters for
+  !> each.
   pure subroutine put_cells(values, row, held)
     real(wp), intent(in) :: values(:)
     character(len=*), intent(inout) :: row

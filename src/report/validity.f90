@@ -1,27 +1,27 @@
-!> Whether a scene is on the ground of its model, and how far inside: shapes that are shallow where
-!> forces act and bodies touch, strains that are small, and what a force law says of itself.
+!> Checks that a scene is within the range of its model: shapes that are shallow where forces act
+!> and bodies touch, small strains, and the caveats of force laws.
 module validity
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
-  use text, only: brief
+  use text, only: brief, rounded
   use layered_body, only: layered_body_t
   use layered_surface, only: layered_surface_t
   use records, only: extent_t
   use reported_place, only: place_t, of_h0, of_load
   use places, only: places_t
   use summary, only: summary_t
-  use quality_warnings, only: short_number
   implicit none
   private
   public :: judge_law, judge_extent, judge_layers
 
-  !> Part of the radius that is worth a note, and a warning: a parabola is off from a circle by a
-  !> quarter of its square. Pressure over stiffness, about the strain, that is worth a warning.
+  !> Parts of the radius that give a note and a warning (a parabola differs from a circle by a
+  !> quarter of the square); pressure over stiffness, which is about the strain, that gives a
+  !> warning.
   real(wp), parameter :: noted = 0.1_wp, warned = 1.0_wp/3, strained = 0.1_wp
 
 contains
 
-  !> What follows from law and shape alone.
+  !> Checks law and shape.
   subroutine judge_law(problem, summary)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
@@ -40,13 +40,14 @@ contains
       'Derjaguin''s approximation needs forces of short range')
   end subroutine judge_law
 
-  !> How well the points of a table tell the depth of the well and the largest tension: the pull-off
-  !> is in proportion to the first for hard bodies and for soft ones, and depends on both between.
+  !> Sets and checks the error that the points of a table leave in the depth of the well and the
+  !> largest tension. For hard and for soft bodies the pull-off is proportional to the depth,
+  !> between them it depends on both.
   subroutine take_table_error(problem, summary)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
     real(wp) :: of_well(2, 1), of_edge(2, 1), depth(1), tension(1), error
-    !> Beyond this the table and not the mesh decides what is found.
+    !> Error above which the table, not the mesh, decides the accuracy.
     real(wp), parameter :: coarse = 1.0e-3_wp
 
     associate (law => problem%law)
@@ -62,10 +63,10 @@ contains
     end associate
     call summary%set('table_error', error)
     if (error > coarse) call summary%warn('the points of the table are far apart: work of ' // &
-      'adhesion and pull-off are uncertain by about ' // brief(error) // ' of themselves')
+      'adhesion and pull-off have relative errors of about ' // brief(error))
   end subroutine take_table_error
 
-  !> What follows from the states of the experiments.
+  !> Checks the states of the experiments.
   subroutine judge_extent(problem, extent, summary)
     type(problem_t), intent(in) :: problem
     type(extent_t), intent(in) :: extent
@@ -74,15 +75,15 @@ contains
 
     if (extent%contact_radius > 0) call judge(summary, 'contact_over_radius', &
       problem%shape%slope(extent%contact_radius/problem%lateral)*problem%length/problem%lateral, &
-      'the contact radius', 'half-spaces with small slopes stand for the bodies')
+      'the contact radius', 'the model is for half-spaces with small slopes')
     if (problem%rigid .or. .not. extent%pressure > 0) return
     strain = extent%pressure*problem%pressure/problem%stiffness
     call summary%set('pressure_over_stiffness', strain)
     if (strain > strained) call summary%warn('beyond the model: the largest pressure is ' // &
-      short_number(strain) // ' of the stiffness; strains are no longer small')
+      rounded(strain) // ' of the stiffness; strains are no longer small')
   end subroutine judge_extent
 
-  !> Enters a length as a part of the radius, or a slope, and says so where that is not small.
+  !> Sets a length over the radius, or a slope, and warns if it is not small.
   subroutine judge(summary, key, part, what, why)
     type(summary_t), intent(inout) :: summary
     character(len=*), intent(in) :: key, what, why
@@ -90,16 +91,16 @@ contains
 
     call summary%set(key, part)
     if (part > warned) then
-      call summary%warn('beyond the model: ' // what // ' is ' // short_number(part) // &
+      call summary%warn('beyond the model: ' // what // ' is ' // rounded(part) // &
         ' of the radius of the bodies; ' // why)
     else if (part > noted) then
-      call summary%note(what // ' is ' // short_number(part) // &
+      call summary%note(what // ' is ' // rounded(part) // &
         ' of the radius of the bodies, which is not small; ' // why)
     end if
   end subroutine judge
 
-  !> Range of the force [m]: the depth of its well over its largest tension or, of a law that does
-  !> not attract, its length.
+  !> Range of the force [m]: the depth of its well over its largest tension, or the law's length
+  !> without attraction.
   pure real(wp) function range_of(problem)
     type(problem_t), intent(in) :: problem
 
@@ -108,8 +109,8 @@ contains
       problem%law%adhesion*problem%pressure*problem%length/largest_tension(problem)
   end function range_of
 
-  !> Warns of layers that are thinner than the force reaches; of soft ones that are pressed to a
-  !> part of their thickness that is not small; and of what lies deeper and is strained by the load.
+  !> Warns of layers thinner than the range of the force, of soft layers compressed by a part of
+  !> their thickness that is not small, and of strains below the top layer that are not small.
   subroutine judge_layers(problem, extent, places, summary)
     type(problem_t), intent(in) :: problem
     type(extent_t), intent(in) :: extent
@@ -131,23 +132,23 @@ contains
         if (size(body%surface(i)%thickness) == 0) cycle
         associate (thickness => body%surface(i)%thickness*problem%lateral)
           if (minval(thickness) < reach) call summary%warn('beyond the model: a layer of ' // &
-            short_number(minval(thickness)) // ' m is thinner than the range of the force, ' // &
-            short_number(reach) // ' m; elasticity of bulk does not hold for it')
+            rounded(minval(thickness)) // ' m is thinner than the range of the force, ' // &
+            rounded(reach) // ' m; bulk elasticity does not hold for it')
           if (body%bottom < 1 .and. deepest > strained*sum(thickness)) call summary%warn( &
             'beyond the model: the bodies are pressed together by ' // &
-            short_number(deepest/sum(thickness)) // ' of the thickness of the layers; ' // &
+            rounded(deepest/sum(thickness)) // ' of the thickness of the layers; ' // &
             'strains are no longer small')
           strain = strain_below(body%surface(i), thickness, force, extent%contact_radius)
-          if (strain > strained) call summary%warn('beyond the model: what is below the top ' // &
-            'layer is strained by about ' // short_number(strain) // ', which is not small')
+          if (strain > strained) call summary%warn('beyond the model: the strain below the ' // &
+            'top layer is about ' // rounded(strain) // ', which is not small')
           exit
         end associate
       end do
     end select
   end subroutine judge_layers
 
-  !> About the largest strain below the top layer under a load [N] on a contact of some radius [m]:
-  !> stress over Young's modulus, as if the load spread at half a right angle.
+  !> Estimate of the largest strain below the top layer at a load [N] on a contact radius [m]:
+  !> stress over Young's modulus, if the load spreads at 45 degrees.
   pure real(wp) function strain_below(surface, thickness, load, radius) result(strain)
     type(layered_surface_t), intent(in) :: surface
     real(wp), intent(in) :: thickness(:), load, radius

@@ -1,6 +1,6 @@
-!> A quasi-static experiment whose steps are kept in a journal. Those that an interrupted run has
-!> left there are taken from it instead of being solved; whoever drives the experiment does all it
-!> does and does not notice. Then the solver goes on as if it had never stopped.
+!> A quasi-static experiment whose steps are kept in a journal. The
+!> steps of an interrupted run are read from the journal instead of being solved, with the same
+!> results. After them the solver continues as if there had been no interruption.
 module resumable_stepper
   use kinds, only: wp
   use discretisation, only: discretisation_t
@@ -18,13 +18,13 @@ module resumable_stepper
   public :: resumable_stepper_t
 
   type, extends(keeping_stepper_t) :: resumable_stepper_t
-    !> Time [s] that those solved since took.
+    !> Time [s] of the steps solved in this run.
     real(wp) :: own_seconds = 0
     !> Whether the solver still lacks the factors of the last record.
     logical, private :: behind = .false.
-    !> The factorisation that the journal knows of, as counted in it.
+    !> Count of the factorisation that the journal has.
     integer, private :: known = -1
-    !> The record being packed, whose room serves step after step.
+    !> The record being packed, whose memory is used again for each step.
     type(byte_record_t), private :: record
   contains
     procedure :: approach_to
@@ -69,8 +69,8 @@ contains
     call self%keep(h0, before, position, event, began)
   end subroutine step_to
 
-  !> Takes the step from the position to h0 out of the journal. .false. where it has no more: then
-  !> the step is to be solved. A journal that cannot be continued ends the experiment.
+  !> Takes the step from the position to h0 from the journal. .false. if it has no more steps; the
+  !> step is then to be solved. A journal that cannot be continued ends the experiment.
   logical function recall(self, h0, position, event) result(known)
     class(resumable_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -92,7 +92,7 @@ contains
       call pass_frozen(record, made_before, self%steps%frozen)
       call pass_cost(record, cost)
       self%earlier_seconds = cost%solve_seconds
-      ! Times are this run's own.
+      ! Times are those of this run.
       cost%kernel_seconds = self%steps%cost%kernel_seconds
       cost%solve_seconds = self%steps%cost%solve_seconds
       cost%estimate_seconds = self%steps%cost%estimate_seconds
@@ -115,7 +115,7 @@ contains
     if (.not. self%behind) return
     self%behind = .false.
     if (self%steps%frozen%factors%valid) then
-      ! Copies, for `freeze` notes where it is; and the cost is in the record already.
+      ! Copies, since `freeze` changes its arguments; the cost is in the record already.
       control = self%steps%frozen%control
       state = self%steps%frozen%state
       spent = self%steps%cost
@@ -125,8 +125,8 @@ contains
     self%known = self%steps%frozen%renewals
   end subroutine catch_up
 
-  !> Adds a step to the journal; it was begun at the time `began`, in the position `before`, of
-  !> which the number is enough.
+  !> Appends a step to the journal. The step began at the time `began`, at the position `before`, of
+  !> which only the number is used.
   subroutine keep(self, h0, before, position, event, began)
     class(resumable_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0, began

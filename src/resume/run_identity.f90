@@ -1,5 +1,5 @@
-!> What a run's numbers depend on, as a text, and what differs between two of them: an interrupted
-!> run can only be continued by one that would have done the same.
+!> The identity of a run, a text with all that its numbers depend on, and the difference of two
+!> identities: only a run of the same identity can continue an interrupted run.
 module run_identity
   use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
@@ -13,14 +13,14 @@ module run_identity
   public :: identity_of, difference_between, find_finished
 
   character(len=1), parameter :: nl = new_line('a')
-  !> How the lines before the deck begin.
+  !> The beginnings of the lines before the deck.
   character(len=*), parameter :: program_line = 'program: ', libraries_line = 'libraries: ', &
     threads_line = 'threads: '
 
 contains
 
-  !> The identity of a run of `deck`, the text of a deck as resolved, in this program; threads:
-  !> those in use, 0 where the numbers do not depend on them.
+  !> The identity of a run of `deck`, the text of a resolved deck, in this program; threads: number
+  !> of threads, or 0 if the numbers do not depend on it.
   function identity_of(deck, threads) result(text)
     character(len=*), intent(in) :: deck
     integer, intent(in) :: threads
@@ -28,11 +28,11 @@ contains
 
     text = program_line // version // ' (build ' // build_number() // ')' // nl // &
       libraries_line // compiler // ', ' // blas_in_use() // ', ' // options // nl
-    if (threads > 0) text = text // threads_line // brief(real(threads, wp)) // nl
+    if (threads > 0) text = text // threads_line // brief(threads) // nl
     text = text // deck
   end function identity_of
 
-  !> The first difference between two identities, and what to do to get on, in words.
+  !> The first difference between two identities, with advice.
   function difference_between(then, now) result(text)
     character(len=*), intent(in) :: then, now
     character(len=:), allocatable :: text
@@ -51,10 +51,10 @@ contains
     end do
     if (index(old, program_line) == 1) then
       text = 'program ' // old(len(program_line) + 1:) // ', this is ' // &
-        new(len(program_line) + 1:) // '; go on with that one'
+        new(len(program_line) + 1:) // '; continue with that one'
     else if (index(old, libraries_line) == 1) then
       text = 'program made of ' // old(len(libraries_line) + 1:) // ', this one is made of ' // &
-        new(len(libraries_line) + 1:) // '; go on with that one'
+        new(len(libraries_line) + 1:) // '; continue with that one'
     else if (index(old, threads_line) == 1) then
       text = 'run with ' // old(len(threads_line) + 1:) // ' threads, this one has ' // &
         new(len(threads_line) + 1:) // '; set OMP_NUM_THREADS=' // old(len(threads_line) + 1:)
@@ -64,7 +64,7 @@ contains
     text = text // ', or start over without --resume'
   end function difference_between
 
-  !> How a deck that has the line `old` in a group differs from the deck `now`, which has `new`.
+  !> The difference of two decks: one has the line `old` in a group, the other, `now`, has `new`.
   function change(group, old, new, now) result(text)
     character(len=*), intent(in) :: group, old, new, now
     character(len=:), allocatable :: text
@@ -84,7 +84,7 @@ contains
     end if
   end function change
 
-  !> The value of an assignment with as few digits as it has.
+  !> The value of an assignment with as few digits as possible.
   function value(text) result(short)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: short
@@ -96,7 +96,7 @@ contains
     if (.not. allocated(what)) short = brief(number)
   end function value
 
-  !> The line of a text that begins at i, which moves on to the next; empty at the end.
+  !> The line of a text that begins at i; i moves to the next line. Empty at the end of the text.
   subroutine next_line(text, i, line)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: i
@@ -110,7 +110,7 @@ contains
     i = i + length + 1
   end subroutine next_line
 
-  !> The library that does the linear algebra; OpenBLAS says for which processor too, on which last
+  !> The library of the linear algebra; for OpenBLAS with the kind of processor, on which last
   !> digits depend.
   function blas_in_use() result(text)
     character(len=:), allocatable :: text
@@ -121,8 +121,8 @@ contains
     if (text == '') text = blas
   end function blas_in_use
 
-  !> Tells programs of the same version apart: the linker makes it of all that it links, so that the
-  !> same sources give the same. The first digits of what `readelf -n` shows.
+  !> A number that distinguishes programs of the same version: the first digits of the linker's
+  !> checksum of the program, which `readelf -n` shows. The same sources give the same number.
   function build_number() result(text)
     character(len=:), allocatable :: text
     character(len=16) :: digits
@@ -133,8 +133,7 @@ contains
   end function build_number
 
   !> Whether the folder's summary is that of the deck `resolved` (as text) by this version of the
-  !> program; the summary is the last thing that a run writes. converged: whether all of that
-  !> went well.
+  !> program; a run writes the summary last. converged: whether the run converged.
   subroutine find_finished(folder, resolved, finished, converged)
     character(len=*), intent(in) :: folder, resolved
     logical, intent(out) :: finished, converged

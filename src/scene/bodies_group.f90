@@ -15,7 +15,7 @@ module bodies_group
 
 contains
 
-  !> Its rows of the table.
+  !> The rows of &bodies.
   pure function bodies_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
 
@@ -35,7 +35,7 @@ contains
                   default='.false.')]
   end function bodies_keys
 
-  !> &bodies: exactly one way to say how the bodies deform.
+  !> Reads &bodies, which must say in exactly one way how the bodies deform.
   subroutine take_bodies(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -54,7 +54,7 @@ contains
       else if (ways == 0) then
         call deck%mistake('bodies', 'stiffness', 'missing; ' // one_way, error)
       else if (ways > 1) then
-        call deck%mistake('bodies', second_way(), 'one way too many to say how the bodies ' // &
+        call deck%mistake('bodies', second_way(), 'more than one way to say how the bodies ' // &
                           'deform; ' // one_way, error)
       else if (size(young) > 0 .and. size(poisson) == 0) then
         call deck%mistake('bodies', 'poisson', 'missing; young and poisson go together', error)
@@ -72,7 +72,7 @@ contains
 
   contains
 
-    !> The last of the ways in the order of the table, at which the message points.
+    !> The last of the given ways in the order of the table; the message points at it.
     pure function second_way() result(key)
       character(len=:), allocatable :: key
 
@@ -81,7 +81,7 @@ contains
       if (scene%bodies%rigid) key = 'rigid'
     end function second_way
 
-    !> One value stands for both bodies.
+    !> Values for both bodies; a single value holds for both.
     pure function spread_out(list) result(both)
       real(wp), intent(in) :: list(:)
       real(wp) :: both(2)

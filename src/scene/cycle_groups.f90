@@ -11,20 +11,20 @@ module cycle_groups
   private
   public :: cycle_keys, take_loading, take_unloading
 
-  !> A run of more steps than this would not end; such a deck has a wrong unit in it.
+  !> Largest number of steps. A deck with more probably has a number in a wrong unit.
   integer, parameter :: most_steps = 10000000
 
 contains
 
-  !> Their rows of the table.
+  !> The rows of &loading and &unloading.
   pure function cycle_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
 
     specs = [ &
       group('loading', 'Approach in steps of h0, the separation that undeformed bodies would ' // &
             'have at the centre.'), &
-      real_key('loading', 'h0_start', 'm', 'Where the approach starts.', required=.true.), &
-      real_key('loading', 'h0_end', 'm', 'Where it ends, below h0_start.', required=.true.), &
+      real_key('loading', 'h0_start', 'm', 'First h0.', required=.true.), &
+      real_key('loading', 'h0_end', 'm', 'Last h0, below h0_start.', required=.true.), &
       real_key('loading', 'h0_step', 'm', 'Step, positive.', above=0.0_wp, required=.true.), &
       !
       group('unloading', 'Retreat in steps of h0, one cycle for each turning point; needs ' // &
@@ -37,7 +37,7 @@ contains
                otherwise='h0_step of &loading')]
   end function cycle_keys
 
-  !> &loading; where it is given, its range must run downwards.
+  !> Reads &loading; its range must run downwards.
   subroutine take_loading(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -61,13 +61,14 @@ contains
     real(wp), intent(in) :: range, step
     type(failure_t), allocatable, intent(inout) :: error
 
-    ! Written as a product: the quotient may overflow.
+    ! A product, since the quotient may overflow.
     if (range > step*most_steps) &
-      call deck%mistake(group, 'h0_step', brief(step) // ' makes too many steps; the range of ' // &
-                        brief(range) // ' m allowed: at most 10 million steps', error)
+      call deck%mistake(group, 'h0_step', brief(step) // ' makes too many steps over the ' // &
+                        'range of ' // brief(range) // ' m; allowed: at most 10 million', error)
   end subroutine check_steps
 
-  !> &unloading: turning points inside the range of &loading, each retreat upwards.
+  !> Reads &unloading; turning points must be inside the range of &loading, and each retreat must
+  !> run upwards.
   subroutine take_unloading(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error

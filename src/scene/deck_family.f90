@@ -1,9 +1,9 @@
-!> The problems of a deck in which some numbers are replaced. The deck is read again with each, so
-!> that every law, shape and unit takes part without code of its own.
+!> The problems of a deck in which some numbers are replaced. The deck is read again with each set
+!> of numbers, so that no law, shape or unit needs code of its own for this.
 module deck_family
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
-  use text, only: lower, quoted, clip, listing, word_count, word_of
+  use text, only: lower, quoted, brief, clip, listing, word_count, word_of
   use deck, only: deck_t
   use deck_numbers, only: find_number, set_number, guess_number
   use deck_keys, only: key_spec, real_value, real_list
@@ -15,6 +15,7 @@ module deck_family
   private
   public :: deck_family_t, new_deck_family, widened
 
+  !> A deck, and the numbers of it that `pose` replaces.
   type, extends(problem_family_t) :: deck_family_t
     type(deck_t) :: deck
   contains
@@ -23,9 +24,9 @@ module deck_family
 
 contains
 
-  !> The problems of a deck with other values of keys: blank-separated names as 'group.key', a term
-  !> of a list as 'group.key(2)'. Fails, with a message that has no place in the file, where a key
-  !> is no number of bodies, shape or forces, or has no value in the deck.
+  !> The family of a deck with `keys` as parameters: blank-separated names as 'group.key', an
+  !> element of a list as 'group.key(2)'. Fails, with a message without a position in the file, if a
+  !> key is not a number of bodies, shape or forces, or has no value in the deck.
   subroutine new_deck_family(deck, keys, family, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: keys
@@ -42,7 +43,7 @@ contains
     end do
   end subroutine new_deck_family
 
-  !> The family with the other positive numbers of its deck behind its parameters.
+  !> The family with the other positive numbers of its deck as further parameters.
   type(deck_family_t) function widened(family) result(wider)
     type(deck_family_t), intent(in) :: family
     type(parameter_t) :: new
@@ -60,7 +61,7 @@ contains
     end do
   end function widened
 
-  !> The problem of the deck with these values.
+  !> The problem of the deck with these values of the parameters.
   subroutine pose(self, value, problem, error)
     class(deck_family_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -78,7 +79,7 @@ contains
     if (.not. allocated(error)) problem = problem_of(scene)
   end subroutine pose
 
-  !> Value and scale of a parameter; the scale of a pure number that is 0 is one.
+  !> Value and scale of a parameter; the scale of a dimensionless number that is 0 is one.
   subroutine take_value(deck, parameter, error)
     type(deck_t), intent(in) :: deck
     type(parameter_t), intent(inout) :: parameter
@@ -99,8 +100,8 @@ contains
     if (abs(parameter%value) > 0) then
       parameter%scale = abs(parameter%value)
     else if (deck%specs(row)%unit /= '') then
-      call fail(error, bad_input, quoted(parameter%name) // ' is 0: it has no size of which a ' // &
-        'change would be a part')
+      call fail(error, bad_input, quoted(parameter%name) // ' is 0, so that no relative ' // &
+        'change of it can be made')
     end if
   end subroutine take_value
 
@@ -109,7 +110,6 @@ contains
     type(deck_t), intent(in) :: deck
     character(len=:), allocatable :: names
     type(key_spec), allocatable :: specs(:)
-    character(len=12) :: term
     integer :: row, i, k
 
     names = ''
@@ -122,8 +122,7 @@ contains
       do k = 1, size(deck%values(row)%reals)
         names = names // ' ' // trim(specs(i)%group) // '.' // trim(specs(i)%key)
         if (size(deck%values(row)%reals) == 1) cycle
-        write (term, '(a, i0, a)') '(', k, ')'
-        names = names // trim(term)
+        names = names // '(' // brief(k) // ')'
       end do
     end do
   end function parameters_of

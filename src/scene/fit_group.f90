@@ -21,19 +21,19 @@ module fit_group
 
 contains
 
-  !> Its rows of the table.
+  !> The rows of &measurement and &fit.
   pure function fit_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
     real(wp), parameter :: zero = 0
 
     specs = [ &
       group('measurement', 'A measured force curve, for &fit.'), &
-      text_key('measurement', 'file', 1000, 'Its file: a table of numbers, # before comments, ' // &
-               'perhaps a line of names; in the folder of the deck unless a path.', &
+      text_key('measurement', 'file', 1000, 'File of the curve: a table of numbers, # before ' // &
+               'comments, perhaps a line of names; a relative path begins at the deck''s folder.', &
                required=.true.), &
       names_key('measurement', 'columns', 3, 'Name or number of the columns of the base''s ' // &
                 'position [m], the signal (force [N], positive: repulsion, or [V]) and, if ' // &
-                'there is one, the segment: 0 approach, 1 retreat. A minus turns the sign.', &
+                'there is one, the segment: 0 approach, 1 retreat. A minus changes the sign.', &
                 otherwise='the first two'), &
       real_key('measurement', 'spring_constant', 'N/m', 'Stiffness of the spring.', above=zero, &
                required=.true.), &
@@ -44,26 +44,26 @@ contains
       names_key('measurement', 'units', 2, 'Units of position (m, mm, um, nm, pm) and signal ' // &
                 '(N, mN, uN, nN, pN, V, mV) in the file.', otherwise='m and N or V'), &
       list_key('measurement', 'skip', 'm', 'Pairs of positions of the base, SI; samples ' // &
-               'between the two of a pair do not count.', most=most_skipped, otherwise='none'), &
-      word_key('measurement', 'segment', 'both approach retreat', 'Which way is fitted.', &
+               'between the two of a pair are left out.', most=most_skipped, otherwise='none'), &
+      word_key('measurement', 'segment', 'both approach retreat', 'The branches to fit.', &
                default='both'), &
-      group('fit', 'Keys of this deck found such that the path''s curve is that of ' // &
-            '&measurement.'), &
-      names_key('fit', 'parameters', most_unknowns, 'What is unknown, as ''group.key'': ' // &
+      group('fit', 'Keys of this deck whose values are found such that the curve of the path ' // &
+            'fits &measurement.'), &
+      names_key('fit', 'parameters', most_unknowns, 'The unknowns, as ''group.key'': ' // &
                 'numbers of bodies, shape and forces, and measurement.contact_point, ' // &
                 'sensitivity or spring_constant.', required=.true.), &
-      list_key('fit', 'lower', '', 'Least value of each, in the unit of the key.', &
+      list_key('fit', 'lower', '', 'Smallest value of each, in the unit of the key.', &
                most=most_unknowns, otherwise='none'), &
       list_key('fit', 'upper', '', 'Largest value of each.', most=most_unknowns, &
                otherwise='none'), &
-      list_key('fit', 'prior', '', 'Standard deviation of what is known before of each, about ' // &
-               'the value in the deck; 0: nothing.', most=most_unknowns, low=zero, &
-               otherwise='nothing known'), &
+      list_key('fit', 'prior', '', 'Standard deviation of each before the measurement, about ' // &
+               'the value in the deck; 0: unknown.', most=most_unknowns, low=zero, &
+               otherwise='unknown'), &
       real_key('fit', 'noise', '', 'Standard deviation of the signal, in its unit.', above=zero, &
                otherwise='that of the baseline')]
   end function fit_keys
 
-  !> &measurement and &fit.
+  !> Reads &measurement and &fit.
   subroutine take_fit(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -93,7 +93,7 @@ contains
       'the curve cannot be used: ' // trouble%message, error)
   end subroutine take_fit
 
-  !> &measurement.
+  !> Reads &measurement.
   subroutine take_measurement(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -126,7 +126,7 @@ contains
     end associate
   end subroutine take_measurement
 
-  !> The units of the file's columns: SI prefixes before metres, newtons and volts.
+  !> Reads the units of the file's columns: metres, newtons and volts with SI prefixes.
   subroutine take_units(deck, unit, error)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(out) :: unit(2)
@@ -144,13 +144,13 @@ contains
       if (len(name) == 2) k = index(prefixes, name(1:1))
       if (k > 0) unit(i) = 10.0_wp**powers(k)
       if (index(trim(bases(i)), name(len(name):)) == 0 .or. (k == 0 .and. len(name) /= 1)) &
-        call deck%mistake('measurement', 'units', quoted(name) // ' is no unit of ' // &
+        call deck%mistake('measurement', 'units', quoted(name) // ' is not a unit of ' // &
         trim(merge('position', 'signal  ', i == 1)) // ' such as ' // &
         trim(merge('nm', 'nN', i == 1)), error)
     end do
   end subroutine take_units
 
-  !> Ranges of position that do not count.
+  !> Reads the ranges of position that are left out.
   subroutine take_skipped(deck, skip, error)
     type(deck_t), intent(inout) :: deck
     real(wp), allocatable, intent(out) :: skip(:)
@@ -160,11 +160,11 @@ contains
     if (mod(size(skip), 2) == 1) then
       call deck%mistake('measurement', 'skip', 'positions come in pairs: from and to', error)
     else if (any(skip(1::2) > skip(2::2))) then
-      call deck%mistake('measurement', 'skip', 'the first of each pair is the smaller', error)
+      call deck%mistake('measurement', 'skip', 'the first of each pair must be the smaller', error)
     end if
   end subroutine take_skipped
 
-  !> The problems whose parameters are the unknowns of bodies, shape and forces, in their order.
+  !> The family of problems whose parameters are the unknowns of bodies, shape and forces, in order.
   subroutine family_of_fit(deck, family, error)
     type(deck_t), intent(in) :: deck
     type(deck_family_t), intent(out) :: family
@@ -180,14 +180,14 @@ contains
     call new_deck_family(deck, own, family, error)
   end subroutine family_of_fit
 
-  !> Whether a key is one of &measurement.
+  !> Whether a key is in &measurement.
   pure logical function is_measured(name)
     character(len=*), intent(in) :: name
 
     is_measured = index(lower(name), 'measurement.') == 1
   end function is_measured
 
-  !> The unknowns of &fit with their bounds and what is known before.
+  !> Reads the unknowns of &fit with their bounds and prior standard deviations.
   subroutine take_unknowns(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -231,7 +231,7 @@ contains
     call take_bounds(scene%deck, scene%fit%unknown, error)
   end subroutine take_unknowns
 
-  !> An unknown of the measurement.
+  !> Sets role, value and scale of an unknown in &measurement.
   subroutine take_measured(scene, unknown, error)
     type(scene_t), intent(in) :: scene
     type(unknown_t), intent(inout) :: unknown
@@ -255,14 +255,14 @@ contains
       end if
     case default
       call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // &
-        ' cannot be fitted; of &measurement contact_point, sensitivity and spring_constant ' // &
-        'can', error)
+        ' cannot be fitted; of &measurement only contact_point, sensitivity and ' // &
+        'spring_constant can', error)
     end select
     unknown%in_log = unknown%role /= of_contact_point
     if (unknown%in_log .and. unknown%value > 0) unknown%scale = unknown%value
   end subroutine take_measured
 
-  !> Bounds and what is known before, one for each unknown.
+  !> Reads bounds and prior standard deviations, one for each unknown.
   subroutine take_bounds(deck, unknown, error)
     type(deck_t), intent(in) :: deck
     type(unknown_t), intent(inout) :: unknown(:)
@@ -275,7 +275,7 @@ contains
       call deck%get('fit', trim(keys(k)), value)
       if (size(value) == 0) cycle
       if (size(value) /= size(unknown)) then
-        call deck%mistake('fit', trim(keys(k)), 'one for each of parameters is needed', error)
+        call deck%mistake('fit', trim(keys(k)), 'give one value for each of parameters', error)
         return
       end if
       do i = 1, size(unknown)
@@ -294,16 +294,16 @@ contains
       if (unknown(i)%role == of_contact_point .and. .not. deck%is_set('measurement', &
         'contact_point')) then
         if (unknown(i)%prior > 0) call deck%mistake('fit', 'prior', &
-          'measurement.contact_point is not given, so that nothing is known of it', error)
+          'measurement.contact_point is not given, so that it has no prior', error)
         cycle
       end if
       if (allocated(unknown(i)%lower)) then
         if (unknown(i)%value < unknown(i)%lower) call deck%mistake('fit', 'lower', &
-          unknown(i)%name // ' is below it in this deck', error)
+          unknown(i)%name // ' is below this bound in the deck', error)
       end if
       if (allocated(unknown(i)%upper)) then
         if (unknown(i)%value > unknown(i)%upper) call deck%mistake('fit', 'upper', &
-          unknown(i)%name // ' is above it in this deck', error)
+          unknown(i)%name // ' is above this bound in the deck', error)
       end if
     end do
   end subroutine take_bounds

@@ -13,20 +13,20 @@ module layer_group
 
   !> Largest ratio of two thicknesses or moduli.
   real(wp), parameter :: most_unlike = 1.0e9_wp
-  !> Thickness of the top layer over the lateral unit, at least. Contacts are wider than that unit;
-  !> as wide as they are beside the layer, so many are the waves that see it, and so much is held of
-  !> them: gigabytes, and minutes of work, here.
+  !> Smallest thickness of the top layer over the lateral unit. Contacts are wider than that unit.
+  !> The number of waves that a thin layer affects grows as the contact radius over the thickness;
+  !> at this limit they take gigabytes of memory, and minutes of work.
   real(wp), parameter :: thinnest = 1.0e-3_wp
 
 contains
 
-  !> Its rows of the table.
+  !> The rows of &layer.
   pure function layer_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
     integer, parameter :: most = 20
 
     specs = [ &
-      group('layer', 'Layers bonded to a body, from the top down; &bodies has what they are on.'), &
+      group('layer', 'Layers bonded to a body, from the top down, on the half-space of &bodies.'), &
       list_key('layer', 'thickness', 'm', 'Thickness of each layer.', most=most, above=0.0_wp, &
                required=.true.), &
       list_key('layer', 'young', 'Pa', 'Young''s modulus of each layer.', most=most, above=0.0_wp, &
@@ -34,13 +34,13 @@ contains
       list_key('layer', 'poisson', '', 'Poisson''s ratio of each layer; 0.5: incompressible.', &
                most=most, above=-1.0_wp, high=0.5_wp, required=.true.), &
       word_key('layer', 'body', '1 2 both', 'The body that has the layers.', default='1'), &
-      word_key('layer', 'base', 'elastic rigid', 'What the layers are on: the half-space of ' // &
-               '&bodies or something rigid.', otherwise='elastic, or as &bodies rigid'), &
+      word_key('layer', 'base', 'elastic rigid', 'The base below the layers: the half-space ' // &
+               'of &bodies, or rigid.', otherwise='elastic, or as &bodies rigid'), &
       word_key('layer', 'partner', 'elastic rigid', 'The body without layers.', &
                otherwise='elastic, or as &bodies rigid')]
   end function layer_keys
 
-  !> Whether nothing deforms but layers, so that &bodies need not say how.
+  !> Whether only layers deform, so that &bodies need not say how the bodies do.
   logical function layer_bears_all(deck)
     type(deck_t), intent(in) :: deck
 
@@ -59,8 +59,8 @@ contains
 
   end function layer_bears_all
 
-  !> &layer, after &bodies: the surfaces, and the stiffness that both bodies have by their top
-  !> layers.
+  !> Reads &layer, after &bodies: the surfaces, and the stiffness of the two bodies as given by
+  !> their top layers.
   subroutine take_layer(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -107,7 +107,7 @@ contains
     end associate
   end subroutine take_layer
 
-  !> Refuses a top layer too thin for its waves to be followed; after forces and shape.
+  !> Refuses a top layer that is too thin to be computed; called after forces and shape are read.
   subroutine check_thinness(scene, error)
     type(scene_t), intent(in) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -118,11 +118,11 @@ contains
     associate (least => thinnest*sqrt(scene%shape%radius*scene%law%length))
       if (thickness(1) < least) call scene%deck%mistake('layer', 'thickness', 'the top layer ' // &
         'is thinner than ' // brief(least) // ' m, ' // brief(thinnest) // ' of sqrt(R L), ' // &
-        'with the range L of the force; contacts are too wide beside it, leave it out', error)
+        'with the range L of the force; contacts are too wide beside it; leave it out', error)
     end associate
   end subroutine check_thinness
 
-  !> Makes one layer of neighbours of one material.
+  !> Joins neighbouring layers of the same material to one.
   pure subroutine join_alike(thickness, young, poisson)
     real(wp), allocatable, intent(inout) :: thickness(:), young(:), poisson(:)
     integer :: i
@@ -145,7 +145,7 @@ contains
       (1 - bodies%poisson(i))*(1 + bodies%poisson(i))/bodies%young(i)
   end function compliance_of
 
-  !> Keys that contradict each other or &bodies.
+  !> Refuses keys that contradict each other or &bodies.
   subroutine check_layers(scene, error)
     type(scene_t), intent(in) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -156,10 +156,10 @@ contains
       call deck%get('layer', 'young', young)
       call deck%get('layer', 'poisson', poisson)
       if (size(young) /= size(thickness)) call deck%mistake('layer', 'young', &
-        brief(real(size(young), wp)) // ' for ' // brief(real(size(thickness), wp)) // &
+        brief(size(young)) // ' for ' // brief(size(thickness)) // &
         ' layers; give one value for each thickness, from the top down', error)
       if (size(poisson) /= size(thickness)) call deck%mistake('layer', 'poisson', &
-        brief(real(size(poisson), wp)) // ' for ' // brief(real(size(thickness), wp)) // &
+        brief(size(poisson)) // ' for ' // brief(size(thickness)) // &
         ' layers; give one value for each thickness, from the top down', error)
       call check_spread(scene, 'thickness', thickness, error)
       call check_spread(scene, 'young', young, error)
@@ -171,8 +171,8 @@ contains
           call deck%mistake('layer', 'base', 'the bodies are rigid; give base = ''rigid'', or ' // &
             'young and poisson in &bodies', error)
         else if (.not. allocated(bodies%young)) then
-          call deck%mistake('bodies', 'stiffness', 'what layers are on has to be known by ' // &
-            'itself; give young and poisson here, or base = ''rigid'' in &layer', error)
+          call deck%mistake('bodies', 'stiffness', 'the material below the layers must be ' // &
+            'known; give young and poisson here, or base = ''rigid'' in &layer', error)
         end if
       end if
       if (word_is(scene, 'body', 'both')) then
@@ -185,7 +185,7 @@ contains
     end associate
   end subroutine check_layers
 
-  !> Refuses numbers so unlike that nothing would be left of the smaller ones.
+  !> Refuses numbers so different that rounding would hide the smaller ones.
   subroutine check_spread(scene, key, values, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: key
@@ -194,8 +194,8 @@ contains
 
     if (maxval(values) > most_unlike*minval(values)) call scene%deck%mistake('layer', key, &
       'from ' // brief(minval(values)) // ' to ' // brief(maxval(values)) // ' is more than a ' // &
-      'factor of ' // brief(most_unlike) // '; leave out what is so thin or so soft, or take ' // &
-      'for rigid what is so stiff', error)
+      'factor of ' // brief(most_unlike) // '; leave out layers so thin or soft, or make so ' // &
+      'stiff a body rigid', error)
   end subroutine check_spread
 
   !> Whether a key of the group has this value.

@@ -1,6 +1,6 @@
-!> Whether the numbers of a scene, and what follows from them, stay within the range of numbers.
-!> The calculation is dimensionless and minds no unit, but the units themselves are products of
-!> powers of what the deck gives.
+!> Checks that the numbers of a scene, and the units that follow from them, stay within the range of
+!> numbers. The calculation is dimensionless, but the units are products of powers of the numbers in
+!> the deck.
 module magnitudes
   use kinds, only: wp
   use failure, only: failure_t
@@ -11,12 +11,12 @@ module magnitudes
   private
   public :: check_derived
 
-  !> Values of h0 in the law's lengths: beyond this many, rounding is longer than the law.
+  !> Decimal order of the largest h0 in the law's lengths; beyond, rounding exceeds this length.
   integer, parameter :: most_lengths = 15
 
 contains
 
-  !> Refuses a scene whose units, coupling or h0 are out of range. Sums of logarithms cannot
+  !> Refuses a scene whose units, coupling or h0 are out of range. It adds logarithms, which cannot
   !> overflow.
   subroutine check_derived(scene, error)
     type(scene_t), intent(in) :: scene

@@ -9,13 +9,13 @@ module numerics_group
 
 contains
 
-  !> Its rows of the table.
+  !> The rows of &numerics.
   pure function numerics_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
 
     specs = [ &
-      group('numerics', 'How the equations are solved; accuracy is the one knob, the rest is ' // &
-            'for experts.', always=.true.), &
+      group('numerics', 'How the equations are solved. Most decks need only accuracy.', &
+            always=.true.), &
       word_key('numerics', 'method', 'auto mixing anderson newton', 'Iteration to equilibrium.', &
                default='auto'), &
       real_key('numerics', 'accuracy', '', 'Relative accuracy of load and displacement.', &
@@ -25,16 +25,17 @@ contains
                   otherwise='from accuracy'), &
       real_key('numerics', 'r_max', 'm', 'Radius at which the grid ends.', above=0.0_wp, &
                otherwise='from accuracy'), &
-      word_key('numerics', 'convergence', 'residual displacement_change', 'What must become ' // &
-               'small: the equations'' residual, or the change from one iteration to the next.', &
+      word_key('numerics', 'convergence', 'residual displacement_change', 'Quantity that must ' // &
+               'be small at convergence: the residual, or the change from one iteration to ' // &
+               'the next.', &
                default='residual'), &
-      real_key('numerics', 'displacement_tolerance', 'm', 'Largest change that passes for ' // &
-               'converged; used by convergence = ''displacement_change''.', default='1e-13', &
+      real_key('numerics', 'displacement_tolerance', 'm', 'Largest change at convergence, ' // &
+               'for convergence = ''displacement_change''.', default='1e-13', &
                above=0.0_wp), &
-      real_key('numerics', 'residual_tolerance', '', 'Largest residual that passes for ' // &
-               'converged, relative to the force law''s length.', low=1e-13_wp, high=1e-2_wp, &
+      real_key('numerics', 'residual_tolerance', '', 'Largest residual at convergence, ' // &
+               'relative to the force law''s length.', low=1e-13_wp, high=1e-2_wp, &
                otherwise='from accuracy'), &
-      integer_key('numerics', 'max_iterations', 'Most iterations for one equilibrium.', 1, &
+      integer_key('numerics', 'max_iterations', 'Largest number of iterations for one state.', 1, &
                   1000000000, default='20000'), &
       real_key('numerics', 'mixing_limit', '', 'Largest mixing ratio.', default='0.2', &
                above=0.0_wp, high=1.0_wp), &
@@ -44,7 +45,7 @@ contains
                   otherwise='from accuracy')]
   end function numerics_keys
 
-  !> &numerics.
+  !> Reads &numerics.
   subroutine take_numerics(scene)
     type(scene_t), intent(inout) :: scene
 

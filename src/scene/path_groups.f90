@@ -1,4 +1,4 @@
-!> &equilibrium_path, and what is read from the states of the path or of a cycle: &device,
+!> &equilibrium_path, and the groups that show states of the path or of a cycle: &device,
 !> &fixed_load, &table, &regime, &profiles, &stability.
 module path_groups
   use kinds, only: wp
@@ -22,17 +22,17 @@ contains
     specs = [ &
       group('equilibrium_path', 'The whole path of equilibria, stable and unstable, with ' // &
             'exact folds.'), &
-      real_key('equilibrium_path', 'h0_start', 'm', 'Where the path starts, above h0_end.', &
+      real_key('equilibrium_path', 'h0_start', 'm', 'First h0, above h0_end.', &
                otherwise='chosen by the program'), &
-      real_key('equilibrium_path', 'h0_end', 'm', 'Where it ends; needed without &loading.', &
+      real_key('equilibrium_path', 'h0_end', 'm', 'Last h0; needed without &loading.', &
                otherwise='h0_end of &loading'), &
       group('device', 'Bodies driven through a spring, in and out, from the path; needs ' // &
             '&equilibrium_path.'), &
       list_key('device', 'stiffness', 'N/m', 'Stiffness of each spring; 0: a dead load.', &
                most=100, low=0.0_wp, otherwise='h0 is prescribed'), &
-      real_key('device', 'z_start', 'm', 'Position of the drive from which it starts.', &
+      real_key('device', 'z_start', 'm', 'First position of the drive.', &
                otherwise='where the path starts'), &
-      real_key('device', 'z_end', 'm', 'Position at which it turns round.', &
+      real_key('device', 'z_end', 'm', 'Position at which the drive turns.', &
                otherwise='where the path ends'), &
       group('fixed_load', 'All equilibria under given loads, stable or not; needs ' // &
             '&equilibrium_path.'), &
@@ -55,7 +55,7 @@ contains
     specs = [ &
       group('profiles', 'Separation, deformation, pressure and energy against r; needs &loading ' &
             // 'or &equilibrium_path.'), &
-      list_key('profiles', 'h0', 'm', 'The h0 at which they are written.', most=1000, &
+      list_key('profiles', 'h0', 'm', 'The h0 of the profiles.', most=1000, &
                required=.true.)]
   end function profiles_keys
 
@@ -66,7 +66,7 @@ contains
       'eigenvalue; needs &loading or &equilibrium_path.')]
   end function stability_keys
 
-  !> &equilibrium_path.
+  !> Reads &equilibrium_path.
   subroutine take_path(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -87,7 +87,7 @@ contains
     end associate
   end subroutine take_path
 
-  !> &device, &fixed_load and &table.
+  !> Reads &device, &fixed_load and &table.
   subroutine take_readings(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -114,7 +114,7 @@ contains
     end associate
   end subroutine take_readings
 
-  !> &regime.
+  !> Reads &regime.
   subroutine take_regime(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -126,7 +126,7 @@ contains
     call check_path(scene, 'regime', error)
   end subroutine take_regime
 
-  !> &profiles: every h0 must be passed on the way.
+  !> Reads &profiles; each h0 must be within the range of the loading or of the path.
   subroutine take_profiles(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -144,8 +144,8 @@ contains
 
   contains
 
-    !> Whether the loading or the path passes this h0. A path that chooses its own start may start
-    !> as high as need be.
+    !> Whether the loading or the path passes this h0. A path without a given start may start at any
+    !> h0.
     pure logical function reached(h0)
       real(wp), intent(in) :: h0
 
@@ -159,7 +159,7 @@ contains
 
   end subroutine take_profiles
 
-  !> &stability.
+  !> Reads &stability.
   subroutine take_stability(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -167,7 +167,7 @@ contains
     scene%stability = has_states(scene, 'stability', error)
   end subroutine take_stability
 
-  !> Whether the deck has a group that shows states; complains where there are none to show.
+  !> Whether the deck has a group that shows states; refuses the group if there are no states.
   logical function has_states(scene, group, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: group
@@ -178,7 +178,7 @@ contains
       call scene%deck%mistake(group, '', 'needs &loading or &equilibrium_path', error)
   end function has_states
 
-  !> Complains where a group that is read from the path has none, or one without jumps.
+  !> Refuses a group that needs the path if there is no path, or one without jumps.
   subroutine check_path(scene, group, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: group
@@ -191,7 +191,7 @@ contains
     end if
   end subroutine check_path
 
-  !> Complains where a position [m] is not `word`, above or below, that of another key.
+  !> Refuses a position [m] that is not `word`, above or below, that of another key.
   subroutine check_order(deck, group, key, position, word, other, limit, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: group, key, word, other

@@ -1,4 +1,4 @@
-!> &drive, &viscoelastic and &fluid: bodies driven in time, bodies that remember, and a fluid that
+!> &drive, &viscoelastic and &fluid: bodies driven in time, viscoelastic bodies, and a fluid that
 !> drains from between them.
 module rate_groups
   use kinds, only: wp
@@ -11,11 +11,11 @@ module rate_groups
   private
   public :: rate_keys, take_rates
 
-  !> Terms of a creep.
+  !> Largest number of terms of a creep.
   integer, parameter :: most_terms = 20
-  !> Accuracy of a drive where the deck names none: each further digit takes three times the steps.
+  !> Default accuracy of a drive; each further digit takes three times as many steps.
   real(wp), parameter :: usual_accuracy = 1.0e-4_wp
-  !> Most steps of a given length.
+  !> Largest number of steps of a given length.
   real(wp), parameter :: most_steps = 4.0e4_wp
   !> Groups that show bodies at rest.
   character(len=*), parameter :: at_rest(*) = [character(len=16) :: 'loading', 'unloading', &
@@ -23,7 +23,7 @@ module rate_groups
 
 contains
 
-  !> Their rows of the table.
+  !> The rows of &drive, &viscoelastic and &fluid.
   pure function rate_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
 
@@ -33,32 +33,31 @@ contains
                above=0.0_wp, required=.true.), &
       real_key('drive', 'z_start', 'm', 'Position at which the bodies are at rest and the ' // &
                'drive begins.', required=.true.), &
-      real_key('drive', 'z_turn', 'm', 'Position at which it turns round, below z_start.', &
+      real_key('drive', 'z_turn', 'm', 'Position at which the drive turns, below z_start.', &
                required=.true.), &
-      real_key('drive', 'z_end', 'm', 'Position at which it ends, above z_turn.', &
+      real_key('drive', 'z_end', 'm', 'Position at which the drive ends, above z_turn.', &
                otherwise='z_start'), &
-      real_key('drive', 'dwell', 's', 'Time that it waits at z_turn.', default='0', low=0.0_wp), &
+      real_key('drive', 'dwell', 's', 'Waiting time at z_turn.', default='0', low=0.0_wp), &
       real_key('drive', 'stiffness', 'N/m', 'Stiffness of a spring between drive and bodies.', &
                above=0.0_wp, otherwise='none: h0 itself is driven'), &
       real_key('drive', 'time_step', 's', 'Length of the steps.', above=0.0_wp, &
                otherwise='from accuracy, 1e-4 unless it is given'), &
-      group('viscoelastic', 'Bodies that yield late; &bodies has the stiffness at once. ' // &
-            'stiffness_relaxed, or compliance. Needs &drive.'), &
-      real_key('viscoelastic', 'stiffness_relaxed', 'Pa', 'Stiffness of bodies at rest, that of ' &
-               // 'a standard linear solid, at most that at once.', above=0.0_wp), &
-      list_key('viscoelastic', 'compliance', '1/Pa', 'What each term adds to the compliance ' // &
-               '(1-nu^2)/E in the end.', most=most_terms, above=0.0_wp), &
-      list_key('viscoelastic', 'retardation_time', 's', 'Time of each term, of creep under a ' // &
-               'constant load.', most=most_terms, above=0.0_wp, required=.true.), &
-      group('fluid', 'A fluid between the bodies that resists where it has to drain. Needs ' // &
-            '&drive.'), &
+      group('viscoelastic', 'Bodies that creep; &bodies has the instantaneous stiffness. ' // &
+            'Give stiffness_relaxed or compliance. Needs &drive.'), &
+      real_key('viscoelastic', 'stiffness_relaxed', 'Pa', 'Stiffness of bodies at rest, of a ' // &
+               'standard linear solid, at most the instantaneous one.', above=0.0_wp), &
+      list_key('viscoelastic', 'compliance', '1/Pa', 'Final contribution of each term to the ' // &
+               'compliance (1-nu^2)/E.', most=most_terms, above=0.0_wp), &
+      list_key('viscoelastic', 'retardation_time', 's', 'Retardation time of each term, of creep ' &
+               // 'at constant load.', most=most_terms, above=0.0_wp, required=.true.), &
+      group('fluid', 'A viscous fluid that drains from between the bodies. Needs &drive.'), &
       real_key('fluid', 'viscosity', 'Pa s', 'Viscosity of the fluid.', above=0.0_wp, &
                required=.true.), &
-      list_key('fluid', 'slip_length', 'm', 'Slip length of the fluid on the walls: one of ' // &
-               'both, or two.', most=2, low=0.0_wp, otherwise='none')]
+      list_key('fluid', 'slip_length', 'm', 'Slip length of the fluid on the walls: one value ' // &
+               'for both, or two.', most=2, low=0.0_wp, otherwise='none')]
   end function rate_keys
 
-  !> &drive, &viscoelastic and &fluid.
+  !> Reads &drive, &viscoelastic and &fluid.
   subroutine take_rates(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -97,7 +96,7 @@ contains
       end if
       do i = 1, size(at_rest)
         if (deck%has_group(trim(at_rest(i)))) call deck%mistake(trim(at_rest(i)), '', &
-          'shows bodies at rest, and cannot stand beside &drive; use a deck of its own', error)
+          'shows bodies at rest, which &drive does not have; use a deck of its own', error)
       end do
       if (scene%bodies%rigid .and. .not. deck%has_group('fluid')) call deck%mistake('drive', '', &
         'needs bodies that deform, or &fluid; rigid ones have the same load at any velocity', error)
@@ -121,7 +120,7 @@ contains
       if (bodies%rigid) call deck%mistake('viscoelastic', '', &
         'needs bodies that deform, and these are rigid', error)
       if (deck%has_group('classical')) call deck%mistake('classical', '', &
-        'is of elastic bodies, and cannot stand beside &viscoelastic', error)
+        'is for elastic bodies; leave out this group or &viscoelastic', error)
       if (allocated(bodies%surface)) call deck%mistake('layer', '', &
         'bodies with layers cannot be viscoelastic', error)
       call deck%get_optional('viscoelastic', 'stiffness_relaxed', relaxed)
@@ -132,13 +131,13 @@ contains
           'give one of: stiffness_relaxed; compliance', error)
       else if (allocated(relaxed)) then
         if (relaxed > bodies%stiffness) call deck%mistake('viscoelastic', 'stiffness_relaxed', &
-          brief(relaxed) // ' is above the stiffness at once, ' // brief(bodies%stiffness) // &
-          ' Pa; bodies yield more with time', error)
+          brief(relaxed) // ' is above the instantaneous stiffness, ' // &
+          brief(bodies%stiffness) // ' Pa', error)
         compliance = [1/relaxed - 1/bodies%stiffness]
       end if
       if (.not. allocated(error) .and. size(compliance) /= size(time)) call deck%mistake( &
-        'viscoelastic', 'retardation_time', 'has ' // brief(real(size(time), wp)) // &
-        ' values for ' // brief(real(size(compliance), wp)) // ' terms', error)
+        'viscoelastic', 'retardation_time', 'has ' // brief(size(time)) // &
+        ' values for ' // brief(size(compliance)) // ' terms', error)
       if (allocated(error)) return
       scene%creep = creep_t(compliance*bodies%stiffness, time)
     end associate
@@ -152,10 +151,10 @@ contains
     allocate (scene%fluid)
     associate (deck => scene%deck, fluid => scene%fluid)
       if (.not. allocated(scene%drive)) call deck%mistake('fluid', '', &
-        'needs &drive; it does nothing between bodies at rest', error)
+        'needs &drive; the fluid has no effect on bodies at rest', error)
       if (allocated(scene%shape)) then
         if (.not. scene%shape%parabolic) call deck%mistake('fluid', '', &
-          'drains between parabolas alone; leave &shape out', error)
+          'is for parabolas; leave out this group or &shape', error)
       end if
       if (allocated(scene%law)) then
         if (.not. scene%law%adhesion > 0) call deck%mistake('fluid', '', &

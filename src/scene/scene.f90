@@ -1,4 +1,4 @@
-!> What a deck asks for: this program's groups read, defaults filled in, checked as a whole.
+!> The content of a deck: this program's groups, with defaults, checked as a whole.
 module scene
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
@@ -20,16 +20,16 @@ module scene
   use shape_checks, only: check_shape
   implicit none
   private
-  public :: scene_t, read_scene, make_scene, swept_scene
+  public :: scene_t, read_scene, swept_scene
 
-  !> The groups that compute something by themselves; a deck needs at least one of them.
+  !> The groups that compute something; a deck needs at least one of them.
   character(len=*), parameter :: computing(*) = [character(len=17) :: 'loading', &
     'equilibrium_path', 'drive', 'approximations', 'classical', 'fit']
 
 contains
 
-  !> Reads and checks a deck: the file, or the text that is called `file` in messages. `error` lists
-  !> what is wrong, each mistake with file, line, group and key.
+  !> Reads and checks a deck: the file, or `text`, whose name in messages is `file`. `error` lists
+  !> the mistakes, each with file, line, group and key.
   subroutine read_scene(file, scene, error, text)
     character(len=*), intent(in) :: file
     type(scene_t), intent(out) :: scene
@@ -44,7 +44,7 @@ contains
     if (allocated(scene%sweep)) call check_sweep(scene, error)
   end subroutine read_scene
 
-  !> The scene of a deck that has been read; fails where keys contradict each other.
+  !> The scene of a deck that has been read; fails if keys contradict each other.
   subroutine make_scene(deck, scene, error)
     type(deck_t), intent(in) :: deck
     type(scene_t), intent(out) :: scene
@@ -57,7 +57,7 @@ contains
     if (allocated(error)) return
     call take_model(scene, error)
     call take_loading(scene, error)
-    ! The groups below take their defaults from &loading and are checked against it.
+    ! The groups below take defaults from &loading and are checked against it.
     if (allocated(error)) return
     call take_unloading(scene, error)
     call take_path(scene, error)
@@ -79,8 +79,8 @@ contains
     if (.not. allocated(error)) call check_shape(scene, error)
   end subroutine make_scene
 
-  !> The scene with keys, blank-separated names, set to `values`, and without the groups that ask
-  !> for such scenes.
+  !> The scene with the keys `names`, blank-separated, set to `values`, and without &sweep and
+  !> &sensitivity.
   subroutine swept_scene(scene, names, values, variant, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: names
@@ -100,9 +100,9 @@ contains
     call make_scene(deck, variant, error)
   end subroutine swept_scene
 
-  !> Tries the sweep, so that a mistake shows before hours of work and not after: every value
-  !> against the bounds of its key, and in the whole scene the least and the largest of all keys
-  !> together, of a file its first and its last case.
+  !> Tries the sweep, so that a mistake shows before hours of work: every value against the bounds
+  !> of its key, and the whole scene with the smallest and with the largest values of all keys, or
+  !> with the first and the last case of a file.
   subroutine check_sweep(scene, error)
     type(scene_t), intent(in) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -137,7 +137,7 @@ contains
     call try_ends(scene, error)
   end subroutine check_sweep
 
-  !> Refuses values of key k that are out of its bounds.
+  !> Refuses values of key k outside its bounds.
   subroutine try_values(scene, trial, k, values, key, error)
     type(scene_t), intent(in) :: scene
     type(deck_t), intent(inout) :: trial
@@ -152,13 +152,13 @@ contains
       call set_number(trial, word_of(scene%sweep%names, k), values(i), trouble)
       if (.not. allocated(trouble)) cycle
       if (key == 'file') trouble%message = 'case ' // &
-        brief(real(scene%sweep%file%of_case(i, k), wp)) // ': ' // trouble%message
+        brief(scene%sweep%file%of_case(i, k)) // ': ' // trouble%message
       call scene%deck%mistake('sweep', key, trouble%message, error)
       return
     end do
   end subroutine try_values
 
-  !> Refuses a sweep whose ends are no scenes.
+  !> Refuses a sweep if the scene is wrong at either end.
   subroutine try_ends(scene, error)
     type(scene_t), intent(in) :: scene
     type(failure_t), allocatable, intent(inout) :: error

@@ -1,5 +1,5 @@
 !> This program's groups, one derived type each; those of the experiments are in
-!> `experiment_request`. What is optional is allocatable there and here.
+!> `experiment_request`. Optional groups and keys are allocatable.
 module scene_groups
   use kinds, only: wp
   use text, only: brief, word_of
@@ -17,24 +17,25 @@ module scene_groups
 
   !> &bodies
   type :: bodies_t
-    !> E/(1-nu^2) of two identical bodies equivalent to these [Pa]; without meaning if `rigid`.
+    !> E/(1-nu^2) of two identical bodies with the same compliance [Pa]; undefined if `rigid`.
     real(wp) :: stiffness = 0
-    !> Moduli [Pa] and Poisson's ratios of the bodies, where they are given.
+    !> Moduli [Pa] and Poisson's ratios of the bodies, if they are given.
     real(wp), allocatable :: young(:), poisson(:)
-    !> With &layer: the surfaces, SI units. Stiffness and shares are those of the top layers then.
+    !> With &layer: the surfaces, in SI units. Stiffness and shares are then those of the top
+    !> layers.
     type(layered_surface_t), allocatable :: surface(:)
     !> Compliance of each body over their mean.
     real(wp) :: share(2) = 1
     logical :: rigid = .false.
   end type bodies_t
 
-  !> &approximations and &classical: `count` points over a range of h0 [m]; h0_start unallocated:
-  !> from where the equilibrium path starts.
+  !> &approximations and &classical: `count` points over a range of h0 [m]. If h0_start is not
+  !> allocated, the range begins where the equilibrium path starts.
   type :: range_t
     real(wp), allocatable :: h0_start
     real(wp) :: h0_end = 0
     integer :: count = 0
-    !> Of &classical: which of `theories`.
+    !> For &classical: whether each of `theories` is shown.
     logical :: shown(size(theories)) = usual
   end type range_t
 
@@ -43,8 +44,8 @@ module scene_groups
     real(wp), allocatable :: values(:)
   end type axis_t
 
-  !> The cases of a file, which stay there: how many, the first and the last, and those values of
-  !> each key (value, key) that show whether all are allowed, with their cases.
+  !> The cases of a file, which are not kept: their number, the first and the last, and for each key
+  !> three values (value, key) that show whether all its values are allowed, with their cases.
   type :: case_file_t
     character(len=:), allocatable :: path
     integer :: cases = 0
@@ -52,9 +53,10 @@ module scene_groups
     integer, allocatable :: of_case(:, :)
   end type case_file_t
 
-  !> &sweep: blank-separated keys as 'group.key', and either the values of each, of which every
-  !> combination is a case, the last key varying fastest; or a file, row by row. words: those
-  !> that a key may hold, whose numbers are its values; blank of keys that hold numbers.
+  !> &sweep: blank-separated keys as 'group.key', and either the values of each key, every
+  !> combination of which is a case (the last key varies fastest), or a file with one case a row.
+  !> words: the words that a key may hold; its value is the number of one of them. Blank for
+  !> numbers.
   type :: sweep_t
     character(len=:), allocatable :: names
     character(len=80), allocatable :: words(:)
@@ -67,18 +69,18 @@ module scene_groups
     procedure :: shown
   end type sweep_t
 
-  !> All that a deck asks for: of the experiments, and beside them.
+  !> The whole content of a deck: the experiments, and all else.
   type, extends(request_t) :: scene_t
-    !> The deck itself, with every default filled in.
+    !> The deck itself, with all defaults.
     type(deck_t) :: deck
     character(len=:), allocatable :: title
     type(bodies_t) :: bodies
     !> The sum of the deck's forces.
     class(force_law_t), allocatable :: law
-    !> In the units of that law.
+    !> The shape, in the units of that law.
     class(shape_t), allocatable :: shape
     type(range_t), allocatable :: approximations, classical
-    !> &stability and &regime have no keys.
+    !> Whether the deck has &stability, and &regime.
     logical :: stability = .false., regime = .false.
     type(sweep_t), allocatable :: sweep
     type(measurement_t), allocatable :: measurement
@@ -92,7 +94,7 @@ module scene_groups
 
 contains
 
-  !> How many cases a sweep has.
+  !> Number of cases of a sweep.
   pure integer function cases(self)
     class(sweep_t), intent(in) :: self
     integer :: i
@@ -147,21 +149,21 @@ contains
     end if
   end function shown
 
-  !> Whether equilibria are shown one by one. The cases of a sweep leave numbers, not their curves.
+  !> Whether the states of a curve are written; a sweep writes only numbers of its curves.
   pure logical function has_curve(self)
     class(scene_t), intent(in) :: self
 
     has_curve = self%finds_states() .and. .not. allocated(self%sweep)
   end function has_curve
 
-  !> Whether the smallest eigenvalue of each state is shown.
+  !> Whether the smallest eigenvalue of each state is written.
   pure logical function has_eigenvalues(self)
     class(scene_t), intent(in) :: self
 
     has_eigenvalues = self%has_curve() .and. self%stability
   end function has_eigenvalues
 
-  !> How many columns of the curve a drive in time adds.
+  !> Number of columns that a drive in time adds to the curve.
   pure integer function drive_columns(self)
     class(scene_t), intent(in) :: self
 

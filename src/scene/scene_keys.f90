@@ -1,6 +1,6 @@
-!> Every group and key of a snapin deck: what it means, what it may be, what it is if left out.
-!> The reader, `--keys` and the resolved deck all follow this one table; the rows of a group stand
-!> where it is read.
+!> All groups and keys of a snapin deck with their meanings, ranges and defaults. The reader,
+!> `--keys` and the resolved deck use this one table; the rows of a group are in the module that
+!> reads it.
 module scene_keys
   use deck_keys, only: key_spec, group, text_key
   use scene_problem, only: keys_of_model
@@ -18,13 +18,13 @@ module scene_keys
 
 contains
 
-  !> The table, one row a group or key, the keys of a group right after it.
+  !> The table, one row for each group and key; the keys of a group follow the group.
   pure function keys_of_scene() result(specs)
     type(key_spec), allocatable :: specs(:)
 
     specs = [ &
-      group('scene', 'What the calculation is called.'), &
-      text_key('scene', 'title', 200, 'Title, repeated in every file of results.', &
+      group('scene', 'Name of the calculation.'), &
+      text_key('scene', 'title', 200, 'Title, repeated in all files of results.', &
                otherwise='none'), &
       keys_of_model(), &
       cycle_keys(), &
@@ -38,7 +38,7 @@ contains
       fit_keys(), &
       sweep_keys(), &
       numerics_keys(), &
-      group('summary', 'Results in a summary file, so that such a file can be run again.', &
+      group('summary', 'Results in a summary file; skipped, so that the file can be run again.', &
             ignored=.true.), &
       group('cost', 'As &summary.', ignored=.true.)]
   end function keys_of_scene

@@ -1,4 +1,4 @@
-!> The problem without units that a scene poses: bodies, forces and shape of its deck.
+!> The dimensionless problem of a scene: bodies, forces and shape of its deck.
 module scene_problem
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t, new_problem
@@ -23,7 +23,7 @@ contains
     specs = [bodies_keys(), layer_keys(), keys_of_shapes(), keys_of_laws()]
   end function keys_of_model
 
-  !> Bodies, layers, forces and shape of the scene's deck.
+  !> Reads bodies, layers, forces and shape of the scene's deck.
   subroutine take_model(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -36,7 +36,7 @@ contains
     if (.not. allocated(error)) call check_thinness(scene, error)
   end subroutine take_model
 
-  !> The problem that a scene poses.
+  !> The problem of a scene.
   type(problem_t) function problem_of(scene) result(problem)
     type(scene_t), intent(in) :: scene
     type(layered_surface_t) :: surface(2)

@@ -1,4 +1,4 @@
-!> &sensitivity: parameters by which results are differentiated.
+!> &sensitivity: the parameters by which results are differentiated.
 module sensitivity_group
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, word_count, word_of
@@ -14,18 +14,18 @@ module sensitivity_group
 
 contains
 
-  !> Its rows of the table.
+  !> The rows of &sensitivity.
   pure function sensitivity_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
 
     specs = [ &
-      group('sensitivity', 'Derivatives of what is reported by numbers of bodies, shape and ' // &
+      group('sensitivity', 'Derivatives of reported numbers by numbers of bodies, shape and ' // &
             'forces; needs &equilibrium_path, or &drive.'), &
-      names_key('sensitivity', 'parameters', 20, 'The numbers, as ''group.key'', of a list as ' // &
-                '''group.key(2)''.', required=.true.)]
+      names_key('sensitivity', 'parameters', 20, 'The numbers, as ''group.key''; an element ' // &
+                'of a list as ''group.key(2)''.', required=.true.)]
   end function sensitivity_keys
 
-  !> &sensitivity.
+  !> Reads &sensitivity.
   subroutine take_sensitivity(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -57,8 +57,8 @@ contains
       call scene%deck%mistake('sensitivity', 'parameters', trouble%message, error)
   end subroutine take_sensitivity
 
-  !> Of a drive in time, which is differentiated by whole runs: any number of its deck but those of
-  !> the numerics.
+  !> The same for a drive in time, which is differentiated by whole runs: any numbers of its deck
+  !> except those of &numerics.
   subroutine take_for_drive(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -78,13 +78,13 @@ contains
         if (.not. allocated(trouble)) then
           scene%sensitivity%varied(i)%parameter%name = name
           if (.not. allocated(deck%values(row)%reals) .or. index(name, 'numerics.') == 1) then
-            call fail(trouble, bad_input, quoted(name) // ' is no number on which results ' // &
+            call fail(trouble, bad_input, quoted(name) // ' is not a number on which results ' // &
               'depend smoothly')
           else
             associate (value => deck%values(row)%reals(max(1, term)))
               scene%sensitivity%varied(i)%parameter%value = value
               if (.not. abs(value) > 0) call fail(trouble, bad_input, quoted(name) // &
-                ' is 0: it has no size of which a change would be a part')
+                ' is 0, so that no relative change of it can be made')
             end associate
           end if
         end if

@@ -1,4 +1,4 @@
-!> Whether a body is large enough for what a scene does to it, and its load a number.
+!> Checks that a body is large enough for a scene, and that its load is finite.
 module shape_checks
   use kinds, only: wp, pi
   use failure, only: failure_t
@@ -14,7 +14,7 @@ module shape_checks
 
 contains
 
-  !> Refuses what no load can be computed of.
+  !> Refuses a scene whose load cannot be computed.
   subroutine check_shape(scene, error)
     type(scene_t), intent(in) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -30,9 +30,9 @@ contains
     end if
   end subroutine check_shape
 
-  !> Refuses a body that ends where it touches the other or where the force still acts, which
-  !> Derjaguin's approximation knows nothing of: at its end the pressure over an area of its size is
-  !> to be below the accuracy, as a part of the load of bodies without an end.
+  !> Refuses a body that ends within the contact, or where the force still acts, since Derjaguin's
+  !> approximation does not hold at an end. The pressure at the end times an area of the body's size
+  !> must be below the accuracy, as a part of the load of bodies without an end.
   subroutine check_end(scene, error)
     type(scene_t), intent(in) :: scene
     type(failure_t), allocatable, intent(inout) :: error

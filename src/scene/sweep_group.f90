@@ -1,5 +1,5 @@
-!> &sweep: the values that keys take, from ranges, a list or a table. Of several ranges every
-!> combination is a case.
+!> &sweep: the values of keys, from ranges, a list or a file. Every combination of the values of
+!> several keys is a case.
 module sweep_group
   use kinds, only: wp
   use failure, only: failure_t
@@ -13,14 +13,14 @@ module sweep_group
   private
   public :: sweep_keys, take_sweep
 
-  !> Keys of one sweep; values of one key; cases.
+  !> Largest number of keys of a sweep; of values of one key; of words; of cases.
   integer, parameter :: most_keys = 8, most_values = 10000, most_words = 100
   real(wp), parameter :: most_cases = 1.0e7_wp
   character(len=*), parameter :: of_range(4) = ['from ', 'to   ', 'count', 'scale']
 
 contains
 
-  !> Its rows of the table.
+  !> The rows of &sweep.
   pure function sweep_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
 
@@ -40,10 +40,10 @@ contains
       names_key('sweep', 'words', most_words, 'The words of one key that holds a word.', &
                 otherwise='none'), &
       text_key('sweep', 'file', 1000, 'A table of cases: a line of names as ''group.key'', ' // &
-               'then a row a case; in the folder of the deck unless a path.')]
+               'then one case a row; a relative path begins at the deck''s folder.')]
   end function sweep_keys
 
-  !> &sweep: a file, or keys with values or ranges.
+  !> Reads &sweep: a file, or keys with values or ranges.
   subroutine take_sweep(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -54,7 +54,7 @@ contains
     associate (deck => scene%deck, sweep => scene%sweep)
       if (deck%is_set('sweep', 'file')) then
         call refuse(deck, ['key   ', 'values', 'words ', of_range//' '], &
-          'file, whose columns say all', error)
+          'file, whose columns have the keys and values', error)
         if (.not. allocated(error)) call take_file(deck, sweep, error)
         if (.not. allocated(error)) call find_words(deck, sweep)
         return
@@ -71,12 +71,12 @@ contains
       if (.not. allocated(error)) call take_numbers(deck, sweep, error)
       if (allocated(error)) return
       if (product([(real(size(sweep%axis(i)%values), wp), i=1, size(sweep%axis))]) > most_cases) &
-        call deck%mistake('sweep', 'count', 'these are more than ' // brief(most_cases) // &
+        call deck%mistake('sweep', 'count', 'there are more than ' // brief(most_cases) // &
         ' cases', error)
     end associate
   end subroutine take_sweep
 
-  !> The words that the keys may hold.
+  !> Finds for each key the words that it may hold.
   subroutine find_words(deck, sweep)
     type(deck_t), intent(in) :: deck
     type(sweep_t), intent(inout) :: sweep
@@ -88,7 +88,7 @@ contains
     end do
   end subroutine find_words
 
-  !> The words of the key that holds one.
+  !> Reads the words of the key that holds a word.
   subroutine take_words(deck, sweep, error)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
@@ -117,7 +117,7 @@ contains
     end if
   end subroutine take_words
 
-  !> The values of the keys that hold numbers: a list for one, else ranges.
+  !> Reads the values of the keys that hold numbers: a list for one key, or ranges.
   subroutine take_numbers(deck, sweep, error)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
@@ -141,7 +141,7 @@ contains
     end if
   end subroutine take_numbers
 
-  !> Refuses keys that make no sense together with `other`.
+  !> Refuses keys that contradict `other`.
   subroutine refuse(deck, keys, other, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: keys(:), other
@@ -154,7 +154,7 @@ contains
     end do
   end subroutine refuse
 
-  !> The cases of a file, which is read through once to see that it has nothing but cases.
+  !> Reads the cases of a file once, to check that all rows are cases.
   subroutine take_file(deck, sweep, error)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
@@ -189,8 +189,8 @@ contains
     end if
   end subroutine take_file
 
-  !> Counts a case of a file. If the least and the largest value of a key are allowed and the first
-  !> that is not whole, all are.
+  !> Counts a case of a file, and keeps values that show whether all are allowed: the smallest, the
+  !> largest and the first that is not an integer.
   subroutine note_case(file, values)
     type(case_file_t), intent(inout) :: file
     real(wp), intent(in) :: values(:)
@@ -221,7 +221,7 @@ contains
     is_whole = .not. abs(value - anint(value)) > 0
   end function is_whole
 
-  !> The values of keys from their ranges; none where these are wrong.
+  !> The values of keys from their ranges; none after a mistake.
   subroutine take_ranges(deck, axis, keys, error)
     type(deck_t), intent(inout) :: deck
     type(axis_t), intent(inout) :: axis(:)
@@ -248,7 +248,7 @@ contains
 
   contains
 
-    !> Refuses a list that has not one item for each key.
+    !> Refuses a list without exactly one item for each key.
     subroutine check_size(key, items)
       character(len=*), intent(in) :: key
       integer, intent(in) :: items
@@ -257,14 +257,14 @@ contains
       if (items == 0) then
         call deck%mistake('sweep', key, 'missing; give from, to and count, or values', error)
       else
-        call deck%mistake('sweep', key, brief(real(items, wp)) // ' for ' // &
-          brief(real(size(keys), wp)) // ' of key; each needs one', error)
+        call deck%mistake('sweep', key, brief(items) // ' for ' // brief(size(keys)) // &
+          ' keys; give one for each', error)
       end if
     end subroutine check_size
 
   end subroutine take_ranges
 
-  !> The values from `from` to `to`; none where these are wrong.
+  !> The values from `from` to `to`; none after a mistake.
   subroutine spread_values(deck, from, to, number, scale, values, error)
     type(deck_t), intent(in) :: deck
     real(wp), intent(in) :: from, to, number
@@ -292,7 +292,7 @@ contains
       else
         values = [(from + (to - from)*(i - 1)/(n - 1), i=1, n)]
       end if
-      ! The ends as the user wrote them, without rounding.
+      ! The ends without rounding.
       values(1) = from
       values(n) = to
     end if

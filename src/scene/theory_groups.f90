@@ -15,18 +15,18 @@ module theory_groups
 
 contains
 
-  !> Their rows of the table.
+  !> The rows of &approximations and &classical.
   pure function theory_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
 
     specs = [range_keys('approximations', 'Closed-form approximations for slow deformation.'), &
       range_keys('classical', 'Hertz, JKR, DMT and Maugis-Dugdale beside the curve; ' // &
       'Hertz and JKR for the shape that &shape gives.'), &
-      names_key('classical', 'theories', size(theories), 'Those to show, of ' // all_names() // &
-      '.', otherwise='hertz, jkr, dmt and maugis_dugdale')]
+      names_key('classical', 'theories', size(theories), 'The theories to show, of ' // &
+        all_names() // '.', otherwise='hertz, jkr, dmt and maugis_dugdale')]
   end function theory_keys
 
-  !> The rows of one of them.
+  !> The rows of one of these groups.
   pure function range_keys(name, meaning) result(specs)
     character(len=*), intent(in) :: name, meaning
     type(key_spec) :: specs(4)
@@ -40,7 +40,7 @@ contains
       integer_key(name, 'count', 'Number of points.', 2, 1000000, default='200')]
   end function range_keys
 
-  !> &approximations and &classical.
+  !> Reads &approximations and &classical.
   subroutine take_theories(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -56,7 +56,7 @@ contains
     if (scene%deck%is_set('classical', 'theories')) call take_names(scene, error)
   end subroutine take_theories
 
-  !> Which theories are wanted.
+  !> Reads the theories to show.
   subroutine take_names(scene, error)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
@@ -71,7 +71,7 @@ contains
       which = findloc(theories == name, .true., dim=1)
       if (which == 0) then
         call scene%deck%mistake('classical', 'theories', quoted(clip(name)) // &
-          ' is no theory' // guess(name, all_names(), '') // '; allowed: ' // &
+          ' is not a theory' // guess(name, all_names(), '') // '; allowed: ' // &
           listing(all_names(), '', ''), error)
         return
       end if
@@ -96,7 +96,7 @@ contains
     end do
   end function all_names
 
-  !> One of them, which takes its range from what is computed anyway.
+  !> Reads one of these groups; the default of its range is that of &loading or &equilibrium_path.
   subroutine take_range(scene, group, range, error)
     type(scene_t), intent(inout) :: scene
     character(len=*), intent(in) :: group

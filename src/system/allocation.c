@@ -1,6 +1,6 @@
-/* No memory is an end with status 1 and a reason. Compiled Fortran would go on to a segmentation
-   fault (compiler note 7); the linker leads its calls here (--wrap, see meson.build). States that
-   were complete are in the journal by then. */
+/* Without memory the program ends with status 1 and a message; compiled Fortran would go on to a
+   segmentation fault (compiler note 7). The linker redirects the calls here (--wrap, see
+   meson.build). The journal then holds all complete states. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,10 +33,10 @@ void *__wrap_calloc(size_t count, size_t size) {
 
 void *__wrap_realloc(void *old, size_t size) { return checked(__real_realloc(old, size), size); }
 
-/* OpenBLAS maps memory for each of its threads before main begins, and where it gets none it tries
-   for ever. With little address space it is to have fewer threads: the program begins once more and
-   tells it so. This runs before the libraries' own beginnings, which look at the environment that
-   the process was given. A thread's memory, its stack and what malloc keeps for it are 200 MB. */
+/* OpenBLAS maps memory for each of its threads before main begins, and tries for ever if it gets
+   none. If the address space is small, the program starts once more with fewer threads for
+   OpenBLAS. This runs before the initialisation of the libraries, which read the environment of the
+   process. The memory of a thread, its stack and its malloc arena take 200 MB. */
 static void leave_room(int count, char **arguments, char **environment) {
   static const char name[] = "OPENBLAS_NUM_THREADS=";
   const rlim_t one = 320000000;

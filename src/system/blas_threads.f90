@@ -1,5 +1,5 @@
-!> How many threads the linear algebra uses. Below some size threads cost more than they bring, and
-!> on a busy machine very much more; and with one, results do not depend on their number.
+!> The number of threads of the linear algebra. For small matrices, and on a busy machine, more
+!> threads are slower than one; and with one, results do not depend on the number of threads.
 module blas_threads
   use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
@@ -9,18 +9,18 @@ module blas_threads
   private
   public :: begin_with_one_thread, use_threads_for, thread_count, blas_buffers
 
-  !> Order of the matrix from which threads pay, even on a machine with other work.
+  !> Order of the matrix above which threads are faster even on a busy machine.
   integer, parameter :: worthwhile = 2500
-  !> Address space [bytes] that OpenBLAS 0.3 maps for each thread that calls it, whatever the size
-  !> of the matrices; and what every further thread has as stack and for `malloc`. Hardly any of it
-  !> is ever touched.
+  !> Address space [bytes] that OpenBLAS 0.3 maps for each thread that calls it, for matrices of any
+  !> size; address space of each further thread for its stack and `malloc`. Most of it is never
+  !> used.
   real(wp), parameter :: of_buffer = 136.0e6_wp, of_thread = 76.0e6_wp
 
 contains
 
-  !> For the beginning of a program. OpenBLAS starts a thread for every further core when it is
-  !> loaded, and each looks for work for some 25 ms as fast as it can, as long as a short run takes.
-  !> They are ended; `use_threads_for` has them started where a matrix is large enough.
+  !> Called once at the start of a program. OpenBLAS starts one thread for each further core when it
+  !> is loaded, and each of them spins for some 25 ms, as long as a short run takes. This procedure
+  !> ends them; `use_threads_for` starts them for large matrices.
   subroutine begin_with_one_thread()
     integer(c_int) :: known
 
@@ -28,8 +28,8 @@ contains
     call c_openblas_end_threads()
   end subroutine begin_with_one_thread
 
-  !> Chooses the threads for matrices of the given order, where the library is OpenBLAS; any other
-  !> keeps to its own rules. Where several cases are computed at once each has one.
+  !> Sets the number of threads for matrices of the given order, if the library is OpenBLAS. In a
+  !> parallel region, where several cases run at once, each case has one thread.
   subroutine use_threads_for(order)
     integer, intent(in) :: order
     integer(c_int) :: count, known
@@ -41,8 +41,8 @@ contains
     known = c_openblas_threads(count)
   end subroutine use_threads_for
 
-  !> Address space [bytes] that threads and the linear algebra map for themselves, for matrices of
-  !> the given order in so many cases at once. OpenBLAS asks for ever where it does not get its own.
+  !> Address space [bytes] that threads and linear algebra map for matrices of the given order in
+  !> `cases` cases at once. OpenBLAS tries for ever if it does not get its share.
   real(wp) function blas_buffers(order, cases) result(bytes)
     integer, intent(in) :: order, cases
 
@@ -51,7 +51,7 @@ contains
     bytes = bytes + merge(max(cases, thread_count()), cases, order >= worthwhile)*of_buffer
   end function blas_buffers
 
-  !> Threads that the program may use.
+  !> Number of threads that the program may use.
   integer function thread_count()
     thread_count = 1
     !$ thread_count = omp_get_max_threads()

@@ -1,16 +1,16 @@
-/* The id that the linker gives to what it links: a checksum of all of it, in a note (see elf(5))
-   that is in memory with the code. */
+/* The linker's id of the program or library: a checksum of all of it, in a note (see elf(5)) that
+   is in memory with the code. */
 #include <string.h>
 
 #ifdef __ELF__
 #include <link.h>
 
-/* Where the linker puts the beginning of the program or library that this code is part of. */
+/* The linker's symbol for the beginning of the program or library. */
 extern const char __ehdr_start[] __attribute__((visibility("hidden")));
 
 static size_t padded(size_t length) { return (length + 3) / 4 * 4; }
 
-/* The build id among the notes of a segment, written as hexadecimal digits. */
+/* Writes the build id, if it is among these notes of a segment, in hexadecimal digits. */
 static void write_id(const char *notes, size_t size, char *text, int room) {
   size_t at = 0, i;
   while (at + sizeof(ElfW(Nhdr)) < size) {
@@ -27,7 +27,7 @@ static void write_id(const char *notes, size_t size, char *text, int room) {
 }
 #endif
 
-/* As many digits as there is room for; blanks where there is no id. */
+/* As many digits of the id as fit; blanks if there is none. */
 void snapin_build_id(char *text, int size) {
   memset(text, ' ', size);
 #ifdef __ELF__

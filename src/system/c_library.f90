@@ -1,6 +1,5 @@
-!> The few things that files, the terminal and the process need of the system, by way of `posix.c`,
-!> and its error messages. A status below zero is a failure, for `system_failure`. Paths and names
-!> end with `nul`.
+!> The system calls for files, terminal and process, by way of `posix.c`, and their error messages.
+!> A negative status is a failure, for `system_failure`. Paths and names end with `nul`.
 module c_library
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_long, nul => c_null_char
   use failure, only: failure_t, fail, file_trouble
@@ -12,25 +11,25 @@ module c_library
     c_openblas_threads, c_openblas_end_threads, c_openblas_config, c_build_id
   public :: explain, system_failure, nul
   public :: as_input, as_output, as_kept_output, as_folder
-  public :: too_large, disk_full, in_the_way, not_there, locked_elsewhere
+  public :: too_large, not_there, locked_elsewhere
 
-  !> What a path is opened as: a file of any kind, to be read; a regular file to be read and
-  !> written, made where there is none and emptied; the same as it is; a folder.
+  !> How a path is opened: a file of any kind for reading; a regular file for reading and writing,
+  !> created or emptied; the same, unchanged; a folder.
   integer(c_int), parameter :: as_input = 1, as_output = 2, as_kept_output = 3, as_folder = 4
 
-  !> Sorts of failure that users are told apart.
+  !> Failures with advice or treatment of their own.
   integer(c_int), parameter :: too_large = 1, disk_full = 2, in_the_way = 3, not_there = 4, &
     locked_elsewhere = 5
 
   interface
-    !> A descriptor.
+    !> The file descriptor.
     integer(c_int) function c_open(path, how) bind(c, name='snapin_open')
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: how
     end function c_open
 
-    !> Number of bytes read; fewer than `count` at the end of the file only.
+    !> Number of bytes read; fewer than `count` only at the end of the file.
     integer(c_long) function c_read(descriptor, bytes, count) bind(c, name='snapin_read')
       import :: c_char, c_int, c_long
       integer(c_int), value :: descriptor
@@ -63,7 +62,7 @@ module c_library
       integer(c_int), value :: descriptor
     end function c_close
 
-    !> Bytes in a file.
+    !> Number of bytes in a file.
     integer(c_long) function c_size(descriptor) bind(c, name='snapin_size')
       import :: c_int, c_long
       integer(c_int), value :: descriptor
@@ -81,27 +80,27 @@ module c_library
       character(kind=c_char), intent(in) :: path(*)
     end function c_make_folder
 
-    !> The whole path of the folder that relative paths begin in; blank where it is not known.
+    !> Absolute path of the current folder; blank if it is not known.
     subroutine c_current_folder(path, size) bind(c, name='snapin_current_folder')
       import :: c_char, c_int
       character(kind=c_char), intent(out) :: path(*)
       integer(c_int), value :: size
     end subroutine c_current_folder
 
-    !> The whole path of this program's file; blank where it is not known.
+    !> Absolute path of this program's file; blank if it is not known.
     subroutine c_own_path(path, size) bind(c, name='snapin_own_path')
       import :: c_char, c_int
       character(kind=c_char), intent(out) :: path(*)
       integer(c_int), value :: size
     end subroutine c_own_path
 
-    !> Locks a folder without waiting: it fails as `locked_elsewhere` where another has it.
+    !> Locks a folder without waiting; fails as `locked_elsewhere` if another process has locked it.
     integer(c_int) function c_lock(folder) bind(c, name='snapin_lock')
       import :: c_int
       integer(c_int), value :: folder
     end function c_lock
 
-    !> What a name in a folder is: 0 nothing, 1 a file, 2 a folder.
+    !> Kind of a name in a folder: 0 nothing, 1 a file, 2 a folder.
     integer(c_int) function c_kind(folder, name) bind(c, name='snapin_kind')
       import :: c_char, c_int
       integer(c_int), value :: folder
@@ -114,59 +113,58 @@ module c_library
       character(kind=c_char), intent(in) :: from(*), to(*)
     end function c_rename
 
-    !> Removes a file from a folder; that there is none is no failure.
+    !> Removes a file from a folder; a missing file is not a failure.
     integer(c_int) function c_remove(folder, name) bind(c, name='snapin_remove')
       import :: c_char, c_int
       integer(c_int), value :: folder
       character(kind=c_char), intent(in) :: name(*)
     end function c_remove
 
-    !> Bytes that may still be written below a path; huge where nobody says.
+    !> Number of bytes that may still be written below a path; huge if it is not known.
     real(c_double) function c_free_disk(path) bind(c, name='snapin_free_disk')
       import :: c_char, c_double
       character(kind=c_char), intent(in) :: path(*)
     end function c_free_disk
 
-    !> 1 for a terminal.
+    !> 1 if the descriptor is a terminal.
     integer(c_int) function c_is_terminal(descriptor) bind(c, name='snapin_is_terminal')
       import :: c_int
       integer(c_int), value :: descriptor
     end function c_is_terminal
 
-    !> Makes trouble with a file an error of that file, and nothing that ends the process.
+    !> Makes failures to write an error of the file instead of signals that end the process.
     subroutine c_prepare() bind(c, name='snapin_prepare')
     end subroutine c_prepare
 
-    !> Ends this process when that which began it ends, where the system can.
+    !> Ends this process when its parent process ends, if the system supports that.
     subroutine c_end_with_parent() bind(c, name='snapin_end_with_parent')
     end subroutine c_end_with_parent
 
-    !> Waits for so many microseconds, or somewhat longer.
+    !> Waits for a number of microseconds, or somewhat longer.
     subroutine c_pause(microseconds) bind(c, name='snapin_pause')
       import :: c_int
       integer(c_int), value :: microseconds
     end subroutine c_pause
 
-    !> 1 where the linear algebra is OpenBLAS's, which gets `count` threads; 0: as many as it has.
+    !> 1 if the linear algebra is OpenBLAS, which then gets `count` threads; 0 keeps their number.
     integer(c_int) function c_openblas_threads(count) bind(c, name='snapin_openblas_threads')
       import :: c_int
       integer(c_int), value :: count
     end function c_openblas_threads
 
-    !> Ends OpenBLAS's threads, which are started again when it is given more than one. Not where
-    !> others may be computing with it.
+    !> Ends OpenBLAS's threads; setting more than one starts them again. No other thread may be
+    !> computing with OpenBLAS.
     subroutine c_openblas_end_threads() bind(c, name='snapin_openblas_end_threads')
     end subroutine c_openblas_end_threads
 
-    !> How OpenBLAS describes itself; blank where it is another library.
+    !> OpenBLAS's description of itself; blank for another library.
     subroutine c_openblas_config(text, size) bind(c, name='snapin_openblas_config')
       import :: c_char, c_int
       character(kind=c_char), intent(out) :: text(*)
       integer(c_int), value :: size
     end subroutine c_openblas_config
 
-    !> The first digits of the linker's id of the program or library that this is part of; blank
-    !> where it has none.
+    !> The first digits of the linker's id of this program or library; blank if there is none.
     subroutine c_build_id(text, size) bind(c, name='snapin_build_id')
       import :: c_char, c_int
       character(kind=c_char), intent(out) :: text(*)
@@ -182,7 +180,7 @@ module c_library
 
 contains
 
-  !> The sort of a failure, 0 for none of those above, and the system's words for it.
+  !> The sort of a failure, or 0 for others, and the system's message.
   subroutine explain(status, sort, reason)
     integer(c_int), intent(in) :: status
     integer(c_int), intent(out) :: sort
@@ -193,7 +191,7 @@ contains
     reason = trim(text)
   end subroutine explain
 
-  !> What could not be done, the system's reason, and what to do about it.
+  !> Adds to `what` the system's message and advice.
   subroutine system_failure(what, status, error)
     character(len=*), intent(in) :: what
     integer(c_int), intent(in) :: status

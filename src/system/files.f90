@@ -16,8 +16,8 @@ module files
 
 contains
 
-  !> Makes the folder `path` and those above it, where they do not exist. The names of those above
-  !> are put on the disk at once, since other runs may count on them; that of `path` is not.
+  !> Creates the folder `path` and its parents if they do not exist. The names of the parents are
+  !> synchronised to the disk at once, since other runs may rely on them; the name of `path` is not.
   subroutine make_folder(path, error)
     character(len=*), intent(in) :: path
     type(failure_t), allocatable, intent(out) :: error
@@ -33,14 +33,14 @@ contains
       status = c_make_folder(path(:i) // nul)
       if (status == 0 .and. i < len(path)) call sync_names(path(:i), .false., status)
       if (status == 0) cycle
-      ! Another process may have made it meanwhile.
+      ! Another process may have created it meanwhile.
       if (file_exists(path(:i) // '/.')) cycle
       call system_failure('cannot make the folder ' // path(:i), status, error)
       return
     end do
   end subroutine make_folder
 
-  !> Waits until the name of the folder `path` is on the disk, and with `inside` the names in it.
+  !> Waits until the name of the folder `path` and, with `inside`, the names in it are on the disk.
   subroutine sync_names(path, inside, status)
     character(len=*), intent(in) :: path
     logical, intent(in) :: inside
@@ -55,7 +55,7 @@ contains
     closed = c_close(folder)
   end subroutine sync_names
 
-  !> `path` from the root on; as it is where the current folder is not known.
+  !> The absolute path of `path`, or `path` itself if the current folder is not known.
   function whole_path(path) result(whole)
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: whole
@@ -67,14 +67,14 @@ contains
     if (here /= '') whole = trim(here) // '/' // path
   end function whole_path
 
-  !> Where this program's file is; blank where it is not known.
+  !> Path of this program's file; blank if it is not known.
   function own_path() result(path)
     character(len=4096) :: path
 
     call c_own_path(path, len(path, kind=c_int))
   end function own_path
 
-  !> The text of the file `path`; not allocated where it cannot be read.
+  !> The text of the file `path`; not allocated if the file cannot be read.
   subroutine read_file(path, text)
     character(len=*), intent(in) :: path
     character(len=:), allocatable, intent(out) :: text
@@ -105,15 +105,15 @@ contains
     end do
   end function read_standard_input
 
-  !> Whether there is a file or folder `path`.
+  !> Whether the file or folder `path` exists.
   logical function file_exists(path)
     character(len=*), intent(in) :: path
 
     inquire (file=path, exist=file_exists)
   end function file_exists
 
-  !> Bytes that may still be written below a path, of which the end may not be there yet; huge
-  !> where nobody says.
+  !> Number of bytes that may still be written below a path, whose last folders need not exist; huge
+  !> if it is not known.
   real(wp) function free_disk(path)
     character(len=*), intent(in) :: path
 
@@ -125,8 +125,8 @@ contains
     is_terminal = c_is_terminal(standard_error) == 1
   end function is_terminal
 
-  !> Writes `text` as it is to standard error; a Fortran unit would end it with a new line. That
-  !> nobody may be listening is no error.
+  !> Writes `text` unchanged to standard error; a Fortran unit would add the end of a line. A
+  !> failure to write is ignored.
   subroutine write_stderr(text)
     character(len=*), intent(in) :: text
     integer(c_int) :: sent

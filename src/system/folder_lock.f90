@@ -1,6 +1,6 @@
-!> One run at a time in a folder of results. The lock is the kernel's, on the folder itself: it is
-!> gone with the process, however that ends, and leaves no file. What is done to its files here is
-!> done in that very folder: another that has taken its name meanwhile is another run's.
+!> One run at a time in a folder of results. The kernel locks the folder itself: the lock ends with
+!> the process, however that ends, and leaves no file. All operations act on this very folder, even
+!> if another one has taken its name meanwhile.
 module folder_lock
   use, intrinsic :: iso_c_binding, only: c_int
   use failure, only: failure_t, fail, file_trouble
@@ -10,7 +10,7 @@ module folder_lock
   private
   public :: folder_lock_t
 
-  !> Not to be copied while it is held.
+  !> A lock must not be copied while it is held.
   type :: folder_lock_t
     private
     integer(c_int) :: folder = -1
@@ -31,9 +31,9 @@ module folder_lock
 
 contains
 
-  !> Locks the folder `path`. Fails where another run has it, or where the folder cannot be opened.
-  !> Some network file systems have no such locks: then nothing is held and nothing fails, since no
-  !> run could work there at all; the folder is open all the same.
+  !> Locks the folder `path`. Fails if another run has locked it, or if the folder cannot be opened.
+  !> On a network file system without locks the folder is opened without a lock, and no error is
+  !> returned, since otherwise no run could work there.
   subroutine take(self, path, error)
     class(folder_lock_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -58,14 +58,14 @@ contains
     call self%release()
   end subroutine take
 
-  !> Whether this run has the folder for itself.
+  !> Whether this run holds the lock.
   pure logical function is_held(self)
     class(folder_lock_t), intent(in) :: self
 
     is_held = self%held
   end function is_held
 
-  !> Path of a file of the folder.
+  !> Path of a file in the folder.
   pure function path_of(self, name) result(path)
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: name
@@ -74,8 +74,8 @@ contains
     path = self%path // '/' // name
   end function path_of
 
-  !> Whether the folder that was taken has a file `name`; not where it has been removed since. Where
-  !> the system cannot say it is taken to be there: what is then done with it will fail.
+  !> Whether the folder has a file `name`. .true. if the system cannot say; using the file then
+  !> fails.
   logical function contains_file(self, name) result(found)
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: name
@@ -85,7 +85,7 @@ contains
     found = kind /= 0 .and. kind /= 2
   end function contains_file
 
-  !> Whether the folder has a folder `name`.
+  !> Whether the folder has a subfolder `name`.
   logical function contains_folder(self, name) result(found)
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: name
@@ -93,7 +93,7 @@ contains
     found = c_kind(self%folder, name // nul) == 2
   end function contains_folder
 
-  !> Gives the folder's file `from` the name `to`, replacing a file of that name at one stroke.
+  !> Renames the file `from` to `to` in one step, replacing a file of that name.
   subroutine rename_file(self, from, to, error)
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: from, to
@@ -105,7 +105,7 @@ contains
       self%path_of(to), status, error)
   end subroutine rename_file
 
-  !> Removes the folder's file `name`; that it does not exist is no error.
+  !> Removes the file `name`; a missing file is not an error.
   subroutine remove_file(self, name, error)
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: name
@@ -116,7 +116,7 @@ contains
     if (status < 0) call system_failure('cannot remove ' // self%path_of(name), status, error)
   end subroutine remove_file
 
-  !> Waits until what was made, renamed and removed in the folder is so on the disk.
+  !> Waits until files created, renamed and removed in the folder are so on the disk.
   subroutine sync(self, error)
     class(folder_lock_t), intent(in) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -137,12 +137,12 @@ contains
       error)
   end subroutine sync_above
 
-  !> Lets others have the folder; nothing is done where no lock is held.
+  !> Unlocks and closes the folder, if it is open.
   subroutine release(self)
     class(folder_lock_t), intent(inout) :: self
     integer(c_int) :: status
 
-    ! Closing the descriptor gives up its lock.
+    ! Closing the descriptor releases its lock.
     if (self%folder >= 0) status = c_close(self%folder)
     self%folder = -1
     self%held = .false.

@@ -1,5 +1,5 @@
-/* How far a run is, on standard error, shown by a thread of its own: however long a step takes,
-   the line moves. `progress` says what each function is for. */
+/* Progress of a run on standard error, written by a thread of its own, so that the line is updated
+   during long steps. `progress` documents each function. */
 #define _GNU_SOURCE
 #include <pthread.h>
 #include <stdio.h>
@@ -10,8 +10,8 @@
 
 enum { widest = 79, longest_label = 96 };
 
-/* Seconds between two updates of the live line; elsewhere: before the first line, the factor by
-   which intervals grow, the longest one; of steps before which no time left is estimated. */
+/* Seconds between two updates of the live line; without a terminal: seconds before the first line,
+   factor by which intervals grow, longest interval; seconds before a time left is estimated. */
 static const double live_interval = 0.2, first_line = 5, growth = 2, longest_interval = 600,
                     too_early = 1;
 
@@ -21,8 +21,7 @@ struct heartbeat {
   pthread_t thread;
   int stop, live, shown, lines;
   char name[longest_label], label[longest_label];
-  /* Steps done, those of them that an earlier run did, that failed, and all that there are (0:
-     unknown). */
+  /* Numbers of steps: done, done by an earlier run, failed, and all steps (0: unknown). */
   long done, given, failed, total;
   double began, origin, next, interval;
 };
@@ -33,7 +32,7 @@ static double now(void) {
   return t.tv_sec + 1e-9 * t.tv_nsec;
 }
 
-/* A line that nobody can read is no reason to end. */
+/* A failure to write is ignored. */
 static void put(const char *text, int length) {
   while (length > 0) {
     ssize_t written = write(STDERR_FILENO, text, length);
@@ -44,7 +43,7 @@ static void put(const char *text, int length) {
   }
 }
 
-/* A time as people say it, to about two digits. A hundred days is as good as never. */
+/* A time to about two digits, at most a hundred days. */
 void snapin_duration(double seconds, char *text, int size) {
   long whole = seconds > 0 ? (seconds < 8.64e6 ? (long)(seconds + 0.5) : 8640000) : 0;
   if (whole < 100)
@@ -59,7 +58,7 @@ static void show(struct heartbeat *self, double time) {
   char text[4 * longest_label], duration[32];
   int size = sizeof text, n = snprintf(text, size, "%s: %s", self->name, self->label);
   if (self->total > 0) {
-    /* All done is for the end to say. */
+    /* 100 % is left to the end of the run. */
     int percent = (int)(100.0 * self->done / self->total);
     n += snprintf(text + n, size - n, ", %d %%", percent < 99 ? percent : 99);
     if (self->failed > 0)
@@ -76,7 +75,7 @@ static void show(struct heartbeat *self, double time) {
   snapin_duration(time - self->began, duration, sizeof duration);
   n += snprintf(text + n, size - n, ", %s so far", duration);
   if (self->live) {
-    /* A line that wraps cannot be erased; terminals narrower than this are rare. */
+    /* A line that wraps cannot be erased; narrower terminals are rare. */
     char line[2 * widest + 2];
     if (n > widest)
       text[n = widest] = 0;
@@ -125,7 +124,7 @@ void *snapin_begin_progress(const char *name, long total, int live) {
   pthread_condattr_init(&clock);
   pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
   pthread_cond_init(&self->ended, &clock);
-  /* A limit of addresses should go to the calculation. */
+  /* A small stack, to leave address space to the calculation. */
   pthread_attr_init(&small);
   pthread_attr_setstacksize(&small, 1 << 16);
   if (pthread_create(&self->thread, &small, beat, self) == 0)
@@ -137,7 +136,7 @@ void *snapin_begin_progress(const char *name, long total, int live) {
 void snapin_progress(void *of, const char *label, int counted, int given, int failed) {
   struct heartbeat *self = of;
   pthread_mutex_lock(&self->lock);
-  /* Nobody can read what a step of less than a second is at. */
+  /* The label of a step of less than a second is too short to be read. */
   if (given < 0 && self->done - self->given > now() - self->origin) {
     pthread_mutex_unlock(&self->lock);
     return;
@@ -146,7 +145,7 @@ void snapin_progress(void *of, const char *label, int counted, int given, int fa
   self->failed += failed;
   if (given > 0)
     self->given = self->done;
-  /* What comes before the first step that is counted is left out of the time of the others. */
+  /* The time before the first counted step does not count in the time of a step. */
   if (given > 0 || (self->done == 0 && given == 0))
     self->origin = now();
   snprintf(self->label, sizeof self->label, "%s", label);

@@ -1,12 +1,12 @@
-!> A file to which a run adds what it has found as it goes, so that another can go on from there
-!> after it was killed.
+!> A file to which a run appends its results, so that another run can continue after an
+!> interruption.
 !>
-!> A journal begins with a text that says whose it is; records follow. Each has its length, a
-!> checksum, and the time since the run began. Records are gathered, and handed to the system
-!> several times a second: what follows the last whole record was being written when the run was
-!> killed, and is cut off. Every few seconds the journal is put on the disk, with its name at first,
-!> so that a power failure costs no more than these. It is written by system calls for the reason
-!> given in `text_file`.
+!> A journal begins with a text that identifies its owner; records follow. Each record has its
+!> length, a checksum, and the time since the run began. Records are collected and written several
+!> times a second. An incomplete last record, which was being written when the run was killed, is
+!> cut off. Every few seconds the journal is synchronised to the disk, the first time with its name,
+!> so that a power failure costs only the last seconds. System calls write it for the reason given
+!> in `text_file`.
 module journal
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_loc, c_f_pointer
   use kinds, only: wp, long
@@ -21,28 +21,28 @@ module journal
   private
   public :: journal_t, of_step, of_eigenvalue, of_drive
 
-  !> What records of one journal that are of different kinds begin with.
+  !> Kinds of records, with which the records of one journal begin.
   integer, parameter :: of_step = 1, of_eigenvalue = 2, of_drive = 3
 
-  !> Not to be copied while it is open. After the first thing that goes wrong, which is kept in
+  !> A journal must not be copied while it is open. After the first error, which is kept in
   !> `trouble`, nothing more is written.
   type :: journal_t
     type(failure_t), allocatable :: trouble
-    !> Whole records that an earlier run has left, and the time [s] it took until the last of them.
+    !> Complete records of an earlier run, and the time [s] that the run took to the last of them.
     integer :: inherited = 0
     real(wp) :: earlier = 0
     character(len=:), allocatable, private :: path
     integer(c_int), private :: descriptor = -1
-    !> Records of the earlier run that are still to be handed out.
+    !> Records of the earlier run that `next` has not returned yet.
     integer, private :: waiting = 0
-    !> Words in the file when it was opened.
+    !> Number of words in the file when it was opened.
     integer(long), private :: room = 0
-    !> Words that the system is still to be handed: gathered(:held).
+    !> Words to be written are gathered(:held).
     integer(long), allocatable, private :: gathered(:)
     integer, private :: held = 0
-    !> Times [s]: when it was opened, when words were last handed over and put on the disk.
+    !> Times [s] of opening, of the last writing and of the last synchronisation.
     real(wp), private :: began = 0, handed = 0, synced = 0
-    !> Whether its name is on the disk.
+    !> Whether the journal's name is on the disk.
     logical, private :: named = .false.
   contains
     procedure :: begin
@@ -54,24 +54,24 @@ module journal
     procedure :: reject
     procedure :: append
     procedure :: close => close_journal
-    procedure :: drop
+    procedure :: drop => let_go
     procedure, private :: put_on_disk
     procedure, private :: read_frame
     procedure, private :: hand_over
   end type journal_t
 
-  !> Words before the packed ones: how many these are, the checksum of all else, the time.
+  !> Number of words before the packed ones: their number, the checksum of all others, the time.
   integer, parameter :: frame = 3, word = storage_size(0_long)/8
-  !> Seconds of work that a power failure may cost. Waiting for a disk takes a hundredth of one.
+  !> Largest loss in a power failure, in seconds of work. Synchronising takes a hundredth of it.
   real(wp), parameter :: sync_interval = 2
-  !> Seconds of work that a killed run may cost, and words that are gathered at most: most runs end
-  !> before they have to be handed over.
+  !> Largest loss when a run is killed, in seconds of work, and largest number of collected words.
+  !> Most runs end before they write any.
   real(wp), parameter :: hand_interval = 0.05_wp
   integer, parameter :: most_gathered = 98304
 
 contains
 
-  !> Creates the journal `path`, or empties it; `owner` says whose it is.
+  !> Creates or empties the journal `path` of `owner`.
   subroutine begin(self, path, owner, error)
     class(journal_t), intent(inout) :: self
     character(len=*), intent(in) :: path, owner
@@ -87,9 +87,9 @@ contains
     if (allocated(self%trouble)) error = self%trouble
   end subroutine begin
 
-  !> Opens the journal `path` that an earlier run has left: `next` hands out its records, then
-  !> `append` goes on. Where its owner is not `owner`, the journal stays as it is and closed, and
-  !> `other` is the owner; one that ends within its heading is begun anew.
+  !> Opens the journal `path` of an earlier run: `next` returns its records, then `append` adds
+  !> more. If its owner is not `owner`, the journal is left closed and unchanged, and `other` is its
+  !> owner. A journal without a complete heading is begun anew.
   subroutine go_on(self, path, owner, other, error)
     class(journal_t), intent(inout) :: self
     character(len=*), intent(in) :: path, owner
@@ -128,7 +128,7 @@ contains
     call self%close()
   end subroutine go_on
 
-  !> Opens the file, empty or as it is, and forgets what was before.
+  !> Opens the file and resets the journal.
   subroutine start(self, path, how, error)
     class(journal_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -162,14 +162,15 @@ contains
     is_open = self%descriptor >= 0
   end function is_open
 
-  !> Whether records of the earlier run are still to be handed out.
+  !> Whether there are more records of the earlier run.
   pure logical function is_behind(self)
     class(journal_t), intent(in) :: self
 
     is_behind = self%waiting > 0 .and. self%is_open()
   end function is_behind
 
-  !> The next record of the earlier run; not found: there are no more, and `append` may begin.
+  !> The next record of the earlier run. found = .false. after the last one; then `append` may
+  !> begin.
   subroutine next(self, record, found)
     class(journal_t), intent(inout) :: self
     type(byte_record_t), intent(inout) :: record
@@ -181,13 +182,13 @@ contains
     whole = 0
     call self%read_frame(record, whole, found)
     self%waiting = self%waiting - 1
-    ! It was there when the journal was opened.
+    ! `go_on` has read this record before.
     if (found) return
     call fail(self%trouble, file_trouble, 'cannot read ' // self%path)
     call self%close()
   end subroutine next
 
-  !> The next record, which must begin with its kind.
+  !> The next record, which must be of this kind.
   subroutine next_of(self, kind, record, found)
     class(journal_t), intent(inout) :: self
     integer, intent(in) :: kind
@@ -201,16 +202,16 @@ contains
     if (first /= kind) call self%reject()
   end subroutine next_of
 
-  !> Takes the records for those of another run: nothing can be done with them.
+  !> Closes a journal whose records do not fit this run, with an error.
   subroutine reject(self)
     class(journal_t), intent(inout) :: self
 
     call fail(self%trouble, file_trouble, self%path // &
-      ' does not tell of this run; remove it and start over')
+      ' does not belong to this run; remove it and start over')
     call self%close()
   end subroutine reject
 
-  !> Adds a record. Not before `next` has handed out all there were.
+  !> Appends a record, after `next` has returned all records.
   subroutine append(self, record)
     class(journal_t), intent(inout) :: self
     type(byte_record_t), intent(in) :: record
@@ -236,8 +237,8 @@ contains
     if (self%held > most_gathered .or. now - self%handed > hand_interval) call self%hand_over(now)
   end subroutine append
 
-  !> Hands what was gathered to the system, so that it survives this process, and now and then to
-  !> the disk. now: the time [s].
+  !> Writes the collected records, so that they survive this process, and synchronises the file if
+  !> `sync_interval` has passed. now: the time [s].
   subroutine hand_over(self, now)
     class(journal_t), intent(inout), target :: self
     real(wp), intent(in) :: now
@@ -261,8 +262,7 @@ contains
     call let_go(self)
   end subroutine hand_over
 
-  !> Waits until the journal is on the disk; the first time, also for its name and its folder's,
-  !> which runs of less than `sync_interval` do without.
+  !> Waits until the journal is on the disk, the first time with its name and its folder's name.
   subroutine put_on_disk(self, status)
     class(journal_t), intent(inout) :: self
     integer(c_int), intent(out) :: status
@@ -274,7 +274,7 @@ contains
     self%synced = seconds()
   end subroutine put_on_disk
 
-  !> Closes it; nothing is done where none is open.
+  !> Writes the collected records and closes the journal, if it is open.
   subroutine close_journal(self)
     class(journal_t), intent(inout) :: self
 
@@ -282,26 +282,19 @@ contains
     call let_go(self)
   end subroutine close_journal
 
-  !> Closes it where nothing will go on from it: what was gathered last is not handed over.
-  subroutine drop(self)
-    class(journal_t), intent(inout) :: self
-
-    call let_go(self)
-  end subroutine drop
-
-  !> Closes the file, if it is open.
+  !> Closes the journal, if it is open, without the records collected last.
   subroutine let_go(self)
     class(journal_t), intent(inout) :: self
     integer(c_int) :: status
 
     if (.not. self%is_open()) return
-    ! No result depends on it: what could be lost is the time since it was synchronised last.
+    ! A failure loses only the records that were not synchronised.
     status = c_close(self%descriptor)
     self%descriptor = -1
   end subroutine let_go
 
-  !> Reads the record at the present place and moves `whole` [bytes] to its end; not found where the
-  !> file ends or what is there is not a whole record.
+  !> Reads the record at the present position and moves `whole` [bytes] to its end. found = .false.
+  !> at the end of the file, or if the record is not complete.
   subroutine read_frame(self, record, whole, found)
     class(journal_t), intent(inout) :: self
     type(byte_record_t), intent(inout) :: record
@@ -325,7 +318,7 @@ contains
     found = .true.
   end subroutine read_frame
 
-  !> Reads words; .false. where the file ends before.
+  !> Reads words; .false. if the file ends before.
   logical function read_words(descriptor, words) result(complete)
     integer(c_int), intent(in) :: descriptor
     integer(long), intent(out) :: words(:)

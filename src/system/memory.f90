@@ -1,4 +1,4 @@
-!> How much memory there is to be had, as far as the system says.
+!> The available memory, if the system reports it.
 module memory
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp
@@ -7,14 +7,14 @@ module memory
   private
   public :: available_memory
 
-  !> From here on a limit is none [bytes]: huge numbers stand for that too.
+  !> Smallest number that means no limit [bytes].
   real(wp), parameter :: no_limit = 1.0e18_wp
 
 contains
 
-  !> Bytes that may still be taken: the least of what the machine has to spare, the process's limit
-  !> of addresses (`ulimit -v`) less what will be mapped and never touched, and the limit of its
-  !> control group. Huge where nobody says.
+  !> Number of bytes that may still be allocated: the smallest of the machine's free memory, the
+  !> process's limit of address space (`ulimit -v`) less `mapped` bytes that will be mapped and
+  !> never used, and the limit of its control group. Huge if none is known.
   real(wp) function available_memory(mapped) result(bytes)
     real(wp), intent(in) :: mapped
     real(wp), parameter :: kilo = 1024
@@ -24,7 +24,7 @@ contains
     limit = number_after('/proc/self/limits', 'Max address space', huge(1.0_wp))
     if (limit < no_limit) bytes = min(bytes, &
       limit - kilo*number_after('/proc/self/status', 'VmSize:', 0.0_wp) - mapped)
-    ! Version 2, and version 1.
+    ! Control groups, version 2 and version 1.
     limit = number_after('/sys/fs/cgroup/memory.max', '', huge(1.0_wp))
     if (limit < no_limit) bytes = min(bytes, &
       limit - number_after('/sys/fs/cgroup/memory.current', '', 0.0_wp))
@@ -34,9 +34,9 @@ contains
     bytes = max(bytes, 0.0_wp)
   end function available_memory
 
-  !> The number that follows a name at the beginning of a line of a small file; `otherwise` where
-  !> there is none ("max", "unlimited", no such line or file). Fortran's `open` would load the
-  !> system's messages for every file that is not there.
+  !> The number behind `name` at the beginning of a line of a small file; `otherwise` if there is
+  !> none ("max", "unlimited", no such line or file). Fortran's `open` would load the system's
+  !> messages for each missing file.
   real(wp) function number_after(file, name, otherwise) result(number)
     character(len=*), intent(in) :: file, name
     real(wp), intent(in) :: otherwise

@@ -1,6 +1,5 @@
-/* The system calls that files, folders and the process need, so that their constants are those of
-   the system's own headers. A call that fails returns minus its errno. `c_library` says what each
-   is for. */
+/* System calls for files, folders and the process; in C, to take their constants from the system's
+   headers. A call that fails returns minus its errno. `c_library` documents each function. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -20,7 +19,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Beyond every errno. */
+/* Larger than every errno. */
 enum { not_regular = 100000 };
 
 enum { too_large = 1, disk_full = 2, in_the_way = 3, not_there = 4, locked = 5 };
@@ -29,15 +28,15 @@ enum { as_input = 1, as_output = 2, as_kept_output = 3, as_folder = 4 };
 
 static int status_of(int result) { return result < 0 ? -errno : result; }
 
-/* `text` on the Fortran side: blanks after its end. */
+/* Copies a C string into a Fortran string, with blanks behind it. */
 static void hand_over(const char *from, char *text, int size) {
   size_t length = strnlen(from, size);
   memcpy(text, from, length);
   memset(text + length, ' ', size - length);
 }
 
-/* A link could lead the output elsewhere, and a pipe could make its opening wait. Nothing is
-   emptied before it is known what it is. */
+/* A link could redirect the output, and opening a pipe could wait. A file is emptied only after its
+   kind is known. */
 static int open_output(const char *path, int keep) {
   int flags = O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, status;
   struct stat file;
@@ -71,7 +70,7 @@ int snapin_open(const char *path, int how) {
   }
 }
 
-/* Bytes read; fewer than asked for only at the end. */
+/* Number of bytes read; fewer than asked for only at the end. */
 long snapin_read(int fd, char *bytes, long count) {
   long done = 0;
   while (done < count) {
@@ -100,7 +99,7 @@ int snapin_write(int fd, const char *bytes, long count) {
   return 0;
 }
 
-/* Some file systems cannot, and say so: then there is nothing to be had. */
+/* On file systems that do not support fsync, nothing more can be done. */
 int snapin_sync(int fd) {
   if (fsync(fd) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS)
     return 0;
@@ -118,7 +117,7 @@ int snapin_cut(int fd, long length, long place) {
   return ftruncate(fd, length) < 0 || lseek(fd, place, SEEK_SET) < 0 ? -errno : 0;
 }
 
-/* Nothing is done where the folder above may not be opened. */
+/* No failure if the parent folder cannot be opened. */
 int snapin_sync_above(int folder) {
   int status, above = openat(folder, "..", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (above < 0)
@@ -130,13 +129,11 @@ int snapin_sync_above(int folder) {
 
 int snapin_make_folder(const char *path) { return status_of(mkdir(path, 0777)); }
 
-/* Blank where it is not known. */
 void snapin_current_folder(char *text, int size) {
   char path[PATH_MAX];
   hand_over(getcwd(path, sizeof path) != NULL ? path : "", text, size);
 }
 
-/* Of the file that this program is; blank where it is not known. */
 void snapin_own_path(char *text, int size) {
   char path[PATH_MAX];
   ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
@@ -146,7 +143,6 @@ void snapin_own_path(char *text, int size) {
 
 int snapin_lock(int folder) { return status_of(flock(folder, LOCK_EX | LOCK_NB)); }
 
-/* 0 where there is nothing of that name, 1 a file, 2 a folder. */
 int snapin_kind(int folder, const char *name) {
   struct stat file;
   if (fstatat(folder, name, &file, AT_SYMLINK_NOFOLLOW) != 0)
@@ -162,8 +158,6 @@ int snapin_remove(int folder, const char *name) {
   return unlinkat(folder, name, 0) == 0 || errno == ENOENT ? 0 : -errno;
 }
 
-/* Bytes that the user may still write below a path, of which the end may not be there yet; huge
-   where nobody says. */
 double snapin_free_disk(const char *path) {
   char above[PATH_MAX];
   struct statvfs disk;
@@ -181,7 +175,7 @@ double snapin_free_disk(const char *path) {
 
 int snapin_is_terminal(int fd) { return isatty(fd) == 1; }
 
-/* The sort of a failure, 0 for others, and the system's words for it. */
+/* The sort of a failure, or 0 for others, and the system's message. */
 int snapin_explain(int status, char *reason, int size) {
   hand_over(status == -not_regular ? "not a file but a link, a pipe or a device"
                                    : strerror(-status),
@@ -206,9 +200,9 @@ int snapin_explain(int status, char *reason, int size) {
   }
 }
 
-/* Writing to a pipe that nobody reads, or beyond the largest file that the user may have, fails
-   instead of ending the process; and no file takes the place of a closed standard stream, where
-   messages would be written into it. */
+/* Writing to a pipe without a reader, or beyond the largest file size, fails instead of ending the
+   process. Closed standard streams are opened on /dev/null; otherwise another file would get their
+   number, and messages. */
 void snapin_prepare(void) {
   int fd;
   signal(SIGPIPE, SIG_IGN);
@@ -220,8 +214,8 @@ void snapin_prepare(void) {
     close(fd);
 }
 
-/* Nobody is left to read what goes to standard output once the process that began this one has
-   ended. It may have before that is asked for; then the pipe has no reader. */
+/* When the parent process has ended, nobody reads standard output. If it ended before this call,
+   the pipe has no reader. */
 void snapin_end_with_parent(void) {
   struct pollfd out = {.fd = STDOUT_FILENO};
 #ifdef PR_SET_PDEATHSIG
@@ -231,16 +225,15 @@ void snapin_end_with_parent(void) {
     raise(SIGTERM);
 }
 
-/* Leaves the core to others. */
 void snapin_pause(int microseconds) {
   struct timespec time = {.tv_sec = microseconds / 1000000};
   time.tv_nsec = microseconds % 1000000 * 1000L;
   nanosleep(&time, NULL);
 }
 
-/* The library that does the linear algebra may or may not be OpenBLAS: it is asked at run time, so
-   that nothing depends on it. 1 where it is; count > 0: it gets so many threads. To set a number
-   starts threads that have been ended, even if it is 1. */
+/* OpenBLAS is looked up at run time, since the linear algebra may be another library. 1 if it is
+   there; count > 0: its number of threads. Setting a number restarts threads that were ended, even
+   if it is 1. */
 int snapin_openblas_threads(int count) {
   void (*set)(int) = (void (*)(int))dlsym(RTLD_DEFAULT, "openblas_set_num_threads");
   int (*get)(void) = (int (*)(void))dlsym(RTLD_DEFAULT, "openblas_get_num_threads");
@@ -249,8 +242,7 @@ int snapin_openblas_threads(int count) {
   return set != NULL;
 }
 
-/* Ends OpenBLAS's threads; it starts them again when it is to use more than one. Where the process
-   may not have all addresses that it asks for they stay, since it might not get them again. */
+/* With a limited address space the threads stay, since they might not get their memory again. */
 void snapin_openblas_end_threads(void) {
   int (*end)(void) = (int (*)(void))dlsym(RTLD_DEFAULT, "blas_thread_shutdown_");
   struct rlimit limit;
@@ -258,7 +250,6 @@ void snapin_openblas_end_threads(void) {
     end();
 }
 
-/* How OpenBLAS describes itself; blank where it is another library. */
 void snapin_openblas_config(char *text, int size) {
   const char *(*get)(void) = (const char *(*)(void))dlsym(RTLD_DEFAULT, "openblas_get_config");
   hand_over(get != NULL ? get() : "", text, size);

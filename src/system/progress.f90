@@ -1,6 +1,6 @@
-!> How far a run is, on standard error: a live line on a terminal, a line now and then elsewhere,
-!> with the time that it has taken so far and, where steps are counted, what they leave to expect.
-!> A thread shows it (`heartbeat.c`), so that the line moves however long a step takes.
+!> Progress of a run on standard error: a live line on a terminal, otherwise a line now and then,
+!> with the time so far and, if steps are counted, the estimated remaining time. A thread writes it
+!> (`heartbeat.c`), so that the line is updated during long steps.
 module progress
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_long, c_ptr, c_null_ptr, &
     c_associated, nul => c_null_char
@@ -10,7 +10,7 @@ module progress
   private
   public :: progress_t, duration
 
-  !> Does nothing until started. All text is plain ASCII. Not to be copied once it is.
+  !> Does nothing until started. All text is plain ASCII. Must not be copied after the start.
   type :: progress_t
     private
     type(c_ptr) :: heartbeat = c_null_ptr
@@ -23,7 +23,7 @@ module progress
   end type progress_t
 
   interface
-    !> Begins to show lines that begin with a name; null where there can be no thread.
+    !> Begins to write lines that begin with a name; null if no thread can be started.
     type(c_ptr) function begin_progress(name, total, live) bind(c, name='snapin_begin_progress')
       import :: c_char, c_int, c_long, c_ptr
       character(kind=c_char), intent(in) :: name(*)
@@ -31,8 +31,8 @@ module progress
       integer(c_int), value :: live
     end function begin_progress
 
-    !> What is being done; counted: as how many steps; given: 1 where they took no time, -1 where
-    !> this is part of a step; failed: how many of the steps.
+    !> Sets the label of the present work. counted: number of steps done; given: 1 if an earlier run
+    !> did them, -1 for a part of a step; failed: number of failed steps.
     subroutine show_progress(heartbeat, label, counted, given, failed) &
         bind(c, name='snapin_progress')
       import :: c_char, c_int, c_ptr
@@ -41,7 +41,7 @@ module progress
       integer(c_int), value :: counted, given, failed
     end subroutine show_progress
 
-    !> Ends: the live line disappears; elsewhere a last line follows if there was one before.
+    !> Ends the lines: the live line disappears; other lines get a last one.
     subroutine end_progress(heartbeat) bind(c, name='snapin_end_progress')
       import :: c_ptr
       type(c_ptr), value :: heartbeat
@@ -57,8 +57,8 @@ module progress
 
 contains
 
-  !> Begins. `total` is the number of steps to come, 0 where nobody knows; `name`, the deck's stem
-  !> for instance, begins every line; quiet: nothing is ever printed.
+  !> Begins. total: the number of steps to come, 0 if it is not known; `name`, such as the deck's
+  !> stem, begins every line; quiet: nothing is ever written.
   subroutine start(self, total, name, quiet)
     class(progress_t), intent(inout) :: self
     integer, intent(in) :: total
@@ -70,8 +70,8 @@ contains
       merge(1_c_int, 0_c_int, is_terminal()))
   end subroutine start
 
-  !> Counts one step, of what `label` names (a branch). failed: it did; given: an earlier run has
-  !> done it, and the estimate of the time begins after it.
+  !> Counts one step of `label` (a branch). failed: the step failed; given: an earlier run did it,
+  !> so that it does not count in the estimated time.
   subroutine step(self, label, failed, given)
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
@@ -86,7 +86,7 @@ contains
       call show_progress(self%heartbeat, trim(label) // nul, 1, of_given, of_failed)
   end subroutine step
 
-  !> Says what is being done without counting it.
+  !> Shows a label without counting a step.
   subroutine note(self, label)
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
@@ -94,7 +94,7 @@ contains
     if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, label // nul, 0, 0, 0)
   end subroutine note
 
-  !> The same of a part of a step, whose time belongs to the step. Threads may call it at once.
+  !> Shows the label of a part of a step. Several threads may call it at once.
   subroutine detail(self, label)
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
@@ -112,7 +112,7 @@ contains
     self%heartbeat = c_null_ptr
   end subroutine finish
 
-  !> A time [s] as people say it, to about two digits.
+  !> A time [s] to about two digits, with its unit.
   function duration(time) result(text)
     real(wp), intent(in) :: time
     character(len=:), allocatable :: text

@@ -1,15 +1,16 @@
-!> A set of results gets its names. `INCOMPLETE.txt`, the file of intent, is there while it does:
-!> without that file, the results that are not called `.partial` are one set and on the disk.
+!> Gives a set of results its names. While this happens, the folder has the file of intent,
+!> `INCOMPLETE.txt`. Without that file, all results that are not called `.partial` are one complete
+!> set on the disk.
 !>
-!> The folder may hold files of others, so that it cannot be exchanged for another as a whole. The
-!> file of intent lists the new set: while it is there, the new file NAME is NAME.partial where that
-!> exists and NAME otherwise, and what was interrupted is done again from the beginning. The steps,
-!> each on the disk before the next begins:
+!> The folder may hold other files, so that it cannot be replaced as a whole. The file of intent
+!> lists the new set: while it exists, the new file NAME is NAME.partial if that exists and NAME
+!> otherwise, and an interrupted replacement is repeated from the beginning. The steps, each on the
+!> disk before the next begins:
 !>
-!> 1. the new files, the list, their partial names, and the name of the folder;
-!> 2. the list is called `INCOMPLETE.txt`;
-!> 3. new files get their names, the summary last; results of an earlier run that have no successor,
-!>    other partial files and the journal are removed;
+!> 1. The new files, the list, their partial names, and the name of the folder are written.
+!> 2. The list is renamed to `INCOMPLETE.txt`.
+!> 3. New files get their names, the summary last; results of an earlier run without a successor,
+!>    other partial files and the journal are removed.
 !> 4. `INCOMPLETE.txt` is removed.
 module publication
   use failure, only: failure_t, fail, file_trouble
@@ -30,18 +31,17 @@ module publication
   character(len=*), parameter :: intent_name = 'INCOMPLETE.txt'
   character(len=1), parameter :: nl = new_line('a')
   character(len=*), parameter :: explanation = &
-    'The files in this folder may not belong together: new results were given their names,' // &
-    nl // 'in place of older ones, when the program was stopped. Do not use them like this.' // &
-    nl // 'Run the deck again, best with --resume: that first gives new results their names.' // &
-    nl // 'By hand: of each file listed below NAME.partial is the newer one where it exists,' // &
-    nl // 'and is to be renamed to NAME. Then remove other results, what is called .partial,' // &
-    nl // 'and this file.' // nl
+    'The files in this folder may not belong together: the program was stopped while it' // &
+    nl // 'replaced older results by new ones. Do not use them as they are.' // &
+    nl // 'Run the deck again, best with --resume: this first completes the replacement.' // &
+    nl // 'By hand: for each file NAME listed below, rename NAME.partial to NAME if it exists.' // &
+    nl // 'Then remove all other results, all files that end in .partial, and this file.' // nl
 
 contains
 
-  !> Gives the files of `folder` that are marked in `new` (one for each of `result_files`; a summary
-  !> is among them), complete under their partial names, their own; those of an earlier run
-  !> disappear, and so does the journal. Where that fails, `error` says what the folder then holds.
+  !> Gives the complete files of `folder` that are marked in `new` (one for each of `result_files`,
+  !> the summary among them) their final names instead of the partial ones. Files of an earlier run
+  !> and the journal are removed. If that fails, `error` says what the folder then holds.
   subroutine publish(folder, new, error)
     type(folder_lock_t), intent(in) :: folder
     logical, intent(in) :: new(:)
@@ -66,8 +66,8 @@ contains
     if (allocated(error)) call tell(folder, 'no results were replaced: ', error)
   end subroutine publish
 
-  !> Completes what was interrupted in the folder `path`, if anything was. mended: it now has
-  !> complete results.
+  !> Completes an interrupted replacement in the folder `path`, if there is one. mended: the folder
+  !> now has complete results.
   subroutine mend(path, mended, error)
     character(len=*), intent(in) :: path
     logical, intent(out) :: mended
@@ -79,7 +79,7 @@ contains
     if (.not. file_exists(path // '/' // intent_name)) return
     call folder%take(path, error)
     if (allocated(error)) return
-    ! The run that was at it may have ended meanwhile.
+    ! Another run may have completed it meanwhile.
     if (folder%contains_file(intent_name)) then
       call read_intent(folder, new, error)
       if (.not. allocated(error)) call put_in_place(folder, new, error)
@@ -89,7 +89,7 @@ contains
     call folder%release()
   end subroutine mend
 
-  !> Says what a folder holds after an error: `otherwise`, unless the file of intent is there.
+  !> Adds to an error what the folder holds: `otherwise`, unless the file of intent exists.
   subroutine tell(folder, otherwise, error)
     type(folder_lock_t), intent(in) :: folder
     character(len=*), intent(in) :: otherwise
@@ -118,14 +118,14 @@ contains
       if (new(i)) call file%line(trim(result_files(i)), error)
     end do
     if (.not. allocated(error)) call file%close(error)
-    ! The names of the new set must be on the disk before the file that counts on them.
+    ! The names of the new set must be on the disk before the file of intent.
     if (.not. allocated(error)) call folder%sync_above(error)
     if (.not. allocated(error)) call folder%sync(error)
     if (.not. allocated(error)) call folder%rename_file(intent_name // partial, intent_name, error)
     if (.not. allocated(error)) call folder%sync(error)
   end subroutine declare
 
-  !> Which files are new, by the file that `declare` wrote.
+  !> The new files, as listed in the file of intent.
   subroutine read_intent(folder, new, error)
     type(folder_lock_t), intent(in) :: folder
     logical, intent(out) :: new(:)
@@ -148,8 +148,7 @@ contains
       ' lists no results' // advice)
   end subroutine read_intent
 
-  !> Gives new files their names, removes what the new set has no use for, and then says that it is
-  !> complete.
+  !> Gives new files their names, removes other results, and then removes the file of intent.
   subroutine put_in_place(folder, new, error)
     type(folder_lock_t), intent(in) :: folder
     logical, intent(in) :: new(:)
@@ -172,7 +171,7 @@ contains
     if (.not. allocated(error)) call withdraw(folder, error)
   end subroutine put_in_place
 
-  !> Removes the file of intent. It must not come back when files have partial names again.
+  !> Removes the file of intent, also its partial one, which must not return with the next set.
   subroutine withdraw(folder, error)
     type(folder_lock_t), intent(in) :: folder
     type(failure_t), allocatable, intent(out) :: error

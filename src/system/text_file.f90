@@ -1,37 +1,37 @@
-!> Text files that lose nothing in silence.
+!> Text files whose write errors are reported.
 !>
-!> They are written by system calls because Fortran's units do not tell of a full disk:
-!> compiler note 6.
+!> System calls write them, because Fortran's units do not report a full disk: compiler note 6.
 module text_file
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp
   use clock, only: seconds
+  use text, only: brief
   use failure, only: failure_t
   use c_library, only: c_open, c_write, c_sync, c_close, system_failure, as_output, nul
   implicit none
   private
   public :: output_t, partial, plain
 
-  !> How old [s] what is seen of a file may be.
+  !> Longest delay [s] of the visible contents of a file.
   real(wp), parameter :: show_interval = 0.1_wp
 
-  !> Follows the name of a file that is not complete yet.
+  !> Ending of the name of an incomplete file.
   character(len=*), parameter :: partial = '.partial'
 
-  !> A text file that is being written. What does not reach the disk becomes an error in `flush` or
-  !> `close` at the latest. The first error closes the file; from then on its procedures do nothing.
-  !> Not to be copied while it is open.
+  !> A text file that is being written. Write errors are reported by `flush` or `close` at the
+  !> latest. The first error closes the file; its procedures then do nothing. It must not be copied
+  !> while it is open.
   type :: output_t
     private
     integer(c_int) :: descriptor = -1
-    !> Whether it is part of a stream of files, each piece after a line with the file's name and the
-    !> number of bytes.
+    !> Whether it is part of a stream of several files, in which each piece follows a line with the
+    !> file's name and the number of bytes.
     logical :: streamed = .false.
     character(len=:), allocatable :: path
-    !> What is still to be handed to the system is buffer(:held).
+    !> Text to be written is buffer(:held).
     character(len=8192) :: buffer
     integer :: held = 0
-    !> When something was handed over last [s].
+    !> Time of the last writing [s].
     real(wp) :: handed = 0
   contains
     procedure :: open => open_output
@@ -46,8 +46,8 @@ module text_file
 
 contains
 
-  !> Creates the file `path`, or empties it, and opens it. Fails where that is anything but a file:
-  !> a link, a pipe. stream: the descriptor of a stream that it becomes part of.
+  !> Creates or empties the file `path` and opens it. Fails if it is not a regular file, but a link
+  !> or a pipe. stream: the descriptor of a stream that the file becomes part of.
   subroutine open_output(self, path, error, stream)
     class(output_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -74,7 +74,7 @@ contains
     is_open = self%descriptor >= 0
   end function is_open
 
-  !> Writes `text` as it is.
+  !> Appends `text`.
   subroutine put(self, text, error)
     class(output_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -91,7 +91,7 @@ contains
     end if
   end subroutine put
 
-  !> Writes `text` and ends the line.
+  !> Appends `text` and ends the line.
   subroutine line(self, text, error)
     class(output_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -100,7 +100,7 @@ contains
     call self%put(text // new_line('a'), error)
   end subroutine line
 
-  !> Hands what was written to the system, so that it survives this process.
+  !> Writes the text collected so far, so that it survives this process.
   subroutine flush_output(self, error)
     class(output_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -113,7 +113,7 @@ contains
     call self%hand_over(self%buffer(:held), error)
   end subroutine flush_output
 
-  !> Flushes for those who watch the file grow: now and then, as often as it is called.
+  !> Flushes for users who watch the file, at most once every `show_interval`.
   subroutine show(self, error)
     class(output_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -122,7 +122,7 @@ contains
     if (seconds() - self%handed > show_interval) call self%flush(error)
   end subroutine show
 
-  !> Waits until the file is on the disk and closes it; nothing is done where none is open.
+  !> Waits until the file is on the disk and closes it, if it is open.
   subroutine close_output(self, error)
     class(output_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -141,18 +141,16 @@ contains
     if (synced < 0) call system_failure('cannot write ' // self%path, synced, error)
   end subroutine close_output
 
-  !> Hands `text` to the system. Where that fails the file is closed.
+  !> Writes `text`. A failure closes the file.
   subroutine hand_over(self, text, error)
     class(output_t), intent(inout) :: self
     character(len=*), intent(in) :: text
     type(failure_t), allocatable, intent(inout) :: error
-    character(len=24) :: length
     integer(c_int) :: status
 
     status = 0
     if (self%streamed .and. len(text) > 0) then
-      write (length, '(i0)') len(text)
-      associate (line => self%path // ' ' // trim(length) // new_line('a'))
+      associate (line => self%path // ' ' // brief(len(text)) // new_line('a'))
         status = c_write(self%descriptor, line, int(len(line), c_long))
       end associate
     end if
@@ -163,7 +161,7 @@ contains
     self%descriptor = -1
   end subroutine hand_over
 
-  !> `text` as one line of plain ASCII: white space becomes a blank, anything else a question mark.
+  !> `text` as one line of plain ASCII: white space becomes blanks, other characters question marks.
   pure function plain(text) result(clean)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: clean
@@ -174,7 +172,7 @@ contains
     do i = 1, len(text)
       code = ichar(text(i:i))
       if (code < 0) code = code + 256
-      ! The further bytes of a UTF-8 character.
+      ! Continuation bytes of a UTF-8 character.
       if (code >= 128 .and. code < 192) cycle
       n = n + 1
       buffer(n:n) = text(i:i)

@@ -1,14 +1,13 @@
-!> The classical theories of elastic contact: Hertz, JKR, DMT. `maugis` has that of Maugis-Dugdale.
+!> The classical theories of elastic contact: Hertz, JKR, DMT. Maugis-Dugdale theory is in `maugis`.
 !>
 !> SI units and the paper's conventions: `radius` is R of h0(r) = h0 + r^2/(2R), `stiffness` is
 !> E/(1-nu^2) of two identical bodies (twice the composite modulus E*), `surface_energy` is gamma,
 !> the work of separating unit area. Loads are positive in compression; `displacement` is
-!> delta = h(0) - h0. The contact radius orders the states of each theory one to one, so curves
-!> are best drawn with it; load and displacement may have none or two states for one value.
-!> Arguments are taken as positive and finite. Where no equilibrium exists the result is NaN.
+!> delta = h(0) - h0. Each theory has one state for each contact radius, so that curves are best
+!> drawn with the contact radius as parameter; a load or displacement may have no state or two.
+!> Arguments must be positive and finite. Where no equilibrium exists the result is NaN.
 module classical
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp, pi
+  use kinds, only: wp, pi, nan
   implicit none
   private
   public :: hertz_load, hertz_displacement, hertz_load_at_displacement
@@ -39,7 +38,7 @@ contains
     real(wp), intent(in) :: load, radius, stiffness
 
     contact_radius = cube_root(1.5_wp*radius*load/stiffness)
-    if (load < 0) contact_radius = nan()
+    if (load < 0) contact_radius = nan
   end function hertz_radius_at_load
 
   !> Hertz contact radius [m] at a displacement [m], (4); NaN where the bodies do not touch.
@@ -48,7 +47,7 @@ contains
     real(wp) :: contact_radius
 
     if (displacement < 0) then
-      contact_radius = nan()
+      contact_radius = nan
     else
       contact_radius = sqrt(radius*displacement)
     end if
@@ -73,8 +72,8 @@ contains
     end if
   end function hertz_pressure
 
-  !> Hertz gap [m] at distance `r` [m] from the axis: (14), (17) under the pressure (3). Far out it
-  !> is r^2/(2R) - a^2/R, the undeformed gap at h0 = -delta.
+  !> Hertz gap [m] at distance `r` [m] from the axis: (14), (17) under the pressure (3). For large r
+  !> it tends to r^2/(2R) - a^2/R, the undeformed gap at h0 = -delta.
   elemental function hertz_gap(r, contact_radius, radius) result(gap)
     real(wp), intent(in) :: r, contact_radius, radius
     real(wp) :: gap, outside
@@ -87,7 +86,7 @@ contains
     end if
   end function hertz_gap
 
-  !> JKR load [N] at a contact radius [m], the inverse of (10) with both of its branches.
+  !> JKR load [N] at a contact radius [m], on both branches of (10).
   elemental function jkr_load(contact_radius, radius, stiffness, surface_energy) result(load)
     real(wp), intent(in) :: contact_radius, radius, stiffness, surface_energy
     real(wp) :: load
@@ -106,8 +105,7 @@ contains
       - sqrt(4*pi*surface_energy*contact_radius/stiffness)
   end function jkr_displacement
 
-  !> JKR contact radius [m] at a fixed load [N], (10): the state that is stable under that load.
-  !> NaN beyond the pull-off.
+  !> JKR contact radius [m] at a fixed load [N], (10), of the stable state. NaN beyond the pull-off.
   elemental function jkr_radius_at_load(load, radius, stiffness, surface_energy) &
     result(contact_radius)
     real(wp), intent(in) :: load, radius, stiffness, surface_energy
@@ -116,24 +114,24 @@ contains
     adhesion = 3*pi*surface_energy*radius
     inner = adhesion*(2*load + adhesion)
     if (inner < -4*epsilon(inner)*adhesion**2) then
-      contact_radius = nan()
+      contact_radius = nan
     else
-      ! At the pull-off itself rounding may leave a negative zero.
+      ! At the pull-off rounding may leave a small negative number.
       contact_radius = cube_root(1.5_wp*radius/stiffness &
         *(load + adhesion + sqrt(max(inner, 0.0_wp))))
     end if
   end function jkr_radius_at_load
 
-  !> JKR contact radius [m] at a fixed displacement [m]: the state that is stable under it, which
-  !> is the larger root of (11). NaN beyond the pull-off.
+  !> JKR contact radius [m] at a fixed displacement [m], of the stable state: the larger root of
+  !> (11). NaN beyond the pull-off.
   elemental function jkr_radius_at_displacement(displacement, radius, stiffness, surface_energy) &
     result(contact_radius)
     real(wp), intent(in) :: displacement, radius, stiffness, surface_energy
     real(wp) :: contact_radius, fold, d, q, u, z, s
 
     ! In x = sqrt(a/fold) and d = R delta/fold^2, (11) is x^4 - 4x - d = 0. Its fold is x = 1,
-    ! d = -3. Ferrari: x = (s + sqrt(8/s - s^2))/2, where z = s^2 is the one positive root of
-    ! z^3 + 4dz - 16 = 0, here in the form of Cardano's solution that does not cancel for large d.
+    ! d = -3. Ferrari: x = (s + sqrt(8/s - s^2))/2, where z = s^2 is the only positive root of
+    ! z^3 + 4dz - 16 = 0, in a form of Cardano's solution that does not cancel for large d.
     fold = cube_root(pi*surface_energy*radius**2/(4*stiffness))
     if (.not. fold > 0) then
       contact_radius = hertz_radius_at_displacement(displacement, radius)
@@ -141,7 +139,7 @@ contains
     end if
     d = displacement*radius/fold**2
     if (d < -3*(1 + 4*epsilon(d))) then
-      contact_radius = nan()
+      contact_radius = nan
       return
     end if
     q = 4*d/3
@@ -176,7 +174,7 @@ contains
   end function jkr_pull_off_fixed_displacement
 
   !> JKR pressure [Pa] at distance `r` [m] from the axis, (3) + (7) with (9). It tends to minus
-  !> infinity at the contact edge, where zero is returned as everywhere outside.
+  !> infinity at the contact edge; the result is zero at the edge and outside.
   elemental function jkr_pressure(r, contact_radius, radius, stiffness, surface_energy) &
     result(pressure)
     real(wp), intent(in) :: r, contact_radius, radius, stiffness, surface_energy
@@ -190,7 +188,7 @@ contains
     end if
   end function jkr_pressure
 
-  !> JKR gap [m] at distance `r` [m] from the axis. Far out it is r^2/(2R) - delta, delta of (11).
+  !> JKR gap [m] at distance `r` [m] from the axis. For large r it tends to r^2/(2R) - delta, (11).
   elemental function jkr_gap(r, contact_radius, radius, stiffness, surface_energy) result(gap)
     real(wp), intent(in) :: r, contact_radius, radius, stiffness, surface_energy
     real(wp) :: gap, outside
@@ -222,7 +220,7 @@ contains
       radius, stiffness)
   end function dmt_radius_at_load
 
-  !> DMT load [N] at a displacement [m]; NaN where the bodies do not touch: the theory has no
+  !> DMT load [N] at a displacement [m]; NaN if the bodies do not touch, since the theory has no
   !> attraction across a gap.
   elemental function dmt_load_at_displacement(displacement, radius, stiffness, surface_energy) &
     result(load)
@@ -240,16 +238,10 @@ contains
     load = -2*pi*surface_energy*radius
   end function dmt_pull_off
 
-  !> Real cube root of a number that is not negative; zero for one that is.
+  !> Real cube root; zero for a negative number.
   elemental real(wp) function cube_root(x) result(root)
     real(wp), intent(in) :: x
 
     root = max(x, 0.0_wp)**(1.0_wp/3.0_wp)
   end function cube_root
-
-  elemental real(wp) function nan()
-
-    nan = ieee_value(nan, ieee_quiet_nan)
-  end function nan
-
 end module classical

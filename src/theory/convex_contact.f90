@@ -1,15 +1,14 @@
-!> Contact of bodies of any convex shape: Hertz's theory without adhesion, and that of Johnson,
-!> Kendall and Roberts with it, both from the two integrals of a `shape`. In the units of
-!> `dimensionless_problem`; with sigma = coupling*adhesion, gamma the work of adhesion,
+!> Contact of bodies of any convex shape: Hertz's theory, and that of Johnson, Kendall and Roberts
+!> with adhesion, both from the two integrals of a `shape`. In the units of
+!> `dimensionless_problem`, with sigma = coupling*adhesion and gamma the work of adhesion,
 !>
 !>     delta = q(a) - sqrt(4 pi sigma a) ,
 !>     F = (1/coupling) Int_0^a [q(a) - q(x)] dx - sqrt(4 pi adhesion a^3/coupling) .
 !>
-!> For the parabola these are (10) and (11). Arguments are those of elastic bodies that attract,
-!> unless said otherwise.
+!> For the parabola these are (10) and (11). The bodies are elastic and attract each other, unless
+!> a procedure says otherwise.
 module convex_contact
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp, pi
+  use kinds, only: wp, pi, nan
   use root_finding, only: bracket_t, root_search_t, new_root_search
   use shape, only: shape_t
   use dimensionless_problem, only: problem_t
@@ -18,9 +17,9 @@ module convex_contact
   public :: hertz_like_load, jkr_like_load, jkr_like_radius
   public :: jkr_like_pull_off, jkr_like_detachment, detachment_radius
 
-  !> A contact on which the adhesion is as large as what it works against is this many times as wide
-  !> as the narrowest that may be an extremum; and the sections that find its place to half the
-  !> digits, which is all that values tell.
+  !> Ratio of two contact radii: that at which adhesion balances the repulsion, and the smallest
+  !> that may be an extremum. Number of golden sections that give the radius of the extremum to half
+  !> of its digits, which give all digits of the value.
   real(wp), parameter :: widest_range = 1.0e4_wp
   integer, parameter :: sections = 45
 
@@ -42,7 +41,7 @@ contains
     load = hertz_like_load(problem, a) - sqrt(4*pi*problem%law%work/problem%coupling*a)*a
   end function jkr_like_load
 
-  !> Displacement at a contact radius, for this sigma.
+  !> Displacement at a contact radius for a given sigma.
   pure real(wp) function jkr_like_displacement(shape, sigma, a) result(displacement)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma, a
@@ -50,15 +49,15 @@ contains
     displacement = shape%indentation(a) - sqrt(4*pi*sigma*a)
   end function jkr_like_displacement
 
-  !> Contact radius at a displacement, of the state that is stable there; NaN where there is none.
-  !> narrowest: the `detachment_radius`.
+  !> Contact radius of the stable state at a displacement; NaN if there is none. narrowest: the
+  !> `detachment_radius`.
   pure real(wp) function jkr_like_radius(shape, sigma, narrowest, displacement) result(a)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma, narrowest, displacement
     type(root_search_t) :: search
     real(wp) :: ends(2), excess(2)
 
-    a = ieee_value(a, ieee_quiet_nan)
+    a = nan
     ends(2) = narrowest
     excess(2) = jkr_like_displacement(shape, sigma, narrowest) - displacement
     if (excess(2) > 0) return
@@ -75,7 +74,7 @@ contains
     a = search%root
   end function jkr_like_radius
 
-  !> H0 at which bodies come apart at fixed displacement: the largest -delta. 0 without adhesion.
+  !> H0 at which bodies separate at fixed displacement: the largest -delta. 0 without adhesion.
   pure real(wp) function jkr_like_detachment(shape, sigma) result(h0)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma
@@ -89,7 +88,7 @@ contains
     end if
   end function jkr_like_detachment
 
-  !> Contact radius there, by golden section in its logarithm; sigma > 0.
+  !> Contact radius at the detachment, by golden section in its logarithm; sigma > 0.
   pure real(wp) function detachment_radius(shape, sigma) result(a)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma
@@ -107,14 +106,14 @@ contains
     a = exp(bracket%middle())
   end function detachment_radius
 
-  !> The least of the load, negative: the pull-off at fixed load.
+  !> The smallest load, negative: the pull-off at fixed load.
   pure real(wp) function jkr_like_pull_off(problem) result(load)
     type(problem_t), intent(in) :: problem
     type(bracket_t) :: bracket
     real(wp) :: widest, points(2)
     integer :: i
 
-    ! Where delta is positive the load is, or it is not yet and grows.
+    ! Where delta is positive, the load is positive, or grows with a.
     widest = 4*widest_at(problem%shape, problem%coupling*problem%law%work)
     bracket = bracket_t(log(widest/widest_range), log(widest))
     do i = 1, sections
@@ -125,7 +124,7 @@ contains
     load = jkr_like_load(problem, exp(bracket%middle()))
   end function jkr_like_pull_off
 
-  !> A contact radius at which the displacement is positive, at most twice as large as need be.
+  !> A contact radius at which the displacement is positive, at most twice the smallest one.
   pure real(wp) function widest_at(shape, sigma) result(a)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma

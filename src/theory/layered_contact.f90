@@ -1,36 +1,35 @@
-!> Contact of layered bodies: Hertz's theory without adhesion, and that of Johnson, Kendall and
-!> Roberts with it, of any convex shape. In the units of `dimensionless_problem`, with q of the
-!> shape (`shape`) and L of the bodies (`layered_body`), a function phi on the radius of the
-!> contact obeys
+!> Contact of layered bodies of any convex shape: Hertz's theory, and that of Johnson, Kendall and
+!> Roberts with adhesion. In the units of `dimensionless_problem`, with q of the shape (`shape`) and
+!> L of the bodies (`layered_body`), a function phi on the contact obeys
 !>
 !>     phi(y) + Int_0^a M(x, y) phi(x) dx = delta - q(y),  F = (1/coupling) Int_0^a phi dx ,
 !>     M(x, y) = (2/pi) Int_0^inf (L(k) - 1) cos(k x) cos(k y) dk ,
 !>
 !> with phi(a) = 0 for Hertz and -sqrt(4 pi sigma a) for JKR, sigma = coupling*work. Both follow
-!> from two solutions of one linear system. As functions of ln a they become Chebyshev series.
+!> from two solutions of one linear system. Displacement and load become Chebyshev series in ln a.
 module layered_contact
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp, pi
+  use kinds, only: wp, pi, nan
   use chebyshev, only: chebyshev_points, chebyshev_series, series_value
   use quadrature, only: gauss_legendre
   use linear_algebra, only: factorisation_t, factorise, solve
   use root_finding, only: bracket_t
   use dimensionless_problem, only: problem_t
   use layered_body, only: layered_body_t
+  use maugis_scaled, only: of_load, of_displacement
   use theory_names, only: hertz, jkr
   implicit none
   private
-  public :: layered_contact_t, new_layered_contact, contact_at
+  public :: layered_contact_t, new_layered_contact
 
-  !> Degree of the series, and the ratio of the radii that they span below that of no displacement.
+  !> Degree of the series; ratio of the radius without displacement to the smallest radius.
   integer, parameter :: degree = 80
   real(wp), parameter :: span = 100
-  !> A minimum this near the end of the span is none.
+  !> A minimum closer to the largest radius, as a part of it, does not count.
   real(wp), parameter :: inside = 0.97_wp
-  !> Nodes of the system: at least, and for each thickness of the thinnest top layer in the radius;
-  !> as many thicknesses as the radius may have.
+  !> Fewest nodes of the system; nodes for each thickness of the thinnest top layer in the contact
+  !> radius; largest contact radius in such thicknesses.
   integer, parameter :: fewest = 32, a_thickness = 4, widest = 40
-  !> Radii that are looked at, and golden sections about the best.
+  !> Radii among which the smallest value is searched for, and golden sections about it.
   integer, parameter :: looks = 400, sections = 50
 
   !> Displacement over a^2 and load over a^3 between two radii, as series in ln a; (degree, theory).
@@ -41,14 +40,13 @@ module layered_contact
     procedure :: displacement
     procedure :: load
     procedure :: radius_at
-    procedure :: radius_at_load
     procedure :: pull_off
   end type layered_contact_t
 
 contains
 
-  !> Contacts up to a displacement, or to `widest`. A `work` of the law that is negative counts as
-  !> none.
+  !> Contacts up to the displacement `largest`, or to the radius `widest`. A negative `work` of the
+  !> law counts as zero.
   type(layered_contact_t) function new_layered_contact(problem, body, largest) result(contact)
     type(problem_t), intent(in) :: problem
     type(layered_body_t), intent(in) :: body
@@ -146,88 +144,72 @@ contains
     place = 2*log(a/self%first)/log(self%last/self%first) - 1
   end function place
 
-  !> Contact radius of the state that is stable at a displacement; NaN where there is none or it is
-  !> outside the span.
-  pure real(wp) function radius_at(self, theory, delta) result(a)
+  !> Contact radius of the stable state at a displacement or at a load, of which one is given; NaN
+  !> if there is none within the span.
+  pure real(wp) function radius_at(self, theory, displacement, load) result(a)
     class(layered_contact_t), intent(in) :: self
     integer, intent(in) :: theory
-    real(wp), intent(in) :: delta
+    real(wp), intent(in), optional :: displacement, load
     type(bracket_t) :: bracket
+    real(wp) :: wanted
+    integer :: quantity
 
+    quantity = merge(of_load, of_displacement, present(load))
+    if (present(load)) wanted = load
+    if (present(displacement)) wanted = displacement
+    a = nan
     bracket = bracket_t(self%first, self%last)
-    if (theory == jkr) bracket%low = least(self, .true.)
-    if (self%displacement(theory, bracket%low) > delta .or. &
-      self%displacement(theory, bracket%high) < delta) then
-      a = ieee_value(a, ieee_quiet_nan)
-      return
-    end if
+    if (theory == jkr) bracket%low = least(self, quantity)
+    if (value_of(self, quantity, theory, bracket%low) > wanted .or. &
+      value_of(self, quantity, theory, bracket%high) < wanted) return
     do while (bracket%is_open())
-      call bracket%narrow(self%displacement(theory, bracket%middle()) < delta)
+      call bracket%narrow(value_of(self, quantity, theory, bracket%middle()) < wanted)
     end do
     a = bracket%middle()
   end function radius_at
 
-  !> Contact radius of the state that is stable under a load; NaN where there is none or it is
-  !> outside the span.
-  pure real(wp) function radius_at_load(self, theory, load) result(a)
-    class(layered_contact_t), intent(in) :: self
-    integer, intent(in) :: theory
-    real(wp), intent(in) :: load
-    type(bracket_t) :: bracket
+  !> Displacement or load at a contact radius within the span.
+  pure real(wp) function value_of(self, quantity, theory, a)
+    type(layered_contact_t), intent(in) :: self
+    integer, intent(in) :: quantity, theory
+    real(wp), intent(in) :: a
 
-    bracket = bracket_t(self%first, self%last)
-    if (theory == jkr) bracket%low = least(self, .false.)
-    if (self%load(theory, bracket%low) > load .or. self%load(theory, bracket%high) < load) then
-      a = ieee_value(a, ieee_quiet_nan)
-      return
+    if (quantity == of_load) then
+      value_of = self%load(theory, a)
+    else
+      value_of = self%displacement(theory, a)
     end if
-    do while (bracket%is_open())
-      call bracket%narrow(self%load(theory, bracket%middle()) < load)
-    end do
-    a = bracket%middle()
-  end function radius_at_load
+  end function value_of
 
-  !> The least load of JKR theory, negative; NaN where it lies beyond the span.
+  !> The smallest load of JKR theory, negative; NaN if it is beyond the span.
   pure real(wp) function pull_off(self)
     class(layered_contact_t), intent(in) :: self
     real(wp) :: a
 
-    a = least(self, .false.)
-    pull_off = ieee_value(a, ieee_quiet_nan)
+    a = least(self, of_load)
+    pull_off = nan
     if (a < inside*self%last) pull_off = self%load(jkr, a)
   end function pull_off
 
-  !> Contact radius of the least displacement, or load, of JKR theory. On layers there may be
-  !> several minima, so that all radii are looked at before golden sections.
-  pure real(wp) function least(self, of_displacement) result(a)
+  !> Contact radius of the smallest displacement or load of JKR theory. On layers there may be
+  !> several minima, so that the search begins with radii over the whole span.
+  pure real(wp) function least(self, quantity) result(a)
     type(layered_contact_t), intent(in) :: self
-    logical, intent(in) :: of_displacement
+    integer, intent(in) :: quantity
     type(bracket_t) :: bracket
     real(wp) :: places(0:looks)
     integer :: i, lowest
 
     places = [(log(self%first) + log(self%last/self%first)*i/looks, i=0, looks)]
-    lowest = minloc([(value(places(i)), i=0, looks)], 1) - 1
+    lowest = minloc([(value_of(self, quantity, jkr, exp(places(i))), i=0, looks)], 1) - 1
     bracket = bracket_t(places(max(0, lowest - 1)), places(min(looks, lowest + 1)))
     do i = 1, sections
-      associate (points => bracket%golden_points())
-        call bracket%keep_larger([-value(points(1)), -value(points(2))])
+      associate (points => exp(bracket%golden_points()))
+        call bracket%keep_larger([-value_of(self, quantity, jkr, points(1)), &
+          -value_of(self, quantity, jkr, points(2))])
       end associate
     end do
     a = exp(bracket%middle())
-
-  contains
-
-    pure real(wp) function value(place)
-      real(wp), intent(in) :: place
-
-      if (of_displacement) then
-        value = self%displacement(jkr, exp(place))
-      else
-        value = self%load(jkr, exp(place))
-      end if
-    end function value
-
   end function least
 
 end module layered_contact

@@ -3,8 +3,8 @@
 !> surface_energy/strength. It spans JKR (strong, short-ranged) and DMT (weak, long-ranged).
 !> D. Maugis, J. Colloid Interface Sci. 150, 243 (1992).
 !>
-!> Units and conventions are those of module classical; the theory is solved in its own units in
-!> `maugis_scaled`.
+!> Units and conventions are those of module classical; `maugis_scaled` solves the theory in its own
+!> units.
 module maugis
   use kinds, only: wp, pi
   use maugis_scaled, only: find_least, of_displacement, of_load, radius_at_zone_width, &
@@ -17,15 +17,15 @@ module maugis
   public :: maugis_load, maugis_displacement, maugis_radius_at_displacement, maugis_pull_off
   public :: maugis_radius_at_load
 
-  !> Maugis' units [N, m, m], in which JKR theory is one curve.
+  !> Maugis' units [N, m, m], in which JKR theory has no parameter.
   type :: maugis_units_t
     real(wp) :: load = 1, radius = 1, displacement = 1
   end type maugis_units_t
 
 contains
 
-  !> Cohesive strength [Pa] that stands for the Lennard-Jones law (33): its largest tension,
-  !> 16 gamma/(9 sqrt(3) z0) = 1.0264 gamma/z0, met at h = 3^(1/6) z0. With the same gamma this is
+  !> Cohesive strength [Pa] equal to the largest tension of the Lennard-Jones law (33),
+  !> 16 gamma/(9 sqrt(3) z0) = 1.0264 gamma/z0 at h = 3^(1/6) z0. With the same gamma this is
   !> the usual choice; lambda is then 1.157 times Tabor's parameter.
   elemental real(wp) function lennard_jones_strength(surface_energy, z0) result(strength)
     real(wp), intent(in) :: surface_energy, z0
@@ -52,7 +52,7 @@ contains
       maugis_lambda(radius, stiffness, surface_energy, strength)))
   end function maugis_edge_ratio
 
-  !> Contact radius [m] at a ratio m = c/a > 1, the other way round.
+  !> Contact radius [m] at a ratio m = c/a > 1, the inverse of `maugis_edge_ratio`.
   elemental function maugis_radius_at_edge_ratio(m, radius, stiffness, surface_energy, &
     strength) result(contact_radius)
     real(wp), intent(in) :: m, radius, stiffness, surface_energy, strength
@@ -95,9 +95,8 @@ contains
     load = pi*surface_energy*radius*load
   end function maugis_pull_off
 
-  !> Contact radius [m] at a displacement [m]: that of the state which is stable while the
-  !> displacement is held, the largest of those there are. NaN below the least displacement of the
-  !> bodies in contact.
+  !> Contact radius [m] at a displacement [m], of the state that is stable at fixed displacement:
+  !> the largest contact radius. NaN below the smallest displacement of bodies in contact.
   elemental function maugis_radius_at_displacement(displacement, radius, stiffness, &
     surface_energy, strength) result(contact_radius)
     real(wp), intent(in) :: displacement, radius, stiffness, surface_energy, strength
@@ -108,8 +107,7 @@ contains
       maugis_lambda(radius, stiffness, surface_energy, strength))
   end function maugis_radius_at_displacement
 
-  !> Contact radius [m] at a load [N]: that of the state which is stable under it. NaN beyond the
-  !> pull-off.
+  !> Contact radius [m] at a load [N], of the stable state. NaN beyond the pull-off.
   elemental function maugis_radius_at_load(load, radius, stiffness, surface_energy, strength) &
     result(contact_radius)
     real(wp), intent(in) :: load, radius, stiffness, surface_energy, strength

@@ -1,12 +1,11 @@
 !> Maugis-Dugdale theory in its own units, in which lambda is the only parameter.
 !>
 !> K = 2 stiffness/3 (4 E*/3), A = a/(pi gamma R^2/K)^(1/3), P = F/(pi gamma R),
-!> D = delta/(pi^2 gamma^2 R/K^2)^(1/3), lambda = 2 strength (R/(pi gamma K^2))^(1/3), and for the
-!> width of the zone t = sqrt(m^2 - 1), m = c/a, which keeps its digits when m is close to one.
-!> `maugis` says what a and c are, and has the theory in SI units.
+!> D = delta/(pi^2 gamma^2 R/K^2)^(1/3), lambda = 2 strength (R/(pi gamma K^2))^(1/3). The width of
+!> the zone is t = sqrt(m^2 - 1), m = c/a, which keeps its digits when m is close to one. `maugis`
+!> defines a and c, and has the theory in SI units.
 module maugis_scaled
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use root_finding, only: bracket_t, golden
   implicit none
   private
@@ -14,7 +13,7 @@ module maugis_scaled
   public :: scaled_load, scaled_displacement, stable_radius, find_least
   public :: zone_width, radius_at_zone_width
 
-  !> Of which a least value is looked for.
+  !> The quantities whose smallest value is searched for.
   integer, parameter :: of_load = 1, of_displacement = 2
 
 contains
@@ -47,34 +46,34 @@ contains
     end if
   end function scaled
 
-  !> The largest A at a given P or D; NaN below the least of these.
+  !> The largest A at a given P or D; NaN below the smallest P or D.
   pure function stable_radius(quantity, wanted, lambda) result(radius)
     integer, intent(in) :: quantity
     real(wp), intent(in) :: wanted, lambda
     real(wp) :: radius, a, least
     type(bracket_t) :: bracket
 
-    radius = ieee_value(radius, ieee_quiet_nan)
+    radius = nan
     call find_least(quantity, lambda, a, least)
     if (.not. wanted >= least) return
     bracket = bracket_t(a, max(1.0_wp, 2*a))
     do while (scaled(quantity, bracket%high, lambda) < wanted)
       bracket%high = 2*bracket%high
     end do
-    ! Both grow with the contact from their least value on.
+    ! From their smallest values on, both P and D grow with A.
     do while (bracket%is_open())
       call bracket%narrow(scaled(quantity, bracket%middle(), lambda) < wanted)
     end do
     radius = bracket%high
   end function stable_radius
 
-  !> The least P (`of_load`) or D (`of_displacement`) over all A, and where.
+  !> The smallest P (`of_load`) or D (`of_displacement`) over all A, and its A.
   pure subroutine find_least(quantity, lambda, a, least)
     integer, intent(in) :: quantity
     real(wp), intent(in) :: lambda
     real(wp), intent(out) :: a, least
-    ! JKR's least load is at A = 1.5^(1/3) = 1.145 and its least displacement at (1/6)^(1/3); those
-    ! of a longer-ranged tension are at a smaller A.
+    ! JKR's smallest load is at A = 1.5^(1/3) = 1.145 and its smallest displacement at (1/6)^(1/3);
+    ! those of a tension of longer range are at a smaller A.
     real(wp), parameter :: a_max = 1.5_wp
     ! The minimum is flat: half of the digits in A give all of them in the value.
     real(wp), parameter :: tolerance = 1e-9_wp
@@ -84,7 +83,7 @@ contains
     right = a_max
     inner = [right - golden*(right - left), left + golden*(right - left)]
     value = scaled(quantity, inner, lambda)
-    ! Not by a bracket: each value here takes a search of its own, and one of two is kept.
+    ! A bracket would evaluate both points anew; each value here takes a search of its own.
     do while (right - left > tolerance)
       if (value(1) <= value(2)) then
         right = inner(2)
@@ -102,12 +101,12 @@ contains
 
   !> t at given A and lambda: the root of
   !> (lambda A^2/2) profile_term(t) + (4 lambda^2 A/3) tension_term(t) = 1.
-  !> In logarithms the left side is a smooth curve whose slope stays between 1 and 3: one value
-  !> brackets the root, and Newton's method comes home from anywhere.
+  !> In logarithms the left side is a smooth curve with a slope between 1 and 3, so that one value
+  !> brackets the root, and Newton's method converges from any start.
   elemental real(wp) function zone_width(a, lambda) result(t)
     real(wp), intent(in) :: a, lambda
     integer, parameter :: max_steps = 100
-    ! The step taken from here squares this error.
+    ! One more Newton step squares this error.
     real(wp), parameter :: close_enough = 1e-9_wp
     type(bracket_t) :: bracket
     real(wp) :: s, wide, narrow, total, excess
@@ -133,7 +132,7 @@ contains
     t = exp(s)
   end function zone_width
 
-  !> A at given t and lambda, the other way round: a quadratic.
+  !> A at given t and lambda, the inverse of `zone_width`: the root of a quadratic.
   elemental function radius_at_zone_width(t, lambda) result(a)
     real(wp), intent(in) :: t, lambda
     real(wp) :: a, linear, quadratic
@@ -175,7 +174,7 @@ contains
   elemental function tangent_excess(t) result(excess)
     real(wp), intent(in) :: t
     real(wp) :: excess, w
-    ! Above, the difference is good to a dozen units in the last place; below, eight terms are.
+    ! Above, the difference is accurate to a dozen units in the last place; below, eight terms are.
     real(wp), parameter :: small = 0.25_wp
     integer, parameter :: terms = 8
     integer :: k

@@ -1,12 +1,11 @@
-!> Deformation that varies slowly: u(r) = u(0) wherever the surfaces interact, (21) of the paper.
-!> Displacement (22) and load (23) then follow from the gap on the axis alone: for any law by
-!> quadrature, and in the paper's closed forms.
+!> Slowly varying deformation: u(r) = u(0) wherever the surfaces interact, (21) of the paper.
+!> Displacement (22) and load (23) then follow from the gap on the axis: for any law by quadrature,
+!> and in the paper's closed forms.
 !>
 !> Everything is in the units of `dimensionless_problem`. With c the coupling, delta = 2 sqrt(2) c
-!> J(h), where J is the integral of p(h')/sqrt(h' - h) over h' from h on.
+!> J(h), where J is the integral of p(h')/sqrt(h' - h) over h' from h to infinity.
 module slow_deformation
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp, pi
+  use kinds, only: wp, pi, nan
   use exponential, only: exponential_t
   use lennard_jones, only: lennard_jones_t
   use dimensionless_problem, only: problem_t
@@ -15,13 +14,13 @@ module slow_deformation
   public :: by_quadrature, closed_form, attraction_only, has_form
   public :: slow_displacement, slow_slope, slow_load
 
-  !> Forms of (22) and (23): by quadrature; (31) and (32), or (35a) and (36a), the latter for either
-  !> part alone too; (35b) and (36b), the attraction of Lennard-Jones without its repulsion.
+  !> Forms of (22) and (23): by quadrature; the closed forms (31) and (32), or (35a) and (36a), the
+  !> latter also for either part of the law; (35b) and (36b), the attraction of Lennard-Jones alone.
   integer, parameter :: by_quadrature = 1, closed_form = 2, attraction_only = 3
 
 contains
 
-  !> Whether the law has this form: a closed one is known, or it has the attraction of (35b).
+  !> Whether the law has this form.
   pure logical function has_form(problem, form)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
@@ -35,8 +34,7 @@ contains
     end select
   end function has_form
 
-  !> delta = h(0) - h0 at a gap on the axis: (22), (31), (35a) or (35b). NaN where there is no such
-  !> form.
+  !> delta = h(0) - h0 at a gap on the axis: (22), (31), (35a) or (35b). NaN without such a form.
   elemental real(wp) function slow_displacement(problem, form, gap) result(delta)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
@@ -55,8 +53,7 @@ contains
   end function slow_slope
 
   !> Load at a gap on the axis: Derjaguin's 2 pi E_s, (23), with the law's own energy for
-  !> `by_quadrature`, else (32), (36a) or (36b). Exact for rigid bodies. NaN where there is no such
-  !> form.
+  !> `by_quadrature`, else (32), (36a) or (36b). Exact for rigid bodies. NaN without such a form.
   elemental real(wp) function slow_load(problem, form, gap) result(load)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
@@ -68,7 +65,7 @@ contains
       load = 2*pi*energy(1)
       return
     end if
-    load = nan()
+    load = nan
     if (.not. has_form(problem, form)) return
     select type (law => problem%law)
     type is (exponential_t)
@@ -86,7 +83,7 @@ contains
     logical, intent(in) :: of_slope
     real(wp) :: integral, near, far
 
-    response = nan()
+    response = nan
     if (.not. has_form(problem, form)) return
     response = 0
     if (.not. problem%coupling > 0) return
@@ -116,16 +113,16 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap
     logical, intent(in) :: of_slope
-    !> Two rules that agree to this, one of twice as many points, leave nothing to be gained.
+    !> The rule has converged if halving the step changes the result by less than this.
     real(wp), parameter :: agreement = 1.0e-13_wp
-    !> A block of points below this part of the whole is followed by nothing of weight.
+    !> If a block of points contributes less than this part of the whole, the rest is negligible.
     real(wp), parameter :: negligible = 1.0e-18_wp
     integer, parameter :: block = 16, halvings = 8
     real(wp) :: scale, step, before, points, magnitude, more
     integer :: level
 
-    ! A law may be singular where the gap closes, at s = i sqrt(gap); else nothing about it is much
-    ! narrower than its length.
+    ! The law may be singular at a gap of 0, at s = i sqrt(gap); otherwise it varies over lengths
+    ! of order 1.
     scale = 1
     if (gap > 0) scale = sqrt(min(gap, 1.0_wp))
     step = 0.5_wp
@@ -142,8 +139,8 @@ contains
 
   contains
 
-    !> Twice the sum of the integrand at t = first, first + step, ..., of which t = 0 counts once,
-    !> and of its magnitude.
+    !> Twice the sum of the integrand at t = first, first + step, ... (the value at t = 0 counts
+    !> once), and twice the sum of its magnitude.
     pure subroutine add_points(first, points, magnitude)
       real(wp), intent(in) :: first
       real(wp), intent(out) :: points, magnitude
@@ -189,16 +186,11 @@ contains
     end do
   end function cosine_integral
 
-  !> exp(-gap), finite at any gap.
+  !> exp(-gap), limited to a finite value.
   elemental real(wp) function decay(gap)
     real(wp), intent(in) :: gap
     real(wp), parameter :: largest_exponent = 700
 
     decay = exp(min(-gap, largest_exponent))
   end function decay
-
-  elemental real(wp) function nan()
-    nan = ieee_value(nan, ieee_quiet_nan)
-  end function nan
-
 end module slow_deformation

@@ -1,10 +1,9 @@
-!> Gaps on the axis that the approximation of slowly varying deformation is asked for: the one at an
-!> h0, and those at which it lets approaching bodies jump.
+!> Gaps on the axis in the approximation of slowly varying deformation: the gap at an h0, and the
+!> gaps at which approaching bodies jump.
 !>
 !> Everything is in the units of `dimensionless_problem`.
 module slow_jumps
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp, pi
+  use kinds, only: wp, pi, nan
   use root_finding, only: bracket_t
   use dimensionless_problem, only: problem_t
   use slow_deformation, only: attraction_only, has_form, slow_displacement, slow_slope
@@ -12,37 +11,37 @@ module slow_jumps
   private
   public :: slow_gap, at_h0, at_criterion, at_fold
 
-  !> What a gap is searched for: an h0; the stability criterion (29), 2 p' u(0)/p = -1, which
-  !> approaching bodies come to violate there; the fold of h0 = gap - delta, where they lose their
-  !> equilibrium in the approximation itself.
+  !> Conditions on the gap: h0 has a value; the stability criterion (29), 2 p' u(0)/p = -1, which
+  !> approaching bodies violate beyond this gap; the fold of h0 = gap - delta, at which they lose
+  !> their equilibrium in the approximation itself.
   integer, parameter :: at_h0 = 1, at_criterion = 2, at_fold = 3
 
-  !> A search: in which form of the approximation, and for what (the h0, where that is it).
+  !> A search: the form of the approximation, the condition, and h0 for `at_h0`.
   type :: search_t
     integer :: form = 0, condition = at_h0
     real(wp) :: h0 = 0
   end type search_t
 
-  !> Steps of a search, as a fraction of the change of gap over which a law may be linearised, and
-  !> how many: enough for a gap of the algebraic law to fall by 26 orders of magnitude.
+  !> Step of a search, as a fraction of the change of gap over which a law may be linearised, and
+  !> the largest number of steps: enough for a gap of the algebraic law to fall by 26 orders.
   real(wp), parameter :: search_step = 0.1_wp
   integer, parameter :: most_steps = 2000
-  !> Golden sections for a maximum, to half the digits: it is flat there.
+  !> Golden sections that give a maximum to half of its digits, since the curve is flat there.
   integer, parameter :: most_sections = 40
 
 contains
 
-  !> The largest gap on the axis at which this form of the approximation has what is searched for;
-  !> NaN where it has it nowhere. An h0 is looked for down to the gap `nearest`, a jump as far as
-  !> the law attracts. With the attraction of Lennard-Jones alone p'/p = -3/h, and -delta =
-  !> C h^(-5/2) by (35b), so that (29) is there in closed form, (37), where 3 C h^(-7/2) is 1; the
-  !> fold has the exponent 5/2 for the 3. These do not tell whether the full law has a jump.
+  !> The largest gap on the axis at which this form of the approximation meets the condition; NaN if
+  !> there is none. The search for an h0 ends at the gap `nearest`, that for a jump where the
+  !> attraction ends. With the attraction of Lennard-Jones alone p'/p = -3/h, and -delta =
+  !> C h^(-5/2) by (35b), so that (29) has the closed form (37), 3 C h^(-7/2) = 1; for the fold 5/2
+  !> replaces the 3. These do not tell whether the full law has a jump.
   pure real(wp) function slow_gap(problem, form, condition, h0, nearest) result(gap)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form, condition
     real(wp), intent(in), optional :: h0, nearest
 
-    gap = nan()
+    gap = nan
     if (condition == at_h0) then
       gap = largest_gap(problem, search_t(form, at_h0, h0), nearest)
     else if (form == attraction_only) then
@@ -55,8 +54,8 @@ contains
     end if
   end function slow_gap
 
-  !> The largest gap not below `nearest` at which the excess is zero; far away it is negative. NaN
-  !> where there is none.
+  !> The largest gap, not below `nearest`, at which the excess is zero; NaN if there is none. Far
+  !> away the excess is negative.
   pure real(wp) function largest_gap(problem, search, nearest) result(found)
     type(problem_t), intent(in) :: problem
     type(search_t), intent(in) :: search
@@ -65,12 +64,12 @@ contains
     real(wp) :: lowest, gap, next, value, highest
     integer :: step
 
-    found = nan()
+    found = nan
     lowest = max(nearest, problem%law%smallest_gap)
     if (.not. has_form(problem, search%form)) return
     if (search%condition /= at_h0 .and. .not. problem%coupling > 0) return
     gap = far_gap(problem, search, lowest)
-    ! Inwards, to the first change of sign.
+    ! Towards smaller gaps, to the first change of sign.
     highest = -huge(1.0_wp)
     top = bracket_t(gap, gap)
     do step = 1, most_steps
@@ -87,7 +86,7 @@ contains
       end if
       gap = next
     end do
-    ! Between two steps the excess may just reach zero and turn.
+    ! Between two steps the excess may have a maximum just above zero.
     next = top%high
     do step = 1, most_sections
       call top%keep_larger(excess(problem, search, top%golden_points()))
@@ -96,13 +95,13 @@ contains
     if (excess(problem, search, gap) >= 0) found = root_between(problem, search, gap, next)
   end function largest_gap
 
-  !> A gap beyond all at which the excess is zero.
+  !> A gap larger than all gaps at which the excess is zero.
   pure real(wp) function far_gap(problem, search, lowest) result(gap)
     type(problem_t), intent(in) :: problem
     type(search_t), intent(in) :: search
     real(wp), intent(in) :: lowest
-    !> Beyond several gaps of most tension, once that little is left of what reaches 1 at a jump, it
-    !> falls to zero without turning.
+    !> At gaps above a few edge gaps, and once the excess is below `settled`, it falls to -1
+    !> monotonically.
     real(wp), parameter :: edges = 4, settled = -0.999_wp
     real(wp) :: stride
     integer :: step
@@ -117,7 +116,7 @@ contains
     end do
   end function far_gap
 
-  !> Negative beyond the gap that is searched for, positive short of it.
+  !> Negative at gaps above the one that meets the condition, positive below.
   elemental real(wp) function excess(problem, search, gap)
     type(problem_t), intent(in) :: problem
     type(search_t), intent(in) :: search
@@ -130,7 +129,7 @@ contains
     case (at_fold)
       excess = slow_slope(problem, search%form, gap) - 1
     case default
-      ! The criterion is for bodies that attract each other.
+      ! The criterion holds for bodies that attract each other.
       excess = -1
       pressure = problem%law%pressure([gap])
       slope = problem%law%slope([gap])
@@ -157,7 +156,7 @@ contains
     inwards = max(gap - search_step*linear_range(problem, gap), lowest)
   end function inwards
 
-  !> Where the excess changes its sign between two gaps.
+  !> The gap between `near` and `far` at which the excess changes its sign.
   pure real(wp) function root_between(problem, search, near, far) result(root)
     type(problem_t), intent(in) :: problem
     type(search_t), intent(in) :: search
@@ -170,9 +169,4 @@ contains
     end do
     root = bracket%middle()
   end function root_between
-
-  elemental real(wp) function nan()
-    nan = ieee_value(nan, ieee_quiet_nan)
-  end function nan
-
 end module slow_jumps

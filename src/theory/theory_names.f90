@@ -1,4 +1,4 @@
-!> The theories that `&classical` shows, by the names that decks and tables have for them.
+!> The theories that `&classical` shows, with their names in decks and tables.
 module theory_names
   implicit none
   private
@@ -8,7 +8,7 @@ module theory_names
     pietrement_troyon = 6
   character(len=*), parameter :: theories(*) = [character(len=17) :: 'hertz', 'jkr', 'dmt', &
     'maugis_dugdale', 'carpick', 'pietrement_troyon']
-  !> Those shown where a deck does not say which; those with a form for any shape and for layers.
+  !> Theories shown by default; theories that hold for any convex shape and for layers.
   logical, parameter :: usual(*) = [.true., .true., .true., .true., .false., .false.]
   logical, parameter :: convex(*) = [.true., .true., .false., .false., .false., .false.]
 

@@ -1,8 +1,8 @@
 !> Closed forms fitted to Maugis-Dugdale theory, from DMT to JKR by one parameter alpha from 0 to 1:
 !> R. W. Carpick, D. F. Ogletree and M. Salmeron, J. Colloid Interface Sci. 211, 395 (1999), for the
-!> contact radius under a load, and O. Pietrement and M. Troyon, J. Colloid Interface Sci. 226, 166
-!> (2000), for the displacement too. In Maugis' units, F0 < 0 being the pull-off, a0 the contact
-!> radius without load:
+!> contact radius at a load, and O. Pietrement and M. Troyon, J. Colloid Interface Sci. 226, 166
+!> (2000), also for the displacement. In Maugis' units, with the pull-off F0 < 0 and the contact
+!> radius a0 without load:
 !>
 !>     a = a0 z^(2/3),  z = (alpha + sqrt(1 - F/F0))/(1 + alpha),
 !>     displacement = a0^2 (z^(4/3) - S z^(2 beta/3))            (Pietrement and Troyon)
@@ -10,17 +10,16 @@
 !> Both take alpha from lambda = -0.924 ln(1 - 1.02 alpha). Units and conventions are those of
 !> module classical; `strength` is that of `maugis`.
 module transition_fits
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use maugis, only: maugis_lambda, maugis_units, maugis_units_t
   use root_finding, only: bracket_t
   implicit none
   private
   public :: fit_t, carpick_fit, pietrement_fit
 
-  !> A fit for two bodies: alpha (0 of DMT, 0.98 of JKR theory), pull-off [N], negative, contact
-  !> radius [m] without load, and the displacement [m] that belongs to it in Hertz's theory. States
-  !> are stable under their load; NaN beyond the pull-off.
+  !> A fit for two bodies: alpha (0 in DMT, 0.98 in JKR theory), pull-off [N], negative, contact
+  !> radius [m] without load, the displacement [m] of Hertz's theory at that radius, and the unit of
+  !> load [N]. States are stable at their load; NaN beyond the pull-off.
   type :: fit_t
     real(wp) :: alpha = 0, pull_off = 0, radius = 0
     real(wp), private :: sunk = 0, no_load = 0
@@ -33,7 +32,7 @@ module transition_fits
 
 contains
 
-  !> That of Carpick, Ogletree and Salmeron.
+  !> The fit of Carpick, Ogletree and Salmeron.
   elemental type(fit_t) function carpick_fit(radius, stiffness, surface_energy, strength) &
     result(fit)
     real(wp), intent(in) :: radius, stiffness, surface_energy, strength
@@ -47,7 +46,7 @@ contains
     fit%radius = fit%radius*(1.54_wp + 0.279_wp*(width - 1)/(width + 1))
   end function carpick_fit
 
-  !> That of Pietrement and Troyon.
+  !> The fit of Pietrement and Troyon.
   elemental type(fit_t) function pietrement_fit(radius, stiffness, surface_energy, strength) &
     result(fit)
     real(wp), intent(in) :: radius, stiffness, surface_energy, strength
@@ -63,7 +62,7 @@ contains
     fit%sunk = fit%sunk*width**2
   end function pietrement_fit
 
-  !> A fit whose numbers are Maugis' units.
+  !> A fit with the numbers of Maugis' units.
   elemental type(fit_t) function new_fit(lambda, units) result(fit)
     real(wp), intent(in) :: lambda
     type(maugis_units_t), intent(in) :: units
@@ -79,7 +78,7 @@ contains
     real(wp) :: room
 
     room = 1 - load/self%pull_off
-    z = ieee_value(z, ieee_quiet_nan)
+    z = nan
     if (room >= 0) z = (self%alpha + sqrt(room))/(1 + self%alpha)
   end function state_at_load
 
@@ -91,7 +90,7 @@ contains
     radius_at_load = self%radius*self%state_at_load(load)**(2.0_wp/3)
   end function radius_at_load
 
-  !> Displacement [m] at a load [N], of Pietrement and Troyon alone.
+  !> Displacement [m] at a load [N], in the fit of Pietrement and Troyon only.
   elemental real(wp) function displacement_at_load(self, load) result(displacement)
     class(fit_t), intent(in) :: self
     real(wp), intent(in) :: load
@@ -104,14 +103,14 @@ contains
     end associate
   end function displacement_at_load
 
-  !> Load [N] at a displacement [m], which grows with it; of Pietrement and Troyon alone. NaN below
-  !> the displacement of the pull-off.
+  !> Load [N] at a displacement [m], in the fit of Pietrement and Troyon only; it grows with the
+  !> displacement. NaN below the displacement of the pull-off.
   elemental real(wp) function load_at_displacement(self, displacement) result(load)
     class(fit_t), intent(in) :: self
     real(wp), intent(in) :: displacement
     type(bracket_t) :: bracket
 
-    load = ieee_value(load, ieee_quiet_nan)
+    load = nan
     bracket = bracket_t(self%pull_off, self%no_load)
     if (.not. self%displacement_at_load(bracket%low) <= displacement) return
     do while (self%displacement_at_load(bracket%high) < displacement)

@@ -188,7 +188,7 @@ def test_a_terminal_shows_how_far_a_sweep_is(snapin_path, tmp_path):
 
 
 WRONG = {
-    "count": ({**GRID, "count": [3]}, "1 for 2 of key"),
+    "count": ({**GRID, "count": [3]}, "1 for 2 keys"),
     "fraction": ({**GRID, "count": [3, 2.5]}, "not a whole number"),
     "scale": ({**GRID, "scale": ["log", "cubic"]}, "neither linear nor log"),
     "values": ({"key": GRID["key"], "values": [1e-19]}, "values are those of one key"),

@@ -125,7 +125,7 @@ def test_a_baseline_as_steep_as_the_contact_is_no_exchange(branches, tmp_path):
 
 def test_units_and_skip_are_checked(tmp_path):
     file = write(tmp_path / "a.csv", [0.0], [0.0], [0])
-    wrong = ({"units": ["N", "nN"]}, "no unit of position"), ({"skip": [1e-9]}, "pairs")
+    wrong = ({"units": ["N", "nN"]}, "not a unit of position"), ({"skip": [1e-9]}, "pairs")
     for keys, said in wrong:
         with pytest.raises(snapin.DeckError, match=said):
             run(fit_deck(started(), file, list(TRUTH), measurement=keys))

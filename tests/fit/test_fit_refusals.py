@@ -21,16 +21,16 @@ def flat(rng, z):
 
 BAD_DATA = {
     "no contact": (lambda z, f, s, rng: (z, flat(rng, z), s), "no contact in the data"),
-    "wrong sign": (lambda z, f, s, rng: (z, -f, s), "repulsion is positive"),
-    "too few": (lambda z, f, s, rng: (z[:10], f[:10], s[:10]), "fewer than 20 samples"),
+    "wrong sign": (lambda z, f, s, rng: (z, -f, s), "repulsion must be positive"),
+    "too few": (lambda z, f, s, rng: (z[:10], f[:10], s[:10]), "needs 20 samples or more"),
     "segments": (lambda z, f, s, rng: (z, f, 2 + s), "neither 0, approach, nor 1, retreat"),
     "same way": (lambda z, f, s, rng: (np.append(z[:300], z[:300]), np.append(f[:300], f[:300]), s),
                  "z goes the same way"),
     "exchanged columns": (lambda z, f, s, rng: (f, z, s), "columns exchanged"),
     "exchanged segments": (lambda z, f, s, rng: (z, f, 1 - s),
                            "approach and retreat are exchanged"),
-    "reversed rows": (lambda z, f, s, rng: (z[::-1], f[::-1], s), "go backwards"),
-    "nanometres": (lambda z, f, s, rng: (1e9 * z, 1e9 * f, s), "say units"),
+    "reversed rows": (lambda z, f, s, rng: (z[::-1], f[::-1], s), "in reverse order"),
+    "nanometres": (lambda z, f, s, rng: (1e9 * z, 1e9 * f, s), "give units"),
 }
 
 
@@ -91,9 +91,9 @@ BAD_DECKS = {
     "no volts": ({"fit": {"parameters": [POINT, "measurement.sensitivity"]}},
                  "the signal is a force"),
     "not to be fitted": ({"fit": {"parameters": [POINT, "measurement.file"]}}, "cannot be fitted"),
-    "bounds": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-21]}}, "one for each"),
-    "below": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-18, -1.0]}}, "is below it"),
-    "above": ({"fit": {"parameters": [STRENGTH, POINT], "upper": [1e-20, 1.0]}}, "is above it"),
+    "bounds": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-21]}}, "one value for each"),
+    "below": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-18, -1.0]}}, "below this"),
+    "above": ({"fit": {"parameters": [STRENGTH, POINT], "upper": [1e-20, 1.0]}}, "above this"),
     "rigid": ({"bodies": {"radius": 1.0, "rigid": True}}, "needs elastic bodies"),
     "sweep": ({"sweep": {"key": STRENGTH, "values": [1e-19]}}, "not together with &sweep"),
 }

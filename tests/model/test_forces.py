@@ -151,7 +151,7 @@ def test_a_capillary_bridge_has_the_energy_of_its_surface():
 @pytest.mark.parametrize(("forces", "phrase"), [
     ("&born z0 = 1e-9 /", '&born: key "hamaker": missing'),
     ("&force law='lennard_jones', hamaker=1e-19, surface_energy=1e-3, z0=1e-9 /",
-     '&force: key "surface_energy": and hamaker give the same thing'),
+     '&force: key "surface_energy": follows from hamaker'),
     ("&force law='lennard_jones', z0=1e-9 /", '&force: key "hamaker": missing'),
     ("&force law='lennard_jones', hamaker=1e-19, z0=1e-9, exponents=3,9 /", 'key "exponents"'),
     ("&force law='lennard_jones', hamaker=1e-19, z0=1e-9, exponents=9 /", 'key "exponents"'),

@@ -268,7 +268,7 @@ def refused(run, shape, **groups):
         ({"kind": "power", "exponent": 0.5}, "exponent", "out of range"),
         ({"kind": "power", "exponent": 3.0}, "radius", "missing"),
         ({"kind": "power", "exponent": 3.0, "coefficient": 1.0, "radius": 1.0}, "radius",
-         "the coefficient stands for it"),
+         "the coefficient replaces it"),
         ({"kind": "cone"}, "half_angle", "kind 'cone' needs it"),
         ({"kind": "cone", "half_angle": 1.6}, "half_angle", "out of range"),
         ({"kind": "cone", "half_angle": 1.0, "radius": 1.0}, "radius", "a cone has none"),

@@ -199,7 +199,7 @@ def test_cavities_are_warned_of(run):
         assert summary["max_suction"] == pytest.approx(3e-5 * velocity / 4e-16, rel=2e-2)
         said = " ".join(several(summary.get("warnings", [])))
         assert ("cavitate" in said) is warned
-        assert ("at h0 = 0.2" in said) is warned
+        assert ("at h0 = 2." in said) is warned
 
 
 def test_cases_of_a_sweep_have_velocities_and_viscosities(run):
@@ -220,7 +220,7 @@ def test_cases_of_a_sweep_have_velocities_and_viscosities(run):
     ({"viscosity": 1.0, "slip_length": [1.0, 2.0, 3.0]}, {}, "slip_length"),
     ({"viscosity": 1.0}, {"drive": None, "equilibrium_path": {"h0_end": 0.0}}, "needs &drive"),
     ({"viscosity": 1.0}, {"shape": {"kind": "rounded_punch", "flat_radius": 3.0}},
-     "between parabolas"),
+     "is for parabolas"),
     ({"viscosity": 1.0}, {"force": {"law": "exponential", "p0": 1.0, "decay_length": 1.0}},
      "a force that attracts"),
 ])

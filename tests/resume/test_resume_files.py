@@ -83,7 +83,7 @@ def test_an_interrupted_run_does_not_go_on_with_another_file(snapin, snapin_path
     change(tmp_path, scene)
     done = bench.resume(bench.journal)
     assert done.returncode == 1
-    assert "cannot go on" in done.stderr and "checksum" in done.stderr
+    assert "cannot continue" in done.stderr and "checksum" in done.stderr
     assert "points.txt" in done.stderr
     lay_out(tmp_path, scene)
     bench.check(bench.journal)

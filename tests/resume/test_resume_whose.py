@@ -36,7 +36,7 @@ def test_another_deck_is_refused_and_told_apart(sweep):
             path.write_text(text)
             done = sweep.resume(journal)
             assert done.returncode == 1
-            assert "cannot go on" in done.stderr
+            assert "cannot continue" in done.stderr
             assert words in done.stderr
             assert "without --resume" in done.stderr
             target = sweep.folder / "cut/deck"
@@ -46,8 +46,8 @@ def test_another_deck_is_refused_and_told_apart(sweep):
         path.write_text(SWEEP)
 
 
-@pytest.mark.parametrize("line, advice", [("program: ", "go on with that one"),
-                                          ("libraries: ", "go on with that one")])
+@pytest.mark.parametrize("line, advice", [("program: ", "continue with that one"),
+                                          ("libraries: ", "continue with that one")])
 def test_another_program_is_refused(sweep, line, advice):
     first, *cases = frames(sweep.journal)
     lines = owner(first).splitlines(keepends=True)
@@ -72,7 +72,7 @@ def test_the_program_is_known_by_what_was_linked(sweep):
 def test_resume_without_anything_to_resume_begins_at_the_beginning_and_says_so(sweep):
     done = sweep.run("fresh", "--resume")
     assert done.returncode == 0
-    assert "no interrupted run to go on with" in done.stderr
+    assert "no interrupted run to continue" in done.stderr
     assert sweep.files("fresh") == sweep.whole
 
 

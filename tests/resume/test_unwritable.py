@@ -74,7 +74,7 @@ def test_a_journal_that_cannot_grow_stops_a_run_that_then_goes_on(snapin, snapin
     check_stopped(long, long.run("cut", preexec_fn=limited), folder, "File too large; raise")
     done = long.run("cut", "--resume")
     assert done.returncode == 0
-    assert "going on" in done.stderr
+    assert "continuing" in done.stderr
     assert long.files("cut") == long.whole
 
 
@@ -88,7 +88,7 @@ def test_a_full_disk_stops_a_run_that_then_goes_on(short, tmp_path):
         subprocess.run(["mount", "-o", "remount,size=4m", tmp_path], check=True)
         done = short.run(tmp_path, "--resume")
         assert done.returncode == 0
-        assert "going on" in done.stderr
+        assert "continuing" in done.stderr
         assert short.files(tmp_path) == short.whole
     finally:
         subprocess.run(["umount", tmp_path], check=True)

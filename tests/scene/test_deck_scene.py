@@ -94,7 +94,7 @@ REFUSED = {
                                "not known"),
     "layers on what is not known": (
         LAYERED.replace("young = 70e9, poisson = 0.2", "stiffness = 1e9"), 1, "bodies",
-        "stiffness", "by itself"),
+        "stiffness", "must be known"),
     "layers without a base": (
         LAYERED.replace(", young = 70e9, poisson = 0.2", "").replace("body = 1", "body = 'both'"),
         1, "bodies", "stiffness", "give one of"),
@@ -113,9 +113,9 @@ REFUSED = {
     "rigid false alone": (with_bodies("radius = 1, rigid = .false. /"), 1, "bodies", "stiffness",
                           "give one of"),
     "stiffness and young": (with_bodies("radius = 1, stiffness = 1,\n young = 1, poisson = 0 /"),
-                            2, "bodies", "young", "one way too many"),
+                            2, "bodies", "young", "more than one way"),
     "rigid and stiffness": (with_bodies("radius = 1, stiffness = 1,\n rigid = .true. /"), 2,
-                            "bodies", "rigid", "one way too many"),
+                            "bodies", "rigid", "more than one way"),
     "young alone": (with_bodies("radius = 1,\n young = 1 /"), 1, "bodies", "poisson",
                     "go together"),
     "poisson alone": (with_bodies("radius = 1, poisson = 0 /"), 1, "bodies", "young",

@@ -154,7 +154,7 @@ def test_a_run_without_resume_mends_what_was_interrupted_before_it_starts_over(s
     stand.run(call="rename", at=4, errno=faults.KILL, under="try/d")
     done = stand.run("try")
     assert done.returncode == 0
-    assert "put results in place" in done.stderr
+    assert "installed the results" in done.stderr
     assert stand.state() == "new"
 
 

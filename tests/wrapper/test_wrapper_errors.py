@@ -17,7 +17,7 @@ def test_states_that_do_not_converge_are_returned_and_warned_of():
     numerics = {"method": "mixing", "nodes": 60, "r_max": 9.0}
     with pytest.warns(snapin.SnapinWarning) as caught:
         curve = snapin.force_curve([9.0, 4.5, 0.0], **UNIT, law=law_of(8.7), **numerics)
-    text = "loading: 2 of 3 states did not converge, the first at h0 = 4.50 m; "
+    text = "loading: 2 of 3 states did not converge, the first at h0 = 4.5 m; "
     assert any(str(warning.message).startswith(text) for warning in caught)
     assert not curve.converged
     assert np.isfinite(curve.load).all()

@@ -1,4 +1,4 @@
-!> The crew of a build without MPI: one process. Its twin in `mpi/` says what each procedure is for.
+!> The crew of a build without MPI: one process. `mpi/ranks.f90` documents each procedure.
 module ranks
   use kinds, only: long
   use failure, only: failure_t, fail, bad_input
@@ -8,8 +8,8 @@ module ranks
   private
   public :: crew_t
 
-  !> Processes that work together, each with its number: 0 hands out what there is to do, and
-  !> 1 to `workers` do it. Alone there is only 0.
+  !> Processes that work together, each with its number: process 0 distributes the work, processes 1
+  !> to `workers` do it. A single process has number 0 and no workers.
   type :: crew_t
     integer :: rank = 0, workers = 0
   contains
@@ -22,7 +22,7 @@ module ranks
 
 contains
 
-  !> Fails where there are others: every one of them would do the whole work.
+  !> Fails if there are other processes, since each of them would do all the work.
   subroutine begin(self, error)
     class(crew_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -30,18 +30,18 @@ contains
     self%workers = 0
     if (started_together() <= 1) return
     self%rank = own_rank()
-    call fail(error, bad_input, 'mpirun or srun has started several of these, and this build ' // &
+    call fail(error, bad_input, 'mpirun or srun has started several processes, but this build ' // &
       'has no MPI; start one, which uses all cores of the machine, or build with -Dmpi=enabled')
   end subroutine begin
 
-  !> Nobody is waited for.
+  !> There are no processes to wait for.
   subroutine end_crew(self)
     class(crew_t), intent(inout) :: self
 
     self%workers = 0
   end subroutine end_crew
 
-  !> 0 if anything is true, else -1.
+  !> 0 if `true`, else -1.
   integer function first_of(self, true)
     class(crew_t), intent(in) :: self
     logical, intent(in) :: true
@@ -49,16 +49,16 @@ contains
     first_of = merge(self%rank, -1, true)
   end function first_of
 
-  !> There is nobody to send to.
+  !> There are no processes to send to.
   subroutine send(self, record, to)
     class(crew_t), intent(in) :: self
     type(byte_record_t), intent(in) :: record
     integer, intent(in) :: to
 
-    if (to > self%workers .or. record%held < 0) error stop 'nobody is there'
+    if (to > self%workers .or. record%held < 0) error stop 'no such process'
   end subroutine send
 
-  !> Nobody sends: an empty record.
+  !> No process sends: an empty record.
   subroutine receive(self, record, from)
     class(crew_t), intent(in) :: self
     type(byte_record_t), intent(inout) :: record

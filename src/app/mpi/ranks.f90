@@ -13,8 +13,8 @@ module ranks
   private
   public :: crew_t
 
-  !> Processes that work together, each with its number: 0 hands out what there is to do, and
-  !> 1 to `workers` do it. Alone there is only 0.
+  !> Processes that work together, each with its number: process 0 distributes the work, processes 1
+  !> to `workers` do it. A single process has number 0 and no workers.
   type :: crew_t
     integer :: rank = 0, workers = 0
   contains
@@ -25,16 +25,16 @@ module ranks
     procedure :: receive
   end type crew_t
 
-  !> There is one sort of message.
+  !> The tag of all messages.
   integer, parameter :: tag = 1
-  !> Microseconds between looks for a message, the first two and the last ones: MPI's own waiting
-  !> takes a whole core, which on a full machine is another process's.
+  !> Microseconds between polls for a message: the first, and the longest. MPI's own waiting
+  !> occupies a whole core.
   integer(c_int), parameter :: shortest = 10, longest = 200
 
 contains
 
-  !> Joins the processes that were started together; does without MPI where there is one. Fails
-  !> where MPI knows nothing of the others.
+  !> Joins the processes that were started together; does not use MPI for a single process. Fails if
+  !> MPI does not know the other processes.
   subroutine begin(self, error)
     class(crew_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -49,11 +49,11 @@ contains
     if (processes > 1) return
     call mpi_finalize()
     self%rank = own_rank()
-    call fail(error, bad_input, 'started several times by the mpirun of another MPI than this ' // &
-      'was built with; use the one that belongs to it')
+    call fail(error, bad_input, 'mpirun belongs to another MPI than the one that snapin was ' // &
+      'built with; use the mpirun of that one')
   end subroutine begin
 
-  !> Waits until all have come here. A process that ends otherwise ends all.
+  !> Waits for all processes. If a process ends without this call, MPI ends all of them.
   subroutine end_crew(self)
     class(crew_t), intent(inout) :: self
 
@@ -61,7 +61,7 @@ contains
     self%workers = 0
   end subroutine end_crew
 
-  !> The first process for which something is true, -1: for none. All ask together.
+  !> The lowest number of a process for which `true` holds, or -1. All processes call this together.
   integer function first_of(self, true)
     class(crew_t), intent(in) :: self
     logical, intent(in) :: true
@@ -80,11 +80,11 @@ contains
     type(byte_record_t), intent(in) :: record
     integer, intent(in) :: to
 
-    if (to > self%workers) error stop 'nobody is there'
+    if (to > self%workers) error stop 'no such process'
     call mpi_send(record%words, record%held, mpi_integer8, to, tag, mpi_comm_world)
   end subroutine send
 
-  !> Waits for a record, and says whose it is.
+  !> Waits for a record from any process, whose number is `from`.
   subroutine receive(self, record, from)
     class(crew_t), intent(in) :: self
     type(byte_record_t), intent(inout) :: record

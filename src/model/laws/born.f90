@@ -1,5 +1,5 @@
 !> Born repulsion between half-spaces, p = A/(6 pi z0^3) (z0/h)^n: with n = 9 and a van der Waals
-!> attraction of the same Hamaker constant it makes the Lennard-Jones law (33) of the paper.
+!> attraction of the same Hamaker constant it is the Lennard-Jones law (33) of the paper.
 module born
   use kinds, only: wp, pi
   use failure, only: failure_t
@@ -21,20 +21,20 @@ module born
 
 contains
 
-  !> &born.
+  !> The rows of &born.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
     rows = [ &
       group('born', 'Born repulsion, A/(6 pi z0^3) (z0/h)^n.'), &
-      real_key('born', 'hamaker', 'J', 'Hamaker constant A that sets its strength.', above=0.0_wp, &
+      real_key('born', 'hamaker', 'J', 'Hamaker constant A for the strength.', above=0.0_wp, &
                otherwise='as in &van_der_waals'), &
-      real_key('born', 'z0', 'm', 'Separation at which it balances the attraction.', above=0.0_wp, &
-               required=.true.), &
+      real_key('born', 'z0', 'm', 'Separation at which the repulsion balances the attraction.', &
+               above=0.0_wp, required=.true.), &
       real_key('born', 'exponent', '', 'Exponent n.', above=1.0_wp, high=30.0_wp, default='9')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -44,8 +44,8 @@ contains
 
     if (.not. deck%has_group('born')) return
     if (.not. (deck%is_set('born', 'hamaker') .or. deck%has_group('van_der_waals'))) then
-      call deck%mistake('born', 'hamaker', 'missing; give it, or &van_der_waals whose constant '// &
-        'it takes', error)
+      call deck%mistake('born', 'hamaker', 'missing; give it, or &van_der_waals with this '// &
+        'constant', error)
       return
     end if
     hamaker = 0
@@ -60,7 +60,7 @@ contains
     this%pressure_unit = hamaker/(6*pi*this%length**3)
     this%has_z0 = .true.
     this%tail_power = this%exponent
-    ! The slope is 1e121 there: even its square is a number.
+    ! The slope at this gap is 1e121, whose square does not overflow.
     this%smallest_gap = 10.0_wp**(-120/(this%exponent + 1))
     this%repulsion_length = 0.9_wp/this%exponent
     this%closure_fraction = 2.7_wp/this%exponent

@@ -1,6 +1,6 @@
 !> Capillary bridge at equilibrium with the vapour: the pressure in it, surface_tension/r_K, acts
-!> where the separation is below r_K (cos theta_1 + cos theta_2). r_K is Kelvin's radius, given or
-!> from the humidity: molar_volume surface_tension/(R T ln(1/humidity)). Smoothed
+!> at separations below r_K (cos theta_1 + cos theta_2). r_K is Kelvin's radius, given or from the
+!> humidity: molar_volume surface_tension/(R T ln(1/humidity)). The step is smoothed
 !> (`step_attraction`).
 module capillary
   use kinds, only: wp
@@ -15,17 +15,17 @@ module capillary
 
 contains
 
-  !> &capillary.
+  !> The rows of &capillary.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
     real(wp), parameter :: zero = 0
 
     rows = [ &
-      group('capillary', 'Capillary bridge at equilibrium. Either kelvin_radius, or humidity.'), &
+      group('capillary', 'Capillary bridge at equilibrium. Give kelvin_radius or humidity.'), &
       real_key('capillary', 'surface_tension', 'N/m', 'Surface tension of the liquid.', &
                above=zero, default='0.0728'), &
-      list_key('capillary', 'contact_angle', 'rad', 'Contact angles of the two surfaces; one ' &
-               // 'value: the same.', most=2, low=zero, below=1.5707963_wp, otherwise='0'), &
+      list_key('capillary', 'contact_angle', 'rad', 'Contact angles of the two surfaces, or one ' &
+               // 'for both.', most=2, low=zero, below=1.5707963_wp, otherwise='0'), &
       real_key('capillary', 'kelvin_radius', 'm', 'Radius of curvature of the bridge.', &
                above=zero), &
       real_key('capillary', 'humidity', '', 'Vapour pressure over that of saturation.', &
@@ -36,7 +36,7 @@ contains
       smoothing_key('capillary')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

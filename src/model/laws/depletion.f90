@@ -1,5 +1,6 @@
-!> Depletion force between walls in a solution of hard spheres (Asakura and Oosawa): the osmotic
-!> pressure acts from outside where no sphere fits between them. Smoothed (`step_attraction`).
+!> Depletion force between walls in a solution of hard spheres (Asakura and Oosawa): at separations
+!> below their diameter the osmotic pressure acts only from outside. The step is smoothed
+!> (`step_attraction`).
 module depletion
   use kinds, only: wp
   use failure, only: failure_t
@@ -13,7 +14,7 @@ module depletion
 
 contains
 
-  !> &depletion.
+  !> The rows of &depletion.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
@@ -21,11 +22,12 @@ contains
       group('depletion', 'Depletion attraction in a solution of particles.'), &
       real_key('depletion', 'osmotic_pressure', 'Pa', 'Osmotic pressure of the particles.', &
                above=0.0_wp, required=.true.), &
-      real_key('depletion', 'diameter', 'm', 'Their diameter.', above=0.0_wp, required=.true.), &
+      real_key('depletion', 'diameter', 'm', 'Diameter of the particles.', above=0.0_wp, &
+               required=.true.), &
       smoothing_key('depletion')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

@@ -43,41 +43,41 @@ module double_layer
   !> Avogadro's constant [1/mol].
   real(wp), parameter :: elementary_charge = 1.602176634e-19_wp, boltzmann = 1.380649e-23_wp, &
     vacuum_permittivity = 8.8541878128e-12_wp, avogadro = 6.02214076e23_wp
-  !> Reduced potential beyond which the linear equation is not for it: 25.7 mV for single charges.
+  !> Reduced potential above which the linear equation is wrong: 25.7 mV for single charges.
   real(wp), parameter :: small_potential = 1
-  !> Gap in Debye lengths beyond which exponentials would underflow.
+  !> Gap in Debye lengths above which exponentials would underflow.
   real(wp), parameter :: largest_gap = 300
-  !> Largest reduced potential: 0.5 V for single charges. Beyond, ions would not be points.
+  !> Largest reduced potential, 0.5 V for single charges: above it the finite size of ions matters.
   real(wp), parameter :: largest_potential = 20
 
 contains
 
-  !> &double_layer.
+  !> The rows of &double_layer.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
     rows = [ &
       group('double_layer', 'Electric double layers in an electrolyte with ions of one valence. ' &
-            // 'Either salt or debye_length.'), &
-      list_key('double_layer', 'potential', 'V', 'Potentials of the two surfaces, each alone; ' // &
-               'one value: the same.', most=2, required=.true.), &
-      list_key('double_layer', 'regulation', '', 'How the surfaces meet: 0 at constant ' // &
-               'potential, 1 at constant charge, between them by regulation; one value: the ' // &
-               'same.', most=2, low=0.0_wp, high=1.0_wp, otherwise='1'), &
+            // 'Give salt or debye_length.'), &
+      list_key('double_layer', 'potential', 'V', 'Potentials of the two isolated surfaces, or ' // &
+               'one for both.', most=2, required=.true.), &
+      list_key('double_layer', 'regulation', '', 'Regulation of the two surfaces, or one ' // &
+               'value for both: 0 constant potential, 1 constant charge, or between them.', &
+               most=2, low=0.0_wp, high=1.0_wp, otherwise='1'), &
       real_key('double_layer', 'salt', 'mol/m^3', 'Concentration of the salt.', above=0.0_wp, &
                otherwise='from debye_length'), &
-      integer_key('double_layer', 'valence', 'Charge number of its ions.', 1, 6, default='1'), &
+      integer_key('double_layer', 'valence', 'Charge number of the ions.', 1, 6, default='1'), &
       real_key('double_layer', 'debye_length', 'm', 'Debye length 1/kappa.', above=0.0_wp, &
                otherwise='from salt'), &
       real_key('double_layer', 'permittivity', '', 'Relative permittivity of the liquid.', &
                above=0.0_wp, default='78.4'), &
       real_key('double_layer', 'temperature', 'K', 'Temperature.', above=0.0_wp, &
                default='298.15'), &
-      word_key('double_layer', 'model', models, 'Small potentials; large gaps; or the whole ' // &
-               'Poisson-Boltzmann equation.', default='nonlinear')]
+      word_key('double_layer', 'model', models, 'For small potentials; for large gaps; or the ' // &
+               'whole Poisson-Boltzmann equation.', default='nonlinear')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -106,7 +106,7 @@ contains
     if (this%model == superposition) then
       this%closure_length = 2
     else
-      ! A third of the gap; where gaps are small the repulsion may be as their second power.
+      ! A third of the gap; at small gaps the repulsion may be as large as gap^-2.
       this%smallest_gap = nearest_gap
       this%closure_fraction = 0.3_wp
       this%repulsion_length = 0.5_wp
@@ -122,7 +122,7 @@ contains
     allocate (law, source=this)
   end subroutine read_law
 
-  !> Debye length, surfaces and osmotic: 2 n kT [Pa].
+  !> Sets Debye length and surfaces. osmotic: 2 n kT [Pa].
   subroutine take_electrolyte(deck, this, osmotic, error)
     type(deck_t), intent(inout) :: deck
     type(double_layer_t), intent(inout) :: this
@@ -164,7 +164,8 @@ contains
     osmotic = permittivity*(thermal/this%length)**2
   end subroutine take_electrolyte
 
-  !> The surface of larger potential first, and that positive: pressures are the same.
+  !> Sets the surfaces, first the one with the larger potential, whose sign is made positive: this
+  !> does not change pressures.
   subroutine take_surfaces(deck, potential, regulation, this, error)
     type(deck_t), intent(in) :: deck
     real(wp), intent(in) :: potential(:), regulation(:)
@@ -180,8 +181,8 @@ contains
       call deck%mistake('double_layer', 'potential', 'without a potential there is no double ' // &
         'layer; leave the group out', error)
     else if (this%surface(1)%potential > largest_potential) then
-      call deck%mistake('double_layer', 'potential', 'more than 20 kT for each ion: ions would ' &
-        // 'not be points', error)
+      call deck%mistake('double_layer', 'potential', 'more than 20 kT for each ion: the size ' // &
+        'of ions would matter', error)
     end if
   end subroutine take_surfaces
 

@@ -1,4 +1,5 @@
-!> Dugdale's law: a constant attraction up to a separation, smoothed (`step_attraction`).
+!> Dugdale's law: a constant attraction up to a separation, with a smoothed step
+!> (`step_attraction`).
 module dugdale
   use kinds, only: wp
   use failure, only: failure_t
@@ -12,19 +13,19 @@ module dugdale
 
 contains
 
-  !> &dugdale.
+  !> The rows of &dugdale.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
     rows = [ &
       group('dugdale', 'Constant attraction up to a separation; needs a repulsion beside it.'), &
-      real_key('dugdale', 'stress', 'Pa', 'The attraction.', above=0.0_wp, required=.true.), &
-      real_key('dugdale', 'range', 'm', 'Separation at which it ends.', above=0.0_wp, &
+      real_key('dugdale', 'stress', 'Pa', 'Attraction.', above=0.0_wp, required=.true.), &
+      real_key('dugdale', 'range', 'm', 'Separation at which the attraction ends.', above=0.0_wp, &
                required=.true.), &
       smoothing_key('dugdale')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

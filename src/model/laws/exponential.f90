@@ -1,5 +1,5 @@
-!> Exponential repulsion, (30) of the paper: p = p0 exp(-h/decay_length). Other forces that decay so
-!> share it, attractions too.
+!> Exponential repulsion, (30) of the paper: p = p0 exp(-h/decay_length). Other forces with this
+!> decay use it too, also attractions.
 module exponential
   use kinds, only: wp
   use failure, only: failure_t
@@ -21,12 +21,12 @@ module exponential
     procedure :: energy
   end type exponential_t
 
-  !> Exponent beyond which the pressure would underflow or overflow.
+  !> Exponent above which the pressure would underflow or overflow.
   real(wp), parameter :: largest_exponent = 700
 
 contains
 
-  !> The keys that the law has in &force.
+  !> The keys of the law in &force.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
@@ -37,7 +37,7 @@ contains
                otherwise='none; exponential needs it')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -53,8 +53,8 @@ contains
     if (.not. allocated(error)) allocate (law, source=new_exponential(p0, decay_length))
   end subroutine read_law
 
-  !> The terms of a group with the lists `decay_length` and `energy` or `pressure`, of a sense: 1
-  !> for repulsion, -1 for attraction. One value of a list stands for all.
+  !> The terms of a group with the lists `decay_length` and `energy` or `pressure`. sense: 1 for
+  !> repulsion, -1 for attraction. A list with one value has this value for all terms.
   subroutine read_exponentials(deck, group, sense, law, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: group
@@ -111,17 +111,17 @@ contains
     law%group = 'force'
     law%strength_key = 'p0'
     law%length_key = 'decay_length'
-    ! The pressure may grow sevenfold in an iteration.
+    ! The pressure may grow by a factor of seven in an iteration.
     law%closure_length = 2
   end function new_exponential
 
-  !> sense*exp(-gap); 0 without underflow at large gaps, finite at any gap.
+  !> sense*exp(-gap); 0 without underflow at large gaps, and finite at any gap.
   pure function pressure(self, gap) result(value)
     class(exponential_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(size(gap))
 
-    ! Both branches of a mask may be evaluated everywhere, hence the bounds on both sides.
+    ! Both branches of a mask may be evaluated for all elements, hence the bounds on both sides.
     where (gap < largest_exponent)
       value = self%sense*exp(-max(min(gap, largest_exponent), -largest_exponent))
     elsewhere

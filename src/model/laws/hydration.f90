@@ -1,4 +1,4 @@
-!> Hydration repulsion: p = (W/l) exp(-h/l); several values of the keys are several terms.
+!> Hydration repulsion: p = (W/l) exp(-h/l); each value of the keys is one term.
 module hydration
   use kinds, only: wp
   use failure, only: failure_t
@@ -12,13 +12,13 @@ module hydration
 
 contains
 
-  !> &hydration.
+  !> The rows of &hydration.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
     rows = [ &
-      group('hydration', 'Hydration repulsion. Either energy or pressure; lists are several ' // &
-            'terms.'), &
+      group('hydration', 'Hydration repulsion. Give energy or pressure; each value of a list ' // &
+            'is one term.'), &
       list_key('hydration', 'energy', 'J/m^2', 'Energy W at h = 0.', most=8, above=0.0_wp), &
       list_key('hydration', 'pressure', 'Pa', 'Pressure at h = 0, W over the decay length.', &
                most=8, above=0.0_wp), &
@@ -26,7 +26,7 @@ contains
                required=.true.)]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

@@ -1,4 +1,4 @@
-!> Hydrophobic attraction: p = -(W/l) exp(-h/l); several values of the keys are several terms.
+!> Hydrophobic attraction: p = -(W/l) exp(-h/l); each value of the keys is one term.
 module hydrophobic
   use kinds, only: wp
   use failure, only: failure_t
@@ -12,12 +12,12 @@ module hydrophobic
 
 contains
 
-  !> &hydrophobic.
+  !> The rows of &hydrophobic.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
     rows = [ &
-      group('hydrophobic', 'Hydrophobic attraction; lists are several terms. Needs a ' // &
+      group('hydrophobic', 'Hydrophobic attraction; each value of a list is one term. Needs a ' // &
             'repulsion beside it.'), &
       list_key('hydrophobic', 'energy', 'J/m^2', 'Energy W at h = 0, twice the interfacial ' // &
                'energy times the hydrophobic fraction.', most=8, above=0.0_wp, required=.true.), &
@@ -25,7 +25,7 @@ contains
                required=.true.)]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

@@ -24,7 +24,7 @@ module lennard_jones
 
 contains
 
-  !> The keys that the law has in &force.
+  !> The keys of the law in &force.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
@@ -34,7 +34,7 @@ contains
       real_key('force', 'z0', 'm', 'lennard_jones: separation of zero force.', above=0.0_wp, &
                otherwise='none; lennard_jones needs it'), &
       real_key('force', 'surface_energy', 'J/m^2', 'lennard_jones: energy needed to separate ' // &
-               'unit area, in place of hamaker.', above=0.0_wp), &
+               'unit area, instead of hamaker.', above=0.0_wp), &
       list_key('force', 'exponents', '', 'lennard_jones: exponents n, m of the pressure: 9, 3 ' // &
                'half-spaces; 10, 4 half-space and sheet; 11, 5 sheets.', most=2, above=1.0_wp, &
                high=30.0_wp, otherwise='9, 3'), &
@@ -42,7 +42,7 @@ contains
                'law that acts.', otherwise='full')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -60,7 +60,7 @@ contains
     if (allocated(error) .or. .not. is_law(deck, 'lennard_jones')) return
     call deck%assume('force', 'part', 'full')
     if (deck%is_set('force', 'surface_energy') .and. deck%is_set('force', 'hamaker')) &
-      call deck%mistake('force', 'surface_energy', 'and hamaker give the same thing; give one', &
+      call deck%mistake('force', 'surface_energy', 'follows from hamaker; give one of the two', &
       error)
     call deck%get('force', 'z0', z0)
     call deck%get('force', 'part', part)
@@ -81,7 +81,7 @@ contains
     if (allocated(error)) return
     allocate (law, source=new_lennard_jones(hamaker, z0, part))
     if (size(exponents) == 0) return
-    ! The attraction is that of the Hamaker constant, A/(6 pi h^3), where there is one.
+    ! The attraction is A/(6 pi h^3) if the deck gives the Hamaker constant A.
     if (.not. deck%is_set('force', 'surface_energy')) &
       surface_energy = hamaker/(6*pi*z0**2*pair_factor(exponents))
     deallocate (law)
@@ -91,12 +91,12 @@ contains
 
     subroutine check_exponents()
       if (size(exponents) /= 2) then
-        call deck%mistake('force', 'exponents', 'are two', error)
+        call deck%mistake('force', 'exponents', 'give two', error)
       else if (exponents(1) <= exponents(2)) then
-        call deck%mistake('force', 'exponents', 'the repulsion''s, which is first, must be the '// &
+        call deck%mistake('force', 'exponents', 'the first, of the repulsion, must be the '// &
           'larger', error)
       else if (abs(exponents(2) - 3) > 0 .and. .not. deck%is_set('force', 'surface_energy')) then
-        call deck%mistake('force', 'surface_energy', 'missing; a Hamaker constant goes with an '// &
+        call deck%mistake('force', 'surface_energy', 'missing; a Hamaker constant needs an '// &
           'attraction of h^-3', error)
       end if
     end subroutine check_exponents
@@ -116,13 +116,13 @@ contains
     law%group = 'force'
     law%strength_key = 'hamaker'
     law%length_key = 'z0'
-    ! The slope is 1e121 there: even its square is a number.
+    ! The slope at this gap is 1e121, whose square does not overflow.
     law%smallest_gap = 1.0e-12_wp
-    ! A ninth of the gap, which in contact is below 1.
+    ! A ninth of the gap, which is below 1 in contact.
     if (part /= 'attractive') law%repulsion_length = 0.1_wp
     law%repulsive = merge(0, 1, part == 'attractive')
     law%attractive = merge(0, 1, part == 'repulsive')
-    ! The repulsion may grow 25-fold in an iteration, and a gap never reaches zero.
+    ! The repulsion may grow by a factor of 25 in an iteration, and a gap never reaches zero.
     law%closure_fraction = 0.3_wp
     if (part /= 'repulsive') law%adhesion = 1
     if (part == 'full') then
@@ -136,7 +136,7 @@ contains
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(size(gap))
 
-    ! The inverse cube, for which an array of its own would have to be allocated.
+    ! `value` first holds the inverse cube, which saves an array.
     value = 1/gap**3
     value = 8*value/3*(self%repulsive*value*value - self%attractive)
   end function pressure

@@ -1,7 +1,7 @@
-!> Morse law between surfaces: the energy per area is
-!> w [exp(-2 (h - z0)/l) - 2 exp(-(h - z0)/l)], w the surface energy, l the decay length.
-!> Most tension, w/(2 l), is met at z0 + l ln 2. In units of 2 l, the range w over most tension, and
-!> w/(2 l) the pressure is 4 (q^2 - q), q = exp(-2 (H - 1)).
+!> Morse law between surfaces: the energy per area is w [exp(-2 (h - z0)/l) - 2 exp(-(h - z0)/l)],
+!> with surface energy w and decay length l. The largest tension is w/(2 l) at z0 + l ln 2. In units
+!> of 2 l, the range w over largest tension, and w/(2 l) the pressure is 4 (q^2 - q), q = exp(-2 (H
+!> - 1)).
 module morse
   use kinds, only: wp
   use failure, only: failure_t
@@ -20,12 +20,12 @@ module morse
     procedure :: energy
   end type morse_t
 
-  !> Exponent beyond which exponentials would underflow or overflow.
+  !> Exponent above which exponentials would underflow or overflow.
   real(wp), parameter :: largest_exponent = 340
 
 contains
 
-  !> &morse.
+  !> The rows of &morse.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
@@ -39,7 +39,7 @@ contains
                'factor of e.', above=0.0_wp, required=.true.)]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

@@ -1,6 +1,6 @@
-!> Steric repulsion of polymer brushes of thickness L, which meet at h = 2 L (one brush: L). With u
-!> the gap over that: Alexander and de Gennes, p = kT Gamma^(3/2) (u^(-9/4) - u^(3/4)), or Milner,
-!> Witten and Cates, p = kT Gamma^(3/2) (1/(2 u^2) - u + u^4/2); none beyond u = 1.
+!> Steric repulsion of polymer brushes of thickness L, which touch at h = 2 L (one brush: L). With u
+!> the gap over this length: Alexander and de Gennes, p = kT Gamma^(3/2) (u^(-9/4) - u^(3/4)), or
+!> Milner, Witten and Cates, p = kT Gamma^(3/2) (1/(2 u^2) - u + u^4/2); zero beyond u = 1.
 module steric
   use kinds, only: wp
   use failure, only: failure_t
@@ -26,7 +26,7 @@ module steric
 
 contains
 
-  !> &steric.
+  !> The rows of &steric.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
@@ -37,13 +37,13 @@ contains
                default='alexander_de_gennes'), &
       real_key('steric', 'brush_thickness', 'm', 'Thickness L of a brush.', above=0.0_wp, &
                required=.true.), &
-      real_key('steric', 'grafting_density', '1/m^2', 'Chains a unit area.', above=0.0_wp, &
-               required=.true.), &
-      integer_key('steric', 'sides', 'Surfaces that carry a brush.', 1, 2, default='2'), &
+      real_key('steric', 'grafting_density', '1/m^2', 'Number of chains on unit area.', &
+               above=0.0_wp, required=.true.), &
+      integer_key('steric', 'sides', 'Number of surfaces with a brush.', 1, 2, default='2'), &
       real_key('steric', 'temperature', 'K', 'Temperature.', above=0.0_wp, default='298.15')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

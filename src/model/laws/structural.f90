@@ -19,19 +19,19 @@ module structural
     procedure :: energy
   end type structural_t
 
-  !> Exponent beyond which exponentials would underflow or overflow.
+  !> Exponent above which exponentials would underflow or overflow.
   real(wp), parameter :: largest_exponent = 300
 
 contains
 
-  !> &structural.
+  !> The rows of &structural.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
     rows = [ &
       group('structural', 'Oscillatory force of a structured liquid, ' // &
             '-p0 cos(2 pi h/d + phase) exp(-h/decay_length).'), &
-      real_key('structural', 'amplitude', 'Pa', 'Pressure p0; negative turns it round.', &
+      real_key('structural', 'amplitude', 'Pa', 'Pressure p0; negative for the opposite sign.', &
                required=.true.), &
       real_key('structural', 'period', 'm', 'Period d, about the size of a molecule.', &
                above=0.0_wp, required=.true.), &
@@ -40,8 +40,7 @@ contains
       real_key('structural', 'phase', '', 'Phase [rad] at h = 0.', default='0')]
   end function keys
 
-  !> The law, if the deck asks for it. An amplitude of either sign is one of positive sign and
-  !> another phase.
+  !> The law, if the deck has its group. A negative amplitude is a positive one with another phase.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -65,7 +64,7 @@ contains
     this%wave_number = 2*pi*this%length/period
     this%period = period/this%length
     this%closure_length = min(2.0_wp, 0.25_wp*this%period)
-    ! Within the first layer there is no liquid: the formula would oscillate without bounds.
+    ! Within the first layer there is no liquid, and the formula would oscillate without bounds.
     this%smallest_gap = 0
     this%group = 'structural'
     this%strength_key = 'amplitude'

@@ -1,10 +1,10 @@
-!> A force law from a file: gaps and pressures or energies per area, measured or computed elsewhere.
+!> A force law from a file of gaps and pressures, or energies per area, measured or computed.
 module tabulated
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key, text_key, word_key
-  use data_table, only: columns_t, read_columns
+  use data_table, only: data_table_t, read_columns
   use force_law, only: force_law_t
   use force_table, only: force_table_t, new_force_table, largest_step
   use law_reading, only: check_decades
@@ -13,8 +13,8 @@ module tabulated
   public :: keys, read_law
 
   type, extends(force_law_t) :: tabulated_t
-    !> The table, that of every second point, and what the difference of the two is to that between
-    !> the table and the law it is of.
+    !> The table, the table of every second point, and the error of the table over the difference of
+    !> these two.
     type(force_table_t) :: fine, coarse
     real(wp) :: share = 1
   contains
@@ -25,20 +25,20 @@ module tabulated
   end type tabulated_t
 
   integer, parameter :: fewest = 8
-  !> A cubic between points converges as the fourth power of their distance, slopes that are
-  !> monotone as the second at an extremum.
+  !> The error of a spline decreases as the fourth power of the distance of points, that of slopes
+  !> that are monotone as the second power at an extremum.
   real(wp), parameter :: share_of_spline = 1.0_wp/15, share_of_monotone = 1.0_wp/3
 
 contains
 
-  !> &tabulated.
+  !> The rows of &tabulated.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
     rows = [ &
-      group('tabulated', 'A law from a file. Either tail_exponent or tail_decay_length.'), &
+      group('tabulated', 'A law from a file. Give tail_exponent or tail_decay_length.'), &
       text_key('tabulated', 'file', 1000, 'File of two columns, gap and quantity in SI, # before ' &
-               // 'comments; in the folder of the deck unless a path.', required=.true.), &
+               // 'comments; a relative path begins at the deck''s folder.', required=.true.), &
       word_key('tabulated', 'quantity', 'pressure energy', 'The second column: pressure [Pa] or ' &
                // 'energy per area [J/m^2].', default='pressure'), &
       word_key('tabulated', 'interpolation', 'spline monotone', 'Smooth curvature, or no ' // &
@@ -50,65 +50,66 @@ contains
                // 'by a factor of e over this length.', above=0.0_wp, otherwise='none')]
   end function keys
 
-  !> The law, if the deck asks for it.
+  !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
     type(failure_t), allocatable, intent(inout) :: error
     type(tabulated_t) :: this
     type(failure_t), allocatable :: trouble
-    type(columns_t) :: columns
+    type(data_table_t) :: table
 
     if (.not. deck%has_group('tabulated')) return
     if (deck%is_set('tabulated', 'tail_exponent') .eqv. &
         deck%is_set('tabulated', 'tail_decay_length')) then
       call deck%mistake('tabulated', 'tail_exponent', 'give tail_exponent or ' // &
-        'tail_decay_length, one of the two: how the force goes on beyond the table', error)
+        'tail_decay_length, one of the two, for gaps beyond the table', error)
       return
     end if
-    call read_columns(deck, 'tabulated', 'file', columns, trouble)
-    if (.not. allocated(trouble)) call put_in_order(columns, trouble)
+    call read_columns(deck, 'tabulated', 'file', table, trouble)
+    if (.not. allocated(trouble)) call put_in_order(table, trouble)
     if (allocated(trouble)) then
       call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, error)
       return
     end if
-    call take_table(deck, columns, this, error)
+    call take_table(deck, table, this, error)
     if (.not. allocated(error)) allocate (law, source=this)
   end subroutine read_law
 
-  !> Gaps that ascend; fails where they do neither that nor descend, are not positive, or too few.
-  subroutine put_in_order(columns, error)
-    type(columns_t), intent(inout) :: columns
+  !> Puts gaps in ascending order; fails if they neither ascend nor descend, are not positive, or
+  !> are too few.
+  subroutine put_in_order(table, error)
+    type(data_table_t), intent(inout) :: table
     type(failure_t), allocatable, intent(inout) :: error
-    integer :: n, i
+    integer :: i
 
-    n = size(columns%first)
-    if (n < fewest) then
-      call columns%source%complain(len(columns%source%text) + 1, '', '', &
-        'fewer than 8 points', error)
-      return
-    end if
-    do i = 1, n
-      if (.not. columns%first(i) > 0) then
-        call columns%source%complain(columns%place(i), '', '', 'a gap that is not positive', error)
+    associate (gap => table%value(:, 1), n => size(table%place))
+      if (n < fewest) then
+        call table%source%complain(len(table%source%text) + 1, '', '', &
+          'fewer than 8 points', error)
         return
       end if
-      if (i == 1) cycle
-      if ((columns%first(i) - columns%first(i - 1))*(columns%first(2) - columns%first(1)) > 0) cycle
-      call columns%source%complain(columns%place(i), '', '', &
-        'gaps neither increase all the way nor decrease', error)
-      return
-    end do
-    if (columns%first(1) < columns%first(n)) return
-    columns%first = columns%first(n:1:-1)
-    columns%second = columns%second(n:1:-1)
-    columns%place = columns%place(n:1:-1)
+      do i = 1, n
+        if (.not. gap(i) > 0) then
+          call table%source%complain(table%place(i), '', '', 'a gap that is not positive', error)
+          return
+        end if
+        if (i == 1) cycle
+        if ((gap(i) - gap(i - 1))*(gap(2) - gap(1)) > 0) cycle
+        call table%source%complain(table%place(i), '', '', &
+          'gaps neither increase all the way nor decrease', error)
+        return
+      end do
+      if (gap(1) < gap(n)) return
+    end associate
+    table%value = table%value(size(table%place):1:-1, :)
+    table%place = table%place(size(table%place):1:-1)
   end subroutine put_in_order
 
-  !> The law of a table in order, in units of its first gap and its largest number.
-  subroutine take_table(deck, columns, this, error)
+  !> Makes the law of an ordered table, in units of its first gap and its largest number.
+  subroutine take_table(deck, table, this, error)
     type(deck_t), intent(in) :: deck
-    type(columns_t), intent(inout) :: columns
+    type(data_table_t), intent(inout) :: table
     type(tabulated_t), intent(inout) :: this
     type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: quantity, interpolation
@@ -116,17 +117,17 @@ contains
     real(wp) :: exponent, decay_length
     integer :: n, i
 
-    n = size(columns%first)
+    n = size(table%place)
     exponent = 2
     decay_length = 0
     call deck%get('tabulated', 'quantity', quantity)
     call deck%get('tabulated', 'interpolation', interpolation)
     call deck%get('tabulated', 'tail_exponent', exponent)
     call deck%get('tabulated', 'tail_decay_length', decay_length)
-    this%length = columns%first(1)
-    g = columns%first/this%length
-    this%pressure_unit = maxval(abs(columns%second))
-    value = columns%second/max(this%pressure_unit, tiny(1.0_wp))
+    this%length = table%value(1, 1)
+    g = table%value(:, 1)/this%length
+    this%pressure_unit = maxval(abs(table%value(:, 2)))
+    value = table%value(:, 2)/max(this%pressure_unit, tiny(1.0_wp))
     if (quantity == 'energy') this%pressure_unit = this%pressure_unit/this%length
     call check_decades(deck, 'tabulated', 'file', &
       log10(max(this%pressure_unit, tiny(1.0_wp))), 'a pressure', ' Pa', error)
@@ -140,7 +141,7 @@ contains
     end do
     this%fine = new_force_table(g, value, quantity == 'energy', exponent, decay_length, &
       interpolation == 'spline')
-    ! The first and the last point stay.
+    ! Both tables have the first and the last point.
     i = 2 + mod(n, 2)
     this%coarse = new_force_table([g(1), g(i:n:2)], [value(1), value(i:n:2)], &
       quantity == 'energy', exponent, decay_length, interpolation == 'spline')
@@ -151,7 +152,7 @@ contains
 
   contains
 
-    !> By how much, in logarithms, the tail falls between two gaps.
+    !> Logarithm of the ratio of the tail at two gaps.
     pure real(wp) function fall(from, to)
       real(wp), intent(in) :: from, to
 
@@ -164,7 +165,7 @@ contains
 
   end subroutine take_table
 
-  !> What solvers must know of the repulsion, that of the power before the first point.
+  !> Sets the scales of the repulsion, which is a power before the first point.
   subroutine take_scales(deck, this, error)
     type(deck_t), intent(in) :: deck
     type(tabulated_t), intent(inout) :: this
@@ -210,8 +211,8 @@ contains
     value = column_of(self%fine, gap, self%smallest_gap, 3)
   end function energy
 
-  !> From the law of every second point: what it adds to the error, if that is smooth, is a known
-  !> multiple of the error of all points.
+  !> From the table of every second point: for smooth laws its additional error is a known multiple
+  !> of the error of the whole table.
   pure function table_error(self, gap) result(value)
     class(tabulated_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)

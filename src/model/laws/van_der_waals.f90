@@ -1,6 +1,6 @@
 !> Van der Waals attraction between half-spaces: p = -A/(6 pi h^3), or retarded
-!> (Gregory, J. Colloid Interface Sci. 83, 138, 1981): the energy -A/(12 pi h^2) is divided by 1 + c
-!> h, c = 5.32/retardation_length, so that p falls as h^-4 far away.
+!> (Gregory, J. Colloid Interface Sci. 83, 138, 1981): the energy -A/(12 pi h^2) is divided by
+!> 1 + c h, c = 5.32/retardation_length, so that p falls as h^-4 at large h.
 module van_der_waals
   use kinds, only: wp, pi
   use failure, only: failure_t
@@ -21,12 +21,12 @@ module van_der_waals
     procedure :: energy
   end type van_der_waals_t
 
-  !> Gregory's constant, and the unit of gap.
+  !> Gregory's constant, and the unit of gap [m].
   real(wp), parameter :: gregory = 5.32_wp, nanometre = 1.0e-9_wp
 
 contains
 
-  !> &van_der_waals.
+  !> The rows of &van_der_waals.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
@@ -39,7 +39,7 @@ contains
                'attraction is retarded, about 100 nm.', above=0.0_wp, otherwise='no retardation')]
   end function keys
 
-  !> The law, if the deck asks for it. It has no length of its own.
+  !> The law, if the deck has its group. It has no characteristic length.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

@@ -13,7 +13,7 @@ module cone
 
 contains
 
-  !> Its row of &shape.
+  !> The row of a cone in &shape.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
@@ -21,7 +21,7 @@ contains
       'the gap is r/tan(half_angle).', above=0.0_wp, below=0.5_wp*pi)]
   end function keys
 
-  !> kind = 'cone'. length: the law's [m].
+  !> Reads kind = 'cone'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length

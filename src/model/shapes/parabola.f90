@@ -1,5 +1,5 @@
-!> The gap r^2/(2R) of spheres near their points of contact, in the paper and where a deck has no
-!> &shape.
+!> The gap r^2/(2R) of spheres near their points of contact, which is the paper's, and the shape of
+!> decks without &shape.
 module parabola
   use kinds, only: wp, pi
   use failure, only: failure_t
@@ -27,14 +27,14 @@ module parabola
 
 contains
 
-  !> It has no row of &shape of its own.
+  !> A parabola has no rows of its own in &shape.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
     allocate (rows(0))
   end function keys
 
-  !> kind = 'parabola', or no &shape. length: the law's [m], which does not matter.
+  !> Reads kind = 'parabola', or no &shape. length: the law's [m], which does not matter.
   subroutine read_shape(deck, length, shape, error)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length

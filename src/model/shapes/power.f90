@@ -1,5 +1,5 @@
-!> The gap B r^n. The lateral unit is where it has half the law's length, so that it is r^n/2
-!> without units; for n = 2 it is the parabola itself.
+!> The gap B r^n. The lateral unit is the position at which it is half the law's length, so that the
+!> dimensionless gap is r^n/2; for n = 2 it is the parabola itself.
 module power
   use kinds, only: wp, pi
   use failure, only: failure_t
@@ -15,7 +15,7 @@ module power
 
   type, extends(shape_t) :: power_t
     real(wp), private :: kappa = 2
-    !> n where that is a whole number, else 0: products are quicker than powers.
+    !> n if it is an integer, else 0, since products are faster than powers.
     integer, private :: whole = 0
   contains
     procedure :: height
@@ -28,7 +28,7 @@ module power
 
 contains
 
-  !> Its rows of &shape.
+  !> The rows of a power in &shape.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
@@ -38,7 +38,7 @@ contains
                otherwise='1/(2 R^(n-1))')]
   end function keys
 
-  !> kind = 'power': B from coefficient or radius. length: the law's [m].
+  !> Reads kind = 'power': B from coefficient or radius. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length
@@ -50,7 +50,7 @@ contains
     if (allocated(error)) return
     call deck%get('shape', 'exponent', n)
     if (deck%is_set('shape', 'coefficient')) then
-      call refuse_radius(deck, 'the coefficient stands for it', error)
+      call refuse_radius(deck, 'the coefficient replaces it', error)
       call deck%get('shape', 'coefficient', coefficient)
       if (abs(n - 2) > 0) then
         call take_power(deck, 'coefficient', n, log(coefficient), length, shape, error)
@@ -69,8 +69,8 @@ contains
     end if
   end subroutine read_shape
 
-  !> The shape, from n, the logarithm of B [m^(1-n)] and the law's length [m]; fails where its unit
-  !> is out of range, with the key that is to blame.
+  !> The shape from n, the logarithm of B [m^(1-n)] and the law's length [m]; fails, with the given
+  !> key in the message, if its unit is out of range.
   subroutine take_power(deck, key, n, log_b, length, shape, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: key

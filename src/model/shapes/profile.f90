@@ -1,12 +1,13 @@
 !> A shape from a file of positions and heights: a cubic spline of continuous curvature, flat on the
-!> axis, that goes on beyond the last point as the parabola with value, slope and curvature there.
+!> axis, which continues beyond the last point as a parabola.
 module profile
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, text_key
-  use data_table, only: columns_t, read_columns
+  use data_table, only: data_table_t, read_columns
   use cubic, only: spline
+  use interpolation, only: interval_of
   use law_reading, only: check_decades
   use shape, only: shape_t
   use shape_reading, only: require, refuse_radius
@@ -15,31 +16,30 @@ module profile
   public :: keys, read_shape
 
   type, extends(shape_t) :: profile_t
-    !> Where the pieces begin and the last one ends; of each piece the height and its derivatives
-    !> there, over 0!, 1!, 2! and 3!, and those at the end.
+    !> Beginnings of the pieces, and the end of the last one; for each piece the height and its
+    !> derivatives at its beginning, over 0!, 1!, 2! and 3!, and those at the end.
     real(wp), allocatable :: at(:), taylor(:, :)
   contains
     procedure :: height
     procedure :: slope
-    procedure, private :: piece
   end type profile_t
 
   integer, parameter :: fewest = 5
-  !> Curvature of the wrong sign, over the largest, that digits of a table may have, and a spline
-  !> through a body that is flat at its tip.
+  !> Largest curvature of the wrong sign, over the largest curvature, which may come from the digits
+  !> of a table, or from a spline through a body that is flat at its tip.
   real(wp), parameter :: straight = 0.02_wp
 
 contains
 
-  !> Its row of &shape.
+  !> The row of a profile in &shape.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
     rows = [text_key('shape', 'file', 1000, 'File of two columns, r from 0 on and height f in m, ' &
-      // '# before comments; in the folder of the deck unless a path.', otherwise='none')]
+      // '# before comments; a relative path begins at the deck''s folder.', otherwise='none')]
   end function keys
 
-  !> kind = 'profile'. length: the law's [m].
+  !> Reads kind = 'profile'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length
@@ -47,14 +47,14 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     type(failure_t), allocatable :: trouble
     type(profile_t) :: this
-    type(columns_t) :: columns
+    type(data_table_t) :: table
 
     call require(deck, 'profile', 'file', error)
     call refuse_radius(deck, 'the profile has its own', error)
     if (allocated(error)) return
-    call read_columns(deck, 'shape', 'file', columns, trouble)
-    if (.not. allocated(trouble)) call check_points(columns, trouble)
-    if (.not. allocated(trouble)) call take_points(columns, length, this, trouble)
+    call read_columns(deck, 'shape', 'file', table, trouble)
+    if (.not. allocated(trouble)) call check_points(table, trouble)
+    if (.not. allocated(trouble)) call take_points(table, length, this, trouble)
     if (allocated(trouble)) then
       call deck%mistake('shape', 'file', 'the profile cannot be used: ' // trouble%message, error)
       return
@@ -63,58 +63,58 @@ contains
     if (.not. allocated(error)) allocate (shape, source=this)
   end subroutine read_shape
 
-  !> Fails where positions do not start at 0 and grow, or where heights do not grow with them.
-  subroutine check_points(columns, error)
-    type(columns_t), intent(inout) :: columns
+  !> Fails if positions do not start at 0 and grow, or if heights do not grow with them.
+  subroutine check_points(table, error)
+    type(data_table_t), intent(inout) :: table
     type(failure_t), allocatable, intent(inout) :: error
     integer :: i
 
-    associate (r => columns%first, f => columns%second, n => size(columns%first))
+    associate (r => table%value(:, 1), f => table%value(:, 2), n => size(table%place))
       if (n < fewest) then
-        call columns%source%complain(len(columns%source%text) + 1, '', '', &
+        call table%source%complain(len(table%source%text) + 1, '', '', &
           'fewer than 5 points', error)
         return
       end if
       if (abs(r(1)) > 0) then
-        call columns%source%complain(columns%place(1), '', '', &
+        call table%source%complain(table%place(1), '', '', &
           'the first position is not 0, the axis', error)
         return
       end if
       do i = 2, n
         if (r(i) > r(i - 1) .and. f(i) > f(i - 1)) cycle
-        call columns%source%complain(columns%place(i), '', '', &
+        call table%source%complain(table%place(i), '', '', &
           'position and height do not both grow from the line before', error)
         return
       end do
     end associate
   end subroutine check_points
 
-  !> The shape through the points, in its own units; fails where it is not convex.
-  subroutine take_points(columns, length, this, error)
-    type(columns_t), intent(inout) :: columns
+  !> Makes the shape through the points, in its own units; fails if it is not convex.
+  subroutine take_points(table, length, this, error)
+    type(data_table_t), intent(inout) :: table
     real(wp), intent(in) :: length
     type(profile_t), intent(inout) :: this
     type(failure_t), allocatable, intent(inout) :: error
-    real(wp) :: mirrored(0:3, size(columns%first) - 1), unit, last
+    real(wp) :: mirrored(0:3, size(table%place) - 1), unit, last
     integer :: n, i
 
-    n = size(columns%first)
-    last = columns%first(n)
-    this%at = columns%first/last
-    ! The spline is flat at its right end: that of the mirrored profile is.
-    mirrored = spline(-this%at(n:1:-1), (columns%second(n:1:-1) - columns%second(1))/length)
+    n = size(table%place)
+    last = table%value(n, 1)
+    this%at = table%value(:, 1)/last
+    ! The spline is flat at its right end, so that it is made for the mirrored profile.
+    mirrored = spline(-this%at(n:1:-1), (table%value(n:1:-1, 2) - table%value(1, 2))/length)
     allocate (this%taylor(0:3, n))
     do i = 1, n - 1
       this%taylor(:, n - i) = expanded_at_end(mirrored(:, i), this%at(n + 1 - i) - this%at(n - i))
     end do
-    this%taylor(:, n) = [(columns%second(n) - columns%second(1))/length, &
+    this%taylor(:, n) = [(table%value(n, 2) - table%value(1, 2))/length, &
       -mirrored(1, 1), mirrored(2, 1), 0.0_wp]
     associate (curvature => this%taylor(2, :))
       do i = 1, n
         if (curvature(i) >= -straight*maxval(curvature) .and. &
           (i == 1 .or. this%taylor(1, i) > 0)) cycle
-        call columns%source%complain(columns%place(i), '', '', 'the profile is not convex ' // &
-          'here; contacts of more than one edge are not computed', error)
+        call table%source%complain(table%place(i), '', '', 'the profile is not convex ' // &
+          'here; contacts with several edges are not computed', error)
         return
       end do
     end associate
@@ -129,8 +129,8 @@ contains
     this%breaks = this%at(2:)
   end subroutine take_points
 
-  !> A cubic in the distance from its left end as one in that from its right end, `width` away,
-  !> taken to the left.
+  !> A cubic of the distance from its left end as a cubic of the distance from its right end, which
+  !> is `width` away, to the left.
   pure function expanded_at_end(cubic, width) result(taylor)
     real(wp), intent(in) :: cubic(0:3), width
     real(wp) :: taylor(0:3)
@@ -141,30 +141,12 @@ contains
     taylor(3) = -cubic(3)
   end function expanded_at_end
 
-  !> The piece that a position lies in, by bisection.
-  elemental integer function piece(self, r)
-    class(profile_t), intent(in) :: self
-    real(wp), intent(in) :: r
-    integer :: beyond, middle
-
-    piece = 1
-    beyond = size(self%at) + 1
-    do while (beyond - piece > 1)
-      middle = (piece + beyond)/2
-      if (self%at(middle) > r) then
-        beyond = middle
-      else
-        piece = middle
-      end if
-    end do
-  end function piece
-
   elemental real(wp) function height(self, r) result(value)
     class(profile_t), intent(in) :: self
     real(wp), intent(in) :: r
     integer :: i
 
-    i = self%piece(r)
+    i = interval_of(self%at, r)
     associate (c => self%taylor(:, i), t => r - self%at(i))
       value = c(1) + t*(c(2) + t*(c(3) + t*c(4)))
     end associate
@@ -175,7 +157,7 @@ contains
     real(wp), intent(in) :: r
     integer :: i
 
-    i = self%piece(r)
+    i = interval_of(self%at, r)
     associate (c => self%taylor(:, i), t => r - self%at(i))
       value = c(2) + t*(2*c(3) + 3*t*c(4))
     end associate

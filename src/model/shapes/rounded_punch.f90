@@ -22,7 +22,7 @@ module rounded_punch
 
 contains
 
-  !> Its row of &shape.
+  !> The row of a rounded punch in &shape.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
@@ -30,7 +30,7 @@ contains
       'whose rim has the radius R.', above=0.0_wp)]
   end function keys
 
-  !> kind = 'rounded_punch'. length: the law's [m].
+  !> Reads kind = 'rounded_punch'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length

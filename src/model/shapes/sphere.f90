@@ -13,14 +13,14 @@ module sphere
 
 contains
 
-  !> It has no row of &shape of its own.
+  !> A sphere has no rows of its own in &shape.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
     allocate (rows(0))
   end function keys
 
-  !> kind = 'sphere'. length: the law's [m].
+  !> Reads kind = 'sphere'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length

@@ -1,6 +1,6 @@
-!> The end of a spheroid, b - b sqrt(1 - r^2/a^2) with the radius R = a^2/b on the axis. Without
-!> units it is (1 - sqrt(1 - kappa r^2))/kappa, kappa = L/b, and near the axis the parabola. Beyond
-!> 0.98 a it goes on as a straight line, where no force may act any more.
+!> The end of a spheroid, b - b sqrt(1 - r^2/a^2) with the radius R = a^2/b on the axis. In
+!> dimensionless form it is (1 - sqrt(1 - kappa r^2))/kappa, kappa = L/b, and near the axis the
+!> parabola. Beyond 0.98 a it continues as a straight line, where no force may act.
 module spheroid
   use kinds, only: wp
   use failure, only: failure_t
@@ -22,14 +22,14 @@ module spheroid
     procedure :: indentation
   end type spheroid_t
 
-  !> Part of the equator's radius up to which the body reaches.
+  !> Radius of the end of the body over the radius of the equator.
   real(wp), parameter :: reaching = 0.98_wp
-  !> Half the axis, in lengths of the law, below which no law is short enough.
+  !> Smallest half-axis in lengths of the law.
   real(wp), parameter :: smallest = 5
 
 contains
 
-  !> Its row of &shape.
+  !> The row of a spheroid in &shape.
   pure function keys() result(rows)
     type(key_spec), allocatable :: rows(:)
 
@@ -37,7 +37,7 @@ contains
       'through the bodies; across it is sqrt(R b).', above=0.0_wp)]
   end function keys
 
-  !> kind = 'spheroid'. length: the law's [m].
+  !> Reads kind = 'spheroid'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length
@@ -52,8 +52,8 @@ contains
     call take_spheroid(deck, 'semi_axis', radius, semi_axis, length, shape, error)
   end subroutine read_shape
 
-  !> The shape, from R, b and the law's length, all [m]; fails where the body is hardly larger than
-  !> that length, with the key that is to blame.
+  !> The shape from R, b and the law's length, all [m]; fails, with the given key in the message, if
+  !> the body is hardly larger than this length.
   subroutine take_spheroid(deck, key, radius, semi_axis, length, shape, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: key
@@ -103,7 +103,7 @@ contains
     r = sqrt(inside*(2 - self%kappa*inside)) + (height - inside)/self%slope(self%ends)
   end function position_of
 
-  !> In closed form: what is within the end, up to part e of a, and the straight line beyond.
+  !> In closed form: the part within the end, up to e a, and the straight line beyond.
   elemental real(wp) function indentation(self, a)
     class(spheroid_t), intent(in) :: self
     real(wp), intent(in) :: a
