@@ -26,8 +26,6 @@ module law_panels
   !> where waves move past them.
   real(wp), parameter :: shortest = 0.01_wp
   integer, parameter :: tried = 9, often = 33
-  !> How often what moves is met on a panel at least.
-  integer, parameter :: often_met = 4
   !> How many times the nodes are tried. A panel that needs no more than its halves would is not
   !> halved: waves want nodes, and steps short panels.
   real(wp), parameter :: times(*) = [1.0_wp, 1.3_wp, 1.7_wp, 2.2_wp, 2.8_wp, 3.6_wp]
@@ -58,7 +56,7 @@ contains
     integer, allocatable, intent(out) :: order(:)
     type(seen_gaps_t), intent(in), optional :: seen
     real(wp), allocatable :: given(:), parameter(:), load(:)
-    real(wp) :: centre, most, apart
+    real(wp) :: centre, most
     integer :: worst, k
 
     most = 10.0_wp**(-digits)
@@ -72,7 +70,6 @@ contains
       parameter = between(low, high, tries(problem%law))
     end if
     centre = merge(0.0_wp, 1.0_wp, about == about_axis)
-    apart = max(abs(log(maxval(parameter)/minval(parameter)))/size(parameter), tiny(1.0_wp))
     load = [(load_of(k), k=1, size(parameter))]
     call move_alloc(length, given)
     allocate (length(0), order(0))
@@ -129,27 +126,22 @@ contains
     end function order_of
 
     !> Whether what the polynomial of the nodes lacks of the pressure on a panel is little, of the
-    !> load and of the gap around. The gap that asked for more before is tried first, and then only
-    !> so many of the others that whatever moves through the panel is met on it several times.
+    !> load and of the gap around. The gap that asked for more before is tried first.
     logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
       type(local_nodes_t) :: local
       real(wp), dimension(nodes) :: gap, pressure, offset
       real(wp) :: ends(2)
-      integer :: j, k, stride
+      integer :: j, k
 
       is_resolved = .false.
       local = gauss_nodes(nodes)
       offset = side*d*sinh(z + z_length*local%node)
       ends = centre + side*d*sinh(z + z_length*[0, 1])
       if (side < 0) ends = [ends(2), ends(1)]
-      stride = 1
-      if (about /= about_axis) stride = max(1, &
-        floor(log(ends(2)/max(ends(1), tiny(1.0_wp)))/(often_met*apart)))
-      do k = 0, size(parameter) + stride - 1, stride
-        j = min(k, size(parameter))
-        if (k == 0) j = worst
+      do k = 0, size(parameter)
+        j = merge(k, worst, k > 0)
         gap = gap_of(j, offset)
         pressure = problem%law%pressure(gap)
         associate (unit => merge(1.0_wp, parameter(j), about == about_axis))
