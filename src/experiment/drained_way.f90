@@ -57,12 +57,15 @@ contains
       call accept(steps, next, taken > 2*least, at, now)
       now%step = min(longest, taken*min(longer, max(shorter, 0.9_wp/sqrt(off))))
       if (now%held > now%most) call lose(at, now)
+      if (now%result%lost) write (*, *) "TOOMANY", now%held, at%time
     else
       steps%cost%rejected_steps = steps%cost%rejected_steps + 1
       now%step = taken*merge(max(shorter, 0.7_wp/sqrt(off)), 0.3_wp, done)
       if (.not. done .and. taken <= least) call lose(at, now)
-      now%step = max(now%step, least)
+      if (now%result%lost) write (*, *) "LOST", now%held, at%time, at%position, at%mesh, &
+  at%state%axis_gap, at%state%scale, at%state%load, taken, least
     end if
+    now%step = max(now%step, least)
   end subroutine step_drained
 
   !> What a step asks to be: below 1 it may be longer, above 1 it has to be shorter.
