@@ -14,8 +14,10 @@ module drained_way
 
   !> What a step may miss on a straight line through the two instants before: of the load over the
   !> largest or a pull-off, of the gap on the axis over itself, and the way of the edge over what is
-  !> finest there. A step that misses so many times as much is taken again.
-  real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4
+  !> finest there. A step that misses so many times as much is taken again, unless a shorter one
+  !> misses more than half of that: a third as long, it misses a third if loads are continuous.
+  real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4, &
+    no_less = 0.5_wp
   !> A step is so many times the last at most, and at least.
   real(wp), parameter :: longer = 2, shorter = 0.2_wp
   !> Steps are no shorter than so many roundings of the time; those may go so far in the path's
@@ -38,7 +40,7 @@ contains
     type(pass_t), intent(inout) :: now
     type(instant_t) :: next
     real(wp) :: when, off, taken, least, farthest
-    logical :: done
+    logical :: done, jumped
 
     least = roundings*spacing(max(at%time, now%step))
     when = at%time + now%step
@@ -53,16 +55,24 @@ contains
     if (done .and. part > 0) off = max(off, missed(steps, at, next, now)/part**2)
     ! A line has no bend yet.
     if (done .and. at%since_turn < 2) off = 1
+    ! What shorter steps do not make less is no motion: the load jumps, as where the drive turns.
+    jumped = done .and. off >= rejected .and. now%missed > 0 .and. off > no_less*now%missed
+    if (jumped) then
+      off = 1
+      next%since_turn = 0
+    end if
+    now%missed = 0
     if (done .and. (off < rejected .or. taken <= 2*least)) then
-      call accept(steps, next, taken > 2*least, at, now)
+      call accept(steps, next, taken > 2*least .and. .not. jumped, at, now)
       now%step = min(longest, taken*min(longer, max(shorter, 0.9_wp/sqrt(off))))
       if (now%held > now%most) call lose(at, now)
     else
       steps%cost%rejected_steps = steps%cost%rejected_steps + 1
+      if (done) now%missed = off
       now%step = taken*merge(max(shorter, 0.7_wp/sqrt(off)), 0.3_wp, done)
       if (.not. done .and. taken <= least) call lose(at, now)
-      now%step = max(now%step, least)
     end if
+    now%step = max(now%step, least)
   end subroutine step_drained
 
   !> What a step asks to be: below 1 it may be longer, above 1 it has to be shorter.

@@ -51,6 +51,8 @@ module timed_record
     type(timed_result_t) :: result
     integer :: held = 0, way = 0, halved = 1
     real(wp) :: step = 0
+    !> What the step that was tried last missed, if that was too much.
+    real(wp) :: missed = 0
     logical :: ended = .false.
     !> Steps and jumps at which it is given up.
     integer :: most = most_steps, most_jumps = 50
