@@ -186,10 +186,12 @@ contains
     energy_at = value(1)
   end function energy_at
 
-  !> The gaps of the scan.
+  !> The gaps of the scan, in ascending order; a step of the law, which may be narrower than they
+  !> are apart, has gaps of its own.
   pure function gaps_of(law) result(gap)
     class(force_law_t), intent(in) :: law
     real(wp), allocatable :: gap(:)
+    real(wp), allocatable :: through(:)
     real(wp) :: base
     integer :: i
 
@@ -200,6 +202,9 @@ contains
       base = 0
     end if
     gap = [gap, (base + nearest*(farthest/nearest)**(real(i, wp)/geometric), i=0, geometric)]
+    if (.not. law%step_width > 0) return
+    through = law%step_at + law%step_width*[(0.5_wp*i, i=-16, 16)]
+    gap = [pack(gap, gap < through(1)), through, pack(gap, gap > through(size(through)))]
   end function gaps_of
 
 end module law_scan

@@ -101,6 +101,17 @@ def test_least_repulsion_before_a_step_is_where_the_pressure_vanishes(run):
     assert several(summary["load_folds_h0"])[0] == pytest.approx(low, abs=1e-6)
 
 
+@pytest.mark.parametrize("smoothing", [3e-3, 1e-3])
+@pytest.mark.parametrize("sigma", [0.1, 1.0])
+def test_a_step_of_a_thousandth_of_the_range_is_resolved(run, sigma, smoothing):
+    """It is narrower than the distance between the gaps at which scales of laws are looked for. The
+    pull-off changes in proportion to the smoothing."""
+    sharp, smooth, smoother = (
+        check(run(steps(sigma, **dugdale(width))))["max_tension"]
+        for width in (smoothing, 0.02, 0.04))
+    assert sharp == pytest.approx(smooth + (smooth - smoother) * (0.02 - smoothing) / 0.02, rel=2e-3)
+
+
 def test_step_outside_a_stronger_attraction(run):
     law = {
         "force": {"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
