@@ -85,7 +85,7 @@ contains
       call residual(equations, control, now%z_least, now%g, state)
     ! After slow convergence the next state begins with a new factorisation.
     frozen%excess = frozen%excess + max(0, state%iterations - few_iterations)
-    if (unknowns_an_iteration*frozen%excess > size(now%z)) frozen%factors%valid = .false.
+    if (unknowns_an_iteration*frozen%excess > size(now%z)) call frozen%forget()
   end subroutine solve_anderson
 
   !> Makes the last plain step. In a short step of time a fluid multiplies the rounding of gaps in

@@ -15,8 +15,10 @@ module drained_way
   !> Largest deviation in a step from a straight line through the two previous instants: of the
   !> load, over the largest load or a pull-off; of the gap on the axis, over the gap; and largest
   !> motion of the edge, over the smallest feature there. A step with `rejected` times these values
-  !> is repeated.
-  real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4
+  !> is repeated as a shorter step, unless the deviation of the shorter step is more than `no_less`
+  !> times as large: for continuous loads, a third of the step has a third of the deviation.
+  real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4, &
+    no_less = 0.5_wp
   !> Largest and smallest ratio of a step to the previous step.
   real(wp), parameter :: longer = 2, shorter = 0.2_wp
   !> The shortest step in roundings of the time; largest change of the path's coordinate in such a
@@ -40,7 +42,7 @@ contains
     type(pass_t), intent(inout) :: now
     type(instant_t) :: next
     real(wp) :: when, off, taken, least, farthest
-    logical :: done
+    logical :: done, jumped
 
     least = roundings*spacing(max(at%time, now%step))
     when = at%time + now%step
@@ -55,16 +57,24 @@ contains
     if (done .and. part > 0) off = max(off, missed(steps, at, next, now)/part**2)
     ! The deviation from a line is not known yet.
     if (done .and. at%since_turn < 2) off = 1
+    ! If shorter steps do not reduce the deviation, the load jumps, as where the drive turns.
+    jumped = done .and. off >= rejected .and. now%missed > 0 .and. off > no_less*now%missed
+    if (jumped) then
+      off = 1
+      next%since_turn = 0
+    end if
+    now%missed = 0
     if (done .and. (off < rejected .or. taken <= 2*least)) then
-      call accept(steps, next, taken > 2*least, at, now)
+      call accept(steps, next, taken > 2*least .and. .not. jumped, at, now)
       now%step = min(longest, taken*min(longer, max(shorter, 0.9_wp/sqrt(off))))
       if (now%held > now%most) call lose(at, now)
     else
       steps%cost%rejected_steps = steps%cost%rejected_steps + 1
+      if (done) now%missed = off
       now%step = taken*merge(max(shorter, 0.7_wp/sqrt(off)), 0.3_wp, done)
       if (.not. done .and. taken <= least) call lose(at, now)
-      now%step = max(now%step, least)
     end if
+    now%step = max(now%step, least)
   end subroutine step_drained
 
   !> Deviation of a step over the allowed deviation: below 1 the step may be longer, above 1 it must

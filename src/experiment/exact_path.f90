@@ -53,13 +53,14 @@ contains
     associate (accuracy => request%numerics%accuracy, cost => steps%cost)
       call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, accuracy)
       call fine%lay_out(steps, h0_high, h0_low, store)
-      if (.not. allocated(request%path)) return
       renewed = spread(.false., 1, size(steps%meshes%grid))
       before = huge(before)
       do round = 1, most_rounds
         began = seconds()
         call keep_extrema(steps%known%path, renewed, places)
-        call find_finish(steps, steps%problem%law%gap_of(request%path%h0_end), finish, found)
+        found = .false.
+        if (allocated(request%path)) call find_finish(steps, &
+          steps%problem%law%gap_of(request%path%h0_end), finish, found)
         if (found) call places%keep(finish, kept)
         call judge_places(fine, steps, places, .true.)
         cost%estimate_seconds = cost%estimate_seconds + seconds() - began

@@ -208,7 +208,7 @@ contains
     if (.not. place%known) return
     call fine%prepare(place%mesh)
     state = guess_of(own, fine, place)
-    fine%frozen%factors%valid = .false.
+    call fine%frozen%forget()
     control = h0_control(own%problem%shape, own%meshes, place%mesh, place%at(of_h0))
     call fine%find(control, state, place%known)
     if (.not. place%known) return

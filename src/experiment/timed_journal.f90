@@ -30,7 +30,7 @@ contains
     type(byte_record_t) :: record
 
     if (now%held < now%kept + every .and. .not. now%ended) return
-    steps%frozen%factors%valid = .false.
+    call steps%frozen%forget()
     steps%frozen%excess = 0
     steps%operator = elastic_operator_t()
     if (associated(journal)) then

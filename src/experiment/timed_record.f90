@@ -50,6 +50,8 @@ module timed_record
     type(timed_result_t) :: result
     integer :: held = 0, way = 0, halved = 1
     real(wp) :: step = 0
+    !> Deviation of the last attempted step, if it was too large; otherwise 0.
+    real(wp) :: missed = 0
     logical :: ended = .false.
     !> Numbers of steps and of jumps at which a pass is given up.
     integer :: most = most_steps, most_jumps = 50

@@ -26,8 +26,6 @@ module law_panels
   !> for which the pressure is evaluated: `tried`, or `often` where waves move with them.
   real(wp), parameter :: shortest = 0.01_wp
   integer, parameter :: tried = 9, often = 33
-  !> Least number of tried radii at which a moving feature of the pressure lies on one panel.
-  integer, parameter :: often_met = 4
   !> Factors by which the number of nodes is increased in turn. A panel that needs no more nodes
   !> than its halves is not halved: waves need more nodes, steps need shorter panels.
   real(wp), parameter :: times(*) = [1.0_wp, 1.3_wp, 1.7_wp, 2.2_wp, 2.8_wp, 3.6_wp]
@@ -60,7 +58,7 @@ contains
     integer, allocatable, intent(out) :: order(:)
     type(seen_gaps_t), intent(in), optional :: seen
     real(wp), allocatable :: given(:), parameter(:), load(:)
-    real(wp) :: centre, most, apart
+    real(wp) :: centre, most
     integer :: worst, k
 
     most = 10.0_wp**(-digits)
@@ -74,7 +72,6 @@ contains
       parameter = between(low, high, tries(problem%law))
     end if
     centre = merge(0.0_wp, 1.0_wp, about == about_axis)
-    apart = max(abs(log(maxval(parameter)/minval(parameter)))/size(parameter), tiny(1.0_wp))
     load = [(load_of(k), k=1, size(parameter))]
     call move_alloc(length, given)
     allocate (length(0), order(0))
@@ -131,27 +128,22 @@ contains
     end function order_of
 
     !> Whether the nodes of a panel integrate the pressure with a small enough error of the load and
-    !> of the gap nearby. The gap that was worst before is tested first, and then only so many
-    !> others that a moving feature lies on the panel in several of them.
+    !> of the gap nearby. The gap that was worst before is tested first.
     logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
       type(local_nodes_t) :: local
       real(wp), dimension(nodes) :: gap, pressure, offset
       real(wp) :: ends(2)
-      integer :: j, k, stride
+      integer :: j, k
 
       is_resolved = .false.
       local = gauss_nodes(nodes)
       offset = side*d*sinh(z + z_length*local%node)
       ends = centre + side*d*sinh(z + z_length*[0, 1])
       if (side < 0) ends = [ends(2), ends(1)]
-      stride = 1
-      if (about /= about_axis) stride = max(1, &
-        floor(log(ends(2)/max(ends(1), tiny(1.0_wp)))/(often_met*apart)))
-      do k = 0, size(parameter) + stride - 1, stride
-        j = min(k, size(parameter))
-        if (k == 0) j = worst
+      do k = 0, size(parameter)
+        j = merge(k, worst, k > 0)
         gap = gap_of(j, offset)
         pressure = problem%law%pressure(gap)
         associate (unit => merge(1.0_wp, parameter(j), about == about_axis))

@@ -21,9 +21,9 @@ module panel_map
     integer :: kind = linear_map
     !> Offsets of the panel's ends; the right one of an algebraic panel is huge.
     real(wp) :: left = 0, right = 0
-    !> sinh: d, z at the left end, and the length in z.
+    !> Parameters of a sinh panel: d, z at the left end, and the length in z.
     real(wp) :: d = 0, z_left = 0, z_length = 0
-    !> algebraic: position of the left end, and the exponent of the pressure's tail.
+    !> Parameters of an algebraic panel: position of the left end, and the exponent of the pressure's tail.
     real(wp) :: begin = 0, decay = 0
   contains
     procedure :: offset

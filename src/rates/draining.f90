@@ -75,7 +75,7 @@ contains
       from%since_turn >= calming))
     ! A Jacobian made for another length of steps says little of this one.
     if (abs(log(weights(1)/self%made_for)) > other_length) then
-      self%frozen%factors%valid = .false.
+      call self%frozen%forget()
       self%made_for = weights(1)
     end if
     self%drainage%weight = weights(1)

@@ -74,9 +74,9 @@ contains
 
     call steps%prepare_memory(at, at%time)
     call steps%place_rise(at%mesh, at%state%scale)
-    steps%frozen%factors%valid = .false.
+    call steps%frozen%forget()
     call steps%solve(steps%control_at(at%position, at%mesh, at%state), at%state, found)
-    steps%frozen%factors%valid = .false.
+    call steps%frozen%forget()
   end subroutine begin_as_steps_do
 
   !> Solves from a guess for relaxed bodies at a position; if they are found near where they were,

@@ -47,7 +47,7 @@ contains
     if (.not. done) return
     to%time = time
     to%position = position
-    steps%frozen%factors%valid = .false.
+    call steps%frozen%forget()
     call steps%remember(from, to)
   end subroutine step_along
 
@@ -97,7 +97,7 @@ contains
       missing = off(steps, to, position)
       if (.not. passed()) cycle
       ! Between what the two meshes say of one state.
-      steps%frozen%factors%valid = .false.
+      call steps%frozen%forget()
       call steps%solve(steps%control_at(position, mesh, to%state), to%state, done)
       return
     end do
@@ -135,7 +135,7 @@ contains
     call steps%place_rise(at%mesh, scale_of(control))
     state = at%state
     call steps%solve(control, state, found)
-    if (.not. found) steps%frozen%factors%valid = .false.
+    if (.not. found) call steps%frozen%forget()
     if (found) at%state = state
   end subroutine solve_at
 
@@ -212,7 +212,7 @@ contains
     moved%mesh = mesh
     moved%state = regrid(steps%problem%shape, at%state, steps%meshes%grid(at%mesh), &
       steps%meshes%grid(mesh), scale)
-    steps%frozen%factors%valid = .false.
+    call steps%frozen%forget()
     call solve_at(steps, coordinate_of(steps%problem, mesh, moved%state), moved, done)
     if (done) at = moved
   end subroutine change_mesh

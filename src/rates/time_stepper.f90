@@ -81,7 +81,7 @@ contains
         allocated(self%drainage))*self%finest(expected)) exit
     end do
     if (.not. done) then
-      self%frozen%factors%valid = .false.
+      call self%frozen%forget()
       return
     end if
     mesh = self%mesh_for(to%mesh, to%state)

@@ -78,16 +78,16 @@ def test_estimates_hold_under_other_laws(tmp_path, number):
     assert not study_laws.is_bad(finding), finding
 
 
-# One number in 130 of such scenes has an error above its estimate (docs/testing.md). These scenes
-# have none; the next test has the two that do.
-@pytest.mark.parametrize("number", [1, 2, 3, 9, 14])
+# One number in 215 of such scenes has an error above its estimate (docs/testing.md). These scenes
+# have none; the next test has two that do.
+@pytest.mark.parametrize("number", [0, 1, 3, 4, 9, 14])
 def test_estimates_hold_for_bodies_with_layers(tmp_path, number):
     [finding] = study_layers.examine(study_layers.jobs(number + 1, tmp_path)[number])
     assert finding.deviations
     assert not study_laws.is_bad(finding), finding
 
 
-@pytest.mark.parametrize("number", [0, 4])
+@pytest.mark.parametrize("number", [2, 59])
 def test_an_error_above_its_estimate_is_within_the_accuracy(tmp_path, number):
     [finding] = study_layers.examine(study_layers.jobs(number + 1, tmp_path)[number])
     assert finding.deviations and not finding.wrong
