@@ -23,7 +23,7 @@ module panel_map
     real(wp) :: left = 0, right = 0
     !> Parameters of a sinh panel: d, z at the left end, and the length in z.
     real(wp) :: d = 0, z_left = 0, z_length = 0
-    !> Parameters of an algebraic panel: position of the left end, and the exponent of the pressure's tail.
+    !> Parameters of an algebraic panel: position of its left end, and exponent of the tail.
     real(wp) :: begin = 0, decay = 0
   contains
     procedure :: offset
