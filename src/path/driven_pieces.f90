@@ -1,9 +1,9 @@
 !> The pieces of the path that are stable when the bodies are driven through a spring.
 !>
 !> The drive is D = a h0 - b F: the position Z = h0 - F/k of the base of a spring of stiffness k (a
-!> = 1, b = 1/k), h0 itself (a = 1, b = 0), or h0 is free under a dead load -F (a = 0, b = 1). A
-!> state is stable at fixed D if no mode of the bodies is unstable at fixed h0 and k - dF/dh0 > 0,
-!> the Schur complement of bodies and spring. On the path followed inward D decreases there.
+!> = 1, b = 1/k), h0 itself (a = 1, b = 0), or a dead load -F (a = 0, b = 1). A state is stable at
+!> fixed D if no mode of the bodies is unstable at fixed h0 and k - dF/dh0 > 0, the Schur complement
+!> of bodies and spring. On the path followed inward D decreases there.
 module driven_pieces
   use kinds, only: wp
   use quadrature, only: gauss_legendre
